@@ -1,0 +1,132 @@
+"""The command ``modefront``.
+
+Nothing that takes long to import is imported before a command needs it: ``--help`` is to answer
+at once.
+"""
+
+from __future__ import annotations
+
+import os
+import sys
+from pathlib import Path
+
+import click
+
+from modefront import __version__
+from modefront.errors import InputError, UnfinishedError
+
+OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
+
+
+@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.version_option(__version__, prog_name="modefront")
+def cli() -> None:
+    """Find all models of a structure that are Pareto optimal in its measured modes."""
+
+
+@cli.command()
+@click.argument("directory", type=click.Path(path_type=Path))
+@click.option("--example", default="three-story-c0", show_default=True, help="Which example.")
+def init(directory: Path, example: str) -> None:
+    """Write a study that runs at once into DIRECTORY."""
+    from modefront.study.examples import write_example
+
+    for path in write_example(example, directory):
+        click.echo(f"wrote {path}")
+    click.echo(f"next: modefront run {directory / 'study.toml'}")
+
+
+@cli.command()
+@click.argument("study", type=click.Path(path_type=Path))
+def check(study: Path) -> None:
+    """Say all that is wrong with STUDY, and prove its derivatives."""
+    from modefront.cli.show import print_findings
+    from modefront.study.check import check as check_study
+    from modefront.study.file import load
+
+    loaded = load(study)
+    findings = check_study(loaded)
+    print_findings(loaded, findings)
+    if not findings.sound:
+        raise UnfinishedError("the derivatives differ from finite differences")
+
+
+@cli.command()
+@click.argument("study", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    "directory",
+    type=click.Path(path_type=Path),
+    help="Folder of the results  [default: the study file's name with -results]",
+)
+@click.option("--fresh", is_flag=True, help="Start over; earlier work is set aside, not deleted.")
+def run(study: Path, directory: Path | None, fresh: bool) -> None:
+    """Do the work of STUDY; continue where an interrupted run stopped."""
+    from modefront.cli.progress import progress_bar
+    from modefront.cli.show import print_summary
+    from modefront.study.file import load
+    from modefront.study.session import run as run_study
+
+    loaded = load(study)
+    directory = directory or study.with_name(f"{study.stem}-results")
+    with progress_bar(loaded.name) as progress:
+        data = run_study(loaded, directory, fresh=fresh, progress=progress)
+    print_summary(data, directory)
+    if not bool(data["converged"].all()):
+        failed = data["label"].values[~data["converged"].values]
+        raise UnfinishedError(f"not converged, kept and marked as such: {', '.join(failed)}")
+
+
+@cli.command()
+@click.argument("directory", type=click.Path(path_type=Path))
+@click.option(
+    "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
+)
+def show(directory: Path, form: str) -> None:
+    """Print the results in DIRECTORY."""
+    from modefront.cli.show import as_json, print_results
+    from modefront.study.results import read
+
+    data = read(directory)
+    if form == "json":
+        click.echo(as_json(data))
+    else:
+        print_results(data)
+
+
+def main() -> None:
+    """Run the command and leave with its exit status; no input produces a traceback."""
+    try:
+        cli.main(standalone_mode=False)
+        status = OK
+    except click.exceptions.Exit as exit_:
+        status = exit_.exit_code
+    except click.UsageError as error:
+        error.show()
+        status = WRONG_INPUT
+    except click.ClickException as error:
+        error.show()
+        status = WRONG_INPUT
+    except InputError as error:
+        click.echo(str(error), err=True)
+        status = WRONG_INPUT
+    except UnfinishedError as error:
+        click.echo(f"modefront: {error}", err=True)
+        status = UNDONE
+    except (KeyboardInterrupt, click.Abort):
+        click.echo("modefront: interrupted; what was done is kept, run again to continue", err=True)
+        status = INTERRUPTED
+    except BrokenPipeError:
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        status = UNDONE
+    except Exception as error:
+        if os.environ.get("MODEFRONT_TRACEBACK"):
+            raise
+        click.echo(
+            f"modefront: an error of the program itself: {type(error).__name__}: {error}\n"
+            "please report it, with the output of the same command under MODEFRONT_TRACEBACK=1",
+            err=True,
+        )
+        status = UNDONE
+    sys.exit(status)

@@ -1,0 +1,293 @@
+"""Results and findings as tables, and as JSON."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+from rich import box
+from rich.console import Console
+from rich.table import Table
+
+from modefront.study.check import Findings
+from modefront.study.file import Study
+
+_WIDTH = 110
+
+
+def _console() -> Console:
+    """Return a console that does not cut tables where output is no terminal."""
+    console = Console(highlight=False)
+    return console if console.is_terminal else Console(highlight=False, width=10 * _WIDTH)
+
+
+def _table(title: str, columns: Sequence[str]) -> Table:
+    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
+    for i, column in enumerate(columns):
+        table.add_column(column, justify="left" if i == 0 else "right", no_wrap=True)
+    return table
+
+
+def _print(console: Console, text: str) -> None:
+    console.print(text, markup=False, soft_wrap=True)
+
+
+def print_findings(study: Study, findings: Findings) -> None:
+    """Print what a check found."""
+    console = _console()
+    problem = study.problem
+    _print(console, f"{study.file}: {study.name}")
+    _print(
+        console,
+        f"  {problem.model.size} degrees of freedom, {len(study.parameters)} parameters, "
+        f"{len(problem.data.modes)} measured modes at {len(problem.data.sensors)} sensors "
+        f"in {len(problem.data.sets)} data set{'s' * (len(problem.data.sets) > 1)}",
+    )
+    at = problem.evaluate(problem.start)
+    modes = _table("nominal model", ["mode", "measured Hz", "model Hz", "MAC", "model mode"])
+    for row in zip(
+        problem.data.modes,
+        problem.data.mean_frequency,
+        at.quantities["frequency"],
+        at.quantities["mac"],
+        at.quantities["paired_mode"],
+        strict=True,
+    ):
+        modes.add_row(
+            str(row[0]), _number(row[1]), _number(row[2]), f"{row[3]:.4f}", f"{row[4]:.0f}"
+        )
+    console.print(modes)
+    groups = _table("groups", ["group", "a", "J nominal", "error nominal"])
+    for name, a, J in zip(problem.objectives, problem.properties, at.J, strict=True):
+        groups.add_row(_safe(name), f"{a:g}", f"{J:.5g}", f"{np.sqrt(J / a):.4g}")
+    console.print(groups)
+    verdict = "agree with" if findings.sound else "DIFFER FROM"
+    _print(
+        console,
+        f"derivatives {verdict} finite differences (relative {findings.derivative_error:.1e})",
+    )
+    for warning in findings.warnings:
+        _print(console, f"warning: {warning}")
+    if not findings.warnings:
+        _print(console, "no warnings")
+
+
+def print_summary(data: xr.Dataset, folder: Path) -> None:
+    """Print what a run has found, in a few lines."""
+    console = _console()
+    nbi = _front(data)
+    optimal = int(data["pareto"].values[nbi].sum())
+    _print(console, f"{data.attrs.get('study', '')}: results in {folder}")
+    if nbi.size:
+        cost = data.attrs["nbi_evaluations"] / nbi.size
+        _print(
+            console,
+            f"  {optimal} of {nbi.size} points of the front are Pareto optimal; "
+            f"{data.attrs['model_evaluations']} eigenproblems in all, {cost:.1f} a point",
+        )
+    for line in remarks(data):
+        _print(console, f"  {line}")
+    _print(console, f"next: modefront show {folder}")
+
+
+def remarks(data: xr.Dataset) -> list[str]:
+    """Return in words what is particular about the results."""
+    out = []
+    labels = data["label"].values.tolist()
+    groups = data["group"].values.tolist()
+    if data.attrs["front_is_a_point"]:
+        out.append("one model is the best in every group: the front is a single point")
+    exact = [name for name, value in zip(groups, data["exact"].values, strict=True) if value]
+    if exact:
+        out.append(
+            f"some model fits {', '.join(exact)} exactly: sum a ln J has no lower bound there; "
+            + (
+                "optimal-weights is the regular minimum"
+                if "optimal-weights" in labels
+                else "and no regular minimum was found, so there is no optimally weighted model"
+            )
+        )
+    if "optimal-weights" in labels:
+        out.append(_iteration(data))
+    for i in range(0, data.sizes.get("end", 0), 2):
+        end, start = data["end_objective"].values[i : i + 2]
+        out.append(
+            f"the front has a gap: piece {i // 2 + 1} ends at J = {_vector(end)}, "
+            f"piece {i // 2 + 2} starts at J = {_vector(start)}"
+        )
+    if "piece" in data:
+        inside = (data["piece"].values == 0) & data["pareto"].values
+        if inside.any():
+            out.append(
+                f"{', '.join(data['label'].values[inside])}: in the gap, though no other point "
+                "dominates; the start of the next piece does"
+            )
+    negative = (data["stationary_weight"].values < -1e-6).any(axis=1)
+    negative &= ~np.isnan(data["stationary_weight"].values).any(axis=1)
+    if negative.any():
+        out.append(
+            f"{', '.join(data['label'].values[negative])}: no local Pareto optimum "
+            "(a weight is negative)"
+        )
+    out += _poor_pairs(data)
+    bounded = _at_bounds(data)
+    if bounded:
+        out.append(f"parameters at a bound: {bounded}")
+    failed = data["label"].values[~data["converged"].values]
+    if failed.size:
+        out.append(f"not converged: {', '.join(failed)}")
+    return out
+
+
+def _iteration(data: xr.Dataset) -> str:
+    of = data["minimum_of"].values
+    theta = data["minimum_theta"].values
+    found = data["theta"].values[data["label"].values == "optimal-weights"][0]
+    span = np.diff(data["bounds"].values, axis=1)[:, 0]
+    if "iterated-weights" not in of:
+        return "the iteration w = a / J ran into the singularity and confirms nothing"
+    away = np.abs((theta[of == "iterated-weights"][0] - found) / span).max()
+    if away < 1e-5:
+        return "the iteration w = a / J arrives at the same optimally weighted model"
+    return f"the iteration w = a / J arrives elsewhere, {away:.2g} of the ranges away"
+
+
+def _poor_pairs(data: xr.Dataset) -> list[str]:
+    out = []
+    poor = data["mac"].values < 0.5
+    for r, column in zip(data["mode"].values, poor.T, strict=True):
+        if column.any():
+            out.append(
+                f"measured mode {r} resembles its model mode poorly (MAC below 0.5) at "
+                f"{', '.join(data['label'].values[column])}"
+            )
+    front = _front(data)
+    pairs = data["paired_mode"].values[front]
+    for r, column in zip(data["mode"].values, pairs.T, strict=True):
+        for i in np.flatnonzero(np.diff(column)).tolist():
+            out.append(
+                f"measured mode {r} is paired with model mode {column[i]:.0f} at "
+                f"{data['label'].values[front[i]]} and {column[i + 1]:.0f} at "
+                f"{data['label'].values[front[i + 1]]}"
+            )
+    return out
+
+
+def _at_bounds(data: xr.Dataset) -> str:
+    theta, bounds = data["theta"].values, data["bounds"].values
+    span = bounds[:, 1] - bounds[:, 0]
+    at = (np.abs(theta[:, :, None] - bounds) <= 1e-9 * span[:, None]).any(axis=2)
+    return "; ".join(
+        f"{name} ({', '.join(data['label'].values[column])})"
+        for name, column in zip(data["parameter"].values, at.T, strict=True)
+        if column.any()
+    )
+
+
+def print_results(data: xr.Dataset) -> None:
+    """Print all results as tables."""
+    console = _console()
+    names = [_safe(name) for name in data["parameter"].values]
+    groups = [_safe(name) for name in data["group"].values]
+    attrs = data.attrs
+    _print(
+        console, f"{attrs.get('study', '')}  (modefront {attrs['version']}, seed {attrs['seed']})"
+    )
+    points = _table(
+        "models: * Pareto optimal among these, ! not converged",
+        ["model", "", *(f"J {g}" for g in groups), *(f"error {g}" for g in groups), *names],
+    )
+    for i, label in enumerate(data["label"].values):
+        marks = "*" * int(data["pareto"].values[i]) + "!" * int(not data["converged"].values[i])
+        points.add_row(
+            _safe(label),
+            marks,
+            *(f"{x:.5g}" for x in data["objective"].values[i]),
+            *(f"{x:.4g}" for x in data["error"].values[i]),
+            *(f"{x:.5g}" for x in data["theta"].values[i]),
+        )
+    console.print(points)
+    modes = data["mode"].values
+    predicted = _table(
+        "frequencies in Hz and MAC",
+        ["model", *(f"f{r}" for r in modes), *(f"error f{r} %" for r in modes)]
+        + [f"MAC {r}" for r in modes],
+    )
+    measured = data["measured_frequency"].values
+    predicted.add_row("measured", *map(_number, measured), *[""] * (2 * modes.size))
+    for i, label in enumerate(data["label"].values):
+        f = data["frequency"].values[i]
+        predicted.add_row(
+            _safe(label),
+            *map(_number, f),
+            *(f"{x:+.2f}" for x in 100 * (f / measured - 1)),
+            *(f"{x:.4f}" for x in data["mac"].values[i]),
+        )
+    console.print(predicted)
+    weights = _table("weights", ["model", *groups])
+    for i in np.flatnonzero(~np.isnan(data["weight"].values).all(axis=1)).tolist():
+        weights.add_row(
+            _safe(data["label"].values[i]), *(f"{x:.5g}" for x in data["weight"].values[i])
+        )
+    console.print(weights)
+    minima = _table("minima", ["of", *(f"J {g}" for g in groups), *names])
+    for i, of in enumerate(data["minimum_of"].values):
+        minima.add_row(
+            _safe(of),
+            *(f"{x:.5g}" for x in data["minimum_objective"].values[i]),
+            *(f"{x:.5g}" for x in data["minimum_theta"].values[i]),
+        )
+    console.print(minima)
+    for line in remarks(data):
+        _print(console, line)
+    _print(
+        console,
+        f"{attrs['model_evaluations']} eigenproblems in all, "
+        f"{attrs['nbi_evaluations']} of them for the points of the front",
+    )
+
+
+def as_json(data: xr.Dataset) -> str:
+    """Return the dataset as JSON: attributes, and each variable with dimensions and values."""
+    variables: dict[str, Any] = {
+        str(name): {"dimensions": list(map(str, value.dims)), "values": _plain(value.values)}
+        for name, value in {**data.coords, **data.data_vars}.items()
+    }
+    attributes = {str(key): _plain(np.asarray(value)) for key, value in data.attrs.items()}
+    remarked = remarks(data)
+    return json.dumps(
+        {"attributes": attributes, "variables": variables, "remarks": remarked}, indent=1
+    )
+
+
+def _plain(values: Any) -> Any:
+    """Return arrays as lists; what is not a number becomes null, as JSON has no NaN."""
+    if isinstance(values, np.ndarray):
+        values = values.tolist()
+    if isinstance(values, list):
+        return [_plain(value) for value in values]
+    if isinstance(values, float) and not np.isfinite(values):
+        return None
+    return values
+
+
+def _front(data: xr.Dataset) -> np.ndarray[Any, np.dtype[np.intp]]:
+    """Return the positions of the points of the front."""
+    return np.flatnonzero([label.startswith("nbi-") for label in data["label"].values])
+
+
+def _vector(values: np.ndarray[Any, Any]) -> str:
+    return "(" + ", ".join(f"{x:.5g}" for x in values) + ")"
+
+
+def _number(value: float) -> str:
+    return "" if np.isnan(value) else f"{value:.4g}"
+
+
+def _safe(text: object) -> str:
+    """Return a text that the terminal does not take for markup."""
+    return str(text).replace("[", "\\[")

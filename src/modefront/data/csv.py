@@ -1,0 +1,164 @@
+"""Modal data in CSV: ``set, mode, frequency, damping``, then one column a sensor.
+
+One row is one mode of one data set; frequencies are in Hz and damping is the ratio to critical.
+An empty field is not measured. Standard deviations, where known, are in columns of the same name
+with ``_std`` behind it.
+"""
+
+from __future__ import annotations
+
+import csv
+import math
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.data.modal import ModalData
+from modefront.errors import Fault, InputError, suggestion
+
+KEYS = ("set", "mode")
+QUANTITIES = ("frequency", "damping")
+STD = "_std"
+
+
+def read_csv(path: Path, sensors: Sequence[str]) -> ModalData:
+    """Read modal data at the named sensors.
+
+    Raises InputError that names every row and column in which something is wrong.
+    """
+    file = str(path)
+    header, lines = _table(path)
+    faults = [_fault(file, 1, *found) for found in _header_faults(header, sensors)]
+    if faults:
+        raise InputError(faults)
+    if not lines:
+        raise InputError(Fault(file, "line 2", "a row for each measured mode", "the end"))
+
+    rows: dict[tuple[str, int], dict[str, float]] = {}
+    for number, fields in lines:
+        if len(fields) != len(header):
+            wanted = f"{len(header)} fields, as in the header"
+            faults.append(Fault(file, f"line {number}", wanted, str(len(fields))))
+            continue
+        texts = dict(zip(header, fields, strict=True))
+        key, values, found = _row(texts)
+        faults += [_fault(file, number, *one) for one in found]
+        if key is not None and key in rows:
+            place = f"line {number}, columns 'set' and 'mode'"
+            faults.append(Fault(file, place, "each mode of a data set once", f"{key} again"))
+        elif key is not None:
+            rows[key] = values
+            faults += [_fault(file, number, *one) for one in _empty_faults(values, sensors)]
+    if faults:
+        raise InputError(faults)
+    return _assemble(rows, tuple(sensors))
+
+
+def _fault(file: str, line: int, column: str, expected: str, found: str) -> Fault:
+    return Fault(file, f"line {line}, column '{column}'", expected, found)
+
+
+def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """Return the header and the numbered rows that are not blank."""
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as stream:
+            reader = csv.reader(stream, strict=True)
+            rows = [(reader.line_num, [field.strip() for field in row]) for row in reader]
+    except FileNotFoundError:
+        raise InputError(Fault(str(path), "file", "a file of modal data", "no such file")) from None
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise InputError(Fault(str(path), "file", "CSV in UTF-8", str(error))) from None
+    rows = [(number, row) for number, row in rows if any(row)]
+    if not rows:
+        raise InputError(Fault(str(path), "line 1", "a header of column names", "an empty file"))
+    return rows[0][1], rows[1:]
+
+
+def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[str, str, str]]:
+    """Return (column, expected, found) for everything that is wrong with the header."""
+    required = (*KEYS, *QUANTITIES, *sensors)
+    known = (*required, *(name + STD for name in ("frequency", *sensors)))
+    faults = [
+        (name, "the name of a quantity or of a sensor of the model", suggestion(name, known))
+        for name in header
+        if name not in known
+    ]
+    faults += [(name, "this column", "no such column") for name in required if name not in header]
+    for name in dict.fromkeys(header):
+        if header.count(name) > 1:
+            faults.append((name, "each column once", f"{header.count(name)} of this name"))
+    return faults
+
+
+def _row(
+    texts: dict[str, str],
+) -> tuple[tuple[str, int] | None, dict[str, float], list[tuple[str, str, str]]]:
+    """Return the key (set, mode), the values and the faults of one row."""
+    faults: list[tuple[str, str, str]] = []
+    values: dict[str, float] = {}
+    name, mode = texts["set"], texts["mode"]
+    if not name:
+        faults.append(("set", "the name of a data set", "an empty field"))
+    if not (mode.isascii() and mode.isdigit() and 0 < int(mode) < 10**6):
+        faults.append(("mode", "a whole number from 1", f"'{mode}'"))
+    key = None if faults else (name, int(mode))
+    for column, text in texts.items():
+        if column in KEYS:
+            continue
+        values[column] = math.nan
+        if not text:
+            continue
+        try:
+            value = float(text)
+        except ValueError:
+            faults.append((column, "a number or an empty field", f"'{text}'"))
+            continue
+        expected = _range(column, value)
+        if expected:
+            faults.append((column, expected, text))
+        values[column] = value
+    return key, values, faults
+
+
+def _range(column: str, value: float) -> str:
+    """Return what is expected of a value that is out of range; empty where it is not."""
+    if not math.isfinite(value):
+        return "a finite number or an empty field"
+    if column == "frequency" and value <= 0:
+        return "a frequency above 0 Hz"
+    if column == "damping" and not 0 <= value < 1:
+        return "a damping ratio from 0 to below 1"
+    if column.endswith(STD) and value < 0:
+        return "a standard deviation of 0 or more"
+    return ""
+
+
+def _empty_faults(values: dict[str, float], sensors: Sequence[str]) -> list[tuple[str, str, str]]:
+    """Return faults of rows in which nothing is measured or the shape vanishes."""
+    shape = [values[name] for name in sensors if not math.isnan(values[name])]
+    if shape and not any(shape):
+        return [(sensors[0], "a mode shape that is not zero at all sensors", "only zeros")]
+    if not shape and math.isnan(values["frequency"]):
+        return [("frequency", "a frequency or a mode shape", "neither")]
+    return []
+
+
+def _assemble(rows: dict[tuple[str, int], dict[str, float]], sensors: tuple[str, ...]) -> ModalData:
+    sets = tuple(dict.fromkeys(name for name, _ in rows))
+    modes = tuple(sorted({mode for _, mode in rows}))
+
+    def collect(column: str) -> Floats:
+        return np.array([[rows.get((k, r), {}).get(column, math.nan) for r in modes] for k in sets])
+
+    return ModalData(
+        sets,
+        modes,
+        sensors,
+        collect("frequency"),
+        collect("damping"),
+        np.stack([collect(name) for name in sensors], axis=-1),
+        collect("frequency" + STD),
+        np.stack([collect(name + STD) for name in sensors], axis=-1),
+    )

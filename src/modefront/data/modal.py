@@ -1,0 +1,81 @@
+"""Measured modal data of one or several data sets."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront._typing import Floats
+
+
+@dataclass(frozen=True)
+class ModalData:
+    """Frequencies, damping ratios and mode shapes; NaN is what was not measured.
+
+    Attributes
+    ----------
+    sets : names of the data sets
+    modes : numbers of the measured modes, ascending
+    sensors : names of the sensors
+    frequency : (sets, modes) natural frequencies in Hz
+    damping : (sets, modes) damping ratios
+    shape : (sets, modes, sensors) mode shape components, in any scale and with any sign
+    frequency_std, shape_std : standard deviations, of the shape of ``frequency`` and ``shape``
+    """
+
+    sets: tuple[str, ...]
+    modes: tuple[int, ...]
+    sensors: tuple[str, ...]
+    frequency: Floats
+    damping: Floats
+    shape: Floats
+    frequency_std: Floats
+    shape_std: Floats
+
+    @property
+    def mean_frequency(self) -> Floats:
+        """Mean of the measured frequencies of each mode in Hz, shape (modes,); NaN where none."""
+        measured = np.isfinite(self.frequency)
+        total = np.where(measured, self.frequency, 0.0).sum(axis=0)
+        count = measured.sum(axis=0)
+        out: Floats = np.where(count > 0, total / np.maximum(count, 1), np.nan)
+        return out
+
+
+def modal_data(
+    frequency: Floats,
+    shape: Floats,
+    sensors: tuple[str, ...],
+    *,
+    sets: tuple[str, ...] | None = None,
+    damping: Floats | None = None,
+    frequency_std: Floats | None = None,
+    shape_std: Floats | None = None,
+) -> ModalData:
+    """Return the data of modes 1, 2, ... from arrays.
+
+    ``frequency`` is (modes,) or (sets, modes) in Hz; ``shape`` (modes, sensors) or
+    (sets, modes, sensors). Raises ValueError where shapes do not fit.
+    """
+    f = np.atleast_2d(np.asarray(frequency, float))
+    phi = np.asarray(shape, float).reshape(*f.shape, -1)
+    if phi.shape[2] != len(sensors):
+        raise ValueError(f"expected shapes at {len(sensors)} sensors, found {phi.shape[2]}")
+
+    def like(value: Floats | None, reference: Floats) -> Floats:
+        if value is None:
+            return np.full(reference.shape, np.nan)
+        return np.asarray(value, float).reshape(reference.shape)
+
+    names = sets if sets is not None else tuple(str(k + 1) for k in range(len(f)))
+    return ModalData(
+        names,
+        tuple(range(1, f.shape[1] + 1)),
+        tuple(sensors),
+        f,
+        like(damping, f),
+        phi,
+        like(frequency_std, f),
+        like(shape_std, phi),
+    )

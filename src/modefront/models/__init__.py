@@ -1,0 +1,1 @@
+"""Classes of models: the modes at sensors as a function of parameters."""

@@ -1,0 +1,46 @@
+"""What a model is to everything above it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+from modefront._typing import Floats
+from modefront.modes.result import Modes
+
+
+@dataclass
+class Counts:
+    """What the evaluations of a model have cost."""
+
+    eigenproblems: int = 0
+
+
+class Model(Protocol):
+    """A class of models: the modes at sensors as a function of parameters."""
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of the parameters, in the order of ``theta``."""
+
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """Names of the sensors, in the order of the rows of the mode shapes."""
+
+    @property
+    def size(self) -> int:
+        """Number of degrees of freedom, an upper bound of the number of modes."""
+
+    @property
+    def unused(self) -> tuple[str, ...]:
+        """Names of parameters on which nothing depends."""
+
+    @property
+    def counts(self) -> Counts:
+        """Eigenproblems solved so far; counted where they are solved and nowhere else."""
+
+    def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
+        """Return the ``count`` lowest modes at ``theta``, shape (parameters,).
+
+        Raises ModelError where the model has no such modes at ``theta``.
+        """

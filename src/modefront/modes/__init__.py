@@ -1,0 +1,1 @@
+"""Eigenproblems and exact derivatives of their solutions: the only place that solves them."""

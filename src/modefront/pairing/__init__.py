@@ -1,0 +1,1 @@
+"""Which model mode belongs to which measured mode."""

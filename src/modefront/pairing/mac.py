@@ -1,0 +1,28 @@
+"""The modal assurance criterion."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modefront._typing import Floats
+
+
+def mac(phi: NDArray[Any], psi: NDArray[Any]) -> Floats:
+    r"""Return the MAC of each column of ``phi`` with each column of ``psi``.
+
+    .. math:: \mathrm{MAC} = |\varphi^H \psi|^2 / (\varphi^H \varphi\; \psi^H \psi)
+
+    Shapes may be complex; arrays are (sensors, modes) and (sensors, other modes), the result is
+    (modes, other modes), between 0 and 1; 0 where a shape vanishes at all sensors
+    (Allemang, Sound and Vibration 37 (8), 2003, equation 2).
+
+    >>> mac(np.array([[1.0], [1.0j]]), np.array([[1.0, 1.0], [1.0j, -1.0j]])).round(6).tolist()
+    [[1.0, 0.0]]
+    """
+    cross = np.abs(phi.conj().T @ psi) ** 2
+    norm = np.outer((np.abs(phi) ** 2).sum(axis=0), (np.abs(psi) ** 2).sum(axis=0))
+    out: Floats = np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)
+    return out

@@ -1,0 +1,96 @@
+r"""Which model mode belongs to which measured mode.
+
+The modes are assigned one to one so that the sum of :math:`1 - \mathrm{MAC}` over the measured
+modes is least; a mode measured by its frequency alone costs :math:`|\ln f / \hat f|` instead.
+Candidates whose frequency lies outside the window cost more than any within. On request modes are
+paired in their order: measured mode r is model mode r.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from modefront._typing import Floats, Ints
+from modefront.data.modal import ModalData
+from modefront.pairing.mac import mac
+
+OUTSIDE = 1e3
+"""Cost of a candidate outside the window of frequencies."""
+
+
+@dataclass(frozen=True)
+class Pairing:
+    """How modes are paired.
+
+    Attributes
+    ----------
+    method : by MAC, or by the order of the modes
+    window : greatest ratio of frequencies of a pair, above 1; None is no limit
+    spare : how many more model modes than measured ones are looked at
+    """
+
+    method: Literal["mac", "order"] = "mac"
+    window: float | None = None
+    spare: int = 3
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """Model mode of each measured mode, and how well they match.
+
+    Attributes
+    ----------
+    index : (measured modes,) model modes, counted from 0
+    mac : (measured modes,) mean MAC over the data sets; NaN where no shape was measured
+    """
+
+    index: Ints
+    mac: Floats
+
+
+def modes_needed(pairing: Pairing, data: ModalData, size: int) -> int:
+    """Return how many model modes are looked at; ``size`` is the number that there are at most."""
+    if pairing.method == "order":
+        return max(data.modes)
+    return min(size, max(max(data.modes), len(data.modes) + pairing.spare))
+
+
+def match(pairing: Pairing, data: ModalData, frequency: Floats, phi: Floats) -> Pairs:
+    """Pair every measured mode with a model mode.
+
+    ``frequency`` (modes,) in Hz and ``phi`` (sensors, modes) are the model's. Raises ValueError
+    where there are fewer model modes than measured ones.
+    """
+    m, q = len(data.modes), frequency.size
+    values = mean_mac(data, phi)
+    if pairing.method == "order":
+        index = np.array(data.modes, dtype=np.intp) - 1
+        return Pairs(index, values[np.arange(m), index])
+    if q < m:
+        raise ValueError(f"{m} measured modes cannot be paired with {q} model modes")
+    with np.errstate(divide="ignore"):
+        distance = np.abs(np.log(np.maximum(frequency, 1e-300) / data.mean_frequency[:, None]))
+    cost = np.where(np.isnan(values), distance, 1 - values)
+    if pairing.window is not None:
+        cost = cost + OUTSIDE * (distance > np.log(pairing.window))
+    index = np.argmin(cost, axis=1)
+    if np.unique(index).size < m:
+        index = np.asarray(linear_sum_assignment(cost)[1])
+    return Pairs(index, values[np.arange(m), index])
+
+
+def mean_mac(data: ModalData, phi: Floats) -> Floats:
+    """Return the MAC of measured and model modes, (measured modes, modes), mean over data sets."""
+    total = np.zeros((len(data.modes), phi.shape[1]))
+    count = np.zeros((len(data.modes), 1))
+    for k in range(len(data.sets)):
+        for r in range(len(data.modes)):
+            measured = np.isfinite(data.shape[k, r])
+            if measured.any():
+                total[r] += mac(data.shape[k, r, measured, None], phi[measured])[0]
+                count[r] += 1
+    return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)

@@ -1,0 +1,1 @@
+"""Residuals of measured properties and the objectives that they form."""

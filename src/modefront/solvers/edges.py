@@ -1,0 +1,106 @@
+r"""The edges of the front: of the models that are best in one objective, the best in the others.
+
+The minimiser of one objective need not be unique: several models may fit some measurements
+exactly, and mode shapes do not change when all stiffnesses are scaled. An edge is found
+lexicographically, as the limit of the minimisers of
+
+.. math:: J_i / c_i + \varepsilon \sum_{j \ne i} J_j / c_j, \qquad \varepsilon \to 0,
+
+(Ehrgott, *Multicriteria Optimization*, 2005, section 5.1), whose distance from the limit is
+proportional to :math:`\varepsilon`; c are typical sizes of the objectives.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.solvers.checkpoint import Checkpoint, compute_always
+from modefront.solvers.explore import Search, distinct, explore
+from modefront.solvers.problem import Problem
+from modefront.solvers.scalarisation import Linear, weighted
+from modefront.solvers.sqp import Options, Solution, begin, solve
+
+EPSILONS = (1e-5, 1e-7, 1e-9)
+
+EXACT = 1e-10
+"""An objective below this share of its typical size is fitted exactly."""
+
+TIE = 1e-6
+"""Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal."""
+
+_TIGHT = Options(reduction=1e-19, learn=False)
+
+
+@dataclass(frozen=True)
+class Edge:
+    """The edge of one objective, and all other minima of that objective."""
+
+    best: Solution
+    minima: Sequence[Solution]
+
+
+def sample(problem: Problem, rng: np.random.Generator, points: int = 16) -> list[Solution]:
+    """Return evaluations at random parameters, as starts that were not solved from."""
+    span = problem.upper - problem.lower
+    thetas = problem.lower + span * rng.uniform(size=(points, span.size))
+    return [begin(problem.evaluate(theta, derivatives=False)) for theta in thetas]
+
+
+def typical_sizes(points: Sequence[Solution]) -> Floats | None:
+    """Return the median of every objective, shape (n,); None where none are defined."""
+    J = np.array([one.at.J for one in points if one.at.feasible])
+    if len(J) == 0:
+        return None
+    return np.maximum(np.median(J, axis=0), np.finfo(float).tiny)
+
+
+def edge(
+    problem: Problem,
+    objective: int,
+    sizes: Floats,
+    rng: np.random.Generator,
+    search: Search,
+    checkpoint: Checkpoint = compute_always,
+) -> Edge | None:
+    """Return the edge of one objective, or None where no minimum was found.
+
+    ``sizes`` are typical sizes of the objectives, shape (n,).
+    """
+    name = problem.objectives[objective]
+    found = checkpoint(
+        f"minima-{name}",
+        lambda: explore(problem, _programme(objective, EPSILONS[0], sizes), rng, search),
+    )
+    refined = checkpoint(
+        f"edge-{name}", lambda: [_refine(problem, objective, sizes, one) for one in found]
+    )
+    minima: list[Solution] = []
+    for one in refined:
+        if distinct(minima, one, problem):
+            minima.append(one)
+    if not minima:
+        return None
+    least = min(one.at.J[objective] for one in minima)
+    margin = TIE * max(least, EXACT * sizes[objective] / TIE)
+    equal = [one for one in minima if one.at.J[objective] <= least + margin]
+    others = np.arange(sizes.size) != objective
+    best = min(equal, key=lambda one: float((one.at.J / sizes)[others].sum()))
+    return Edge(best, [best, *(one for one in minima if one is not best)])
+
+
+def _programme(objective: int, epsilon: float, sizes: Floats) -> Linear:
+    w = np.full(sizes.size, epsilon)
+    w[objective] = 1.0
+    return weighted(w / sizes)
+
+
+def _refine(problem: Problem, objective: int, sizes: Floats, start: Solution) -> Solution:
+    evaluations = start.evaluations
+    for epsilon in EPSILONS[1:]:
+        start = solve(problem, _programme(objective, epsilon, sizes), start, _TIGHT)
+        evaluations += start.evaluations
+    return replace(start, evaluations=evaluations)

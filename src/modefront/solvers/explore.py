@@ -1,0 +1,154 @@
+r"""Global minima: many starts and an evolution strategy explore, a gradient method finishes.
+
+Starts on a Latin hypercube are followed to their minima by `modefront.solvers.sqp`, a few
+evaluations with derivatives each, until the minima found leave less than half a minimum to be
+expected (Boender & Rinnooy Kan 1987, doi:10.1007/BF02591684): with w distinct minima after N
+starts,
+
+.. math:: \frac{w (N - 1)}{N - w - 2} \le w + \tfrac12 .
+
+Where the objectives are too rugged for that, CMA-ES (Hansen, arXiv:1604.00772) finds basins that no
+start fell into: it is run from a random start until it has found a basin, the gradient method goes
+to the bottom, and as long as a run finds a new minimum another one follows. All distinct minima
+are kept.
+"""
+
+from __future__ import annotations
+
+import warnings
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.solvers.problem import Problem
+from modefront.solvers.scalarisation import Scalarisation
+from modefront.solvers.sqp import Options, Solution, begin, solve
+
+DISTINCT = 1e-3
+"""Distance of two minima, over the ranges of the parameters, above which they are two."""
+
+NEAR = 2e-2
+"""Distance of a half-finished search from a minimum below which it is on its way there."""
+
+
+@dataclass(frozen=True)
+class Search:
+    """How hard is looked for global minima.
+
+    Attributes
+    ----------
+    starts : local searches at least
+    limit : local searches at most
+    evolutions : runs of the evolution strategy at most
+    generations : generations of one run at most
+    spread : standard deviation, over the range of the parameters, at which a run hands over
+    """
+
+    starts: int = 12
+    limit: int = 60
+    evolutions: int = 4
+    generations: int = 30
+    spread: float = 0.05
+
+
+def explore(
+    problem: Problem,
+    programme: Scalarisation,
+    rng: np.random.Generator,
+    search: Search,
+    *,
+    starts: Sequence[Solution] = (),
+    options: Options | None = None,
+) -> list[Solution]:
+    """Return the distinct minima of an unconstrained programme, best first.
+
+    ``starts`` are solved from first, then the problem's own start, then others. Empty where no
+    search ended in a minimum.
+    """
+    options = options or Options()
+    minima: list[Solution] = []
+
+    def follow(start: Solution) -> bool:
+        """Go to the minimum below a start; say whether it is a new one."""
+        rough = solve(problem, programme, start, replace(options, step=NEAR / 4))
+        if not distinct(minima, rough, problem, NEAR):
+            return False
+        found = solve(problem, programme, rough, options)
+        new = (
+            found.converged
+            and bool(np.isfinite(programme.value(found.at.J)))
+            and distinct(minima, found, problem)
+        )
+        if new:
+            minima.append(found)
+        return new
+
+    for start in [*starts, begin(problem.evaluate(problem.start))]:
+        follow(start)
+    for tried, theta in enumerate(latin_hypercube(problem, rng, search.limit)):
+        w = len(minima)
+        if tried >= search.starts and w * (tried - 1) <= (w + 0.5) * (tried - w - 2):
+            break
+        follow(begin(problem.evaluate(theta)))
+    for _ in range(search.evolutions):
+        theta = evolve(problem, programme, rng, search)
+        if not follow(begin(problem.evaluate(theta))):
+            break
+    return sorted(minima, key=lambda one: programme.value(one.at.J))
+
+
+def latin_hypercube(problem: Problem, rng: np.random.Generator, limit: int) -> Iterator[Floats]:
+    """Yield parameters within the bounds, block by block spread evenly over each range."""
+    span = problem.upper - problem.lower
+    block = 10
+    for _ in range(0, limit, block):
+        cells = rng.permuted(np.tile(np.arange(block), (span.size, 1)), axis=1).T
+        yield from problem.lower + span * (cells + rng.uniform(size=cells.shape)) / block
+
+
+def evolve(
+    problem: Problem, programme: Scalarisation, rng: np.random.Generator, search: Search
+) -> Floats:
+    """Return the best parameters that one run of CMA-ES found, from a random start."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore")  # it warns of optional packages for plots
+        import cma
+
+    span = problem.upper - problem.lower
+    strategy = cma.CMAEvolutionStrategy(
+        rng.uniform(size=span.size),
+        0.3,
+        {
+            "bounds": [0, 1],
+            "seed": np.nan,
+            "randn": lambda *shape: rng.standard_normal(shape),
+            "verbose": -9,
+            "verb_log": 0,
+            "maxiter": search.generations,
+        },
+    )
+    best, theta = np.inf, problem.lower + span * strategy.x0
+    while (
+        not strategy.stop() and np.max(strategy.sigma * strategy.sm.variances**0.5) > search.spread
+    ):
+        asked = strategy.ask()
+        values = []
+        for u in asked:
+            candidate = problem.lower + span * np.clip(u, 0, 1)
+            J = problem.evaluate(candidate, derivatives=False).J
+            value = programme.value(J) if np.isfinite(J).all() else np.inf
+            values.append(value)
+            if value < best:
+                best, theta = value, candidate
+        strategy.tell(asked, values)
+    return theta
+
+
+def distinct(
+    minima: Sequence[Solution], found: Solution, problem: Problem, distance: float = DISTINCT
+) -> bool:
+    """Return whether a solution is farther than ``distance`` from all minima, in the ranges."""
+    span = problem.upper - problem.lower
+    return all(np.abs((found.at.theta - one.at.theta) / span).max() > distance for one in minima)

@@ -1,0 +1,79 @@
+r"""What the solvers see: a vector of objectives J(theta) with derivatives, within bounds.
+
+========  =========  ==================================================================
+symbol    shape      meaning
+========  =========  ==================================================================
+theta     (p,)       parameters
+J         (n,)       objectives, to be made small
+dJ        (n, p)     their derivatives, exact
+H         (n, p, p)  a part of their second derivatives that is known with the first
+                     ones, such as Gauss-Newton's :math:`2 \partial r^T \partial r`
+========  =========  ==================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Protocol
+
+import numpy as np
+
+from modefront._typing import Floats
+
+
+@dataclass(frozen=True)
+class Evaluation:
+    """The objectives at one point; ``quantities`` are what the problem wants kept with it."""
+
+    theta: Floats
+    J: Floats
+    dJ: Floats
+    H: Floats
+    quantities: Mapping[str, Floats] = field(default_factory=dict)
+
+    @property
+    def feasible(self) -> bool:
+        """Whether the objectives are defined here."""
+        return bool(np.isfinite(self.J).all())
+
+
+def infeasible(theta: Floats, objectives: int) -> Evaluation:
+    """Return the evaluation of a point at which the objectives are not defined."""
+    p = theta.size
+    return Evaluation(
+        theta,
+        np.full(objectives, np.inf),
+        np.zeros((objectives, p)),
+        np.zeros((objectives, p, p)),
+    )
+
+
+class Problem(Protocol):
+    """A vector of objectives over a box."""
+
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """Names of the objectives."""
+
+    @property
+    def lower(self) -> Floats:
+        """Lower bounds, shape (p,), finite."""
+
+    @property
+    def upper(self) -> Floats:
+        """Upper bounds, shape (p,), finite."""
+
+    @property
+    def start(self) -> Floats:
+        """A first guess within the bounds, shape (p,)."""
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """What the evaluations have cost so far, by name."""
+
+    def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
+        """Return the objectives at ``theta``; infinite ones where they are not defined.
+
+        Without derivatives, ``dJ`` and ``H`` are zero.
+        """

@@ -1,0 +1,125 @@
+r"""Ways to turn a vector of objectives into one programme.
+
+.. math:: \min_\theta f(J(\theta)) \quad\text{subject to}\quad A J(\theta) = b
+
+Every method of the package is one of these members, and one solver (`modefront.solvers.sqp`)
+serves them all.
+
+========  =========  ===========================================
+symbol    shape      meaning
+========  =========  ===========================================
+f         ()         what is minimised, a function of J
+df        (n,)       its derivatives
+ddf       (n, n)     its second derivatives
+A, b      (k, n)     linear constraints on the objectives
+========  =========  ===========================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+import scipy.linalg
+
+from modefront._typing import Floats
+
+
+class Scalarisation(Protocol):
+    """A function of the objectives and linear constraints on them."""
+
+    @property
+    def A(self) -> Floats:
+        """Matrix of the constraints, shape (k, n); k may be 0."""
+
+    @property
+    def b(self) -> Floats:
+        """Right-hand side of the constraints, shape (k,)."""
+
+    def value(self, J: Floats) -> float:
+        """Return f."""
+
+    def gradient(self, J: Floats) -> Floats:
+        """Return df/dJ, shape (n,)."""
+
+    def hessian(self, J: Floats) -> Floats:
+        """Return d2f/dJ2, shape (n, n)."""
+
+
+@dataclass(frozen=True)
+class Linear:
+    """f = w^T J subject to A J = b."""
+
+    w: Floats
+    A: Floats
+    b: Floats
+
+    def value(self, J: Floats) -> float:
+        """Return w^T J."""
+        return float(self.w @ J)
+
+    def gradient(self, J: Floats) -> Floats:
+        """Return w, whatever J is."""
+        return np.broadcast_to(self.w, J.shape)
+
+    def hessian(self, J: Floats) -> Floats:
+        """Return zeros."""
+        return np.zeros((J.size, J.size))
+
+
+@dataclass(frozen=True)
+class LogSum:
+    """I = sum_i a_i ln J_i, equation (8): its stationary points have the weights w_i = a_i / J_i.
+
+    ``a`` counts the measured properties of each group.
+    """
+
+    a: Floats
+
+    @property
+    def A(self) -> Floats:
+        """No constraints."""
+        return np.zeros((0, self.a.size))
+
+    @property
+    def b(self) -> Floats:
+        """No constraints."""
+        return np.zeros(0)
+
+    def value(self, J: Floats) -> float:
+        """Return I; minus infinity where an objective vanishes."""
+        with np.errstate(divide="ignore"):
+            return float(self.a @ np.log(J))
+
+    def gradient(self, J: Floats) -> Floats:
+        """Return a / J."""
+        return self.a / np.maximum(J, np.finfo(float).tiny)
+
+    def hessian(self, J: Floats) -> Floats:
+        """Return -a / J**2 on the diagonal."""
+        return np.diag(-self.a / np.maximum(J, np.sqrt(np.finfo(float).tiny)) ** 2)
+
+
+def weighted(w: Floats) -> Linear:
+    """Return min w^T J."""
+    return Linear(w, np.zeros((0, w.size)), np.zeros(0))
+
+
+def boundary(point: Floats, normal: Floats, utopia: Floats, scale: Floats) -> Linear:
+    r"""Return the subproblem of normal-boundary intersection (Das & Dennis 1998).
+
+    Maximise t subject to :math:`\Phi \beta + t \hat n = J - J^*`
+    (doi:10.1137/S1052623496307510), with ``point`` for :math:`\Phi \beta` and ``normal`` for
+    :math:`\hat n`, both in units of ``scale``; t is eliminated: it is the component of the
+    equation along the normal, and what is across the normal remains as constraints.
+    """
+    across = scipy.linalg.null_space(normal[None, :]).T
+    along = normal / (normal @ normal)
+    return Linear(-along / scale, across / scale, across @ (point + utopia / scale))
+
+
+def level(minimised: int, fixed: int, value: float, scale: Floats) -> Linear:
+    """Return min J_minimised subject to J_fixed = value, in units of ``scale``."""
+    unit = np.eye(scale.size) / scale
+    return Linear(unit[minimised], unit[[fixed]], np.array([value / scale[fixed]]))

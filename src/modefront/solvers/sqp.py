@@ -1,0 +1,191 @@
+r"""Sequential quadratic programming with exact gradients and a Hessian that is learned.
+
+Solves :math:`\min f(J(\theta))` subject to :math:`A J(\theta) = b` and bounds, for any member of
+`modefront.solvers.scalarisation`. With multipliers :math:`\lambda` and the weights
+
+.. math:: w = \partial f / \partial J + A^T \lambda
+
+of the objectives, the Hessian of the Lagrangian is
+
+.. math:: B = \sum_i w_i (H_i + S_i) + \partial J^T f'' \partial J
+
+where :math:`H_i` is the known part (Gauss-Newton's) and :math:`S_i` the rest, learned from
+differences of gradients (symmetric rank one, Conn, Gould & Toint 1991). Because S belongs to
+the objectives and not to the programme, it carries over from one programme to its neighbour: that
+is what makes the second point of a front cheaper than the first. Steps solve a quadratic programme
+within a box, the trust region; they are judged by the augmented Lagrangian
+
+.. math:: f + \lambda^T c + \tfrac\nu2 \|c\|^2, \qquad c = A J - b,
+
+which, unlike an exact penalty, does not reject good steps near the solution.
+
+Variables are :math:`u = (\theta - lower) / (upper - lower)`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.qp import solve_qp
+from modefront.solvers.scalarisation import Scalarisation
+
+
+class Status(Enum):
+    """How a solution ended; the value says what it means and what to do about it."""
+
+    CONVERGED = "converged"
+    STALLED = "no step improves it further: the objectives are not smooth here, or bounds conflict"
+    EXHAUSTED = "the limit of iterations was reached: more iterations, or another start"
+    INFEASIBLE = "the model cannot be evaluated at the start: narrower bounds, or another start"
+
+
+@dataclass(frozen=True)
+class Options:
+    """Tolerances, relative to the range of the parameters and to the scale of the constraints.
+
+    Without ``learn``, only the known part of the second derivatives is used: slower, but its null
+    space is exact where the objectives do not change at all in some direction.
+    """
+
+    step: float = 1e-7
+    constraint: float = 1e-8
+    reduction: float = 1e-14
+    iterations: int = 60
+    radius: float = 0.15
+    learn: bool = True
+
+
+@dataclass(frozen=True)
+class Solution:
+    """A solution of one programme.
+
+    Attributes
+    ----------
+    at : the objectives and their derivatives there
+    learned : (n, p, p) learned part S of the second derivatives, for the next programme
+    weights : (n,) weights w of the objectives at which it is stationary
+    violation : greatest violation of the constraints
+    status : how it ended
+    evaluations : evaluations that it took
+    """
+
+    at: Evaluation
+    learned: Floats
+    weights: Floats
+    violation: float
+    status: Status
+    evaluations: int
+
+    @property
+    def converged(self) -> bool:
+        """Whether the tolerances were met."""
+        return self.status is Status.CONVERGED
+
+
+def begin(at: Evaluation) -> Solution:
+    """Return a start for `solve` from an evaluation with derivatives."""
+    n, p = at.dJ.shape
+    status = Status.EXHAUSTED if at.feasible else Status.INFEASIBLE
+    return Solution(at, np.zeros((n, p, p)), np.zeros(n), np.inf, status, 0)
+
+
+def solve(
+    problem: Problem, programme: Scalarisation, start: Solution, options: Options | None = None
+) -> Solution:
+    """Solve a programme from the point at which ``start`` ended, with what was learned there.
+
+    The start itself is not evaluated again. Steps to points at which the objectives are not
+    defined are shortened.
+    """
+    options = options or Options()
+    if not start.at.feasible:
+        return replace(start, status=Status.INFEASIBLE, evaluations=0)
+    span = problem.upper - problem.lower
+    learned = start.learned if options.learn else np.zeros_like(start.learned)
+    state = _State(start.at, learned)
+    radius, penalty = options.radius, 10.0
+    multipliers: Floats | None = None
+    for count in range(options.iterations + 1):
+        at = state.at
+        df, A = programme.gradient(at.J), programme.A
+        c = A @ at.J - programme.b
+        dJ = at.dJ * span
+        g, dc = df @ dJ, A @ dJ
+        lo = np.maximum((problem.lower - at.theta) / span, -radius)
+        hi = np.minimum((problem.upper - at.theta) / span, radius)
+        if multipliers is None:
+            multipliers = _multipliers(dc, g, lo, hi)
+        w = df + A.T @ multipliers
+        B = np.tensordot(w, at.H + state.learned, axes=1) * np.outer(span, span)
+        B += dJ.T @ programme.hessian(at.J) @ dJ
+        s = solve_qp(B, g, dc, -c, lo, hi)
+        multipliers = _multipliers(dc, g + B @ s, lo - s, hi - s)
+        w = df + A.T @ multipliers
+
+        after = c + dc @ s
+        gain = -(g + multipliers @ dc) @ s - 0.5 * s @ B @ s
+        drop = 0.5 * (c @ c - after @ after)
+        if drop > 0:
+            penalty = max(penalty, float(-2 * gain / drop))
+        predicted = gain + penalty * drop
+        length = float(np.max(np.abs(s)))
+        violation = max(map(abs, c.tolist()), default=0.0)
+        value = programme.value(at.J)
+        still = length <= options.step or abs(predicted) <= options.reduction * abs(value)
+        if still and violation <= options.constraint:
+            status = Status.CONVERGED
+        elif length <= np.finfo(float).eps or radius <= options.step * 1e-3:
+            status = Status.STALLED
+        elif count == options.iterations:
+            status = Status.EXHAUSTED
+        else:
+            theta = np.clip(at.theta + s * span, problem.lower, problem.upper)
+            new = problem.evaluate(theta)
+            if not new.feasible:
+                radius = length / 4
+                continue
+            c_new = programme.A @ new.J - programme.b
+            actual = value - programme.value(new.J) + multipliers @ (c - c_new)
+            actual += 0.5 * penalty * (c @ c - c_new @ c_new)
+            noise = 10 * np.finfo(float).eps * abs(value)
+            ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
+            state = state.move(new, moved=bool(ratio > 1e-4), learn=options.learn)
+            if ratio < 0.25:
+                radius = length / 4 if ratio < 1e-4 else length / 2
+            elif ratio > 0.7 and length > 0.9 * radius:
+                radius = min(2 * radius, 1.0)
+            continue
+        return Solution(at, state.learned, w, violation, status, count)
+    raise AssertionError("unreachable: the last iteration returns")
+
+
+@dataclass(frozen=True)
+class _State:
+    """The point reached and what has been learned of the second derivatives."""
+
+    at: Evaluation
+    learned: Floats
+
+    def move(self, new: Evaluation, *, moved: bool, learn: bool) -> _State:
+        """Return the state after an evaluation, at the new point or, if rejected, at the old."""
+        at = new if moved else self.at
+        if not learn:
+            return _State(at, self.learned)
+        s = new.theta - self.at.theta
+        v = new.dJ - self.at.dJ - (new.H + self.learned) @ s
+        along = v @ s
+        sure = np.abs(along) > 1e-6 * np.linalg.norm(v, axis=1) * np.linalg.norm(s)
+        scale = np.where(sure, 1 / np.where(sure, along, 1.0), 0.0)
+        learned = self.learned + scale[:, None, None] * v[:, :, None] * v[:, None, :]
+        return _State(at, learned)
+
+
+def _multipliers(dc: Floats, g: Floats, lo: Floats, hi: Floats) -> Floats:
+    """Return the multipliers for which g + dc^T lambda is least on the variables within bounds."""
+    free = (lo < 0) & (hi > 0)
+    return np.asarray(np.linalg.lstsq(dc[:, free].T, -g[free], rcond=None)[0])

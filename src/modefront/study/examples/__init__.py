@@ -1,0 +1,41 @@
+"""Examples that ``modefront init`` writes: one folder each."""
+
+from __future__ import annotations
+
+from importlib import resources
+from pathlib import Path
+
+from modefront.errors import Fault, InputError, suggestion
+
+
+def names() -> list[str]:
+    """Return the names of the examples."""
+    folder = resources.files(__package__)
+    return sorted(item.name for item in folder.iterdir() if item.joinpath("study.toml").is_file())
+
+
+def write_example(name: str, directory: Path) -> list[Path]:
+    """Write the files of an example into a folder and return their paths.
+
+    Raises InputError for an unknown example, and where a file is already there: nothing is
+    overwritten.
+    """
+    if name not in names():
+        expected = "one of " + ", ".join(names())
+        raise InputError(Fault("modefront init", "--example", expected, suggestion(name, names())))
+    sources = sorted(
+        (item for item in resources.files(__package__).joinpath(name).iterdir()),
+        key=lambda item: item.name,
+    )
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        for source in sources:
+            if (directory / source.name).exists():
+                there = Fault(str(directory / source.name), "file", "no such file", "one")
+                raise InputError(there)
+        for source in sources:
+            (directory / source.name).write_bytes(source.read_bytes())
+    except OSError as error:
+        expected = "a folder that can be written to"
+        raise InputError(Fault(str(directory), "folder", expected, str(error))) from None
+    return [directory / source.name for source in sources]

@@ -1,0 +1,142 @@
+"""Typed access to the tables of a study file that collects everything that is wrong."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+from modefront.errors import Fault, suggestion
+
+
+def describe(value: object) -> str:
+    """Return a value and its kind as a message shows them."""
+    if isinstance(value, bool):
+        return str(value).lower()
+    if isinstance(value, str):
+        return f"the text '{value}'"
+    if isinstance(value, dict):
+        return "a table"
+    if isinstance(value, list):
+        return f"a list of {len(value)}"
+    return repr(value)
+
+
+@dataclass
+class Table:
+    """One table of a TOML file: where it is, what it holds, and what has been asked of it."""
+
+    file: str
+    place: str
+    values: dict[str, Any]
+    faults: list[Fault]
+    asked: list[str] = field(default_factory=list)
+
+    def fault(self, key: str, expected: str, found: str) -> None:
+        """Note that something is wrong; an empty key means the table itself."""
+        place = f"{self.place} {key}".strip() if key else self.place
+        self.faults.append(Fault(self.file, place, expected, found))
+
+    def take(self, key: str, expected: str, test: Callable[[Any], bool], default: Any) -> Any:
+        """Return a value that passes a test, or the default, with a fault where it does not.
+
+        A default of ``...`` says that the key is required; None is returned in its place.
+        """
+        self.asked.append(key)
+        if key not in self.values:
+            if default is ...:
+                self.fault(key, expected, "nothing")
+                return None
+            return default
+        value = self.values[key]
+        if not test(value):
+            self.fault(key, expected, describe(value))
+            return None if default is ... else default
+        return value
+
+    def text(self, key: str, expected: str = "a text", default: Any = ...) -> str | None:
+        """Return a text that is not empty."""
+        value = self.take(key, expected, lambda x: isinstance(x, str) and bool(x.strip()), default)
+        return None if value is None else str(value)
+
+    def choice(self, key: str, options: Sequence[str], default: Any = ...) -> Any:
+        """Return one of the options."""
+        expected = "one of " + ", ".join(f"'{x}'" for x in options)
+        return self.take(key, expected, lambda x: x in options, default)
+
+    def number(
+        self, key: str, expected: str, test: Callable[[float], bool], default: Any = ...
+    ) -> Any:
+        """Return a finite number that passes a test."""
+        value = self.take(key, expected, lambda x: is_number(x) and test(x), default)
+        return float(value) if is_number(value) else value
+
+    def integer(self, key: str, least: int, most: int, default: Any = ...) -> Any:
+        """Return a whole number within limits."""
+        return self.take(
+            key,
+            f"a whole number from {least} to {most}",
+            lambda x: isinstance(x, int) and not isinstance(x, bool) and least <= x <= most,
+            default,
+        )
+
+    def numbers(
+        self, key: str, expected: str, test: Callable[[list[float]], bool], default: Any = ...
+    ) -> list[float] | None:
+        """Return a list of finite numbers that passes a test."""
+        value = self.take(
+            key,
+            expected,
+            lambda x: isinstance(x, list) and all(map(is_number, x)) and test(x),
+            default,
+        )
+        return None if value is None else [float(x) for x in value]
+
+    def table(self, key: str, expected: str = "a table", default: Any = ...) -> Table | None:
+        """Return a table within this one."""
+        value = self.take(key, expected, lambda x: isinstance(x, dict), default)
+        if value is None:
+            return None
+        place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
+        return Table(self.file, place, value, self.faults)
+
+    def tables(self, key: str, required: bool) -> list[Table]:
+        """Return the tables of a list, such as ``[[parameter]]``."""
+        value = self.take(
+            key,
+            f"at least one table [[{key}]]" if required else f"tables [[{key}]]",
+            lambda x: isinstance(x, list) and bool(x) and all(isinstance(y, dict) for y in x),
+            ... if required else [],
+        )
+        return [
+            Table(self.file, f"[[{key}]] {i + 1}{_named(item)},", item, self.faults)
+            for i, item in enumerate(value or [])
+        ]
+
+    def close(self) -> None:
+        """Note every key that nobody has asked for."""
+        for key in self.values:
+            if key not in self.asked:
+                self.fault("", "a known key", suggestion(key, self.asked))
+
+
+def is_number(value: object) -> bool:
+    """Return whether a value is a finite number and no truth value."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+
+
+def repeated(names: Iterable[str | None]) -> list[str]:
+    """Return the names that occur more than once."""
+    seen: list[str] = []
+    twice: list[str] = []
+    for name in names:
+        if name is not None and name in seen and name not in twice:
+            twice.append(name)
+        seen.append(name or "")
+    return twice
+
+
+def _named(item: dict[str, Any]) -> str:
+    name = item.get("name")
+    return f" ('{name}')" if isinstance(name, str) else ""

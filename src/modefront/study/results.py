@@ -1,0 +1,185 @@
+"""Results as one dataset, in memory and in a netCDF file."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+from modefront._typing import Floats
+from modefront.errors import Fault, InputError
+from modefront.residuals.problem import UpdatingProblem
+from modefront.solvers.dominance import nondominated
+from modefront.solvers.pieces import piece_numbers
+from modefront.solvers.sqp import Solution
+from modefront.study.run import Front
+
+FILE = "results.nc"
+
+
+def dataset(
+    problem: UpdatingProblem, front: Front, attributes: Mapping[str, str | int | float]
+) -> xr.Dataset:
+    """Return everything that was found with names and units; see the page on results."""
+    labels = [label for label, _ in front.points]
+    solutions = [one for _, one in front.points]
+    groups, n = list(problem.objectives), len(problem.objectives)
+    J = _stack([one.at.J for one in solutions], n)
+    optimal = nondominated(J)
+    a = problem.properties
+    weights = np.full(J.shape, np.nan)
+    for i, label in enumerate(labels):
+        if not label.startswith(("nbi-", "edge-")):
+            weights[i] = a / J[i] if label == "optimal-weights" else solutions[i].weights
+    point, mode = ("point", "mode"), ("point", "group")
+    variables: dict[str, tuple[tuple[str, ...], object, str]] = {
+        "label": (("point",), labels, "what the point is"),
+        "pareto": (("point",), optimal, "no other point dominates this one, equation (4)"),
+        "theta": (("point", "parameter"), _thetas(solutions, problem), "parameter values"),
+        "objective": (mode, J, "J_i"),
+        "error": (mode, np.sqrt(J / a), "sqrt(J_i / a_i)"),
+        "weight": (mode, weights, "weights that a weighted method used"),
+        "stationary_weight": (
+            mode,
+            _shares(_stack([one.weights for one in solutions], n), front.scale),
+            "weights at which the point is stationary, over the range of each objective, sum 1; "
+            "a negative one tells that the point is no local Pareto optimum",
+        ),
+        "converged": (("point",), [one.converged for one in solutions], "tolerances were met"),
+        "status": (("point",), [one.status.name.lower() for one in solutions], "how it ended"),
+        "evaluations": (
+            ("point",),
+            [one.evaluations for one in solutions],
+            "evaluations of the last solution that led here",
+        ),
+    }
+    meanings = {
+        "frequency": "frequency in Hz of the model mode paired with the measured mode",
+        "mac": "MAC of the pair, mean over the data sets",
+        "paired_mode": "number of the model mode paired with the measured mode",
+        "coincident": "1 where the mode is so close to another one that it is not defined alone",
+    }
+    for name, meaning in meanings.items():
+        rows = [one.at.quantities[name] for one in solutions]
+        variables[name] = (point, _stack(rows, len(problem.data.modes)), meaning)
+    variables["measured_frequency"] = (
+        ("mode",),
+        problem.data.mean_frequency,
+        "mean of the measured frequencies in Hz",
+    )
+    variables["properties"] = (("group",), a, "count a_i of measured properties")
+    variables["exact"] = (("group",), list(front.exact), "some model fits the group exactly")
+    lower, upper = problem.lower, problem.upper
+    variables["bounds"] = (("parameter", "bound"), np.column_stack([lower, upper]), "bounds")
+    variables |= _minima(problem, front)
+    variables |= _ends(problem, front, J, optimal)
+    return xr.Dataset(
+        {
+            name: (dims, np.asarray(values), {"long_name": meaning})
+            for name, (dims, values, meaning) in variables.items()
+        },
+        coords={
+            "parameter": list(problem.model.parameters),
+            "group": groups,
+            "mode": list(problem.data.modes),
+            "bound": ["lower", "upper"],
+        },
+        attrs=dict(attributes),
+    )
+
+
+def _minima(
+    problem: UpdatingProblem, front: Front
+) -> dict[str, tuple[tuple[str, ...], object, str]]:
+    """Return all distinct minima of single objectives and of the optimally weighted residuals."""
+    of = [
+        name
+        for name, edge in zip(problem.objectives, front.edges, strict=True)
+        for _ in edge.minima
+    ]
+    found = [one for edge in front.edges for one in edge.minima]
+    of += ["optimal-weights"] * len(front.optimal)
+    found += front.optimal
+    if front.iterated:
+        of.append("iterated-weights")
+        found.append(front.iterated)
+    n = len(problem.objectives)
+    return {
+        "minimum_of": (("minimum",), of, "group or method of which this is a minimum"),
+        "minimum_theta": (("minimum", "parameter"), _thetas(found, problem), "parameter values"),
+        "minimum_objective": (("minimum", "group"), _stack([x.at.J for x in found], n), "J_i"),
+        "minimum_converged": (
+            ("minimum",),
+            [one.converged for one in found],
+            "tolerances were met",
+        ),
+    }
+
+
+def _ends(
+    problem: UpdatingProblem, front: Front, J: Floats, optimal: np.ndarray
+) -> dict[str, tuple[tuple[str, ...], object, str]]:
+    """Return where the pieces of a front of two objectives end, and on which one points lie."""
+    if J.shape[1] != 2:
+        return {}
+    found = [one for gap in front.gaps for one in (gap.end, gap.start)]
+    labels = [text for i in range(len(front.gaps)) for text in (f"end-{i + 1}", f"start-{i + 2}")]
+    return {
+        "piece": (
+            ("point",),
+            piece_numbers(J, optimal, front.gaps),
+            "piece of the front, from 1; 0 for points that lie in a gap",
+        ),
+        "end_label": (("end",), np.array(labels, dtype=str), "end or start of a piece at a gap"),
+        "end_theta": (("end", "parameter"), _thetas(found, problem), "parameter values"),
+        "end_objective": (("end", "group"), _stack([one.at.J for one in found], 2), "J_i"),
+        "end_converged": (
+            ("end",),
+            np.array([one.converged for one in found], dtype=bool),
+            "tolerances were met",
+        ),
+    }
+
+
+def _stack(rows: Sequence[Floats], width: int) -> Floats:
+    return np.array(rows, dtype=float).reshape(len(rows), width)
+
+
+def _thetas(solutions: Sequence[Solution], problem: UpdatingProblem) -> Floats:
+    return _stack([one.at.theta for one in solutions], len(problem.model.parameters))
+
+
+def _shares(weights: Floats, scale: Floats | None) -> Floats:
+    """Return weights times the range of their objective, with sum 1."""
+    scaled = weights * (1.0 if scale is None else scale)
+    total = scaled.sum(axis=1, keepdims=True)
+    return np.divide(scaled, total, out=np.full(scaled.shape, np.nan), where=total != 0)
+
+
+def write(data: xr.Dataset, path: Path) -> None:
+    """Write a dataset whole or not at all."""
+    temporary = path.with_name(path.name + ".tmp")
+    data.to_netcdf(temporary, engine="h5netcdf")
+    with temporary.open("rb") as stream:
+        os.fsync(stream.fileno())
+    temporary.replace(path)
+
+
+def read(folder: Path) -> xr.Dataset:
+    """Return the results in a folder. Raises InputError where there are none to be read."""
+    path = folder / FILE
+    if not path.is_file():
+        raise InputError(Fault(str(path), "file", "results of a finished run", "no such file"))
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as data:
+            data.load()
+    except (OSError, ValueError, KeyError) as error:
+        raise InputError(Fault(str(path), "file", "results in netCDF", str(error))) from None
+    missing = [name for name in ("label", "theta", "objective") if name not in data]
+    if missing:
+        found = f"none called {', '.join(missing)}"
+        raise InputError(Fault(str(path), "variables", "results of modefront", found))
+    return data

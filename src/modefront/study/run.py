@@ -1,0 +1,132 @@
+"""The work of a study: edges, weighted models, front and gaps, piece by piece."""
+
+from __future__ import annotations
+
+import zlib
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.errors import UnfinishedError
+from modefront.solvers.checkpoint import Checkpoint, compute_always
+from modefront.solvers.dominance import nondominated
+from modefront.solvers.edges import EXACT, Edge, edge, sample, typical_sizes
+from modefront.solvers.explore import Search, explore
+from modefront.solvers.nbi import nbi, payoff, simplex
+from modefront.solvers.pieces import Gap, gaps
+from modefront.solvers.problem import Problem
+from modefront.solvers.scalarisation import weighted
+from modefront.solvers.sqp import Solution
+from modefront.solvers.weights import iterate_weights, optimal_minima, regular
+
+
+@dataclass(frozen=True)
+class Front:
+    """Everything that was found.
+
+    Attributes
+    ----------
+    points : (label, solution) of the points along the front, then of the edges and weighted models
+    edges : the edge of each objective with its other minima
+    optimal : all regular minima of the optimally weighted residuals, best first
+    iterated : where the iteration of the weights arrived; None where it ran into a singularity
+    exact : (n,) which objectives some model fits exactly
+    scale : (n,) range of the objectives over the edges, or None where the front is one point
+    gaps : gaps between the pieces of a front of two objectives
+    """
+
+    points: Sequence[tuple[str, Solution]]
+    edges: Sequence[Edge]
+    optimal: Sequence[Solution]
+    iterated: Solution | None
+    exact: tuple[bool, ...]
+    scale: Floats | None
+    gaps: Sequence[Gap]
+
+
+def ignore(_: object) -> None:
+    """Do nothing with what one is told."""
+
+
+def generator(seed: int, name: str) -> np.random.Generator:
+    """Return the random numbers of one piece of work, whatever was done before it."""
+    return np.random.default_rng([seed, zlib.crc32(name.encode())])
+
+
+def pareto_front(
+    problem: Problem,
+    a: Floats,
+    *,
+    points: int = 20,
+    seed: int = 0,
+    search: Search | None = None,
+    given: Sequence[tuple[str, Floats]] = (),
+    checkpoint: Checkpoint = compute_always,
+    expect: Callable[[int], None] = ignore,
+) -> Front:
+    """Find the edges, the weighted models, the front by NBI, and its gaps.
+
+    ``a`` (n,) counts the measured properties of each objective; ``points`` lie along each edge of
+    the simplex of objectives; ``given`` are labelled weights (n,). ``expect`` is told how many
+    pieces of work there are. Raises UnfinishedError where no edge can be found.
+    """
+    search = search or Search()
+    n = len(problem.objectives)
+    lattice = simplex(n, points - 1) if n > 1 else None
+    expect(4 + 2 * n + len(given) + (len(lattice.beta) if lattice else 0))
+
+    sizes = typical_sizes(checkpoint("sample", lambda: sample(problem, generator(seed, "sample"))))
+    if sizes is None:
+        raise UnfinishedError(
+            "the model cannot be evaluated at any of the parameters tried within the bounds"
+        )
+    edges = []
+    for i, name in enumerate(problem.objectives):
+        found = edge(problem, i, sizes, generator(seed, f"edge-{name}"), search, checkpoint)
+        if found is None:
+            raise UnfinishedError(f"no minimum of group '{name}' was found from any start")
+        edges.append(found)
+    bests = [one.best for one in edges]
+    least = np.array([one.best.at.J[i] for i, one in enumerate(edges)])
+
+    models: list[tuple[str, Solution]] = []
+    for label, w in [*given, ("equal-weights", np.ones(n))]:
+        rng = generator(seed, label)
+        search_from = partial(explore, problem, weighted(w), rng, search, starts=bests)
+        models += [(label, one) for one in checkpoint(label, search_from)[:1]]
+    starts = [*(one for _, one in models), *bests]
+    minima = checkpoint(
+        "optimal-weights",
+        lambda: optimal_minima(
+            problem, a, sizes, generator(seed, "optimal-weights"), search, starts
+        ),
+    )
+    optimal = [one for one in minima if regular(one.at.J, sizes)]
+    models += [("optimal-weights", one) for one in optimal[:1]]
+    iterated = checkpoint(
+        "iterated-weights",
+        lambda: [one for one in [iterate_weights(problem, a, sizes, starts[0])] if one],
+    )
+
+    target = payoff(bests, sizes) if n > 1 else None
+    along: Sequence[Solution] = []
+    breaks: list[Gap] = []
+    if target is not None and lattice is not None:
+        along = nbi(problem, bests, target, lattice, checkpoint)
+        if n == 2:
+            J = np.array([one.at.J for one in along])
+            breaks = gaps(problem, along, nondominated(J), target.scale, checkpoint)
+    labelled = [(f"nbi-{i + 1}", one) for i, one in enumerate(along)]
+    labelled += [(f"edge-{name}", one) for name, one in zip(problem.objectives, bests, strict=True)]
+    return Front(
+        labelled + models,
+        edges,
+        optimal,
+        iterated[0] if iterated else None,
+        tuple(bool(x) for x in least <= EXACT * sizes),
+        target.scale if target else None,
+        breaks,
+    )

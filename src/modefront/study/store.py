@@ -1,0 +1,109 @@
+"""Pieces of work in files, one small file a piece, so that an interrupted run loses only one.
+
+A piece is a list of solutions. Its file is written under another name and then renamed, so that
+it is there whole or not at all; arrays are stored exactly, so that a run that is continued gives
+the same results to the last digit as one that was not interrupted.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import zipfile
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.solvers.checkpoint import Solutions
+from modefront.solvers.problem import Evaluation
+from modefront.solvers.sqp import Solution, Status
+
+PIECES = "pieces"
+
+
+@dataclass
+class Store:
+    """Keeps pieces in a folder, or in none, and counts what they cost.
+
+    ``counter`` tells what has been spent so far; ``done`` is called with the name of every piece.
+    """
+
+    folder: Path | None
+    counter: Callable[[], Mapping[str, int]]
+    done: Callable[[str], None]
+    costs: dict[str, dict[str, int]]
+
+    def __call__(self, name: str, compute: Callable[[], Solutions]) -> Solutions:
+        """Return the solutions of a piece that is there, or compute and keep it."""
+        path = self.folder / f"{_file_name(name)}.npz" if self.folder else None
+        kept = read_piece(path) if path else None
+        if kept is None:
+            before = dict(self.counter())
+            solutions = compute()
+            cost = {key: n - before[key] for key, n in self.counter().items()}
+            if path:
+                write_piece(path, solutions, cost)
+            kept = solutions, cost
+        self.costs[name] = kept[1]
+        self.done(name)
+        return kept[0]
+
+    def total(self, prefix: str = "") -> dict[str, int]:
+        """Return what all pieces cost whose names begin so."""
+        chosen = [cost for name, cost in self.costs.items() if name.startswith(prefix)]
+        return {key: sum(cost[key] for cost in chosen) for key in self.counter()}
+
+
+def _file_name(name: str) -> str:
+    """Return a name without characters that file systems treat specially."""
+    safe = "".join(c if c.isalnum() or c in "-_" else f"%{ord(c):x}" for c in name)
+    return safe if len(safe) < 100 else f"{safe[:60]}-{hash_text(name)}"
+
+
+def hash_text(text: str) -> str:
+    """Return a short hash that does not change between runs."""
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+def write_piece(path: Path, solutions: Solutions, cost: Mapping[str, int]) -> None:
+    """Write a piece whole or not at all."""
+    arrays: dict[str, Floats] = {}
+    heads = []
+    for i, one in enumerate(solutions):
+        at = one.at
+        parts = {"theta": at.theta, "J": at.J, "dJ": at.dJ, "H": at.H}
+        parts |= {"learned": one.learned, "weights": one.weights}
+        parts |= {f"quantity:{key}": value for key, value in at.quantities.items()}
+        arrays |= {f"{i}:{key}": value for key, value in parts.items()}
+        heads.append([one.violation, one.status.name, one.evaluations])
+    head = json.dumps({"cost": dict(cost), "solutions": heads})
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_suffix(".tmp")
+    with temporary.open("wb") as stream:
+        np.savez(stream, head=np.frombuffer(head.encode(), np.uint8), **arrays)  # type: ignore[arg-type]
+        stream.flush()
+        os.fsync(stream.fileno())
+    temporary.replace(path)
+
+
+def read_piece(path: Path) -> tuple[Solutions, dict[str, int]] | None:
+    """Return the solutions and the cost of a piece; None where there is no whole one."""
+    try:
+        with np.load(path, allow_pickle=False) as file:
+            arrays = {key: file[key] for key in file.files}
+        head = json.loads(arrays.pop("head").tobytes())
+    except (OSError, ValueError, KeyError, zipfile.BadZipFile):
+        return None
+    solutions = []
+    for i, (violation, status, evaluations) in enumerate(head["solutions"]):
+        own = {key.split(":", 1)[1]: a for key, a in arrays.items() if key.startswith(f"{i}:")}
+        kept = {key[9:]: value for key, value in own.items() if key.startswith("quantity:")}
+        at = Evaluation(own["theta"], own["J"], own["dJ"], own["H"], kept)
+        solutions.append(
+            Solution(at, own["learned"], own["weights"], violation, Status[status], evaluations)
+        )
+    return solutions, head["cost"]
