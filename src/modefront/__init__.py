@@ -1,3 +1,83 @@
-"""Structural model updating with all Pareto-optimal models."""
+"""Structural model updating with all Pareto-optimal models.
+
+The public names are imported when they are first used, so that ``import modefront`` is quick.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
 
 __version__ = "0.1.0"
+
+if TYPE_CHECKING:
+    from modefront.data.csv import read_csv as read_csv
+    from modefront.data.modal import ModalData as ModalData
+    from modefront.data.modal import modal_data as modal_data
+    from modefront.errors import InputError as InputError
+    from modefront.errors import ModelError as ModelError
+    from modefront.errors import UnfinishedError as UnfinishedError
+    from modefront.identifiability import combinations as combinations
+    from modefront.models.chain import chain as chain
+    from modefront.models.matrices import matrices as matrices
+    from modefront.pairing.mac import mac as mac
+    from modefront.pairing.match import Pairing as Pairing
+    from modefront.residuals.groups import Group as Group
+    from modefront.residuals.problem import UpdatingProblem as UpdatingProblem
+    from modefront.residuals.problem import updating_problem as updating_problem
+    from modefront.solvers.explore import Search as Search
+    from modefront.study.file import load as load
+    from modefront.study.results import read as read_results
+    from modefront.study.session import run as run
+    from modefront.study.session import solve as solve
+
+_HOMES = {
+    "Group": "residuals.groups",
+    "InputError": "errors",
+    "ModalData": "data.modal",
+    "ModelError": "errors",
+    "Pairing": "pairing.match",
+    "Search": "solvers.explore",
+    "UnfinishedError": "errors",
+    "UpdatingProblem": "residuals.problem",
+    "chain": "models.chain",
+    "combinations": "identifiability",
+    "load": "study.file",
+    "mac": "pairing.mac",
+    "matrices": "models.matrices",
+    "modal_data": "data.modal",
+    "read_csv": "data.csv",
+    "read_results": "study.results:read",
+    "run": "study.session",
+    "solve": "study.session",
+    "updating_problem": "residuals.problem",
+}
+
+__all__ = [
+    "Group",
+    "InputError",
+    "ModalData",
+    "ModelError",
+    "Pairing",
+    "Search",
+    "UnfinishedError",
+    "UpdatingProblem",
+    "chain",
+    "combinations",
+    "load",
+    "mac",
+    "matrices",
+    "modal_data",
+    "read_csv",
+    "read_results",
+    "run",
+    "solve",
+    "updating_problem",
+]
+
+
+def __getattr__(name: str) -> Any:
+    if name not in _HOMES:
+        raise AttributeError(f"module 'modefront' has no attribute '{name}'")
+    module, _, original = _HOMES[name].partition(":")
+    return getattr(import_module(f"modefront.{module}"), original or name)

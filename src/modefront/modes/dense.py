@@ -71,7 +71,9 @@ def modes(
 
 def eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
     """Return all finite eigenvalues in ascending order and the mass-normalised modes (N, modes)."""
-    scale = np.trace(K) / np.trace(M)
+    if not np.diag(M).any():
+        raise ModelError("the mass matrix has no mass on its diagonal")
+    scale = np.abs(np.diag(K)).sum() / np.abs(np.diag(M)).sum()
     mu, X = _inverse_eigensolve(K, M)
     shift = 0.0
     if mu.size == 0 or mu[-1] * scale * SHIFT**2 > 1:

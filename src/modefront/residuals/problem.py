@@ -168,5 +168,36 @@ class UpdatingProblem:
         return _stack(parts)
 
 
+def updating_problem(
+    model: Model,
+    data: ModalData,
+    groups: Sequence[Group],
+    bounds: Mapping[str, tuple[float, float]],
+    nominal: Mapping[str, float],
+    pairing: Pairing | None = None,
+) -> UpdatingProblem:
+    """Return the problem of updating a model, with bounds and nominal values by parameter name.
+
+    Raises ValueError where a parameter has no bounds or no nominal value within them, a group
+    has no members, or data and model differ in their sensors.
+    """
+    if data.sensors != model.sensors:
+        raise ValueError(f"expected data at sensors {model.sensors}, found {data.sensors}")
+    for name in model.parameters:
+        if name not in bounds or name not in nominal:
+            raise ValueError(f"expected bounds and a nominal value of '{name}', found none")
+        if not bounds[name][0] <= nominal[name] <= bounds[name][1]:
+            raise ValueError(f"expected '{name}' within {bounds[name]}, found {nominal[name]}")
+    return UpdatingProblem(
+        model,
+        data,
+        tuple(groups),
+        np.array([bounds[name][0] for name in model.parameters], dtype=float),
+        np.array([bounds[name][1] for name in model.parameters], dtype=float),
+        np.array([nominal[name] for name in model.parameters], dtype=float),
+        pairing or Pairing(),
+    )
+
+
 def _stack(parts: Sequence[Residual]) -> Residual:
     return Residual(np.concatenate([x.r for x in parts]), np.concatenate([x.dr for x in parts]))

@@ -24,7 +24,7 @@ from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Linear, weighted
 from modefront.solvers.sqp import Options, Solution, begin, solve
 
-EPSILONS = (1e-5, 1e-7, 1e-9)
+EPSILONS = (1e-5, 1e-7, 1e-8)
 
 EXACT = 1e-10
 """An objective below this share of its typical size is fitted exactly."""
@@ -32,7 +32,10 @@ EXACT = 1e-10
 TIE = 1e-6
 """Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal."""
 
-_TIGHT = Options(reduction=1e-19, learn=False)
+_TIGHT = Options(reduction=1e-24)
+
+_FLAT = Options(step=1e-8, reduction=1e-24, learn=False)
+"""For the last step: what is learned is not exact enough where an objective does not change."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +103,8 @@ def _programme(objective: int, epsilon: float, sizes: Floats) -> Linear:
 
 def _refine(problem: Problem, objective: int, sizes: Floats, start: Solution) -> Solution:
     evaluations = start.evaluations
-    for epsilon in EPSILONS[1:]:
-        start = solve(problem, _programme(objective, epsilon, sizes), start, _TIGHT)
+    ladder = [(epsilon, _TIGHT) for epsilon in EPSILONS[1:]] + [(EPSILONS[-1], _FLAT)]
+    for epsilon, options in ladder:
+        start = solve(problem, _programme(objective, epsilon, sizes), start, options)
         evaluations += start.evaluations
     return replace(start, evaluations=evaluations)

@@ -21,7 +21,7 @@ scale     (n,) range of each objective over the edges
 
 from __future__ import annotations
 
-from collections import deque
+from collections import Counter, deque
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
@@ -116,37 +116,38 @@ def nbi(
     """
     solved: dict[int, Solution] = {}
     advance: dict[int, int] = {}
+    renewed: Counter[int] = Counter()
     queue: deque[tuple[int, int]] = deque()
-    checked: set[tuple[int, int]] = set()
+    tried: set[tuple[int, int, int]] = set()
 
     def settle(i: int, solution: Solution, origin: int) -> None:
         solved[i], advance[i] = solution, origin
+        renewed[i] += 1
         queue.extend((j, i) for j in lattice.neighbours[i])
+
+    def worth_trying(i: int, source: int) -> bool:
+        if i not in solved:
+            return True
+        if lattice.beta[i].max() == 1 or (i, source, renewed[source]) in tried:
+            return False
+        other = advance[i] != advance[source]
+        return not solved[i].converged or (solved[source].converged and other)
 
     for origin, edge in enumerate(edges):
         settle(int(np.argmax(lattice.beta[:, origin])), edge, origin)
     while queue:
         i, source = queue.popleft()
-        known = solved.get(i)
-        if (
-            known is not None
-            and known.converged
-            and (
-                advance[i] == advance[source]
-                or (i, source) in checked
-                or lattice.beta[i].max() == 1
-            )
-        ):
+        if not worth_trying(i, source):
             continue
-        if known is not None:
-            if (i, source) in checked:
-                continue
-            checked |= {(i, source), (source, i)}
+        tried.add((i, source, renewed[source]))
         programme = target.subproblem(lattice.beta[i])
-        name = f"nbi-{i + 1}" + ("" if known is None else f"-from-{source + 1}")
+        known = solved.get(i)
+        name = f"nbi-{i + 1}-from-{source + 1}-{renewed[source]}"
         found = checkpoint(name, partial(_solve_one, problem, programme, solved[source]))[0]
         if known is None or _better(programme, found, known):
             settle(i, found, advance[source])
+        elif found.converged and not _better(programme, known, found):
+            tried.add((source, i, renewed[i]))
     return [solved[i] for i in range(len(lattice.beta))]
 
 

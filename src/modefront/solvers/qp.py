@@ -26,6 +26,9 @@ from modefront._typing import Floats
 FLAT = 1e-10
 """Curvature, over the greatest one, below which a direction counts as flat."""
 
+FAR = 1e-4
+"""Inverse of the greatest step aimed at, in widths of the box: bounds what a flat B leads to."""
+
 NORMAL = 0.8
 """Share of the box that the normal step may use, so that something is left to descend."""
 
@@ -37,7 +40,9 @@ def solve_qp(B: Floats, g: Floats, A: Floats, b: Floats, lo: Floats, hi: Floats)
         return s_n
     curvature, V = np.linalg.eigh(Z.T @ B @ Z)
     curvature = np.abs(curvature)
-    curvature = np.maximum(curvature, max(FLAT * curvature.max(), np.finfo(float).tiny))
+    slope = np.abs(g).max() / (hi - lo).max()
+    floor = max(FLAT * curvature.max(), FAR * slope, np.finfo(float).tiny ** 0.5)
+    curvature = np.maximum(curvature, floor)
     T = Z @ (V / np.sqrt(curvature))
     h = T.T @ (g + B @ s_n)
     s = s_n - T @ h

@@ -17,7 +17,8 @@ within a box, the trust region; they are judged by the augmented Lagrangian
 
 .. math:: f + \lambda^T c + \tfrac\nu2 \|c\|^2, \qquad c = A J - b,
 
-which, unlike an exact penalty, does not reject good steps near the solution.
+which, unlike an exact penalty, does not reject good steps near the solution. A stationary point
+with clearly negative curvature is tried to be left once.
 
 Variables are :math:`u = (\theta - lower) / (upper - lower)`.
 """
@@ -28,11 +29,15 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
+import scipy.linalg
 
 from modefront._typing import Floats
 from modefront.solvers.problem import Evaluation, Problem
 from modefront.solvers.qp import solve_qp
 from modefront.solvers.scalarisation import Scalarisation
+
+SADDLE = 1e-3
+"""Negative curvature, over the greatest one, above which a stationary point is left again."""
 
 
 class Status(Enum):
@@ -110,6 +115,7 @@ def solve(
     state = _State(start.at, learned)
     radius, penalty = options.radius, 10.0
     multipliers: Floats | None = None
+    escaped = False
     for count in range(options.iterations + 1):
         at = state.at
         df, A = programme.gradient(at.J), programme.A
@@ -127,41 +133,60 @@ def solve(
         multipliers = _multipliers(dc, g + B @ s, lo - s, hi - s)
         w = df + A.T @ multipliers
 
+        violation = max(map(abs, c.tolist()), default=0.0)
+        value = programme.value(at.J)
+        still = _length(s) <= options.step or bool(abs(g @ s) <= options.reduction * abs(value))
+        if still and violation <= options.constraint and not escaped:
+            escaped, s = True, _off_the_saddle(B, g, dc, lo, hi)
+            still = not s.any()
+        if still and violation <= options.constraint:
+            return Solution(at, state.learned, w, violation, Status.CONVERGED, count)
+        if _length(s) <= np.finfo(float).eps or radius <= options.step * 1e-3:
+            return Solution(at, state.learned, w, violation, Status.STALLED, count)
+        if count == options.iterations:
+            break
+
         after = c + dc @ s
         gain = -(g + multipliers @ dc) @ s - 0.5 * s @ B @ s
         drop = 0.5 * (c @ c - after @ after)
         if drop > 0:
             penalty = max(penalty, float(-2 * gain / drop))
         predicted = gain + penalty * drop
-        length = float(np.max(np.abs(s)))
-        violation = max(map(abs, c.tolist()), default=0.0)
-        value = programme.value(at.J)
-        still = length <= options.step or abs(predicted) <= options.reduction * abs(value)
-        if still and violation <= options.constraint:
-            status = Status.CONVERGED
-        elif length <= np.finfo(float).eps or radius <= options.step * 1e-3:
-            status = Status.STALLED
-        elif count == options.iterations:
-            status = Status.EXHAUSTED
-        else:
-            theta = np.clip(at.theta + s * span, problem.lower, problem.upper)
-            new = problem.evaluate(theta)
-            if not new.feasible:
-                radius = length / 4
-                continue
-            c_new = programme.A @ new.J - programme.b
-            actual = value - programme.value(new.J) + multipliers @ (c - c_new)
-            actual += 0.5 * penalty * (c @ c - c_new @ c_new)
-            noise = 10 * np.finfo(float).eps * abs(value)
-            ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
-            state = state.move(new, moved=bool(ratio > 1e-4), learn=options.learn)
-            if ratio < 0.25:
-                radius = length / 4 if ratio < 1e-4 else length / 2
-            elif ratio > 0.7 and length > 0.9 * radius:
-                radius = min(2 * radius, 1.0)
+        new = problem.evaluate(np.clip(at.theta + s * span, problem.lower, problem.upper))
+        if not new.feasible:
+            radius = _length(s) / 4
             continue
-        return Solution(at, state.learned, w, violation, status, count)
-    raise AssertionError("unreachable: the last iteration returns")
+        c_new = programme.A @ new.J - programme.b
+        actual = value - programme.value(new.J) + multipliers @ (c - c_new)
+        actual += 0.5 * penalty * (c @ c - c_new @ c_new)
+        noise = 10 * np.finfo(float).eps * abs(value)
+        ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
+        state = state.move(new, moved=bool(ratio > 1e-4), learn=options.learn)
+        if ratio < 0.25:
+            radius = _length(s) / (4 if ratio < 1e-4 else 2)
+        elif ratio > 0.7 and _length(s) > 0.9 * radius:
+            radius = min(2 * radius, 1.0)
+    return Solution(state.at, state.learned, w, violation, Status.EXHAUSTED, options.iterations)
+
+
+def _length(s: Floats) -> float:
+    return float(np.max(np.abs(s)))
+
+
+def _off_the_saddle(B: Floats, g: Floats, dc: Floats, lo: Floats, hi: Floats) -> Floats:
+    """Return a step along clearly negative curvature within the constraints, or zeros."""
+    s = np.zeros(g.size)
+    free = (lo < 0) & (hi > 0)
+    Z = scipy.linalg.null_space(dc[:, free]) if dc.size else np.eye(int(free.sum()))
+    if Z.shape[1] == 0:
+        return s
+    curvature, V = np.linalg.eigh(Z.T @ B[np.ix_(free, free)] @ Z)
+    if curvature[0] < -SADDLE * np.abs(curvature).max():
+        v = Z @ V[:, 0]
+        v *= -1.0 if g[free] @ v > 0 else 1.0
+        room = np.where(v > 0, hi[free], lo[free])
+        s[free] = 0.5 * v * np.min(room[v != 0] / v[v != 0])
+    return s
 
 
 @dataclass(frozen=True)

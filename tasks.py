@@ -1,0 +1,74 @@
+"""Sets up everything in .venv, then does one of the project's tasks.
+
+python3 tasks.py demo    the three-story study, both configurations, beside the published numbers
+python3 tasks.py test    the tests
+python3 tasks.py lint    formatting, lint and types
+
+Needs Python 3.11 or newer and nothing else. Packages are the ones pinned in requirements.txt.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import subprocess
+import sys
+import venv
+from pathlib import Path
+
+ROOT = Path(__file__).resolve().parent
+ENVIRONMENT = ROOT / ".venv"
+REQUIREMENTS = ROOT / "requirements.txt"
+TASKS = {
+    "demo": [["examples/three_story.py", "demo"]],
+    "test": [["-m", "pytest", "-q"]],
+    "lint": [
+        ["-m", "ruff", "format", "--check", "."],
+        ["-m", "ruff", "check", "."],
+        ["-m", "mypy"],
+    ],
+}
+
+
+def python() -> Path:
+    """Return the interpreter of the environment."""
+    return ENVIRONMENT / ("Scripts/python.exe" if os.name == "nt" else "bin/python")
+
+
+def run(*arguments: str) -> None:
+    """Run the environment's Python; leave with its status where that is not 0."""
+    status = subprocess.run([str(python()), *arguments], cwd=ROOT, check=False).returncode
+    if status:
+        sys.exit(status)
+
+
+def set_up() -> None:
+    """Create or renew the environment if the pinned packages are not the installed ones."""
+    wanted = REQUIREMENTS.read_bytes() + (ROOT / "pyproject.toml").read_bytes()
+    stamp = ENVIRONMENT / "installed"
+    digest = hashlib.sha256(wanted + str(ROOT).encode()).hexdigest()
+    if stamp.is_file() and stamp.read_text() == digest:
+        return
+    print("setting up .venv (once; about a minute)", file=sys.stderr)
+    venv.create(ENVIRONMENT, with_pip=True, clear=True)
+    pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
+    run(*pip, "--require-hashes", "--only-binary=:all:", "-r", str(REQUIREMENTS))
+    run(*pip, "--no-deps", "--no-build-isolation", "--editable", str(ROOT))
+    stamp.write_text(digest)
+
+
+def main() -> None:
+    """Do the task that the command line names; further arguments go to its last command."""
+    if sys.version_info < (3, 11):
+        sys.exit(f"modefront needs Python 3.11 or newer; this is {sys.version.split()[0]}")
+    if len(sys.argv) < 2 or sys.argv[1] not in TASKS:
+        sys.exit(__doc__)
+    set_up()
+    *first, last = TASKS[sys.argv[1]]
+    for command in first:
+        run(*command)
+    run(*last, *sys.argv[2:])
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,150 @@
+"""Equation (1), its derivatives, its counts and its invariances."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from modefront._typing import Floats
+from modefront.data.modal import ModalData, modal_data
+from modefront.models.chain import chain
+from modefront.residuals.groups import Group
+from modefront.residuals.problem import UpdatingProblem, updating_problem
+
+FREQUENCY = np.array([4.646, 13.81, 19.48])
+SHAPE = np.array([[0.4561, 0.8069, 1.0], [1.0, 0.3009, -0.9026], [-0.7801, 1.0, -0.6448]])
+FLOORS = ("floor1", "floor2", "floor3")
+NAMES = ("k1", "k2", "k3", "m1")
+ALL = (Group("frequencies", "all"), Group("shapes", shape="all"))
+
+
+def problem_of(data: ModalData, groups: tuple[Group, ...] = ALL) -> UpdatingProblem:
+    model = chain(
+        NAMES,
+        [22.6, 22.6, 17.176],
+        [84763.8] * 3,
+        stiffness_parameters=NAMES[:3],
+        mass_parameters=["m1", None, None],
+    )
+    bounds = dict.fromkeys(NAMES, (0.2, 5.0))
+    return updating_problem(model, data, groups, bounds, dict.fromkeys(NAMES, 1.0))
+
+
+def precise_objectives(theta: list[mp.mpf]) -> list[mp.mpf]:
+    """Return J of frequencies and of shapes as equation (1) states them, mode by mode."""
+    k = [mp.mpf("84763.8") * x for x in theta[:3]]
+    m = [mp.mpf("22.6") * theta[3], mp.mpf("22.6"), mp.mpf("17.176")]
+    K = mp.matrix([[k[0] + k[1], -k[1], 0], [-k[1], k[1] + k[2], -k[2]], [0, -k[2], k[2]]])
+    root = mp.diag([1 / mp.sqrt(x) for x in m])
+    lam, Q = mp.eigsy(root * K * root)
+    phi = root * Q
+    J = [mp.mpf(0), mp.mpf(0)]
+    for r in range(3):
+        measured = mp.mpf(float(FREQUENCY[r]))
+        J[0] += (mp.sqrt(lam[r]) / (2 * mp.pi) - measured) ** 2 / measured**2
+        psi = [mp.mpf(float(x)) for x in SHAPE[r]]
+        own = [phi[i, r] for i in range(3)]
+        beta = mp.fdot(psi, own) / mp.fdot(own, own)
+        misfit = [beta * a - b for a, b in zip(own, psi, strict=True)]
+        J[1] += mp.fdot(misfit, misfit) / (mp.fdot(psi, psi) / 3)
+    return J
+
+
+@settings(max_examples=10, deadline=None)
+@given(st.lists(st.floats(0.5, 2.0), min_size=4, max_size=4))
+def test_objectives_and_gradients_agree_with_50_digit_arithmetic(values: list[float]) -> None:
+    theta = np.array(values)
+    problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
+    found = problem.evaluate(theta)
+    if (found.quantities["paired_mode"] != [1, 2, 3]).any():
+        return
+    with mp.workdps(50):
+        expected = precise_objectives([mp.mpf(x) for x in values])
+        assert found.J == pytest.approx([float(x) for x in expected], rel=1e-10)
+        h = mp.mpf(10) ** -18
+        for i in range(4):
+            ahead, behind = ([mp.mpf(x) for x in values] for _ in "ab")
+            ahead[i] += h
+            behind[i] -= h
+            pair = zip(precise_objectives(ahead), precise_objectives(behind), strict=True)
+            slope = np.array([float((a - b) / (2 * h)) for a, b in pair])
+            scale = np.abs(found.dJ).max(axis=1)
+            assert (np.abs(found.dJ[:, i] - slope) <= 1e-8 * scale).all()
+
+
+def test_counts_are_of_what_was_measured() -> None:
+    data = modal_data(FREQUENCY, SHAPE, FLOORS)
+    assert problem_of(data).properties.tolist() == [3, 9]
+    single = (Group("f1 and shape 3", [1], [3]), Group("f2", [2]), Group("again", [1, 2]))
+    assert problem_of(data, single).properties.tolist() == [4, 1, 2]
+
+
+def test_what_is_not_measured_drops_out() -> None:
+    frequency, shape = FREQUENCY.copy(), SHAPE.copy()
+    frequency[1] = np.nan
+    shape[0, 1] = np.nan
+    shape[2] = np.nan
+    problem = problem_of(modal_data(frequency, shape, FLOORS))
+    assert problem.properties.tolist() == [2, 5]
+    theta = np.array([1.1, 0.9, 1.2, 1.0])
+    rf, rphi = problem.residuals(theta)
+    assert rf.r.size == 2
+    assert rphi.r.size == 5
+    full = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS)).residuals(theta)[0]
+    assert rf.r == pytest.approx(full.r[[0, 2]])
+
+
+def test_objectives_are_means_over_data_sets() -> None:
+    theta = np.array([1.1, 0.9, 1.2, 1.0])
+    other_f, other_shape = 1.01 * FREQUENCY, SHAPE + 0.05
+    both = modal_data(np.array([FREQUENCY, other_f]), np.array([SHAPE, other_shape]), FLOORS)
+    J = [
+        problem_of(modal_data(f, shape, FLOORS)).evaluate(theta).J
+        for f, shape in ((FREQUENCY, SHAPE), (other_f, other_shape))
+    ]
+    found = problem_of(both)
+    assert found.evaluate(theta).J == pytest.approx((J[0] + J[1]) / 2, rel=1e-12)
+    assert found.properties.tolist() == [3, 9]
+
+
+@given(st.lists(st.floats(-10, 10).filter(lambda x: abs(x) > 1e-3), min_size=3, max_size=3))
+def test_measured_shapes_have_no_scale_and_no_sign(scales: list[float]) -> None:
+    theta = np.array([1.1, 0.9, 1.2, 1.0])
+    scaled: Floats = SHAPE * np.array(scales)[:, None]
+    J = [problem_of(modal_data(FREQUENCY, x, FLOORS)).evaluate(theta).J for x in (SHAPE, scaled)]
+    assert J[1] == pytest.approx(J[0], rel=1e-10)
+
+
+def test_shapes_do_not_change_when_all_stiffnesses_are_scaled() -> None:
+    problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
+    theta = np.array([1.1, 0.9, 1.2, 1.0])
+    residual = problem.residuals(theta)[1]
+    direction = np.array([*theta[:3], 0.0])
+    assert residual.dr @ direction == pytest.approx(0, abs=1e-12)
+
+
+def test_each_evaluation_is_counted_once() -> None:
+    problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
+    for derivatives in (True, False):
+        problem.evaluate(problem.start, derivatives=derivatives)
+    assert problem.counts == {"eigenproblems": 2}
+
+
+def test_a_model_without_modes_is_infeasible_not_an_error() -> None:
+    problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
+    found = problem.evaluate(np.array([1.0, -5.0, 1.0, 1.0]))
+    assert not found.feasible
+
+
+@pytest.mark.parametrize(
+    ("group", "message"),
+    [
+        (Group("empty"), "group 'empty': at least one member, found none"),
+        (Group("f9", [9]), "found 9"),
+        (Group("twice", [1, 1]), "each mode once"),
+    ],
+)
+def test_wrong_groups_are_refused(group: Group, message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        problem_of(modal_data(FREQUENCY, SHAPE, FLOORS), (group,))

@@ -1,0 +1,114 @@
+"""Vector problems with known answers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.solvers.problem import Evaluation, infeasible
+
+Derivatives = tuple[Floats, Floats, Floats]
+
+
+@dataclass(frozen=True)
+class Known:
+    """A problem from a function that returns J, dJ and a known part H of the second derivatives."""
+
+    function: Callable[[Floats], Derivatives]
+    lower: Floats
+    upper: Floats
+    start: Floats
+    objectives: tuple[str, ...]
+    counter: dict[str, int] = field(default_factory=lambda: {"eigenproblems": 0})
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        return self.counter
+
+    def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
+        assert (theta >= self.lower).all()
+        assert (theta <= self.upper).all()
+        self.counter["eigenproblems"] += 1
+        J, dJ, H = self.function(theta)
+        if not np.isfinite(J).all():
+            return infeasible(theta, len(self.objectives))
+        return Evaluation(theta, J, dJ, H) if derivatives else Evaluation(theta, J, 0 * dJ, 0 * H)
+
+
+def box(
+    function: Callable[[Floats], Derivatives], lower: list[float], upper: list[float], n: int = 2
+) -> Known:
+    lo, hi = np.array(lower), np.array(upper)
+    names = tuple(f"J{i + 1}" for i in range(n))
+    return Known(function, lo, hi, lo + 0.4 * (hi - lo), names)
+
+
+def circles(theta: Floats) -> Derivatives:
+    """Squared distances from (0, 0) and (1, 0): the Pareto set is the segment between them.
+
+    On the front, sqrt(J1) + sqrt(J2) = 1.
+    """
+    r = theta - np.array([[0.0, 0.0], [1.0, 0.0]])
+    return (r**2).sum(axis=1), 2 * r, np.array([2 * np.eye(2)] * 2)
+
+
+def curved(theta: Floats) -> Derivatives:
+    """Distances as before, in coordinates that bend: no second derivatives are known."""
+    x, y = theta
+    u = np.array([x, y - x**2])
+    du = np.array([[1.0, 0.0], [-2 * x, 1.0]])
+    J, dJ, _ = circles(u)
+    return J, dJ @ du, np.zeros((2, 2, 2))
+
+
+def concave(theta: Floats) -> Derivatives:
+    """Fonseca and Fleming's problem: a front that bends the wrong way for weights."""
+    c = 1 / np.sqrt(theta.size)
+    d = theta - np.array([[c], [-c]])
+    e = np.exp(-(d**2).sum(axis=1))
+    dJ = 2 * d * e[:, None]
+    outer = d[:, :, None] * d[:, None, :]
+    H = e[:, None, None] * (2 * np.eye(theta.size) - 4 * outer)
+    return 1 - e, dJ, H
+
+
+def disconnected(theta: Floats) -> Derivatives:
+    """J1 = x, J2 = f(x) + y**2 with f(x) = 1 - x - sin(4 pi x) / 4: falling, rising, falling.
+
+    f falls to 0.612 at x = 0.151, rises, and comes back to that level at x = 0.43.
+    """
+    x, y = theta
+    w = 4 * np.pi
+    J = np.array([x, 1 - x - np.sin(w * x) / 4 + y**2])
+    dJ = np.array([[1.0, 0.0], [-1 - w * np.cos(w * x) / 4, 2 * y]])
+    H = np.zeros((2, 2, 2))
+    H[1] = [[w**2 * np.sin(w * x) / 4, 0], [0, 2.0]]
+    return J, dJ, H
+
+
+def valley(theta: Floats) -> Derivatives:
+    """J2 vanishes on the curve x y = 1; of its points, (1, 1) is the best one in J1."""
+    x, y = theta
+    r1 = np.array([x - 0.5, y - 0.5])
+    r2, dr2 = np.array([x * y - 1]), np.array([[y, x]])
+    J = np.array([r1 @ r1, r2 @ r2])
+    return J, np.array([2 * r1, 2 * r2 @ dr2]), np.array([2 * np.eye(2), 2 * dr2.T @ dr2])
+
+
+def many_minima(theta: Floats) -> Derivatives:
+    """J1 vanishes at (+-1, +-2), four models; J2 decides between them."""
+    x, y = theta
+    r, dr = np.array([x**2 - 1, y**2 - 4]), np.diag([2 * x, 2 * y])
+    d = theta - np.array([1.5, -2.5])
+    J = np.array([r @ r, d @ d])
+    return J, np.array([2 * r @ dr, 2 * d]), np.array([2 * dr.T @ dr, 2 * np.eye(2)])
+
+
+def bowls(theta: Floats) -> Derivatives:
+    """Squared distances from the three corners of a triangle: its inside is the Pareto set."""
+    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+    r = theta - corners
+    return (r**2).sum(axis=1), 2 * r, np.array([2 * np.eye(2)] * 3)

@@ -1,0 +1,324 @@
+"""Problems with known answers, for every solver."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from problems import (
+    Known,
+    bowls,
+    box,
+    circles,
+    concave,
+    curved,
+    disconnected,
+    many_minima,
+    valley,
+)
+
+from modefront._typing import Floats
+from modefront.solvers.dominance import nondominated
+from modefront.solvers.edges import edge, sample, typical_sizes
+from modefront.solvers.explore import Search, evolve, explore
+from modefront.solvers.nbi import nbi, payoff, simplex
+from modefront.solvers.pieces import gaps, piece_numbers
+from modefront.solvers.qp import solve_qp
+from modefront.solvers.scalarisation import LogSum, level, weighted
+from modefront.solvers.sqp import Options, Solution, Status, begin, solve
+from modefront.solvers.weights import iterate_weights, optimal_minima, regular
+
+
+def sizes_of(problem: Known) -> Floats:
+    sizes = typical_sizes(sample(problem, np.random.default_rng(0)))
+    assert sizes is not None
+    return sizes
+
+
+def edges_of(problem: Known) -> list[Solution]:
+    sizes = sizes_of(problem)
+    out = []
+    for i in range(len(problem.objectives)):
+        found = edge(problem, i, sizes, np.random.default_rng(i), Search())
+        assert found is not None
+        out.append(found.best)
+    return out
+
+
+def front_of(problem: Known, points: int = 11) -> list[Solution]:
+    edges = edges_of(problem)
+    target = payoff(edges, sizes_of(problem))
+    assert target is not None
+    return nbi(problem, edges, target, simplex(len(edges), points - 1))
+
+
+# ---- quadratic programmes --------------------------------------------------------------------
+
+
+@settings(max_examples=60, deadline=None)
+@given(st.integers(0, 2**31), st.integers(1, 5), st.integers(0, 2))
+def test_qp_meets_the_conditions_of_optimality(seed: int, p: int, k: int) -> None:
+    rng = np.random.default_rng(seed)
+    k = min(k, p - 1)
+    root = rng.normal(size=(p, p))
+    B, g, A = root @ root.T + 0.1 * np.eye(p), 3 * rng.normal(size=p), rng.normal(size=(k, p))
+    lo, hi = -rng.uniform(0.5, 2, p), rng.uniform(0.5, 2, p)
+    b = A @ (rng.uniform(-0.3, 0.3, p))
+    s = solve_qp(B, g, A, b, lo, hi)
+    assert (s >= lo).all()
+    assert (s <= hi).all()
+    assert A @ s == pytest.approx(b, abs=1e-8)
+    # No feasible direction descends: compare with many random feasible points.
+    null = np.linalg.svd(A)[2][k:] if k else np.eye(p)
+    value = g @ s + 0.5 * s @ B @ s
+    for _ in range(200):
+        step = (rng.normal(size=len(null)) * rng.choice([1e-3, 0.1, 1.0])) @ null
+        other = s + step
+        if (other >= lo).all() and (other <= hi).all():
+            assert g @ other + 0.5 * other @ B @ other >= value - 1e-8
+
+
+def test_qp_comes_as_near_as_the_box_allows() -> None:
+    s = solve_qp(np.eye(1), np.zeros(1), np.ones((1, 1)), np.array([5.0]), -np.ones(1), np.ones(1))
+    assert 0.5 < s[0] <= 1
+
+
+# ---- one programme ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("function", [circles, curved])
+def test_weighted_sums_have_their_minimum(function: object) -> None:
+    problem = box(function, [-2, -2], [2, 2])  # type: ignore[arg-type]
+    start = begin(problem.evaluate(np.array([1.5, -1.0])))
+    found = solve(problem, weighted(np.array([1.0, 3.0])), start)
+    x = 0.75
+    assert found.status is Status.CONVERGED
+    y = x**2 if function is curved else 0.0
+    assert found.at.theta == pytest.approx([x, y], abs=1e-6)
+
+
+def test_bounds_hold_exactly() -> None:
+    problem = box(circles, [0.6, 0.5], [2, 2])
+    found = solve(problem, weighted(np.array([1.0, 0.1])), begin(problem.evaluate(problem.start)))
+    assert found.converged
+    assert found.at.theta.tolist() == [0.6, 0.5]
+
+
+def test_levels_are_met() -> None:
+    problem = box(curved, [-2, -2], [2, 2])
+    programme = level(1, 0, 0.16, np.ones(2))
+    found = solve(problem, programme, begin(problem.evaluate(np.array([0.1, 0.3]))))
+    assert found.converged
+    assert found.at.theta == pytest.approx([0.4, 0.16], abs=1e-6)
+    # Its weights are those of the weighted sum with the same solution.
+    assert found.weights[0] / found.weights[1] == pytest.approx(0.6 / 0.4, rel=1e-5)
+
+
+def test_what_was_learned_makes_the_neighbour_cheaper() -> None:
+    problem = box(curved, [-2, -2], [2, 2])
+    first = solve(problem, weighted(np.array([1.0, 1.0])), begin(problem.evaluate(problem.start)))
+    programme = weighted(np.array([1.0, 1.1]))
+    warm = solve(problem, programme, first)
+    cold = solve(problem, programme, begin(first.at))
+    assert warm.converged
+    assert warm.evaluations < cold.evaluations
+
+
+def test_points_without_a_model_are_stepped_back_from() -> None:
+    def hole(theta: Floats) -> tuple[Floats, Floats, Floats]:
+        J, dJ, H = circles(theta)
+        return (J if theta[0] < 0.6 else J * np.inf), dJ, H
+
+    problem = box(hole, [-2, -2], [2, 2])
+    found = solve(problem, weighted(np.array([1.0, 1.0])), begin(problem.evaluate(-np.ones(2))))
+    assert found.converged
+    assert found.at.theta == pytest.approx([0.5, 0], abs=1e-6)
+    nowhere = begin(problem.evaluate(np.ones(2)))
+    assert solve(problem, weighted(np.ones(2)), nowhere).status is Status.INFEASIBLE
+
+
+def test_an_exhausted_search_says_so() -> None:
+    problem = box(curved, [-2, -2], [2, 2])
+    start = begin(problem.evaluate(np.array([1.9, -1.9])))
+    found = solve(problem, weighted(np.ones(2)), start, Options(iterations=1))
+    assert found.status is Status.EXHAUSTED
+    assert not found.converged
+
+
+# ---- global search ---------------------------------------------------------------------------
+
+
+def test_all_minima_are_kept() -> None:
+    problem = box(many_minima, [-4, -4], [4, 4])
+    found = explore(problem, weighted(np.array([1.0, 0.0])), np.random.default_rng(0), Search())
+    places = sorted(tuple(np.round(one.at.theta).astype(int).tolist()) for one in found)
+    assert places == [(-1, -2), (-1, 2), (1, -2), (1, 2)]
+
+
+def test_the_evolution_strategy_finds_a_basin() -> None:
+    problem = box(circles, [-5, -5], [5, 5])
+    theta = evolve(problem, weighted(np.array([1.0, 0.0])), np.random.default_rng(0), Search())
+    assert np.abs(theta).max() < 0.5
+
+
+def test_searches_are_repeated_exactly_with_the_same_seed() -> None:
+    runs = []
+    for _ in range(2):
+        problem = box(many_minima, [-4, -4], [4, 4])
+        found = explore(problem, weighted(np.ones(2)), np.random.default_rng(5), Search())
+        runs.append([*(one.at.theta.tolist() for one in found), problem.counts["eigenproblems"]])
+    assert runs[0] == runs[1]
+
+
+# ---- edges -----------------------------------------------------------------------------------
+
+
+def test_edges_are_lexicographic() -> None:
+    assert edges_of(box(valley, [0.1, 0.1], [3, 3]))[1].at.theta == pytest.approx([1, 1], abs=1e-6)
+    best = edges_of(box(many_minima, [-4, -4], [4, 4]))[0]
+    assert best.at.theta == pytest.approx([1, -2], abs=1e-7)
+
+
+# ---- fronts ----------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("function", [circles, curved])
+def test_the_front_of_two_bowls(function: object) -> None:
+    front = front_of(box(function, [-2, -2], [2, 2]))  # type: ignore[arg-type]
+    J = np.array([one.at.J for one in front])
+    assert all(one.converged for one in front)
+    assert np.sqrt(J).sum(axis=1) == pytest.approx(1, abs=1e-6)
+    # The points lie on the normals: J1 - J2 changes by equal steps.
+    assert np.diff(J[:, 0] - J[:, 1]) == pytest.approx(0.2, abs=1e-6)
+    assert nondominated(J).all()
+
+
+def test_a_concave_front_is_covered_evenly() -> None:
+    front = front_of(box(concave, [-2, -2], [2, 2]), points=15)
+    J = np.array([one.at.J for one in front])
+    assert all(one.converged for one in front)
+    # On the front x1 = x2 = s: J = 1 - exp(-2 (s -+ c)**2) with |s| <= c.
+    s = np.array([one.at.theta.mean() for one in front])
+    c = 1 / np.sqrt(2)
+    assert J == pytest.approx(1 - np.exp(-2 * (s[:, None] - [c, -c]) ** 2), abs=1e-6)
+    assert nondominated(J).all()
+    gaps_between = np.linalg.norm(np.diff(J, axis=0), axis=1)
+    assert gaps_between.max() < 1.5 * gaps_between.min()
+
+
+def test_a_disconnected_front_keeps_dominated_points_and_ends_its_pieces() -> None:
+    problem = box(disconnected, [0, -1], [0.651, 1])
+    front = front_of(problem, points=25)
+    J = np.array([one.at.J for one in front])
+    optimal = nondominated(J)
+    assert not optimal.all()
+    assert all(one.converged for one in front)
+    (gap,) = gaps(problem, front, optimal, np.ptp(J, axis=0))
+    assert gap.end.converged
+    assert gap.start.converged
+    # The first piece ends at its minimum of J2, the second one begins where it undercuts that.
+    x = np.linspace(0, 0.651, 1_000_001)
+    f = 1 - x - np.sin(4 * np.pi * x) / 4
+    hidden = x[np.flatnonzero((f > np.minimum.accumulate(f) + 1e-12) & (x < 0.6))]
+    left, right = hidden[0], hidden[-1]
+    assert gap.end.at.J[0] == pytest.approx(left, abs=1e-4)
+    assert gap.start.at.J[0] == pytest.approx(right, abs=1e-4)
+    pieces = piece_numbers(J, optimal, [gap])
+    assert set(pieces[optimal]) <= {0, 1, 2}
+    assert ((pieces == 1) <= (J[:, 0] <= left + 1e-6)).all()
+    assert ((pieces == 2) <= (J[:, 0] >= right - 1e-6)).all()
+
+
+def test_three_objectives_on_the_simplex() -> None:
+    front = front_of(box(bowls, [-2, -2], [2, 2], 3), points=5)
+    assert len(front) == 15
+    assert all(one.converged for one in front)
+    for one in front:
+        # Each point is stationary for the weights that come with it, and lies in the triangle of
+        # Pareto optima exactly where none of them is negative.
+        w = one.weights / one.weights.sum()
+        assert one.at.theta == pytest.approx(w[1:], abs=1e-5)
+        x, y = one.at.theta
+        assert (w >= -1e-5).all() == (min(x, y, 1 - x - y) >= -1e-5)
+
+
+def test_the_second_point_costs_few_evaluations() -> None:
+    problem = box(curved, [-2, -2], [2, 2])
+    edges = edges_of(problem)
+    target = payoff(edges, sizes_of(problem))
+    assert target is not None
+    before = problem.counts["eigenproblems"]
+    nbi(problem, edges, target, simplex(2, 19))
+    assert (problem.counts["eigenproblems"] - before) / 20 <= 5
+
+
+def test_one_best_model_is_a_front_of_one_point() -> None:
+    def same(theta: Floats) -> tuple[Floats, Floats, Floats]:
+        J, dJ, H = circles(theta)
+        return J[[0, 0]], dJ[[0, 0]], H
+
+    problem = box(same, [-2, -2], [2, 2])
+    assert payoff(edges_of(problem), sizes_of(problem)) is None
+
+
+@given(st.integers(1, 5), st.integers(1, 6))
+def test_the_lattice_is_the_simplex(n: int, divisions: int) -> None:
+    lattice = simplex(n, divisions)
+    assert lattice.beta.sum(axis=1) == pytest.approx(1)
+    assert (lattice.beta >= 0).all()
+    assert len({tuple(row) for row in lattice.beta}) == len(lattice.beta)
+    assert lattice.beta[0, 0] == 1
+    assert lattice.beta[-1, -1] == 1
+    for i, near in enumerate(lattice.neighbours):
+        for j in near:
+            assert i in lattice.neighbours[j]
+            step = np.abs(lattice.beta[i] - lattice.beta[j]).sum()
+            assert step == pytest.approx(2 / divisions)
+
+
+# ---- weights ---------------------------------------------------------------------------------
+
+
+def test_optimal_weights_are_a_over_J_and_the_iteration_agrees() -> None:
+    def offset(theta: Floats) -> tuple[Floats, Floats, Floats]:
+        J, dJ, H = curved(theta)
+        return J + np.array([0.3, 0.2]), dJ, H
+
+    problem = box(offset, [-2, -2], [2, 2])
+    a, sizes = np.array([3.0, 5.0]), sizes_of(problem)
+    best = optimal_minima(problem, a, sizes, np.random.default_rng(0), Search(), [])[0]
+    again = solve(problem, weighted(a / best.at.J), begin(best.at))
+    assert again.at.theta == pytest.approx(best.at.theta, abs=1e-6)
+    start = solve(problem, weighted(np.ones(2)), begin(problem.evaluate(problem.start)))
+    iterated = iterate_weights(problem, a, sizes, start)
+    assert iterated is not None
+    assert iterated.converged
+    assert iterated.at.theta == pytest.approx(best.at.theta, abs=1e-5)
+    programme = LogSum(a)
+    for shift in np.random.default_rng(1).normal(scale=1e-3, size=(20, 2)):
+        nearby = problem.evaluate(best.at.theta + shift).J
+        assert programme.value(nearby) >= programme.value(best.at.J)
+
+
+def test_singular_minima_are_told_from_regular_ones() -> None:
+    problem = box(circles, [-2, -2], [2, 2])
+    sizes = sizes_of(problem)
+    found = optimal_minima(problem, np.ones(2), sizes, np.random.default_rng(0), Search(), [])
+    assert not any(regular(one.at.J, sizes) for one in found)
+    exact = begin(problem.evaluate(np.zeros(2)))
+    assert iterate_weights(problem, np.ones(2), sizes, exact) is None
+
+
+# ---- dominance -------------------------------------------------------------------------------
+
+
+@given(st.integers(0, 2**31), st.integers(1, 4))
+def test_dominance_is_that_of_equation_4(seed: int, n: int) -> None:
+    J = np.random.default_rng(seed).integers(0, 4, size=(12, n)).astype(float)
+    expected = [not any((other <= row).all() and (other < row).any() for other in J) for row in J]
+    assert nondominated(J).tolist() == expected
+    assert nondominated(1e-9 * J + 5e-9).tolist() == expected
+
+
+def test_rounding_dominates_nothing() -> None:
+    J = np.array([[1.0, 2.0], [1.0 + 1e-14, 2.0], [0.0, 3.0], [np.inf, 0.0]])
+    assert nondominated(J).tolist() == [True, True, True, False]
