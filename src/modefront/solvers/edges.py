@@ -6,8 +6,9 @@ lexicographically, as the limit of the minimisers of
 
 .. math:: J_i / c_i + \varepsilon \sum_{j \ne i} J_j / c_j, \qquad \varepsilon \to 0,
 
-(Ehrgott, *Multicriteria Optimization*, 2005, section 5.1), whose distance from the limit is
-proportional to :math:`\varepsilon`; c are typical sizes of the objectives.
+(Ehrgott, *Multicriteria Optimization*, 2005, section 5.1), extrapolated from two of them: their
+distance from the limit is proportional to :math:`\varepsilon`. c are typical sizes of the
+objectives.
 """
 
 from __future__ import annotations
@@ -24,7 +25,8 @@ from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Linear, weighted
 from modefront.solvers.sqp import Options, Solution, begin, solve
 
-EPSILONS = (1e-5, 1e-7, 1e-8)
+EXPLORE, COARSE, FINE = 1e-5, 1e-6, 1e-7
+"""Values of epsilon: while exploring, and the two from which the limit is extrapolated."""
 
 EXACT = 1e-10
 """An objective below this share of its typical size is fitted exactly."""
@@ -32,10 +34,10 @@ EXACT = 1e-10
 TIE = 1e-6
 """Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal."""
 
-_TIGHT = Options(reduction=1e-24)
+_LEARNING = Options(step=1e-8, reduction=1e-24)
 
-_FLAT = Options(step=1e-8, reduction=1e-24, learn=False)
-"""For the last step: what is learned is not exact enough where an objective does not change."""
+_KNOWN = Options(step=1e-8, reduction=1e-24, learn=False)
+"""What is learned is not exact enough where an objective does not change at all."""
 
 
 @dataclass(frozen=True)
@@ -76,7 +78,7 @@ def edge(
     name = problem.objectives[objective]
     found = checkpoint(
         f"minima-{name}",
-        lambda: explore(problem, _programme(objective, EPSILONS[0], sizes), rng, search),
+        lambda: explore(problem, _programme(objective, EXPLORE, sizes), rng, search),
     )
     refined = checkpoint(
         f"edge-{name}", lambda: [_refine(problem, objective, sizes, one) for one in found]
@@ -102,9 +104,16 @@ def _programme(objective: int, epsilon: float, sizes: Floats) -> Linear:
 
 
 def _refine(problem: Problem, objective: int, sizes: Floats, start: Solution) -> Solution:
-    evaluations = start.evaluations
-    ladder = [(epsilon, _TIGHT) for epsilon in EPSILONS[1:]] + [(EPSILONS[-1], _FLAT)]
-    for epsilon, options in ladder:
-        start = solve(problem, _programme(objective, epsilon, sizes), start, options)
-        evaluations += start.evaluations
-    return replace(start, evaluations=evaluations)
+    """Return the limit of the minimisers for epsilon to 0, by Richardson's extrapolation."""
+    options = _KNOWN if start.at.H[objective].any() else _LEARNING
+    coarse = solve(problem, _programme(objective, COARSE, sizes), start, options)
+    fine = solve(problem, _programme(objective, FINE, sizes), coarse, options)
+    theta = fine.at.theta + (fine.at.theta - coarse.at.theta) * FINE / (COARSE - FINE)
+    limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper))
+    better = limit.feasible and limit.J[objective] <= fine.at.J[objective]
+    return replace(
+        fine,
+        at=limit if better else fine.at,
+        learned=start.learned,
+        evaluations=start.evaluations + coarse.evaluations + fine.evaluations + 1,
+    )
