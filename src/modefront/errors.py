@@ -39,4 +39,4 @@ class UnfinishedError(RuntimeError):
 def suggestion(name: str, known: Iterable[str]) -> str:
     """Return ``'name'`` with the known name that it resembles, for a message."""
     close = difflib.get_close_matches(name, list(known), n=1, cutoff=0.5)
-    return f"'{name}'" + (f" (did you mean '{close[0]}'?)" if close else "")
+    return f"{name!r}" + (f" (did you mean '{close[0]}'?)" if close else "")

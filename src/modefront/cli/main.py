@@ -120,6 +120,9 @@ def main() -> None:
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = UNDONE
+    except OSError as error:  # such as a full disk
+        click.echo(f"modefront: {error}; what was done is kept", err=True)
+        status = UNDONE
     except Exception as error:
         if os.environ.get("MODEFRONT_TRACEBACK"):
             raise

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 import csv
 import math
-from collections.abc import Sequence
+import re
+from collections.abc import Collection, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -22,14 +23,37 @@ KEYS = ("set", "mode")
 QUANTITIES = ("frequency", "damping")
 STD = "_std"
 
+NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)
+"""Python itself would read more as numbers: 1_000, nan, digits of any script."""
 
-def read_csv(path: Path, sensors: Sequence[str]) -> ModalData:
-    """Read modal data at the named sensors.
+MOST_MODES = 10**6
+
+FREQUENCIES = 1e-9, 1e12
+"""Frequencies in Hz beyond which a number must be a slip."""
+
+SHAPES = 1e-100, 1e100
+"""Greatest components of a mode shape of which the squares are still numbers."""
+
+
+def is_reserved(name: str, sensors: Collection[str]) -> bool:
+    """Return whether a column of this name would be another one than that of a sensor."""
+    base = name.removesuffix(STD)
+    return name in (*KEYS, *QUANTITIES) or (base != name and base in ("frequency", *sensors))
+
+
+def read_csv(path: Path, sensors: Sequence[str] | None = None) -> ModalData:
+    """Read modal data at the named sensors; by default, at those that the columns name.
 
     Raises InputError that names every row and column in which something is wrong.
     """
     file = str(path)
     header, lines = _table(path)
+    if sensors is None:
+        sensors = [
+            name
+            for name in dict.fromkeys(header)
+            if name.isprintable() and name and not is_reserved(name, header)
+        ]
     faults = [_fault(file, 1, *found) for found in _header_faults(header, sensors)]
     if faults:
         raise InputError(faults)
@@ -50,25 +74,32 @@ def read_csv(path: Path, sensors: Sequence[str]) -> ModalData:
             faults.append(Fault(file, place, "each mode of a data set once", f"{key} again"))
         elif key is not None:
             rows[key] = values
-            faults += [_fault(file, number, *one) for one in _empty_faults(values, sensors)]
+            if not found:
+                faults += [_fault(file, number, *one) for one in _empty_faults(values, sensors)]
     if faults:
         raise InputError(faults)
     return _assemble(rows, tuple(sensors))
 
 
 def _fault(file: str, line: int, column: str, expected: str, found: str) -> Fault:
-    return Fault(file, f"line {line}, column '{column}'", expected, found)
+    return Fault(file, f"line {line}, column {column!r}", expected, found)
 
 
 def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     """Return the header and the numbered rows that are not blank."""
     try:
         with path.open(newline="", encoding="utf-8-sig") as stream:
-            reader = csv.reader(stream, strict=True)
-            rows = [(reader.line_num, [field.strip() for field in row]) for row in reader]
+            reader = csv.reader(stream, strict=True, skipinitialspace=True)
+            try:
+                rows = [(reader.line_num, [field.strip() for field in row]) for row in reader]
+            except csv.Error as error:
+                place = f"line {reader.line_num}"
+                raise InputError(Fault(str(path), place, "CSV", str(error))) from None
+    except InputError:
+        raise
     except FileNotFoundError:
         raise InputError(Fault(str(path), "file", "a file of modal data", "no such file")) from None
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+    except (OSError, ValueError) as error:
         raise InputError(Fault(str(path), "file", "CSV in UTF-8", str(error))) from None
     rows = [(number, row) for number, row in rows if any(row)]
     if not rows:
@@ -82,7 +113,7 @@ def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[
     known = (*required, *(name + STD for name in ("frequency", *sensors)))
     faults = [
         (name, "the name of a quantity or of a sensor of the model", suggestion(name, known))
-        for name in header
+        for name in dict.fromkeys(header)
         if name not in known
     ]
     faults += [(name, "this column", "no such column") for name in required if name not in header]
@@ -99,10 +130,10 @@ def _row(
     faults: list[tuple[str, str, str]] = []
     values: dict[str, float] = {}
     name, mode = texts["set"], texts["mode"]
-    if not name:
-        faults.append(("set", "the name of a data set", "an empty field"))
-    if not (mode.isascii() and mode.isdigit() and 0 < int(mode) < 10**6):
-        faults.append(("mode", "a whole number from 1", f"'{mode}'"))
+    if not name or not name.isprintable():
+        faults.append(("set", "the name of a data set", repr(name)))
+    if not re.fullmatch("[0-9]{1,9}", mode) or not 1 <= int(mode) <= MOST_MODES:
+        faults.append(("mode", f"a whole number from 1 to {MOST_MODES}", repr(mode)))
     key = None if faults else (name, int(mode))
     for column, text in texts.items():
         if column in KEYS:
@@ -110,11 +141,10 @@ def _row(
         values[column] = math.nan
         if not text:
             continue
-        try:
-            value = float(text)
-        except ValueError:
-            faults.append((column, "a number or an empty field", f"'{text}'"))
+        if not NUMBER.fullmatch(text):
+            faults.append((column, "a finite number or an empty field", repr(text)))
             continue
+        value = float(text)
         expected = _range(column, value)
         if expected:
             faults.append((column, expected, text))
@@ -126,8 +156,9 @@ def _range(column: str, value: float) -> str:
     """Return what is expected of a value that is out of range; empty where it is not."""
     if not math.isfinite(value):
         return "a finite number or an empty field"
-    if column == "frequency" and value <= 0:
-        return "a frequency above 0 Hz"
+    least, most = FREQUENCIES
+    if column == "frequency" and not least <= value <= most:
+        return f"a frequency above 0 Hz, from {least:g} to {most:g}"
     if column == "damping" and not 0 <= value < 1:
         return "a damping ratio from 0 to below 1"
     if column.endswith(STD) and value < 0:
@@ -140,6 +171,10 @@ def _empty_faults(values: dict[str, float], sensors: Sequence[str]) -> list[tupl
     shape = [values[name] for name in sensors if not math.isnan(values[name])]
     if shape and not any(shape):
         return [(sensors[0], "a mode shape that is not zero at all sensors", "only zeros")]
+    greatest = max(map(abs, shape), default=1.0)
+    if math.isfinite(greatest) and not SHAPES[0] <= greatest <= SHAPES[1]:
+        expected = f"a mode shape with its greatest component from {SHAPES[0]:g} to {SHAPES[1]:g}"
+        return [(sensors[0], expected, f"{greatest:g}")]
     if not shape and math.isnan(values["frequency"]):
         return [("frequency", "a frequency or a mode shape", "neither")]
     return []
@@ -149,16 +184,21 @@ def _assemble(rows: dict[tuple[str, int], dict[str, float]], sensors: tuple[str,
     sets = tuple(dict.fromkeys(name for name, _ in rows))
     modes = tuple(sorted({mode for _, mode in rows}))
 
-    def collect(column: str) -> Floats:
-        return np.array([[rows.get((k, r), {}).get(column, math.nan) for r in modes] for k in sets])
+    def collect(*columns: str) -> Floats:
+        return np.array(
+            [
+                [[rows.get((k, r), {}).get(name, math.nan) for name in columns] for r in modes]
+                for k in sets
+            ]
+        )
 
     return ModalData(
         sets,
         modes,
         sensors,
-        collect("frequency"),
-        collect("damping"),
-        np.stack([collect(name) for name in sensors], axis=-1),
-        collect("frequency" + STD),
-        np.stack([collect(name + STD) for name in sensors], axis=-1),
+        collect("frequency")[..., 0],
+        collect("damping")[..., 0],
+        collect(*sensors),
+        collect("frequency" + STD)[..., 0],
+        collect(*(name + STD for name in sensors)),
     )

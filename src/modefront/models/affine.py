@@ -16,11 +16,15 @@ c(theta)  coefficients of the terms
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
+import scipy.sparse
+from numpy.typing import NDArray
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Bools, Floats, Ints
 
 
 @dataclass(frozen=True)
@@ -73,3 +77,111 @@ class DenseAffine:
         products = self.terms @ vectors
         out: Floats = np.tensordot(products, self.coefficients.jacobian(theta), axes=(0, 0))
         return out
+
+
+@dataclass(frozen=True, eq=False)
+class SparseAffine:
+    """A(theta) with sparse terms on one pattern, by rows of the full symmetric matrix.
+
+    Attributes
+    ----------
+    indptr : (N + 1,) where each row starts in ``indices``
+    indices : (entries,) columns, ascending within each row
+    terms : (entries, terms) values of each term; sparse, since most terms are local
+    coefficients : c(theta)
+    """
+
+    indptr: NDArray[np.int32]
+    indices: NDArray[np.int32]
+    terms: scipy.sparse.csc_array
+    coefficients: Monomials
+
+    @property
+    def size(self) -> int:
+        """Number of degrees of freedom N."""
+        return self.indptr.size - 1
+
+    @property
+    def used(self) -> Bools:
+        """Which parameters the matrix depends on, shape (parameters,)."""
+        there = np.diff(self.terms.indptr) > 0
+        return np.asarray(self.coefficients.exponents[there].any(axis=0))
+
+    def at(self, theta: Floats) -> scipy.sparse.csr_array:
+        """Return A(theta), N x N; it holds every entry of the pattern, zero or not."""
+        values = self.terms @ self.coefficients.values(theta)
+        shape = self.size, self.size
+        return scipy.sparse.csr_array((values, self.indices, self.indptr), shape=shape)
+
+    def dense(self) -> DenseAffine:
+        """Return the same matrix with dense terms."""
+        out = np.zeros((self.terms.shape[1], self.size, self.size))
+        out[:, _expand(self.indptr), self.indices] = self.terms.toarray().T
+        return DenseAffine(out, self.coefficients)
+
+    def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
+        """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
+        products = self.derivative_rows(theta, vectors).toarray()
+        shape = vectors.shape[1], -1, self.size
+        return np.ascontiguousarray(products.reshape(shape).transpose(2, 0, 1))
+
+    def derivative_rows(self, theta: Floats, vectors: Floats) -> scipy.sparse.csr_array:
+        """Return the same products as rows (vector, parameter), sparse: (m * parameters, N).
+
+        The row of vector r and parameter i is r * parameters + i. A term that touches few
+        degrees of freedom costs as little.
+        """
+        stack, dof, starts = self._stack
+        products = stack @ vectors
+        dc = self.coefficients.jacobian(theta)
+        m, p = vectors.shape[1], dc.shape[1]
+        rows, columns, values = [np.zeros(0, np.intp)], [np.zeros(0, np.intp)], [np.zeros(0)]
+        for j, i in np.argwhere(dc != 0):
+            part = slice(starts[j], starts[j + 1])
+            rows.append(np.repeat(np.arange(m) * p + i, starts[j + 1] - starts[j]))
+            columns.append(np.tile(dof[part], m))
+            values.append((dc[j, i] * products[part]).T.ravel())
+        entries = np.concatenate(rows), np.concatenate(columns)
+        return scipy.sparse.csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
+
+    @cached_property
+    def _stack(self) -> tuple[scipy.sparse.csr_array, Ints, Ints]:
+        """The rows of the terms that are not zero, one below the other.
+
+        Returns the rows (rows, N), their degrees of freedom (rows,) and where each term starts
+        (terms + 1,).
+        """
+        row = _expand(self.indptr)
+        entry, term = self.terms.indices, _expand(self.terms.indptr)
+        ranked = np.lexsort((entry, term))
+        entry, term, values = entry[ranked], term[ranked], self.terms.data[ranked]
+        keys, position = np.unique(term * self.size + row[entry], return_inverse=True)
+        starts = np.searchsorted(keys, np.arange(self.terms.shape[1] + 1) * self.size)
+        shape = keys.size, self.size
+        stack = scipy.sparse.csr_array((values, (position, self.indices[entry])), shape=shape)
+        return stack, keys % self.size, starts
+
+
+def sparse_affine(
+    terms: Sequence[scipy.sparse.sparray], coefficients: Monomials, size: int
+) -> SparseAffine:
+    """Return sum_j c_j(theta) A_j for symmetric sparse matrices A_j of shape (N, N).
+
+    The pattern is the union of theirs; entries that are zero in all of them are left out.
+    """
+    found = [scipy.sparse.coo_array(A) for A in terms]
+    row = np.concatenate([A.row for A in found]).astype(np.intp)
+    column = np.concatenate([A.col for A in found]).astype(np.intp)
+    term = np.repeat(np.arange(len(found)), [A.nnz for A in found])
+    values = np.concatenate([A.data for A in found]).astype(float)
+    there = values != 0
+    keys, position = np.unique((row * size + column)[there], return_inverse=True)
+    entries = values[there], (position, term[there])
+    data = scipy.sparse.csc_array(entries, shape=(keys.size, len(found)))
+    indptr = np.searchsorted(keys, np.arange(size + 1) * size)
+    return SparseAffine(indptr.astype(np.int32), (keys % size).astype(np.int32), data, coefficients)
+
+
+def _expand(indptr: NDArray[np.int32]) -> Ints:
+    """Return the row (or column) of each entry of compressed rows (or columns)."""
+    return np.repeat(np.arange(indptr.size - 1), np.diff(indptr))

@@ -11,9 +11,16 @@ from modefront.modes.result import Modes
 
 @dataclass
 class Counts:
-    """What the evaluations of a model have cost."""
+    """What the evaluations of a model have cost.
+
+    Attributes
+    ----------
+    eigenproblems : how many were solved, with derivatives or without
+    factorisations : of sparse matrices, for these
+    """
 
     eigenproblems: int = 0
+    factorisations: int = 0
 
 
 class Model(Protocol):
@@ -37,7 +44,7 @@ class Model(Protocol):
 
     @property
     def counts(self) -> Counts:
-        """Eigenproblems solved so far; counted where they are solved and nowhere else."""
+        """What was solved so far; counted where it is solved and nowhere else."""
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``, shape (parameters,).

@@ -45,6 +45,9 @@ COINCIDENT = 1e-8
 SHIFT = 1e-5
 """sigma over trace(K) / trace(M), where K is singular: balances rounding in low and high modes."""
 
+RIGID = 1e-4
+"""Eigenvalue over the shift, below which a mode counts as a rigid-body mode."""
+
 _ROUNDING = 10 * np.finfo(float).eps
 
 
@@ -81,6 +84,11 @@ def eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
         mu, X = _inverse_eigensolve(K + shift * M, M)
         if mu.size == 0:
             raise ModelError("the stiffness matrix is indefinite")
+        elastic = mu[(mu > 1e-13 * mu[-1]) & (mu < (1 - RIGID) * mu[-1])]
+        if elastic.size:
+            # A shift of the size of the lowest elastic mode costs no digits of the others.
+            shift = float(1 / elastic[-1] - shift)
+            mu, X = _inverse_eigensolve(K + shift * M, M)
     if mu[0] < -1e-10 * mu[-1]:
         raise ModelError("the mass matrix is indefinite")
     finite = np.flatnonzero(mu > 1e-13 * mu[-1])[::-1]

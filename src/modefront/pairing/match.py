@@ -21,6 +21,9 @@ from modefront.pairing.mac import mac
 OUTSIDE = 1e3
 """Cost of a candidate outside the window of frequencies."""
 
+UNSEEN = 1e-6
+"""Greatest component of a mode at the sensors, over that of all modes, below which it is noise."""
+
 
 @dataclass(frozen=True)
 class Pairing:
@@ -84,7 +87,12 @@ def match(pairing: Pairing, data: ModalData, frequency: Floats, phi: Floats) -> 
 
 
 def mean_mac(data: ModalData, phi: Floats) -> Floats:
-    """Return the MAC of measured and model modes, (measured modes, modes), mean over data sets."""
+    """Return the MAC of measured and model modes, (measured modes, modes), mean over data sets.
+
+    It is 0 for modes that the sensors do not see, whose components there are rounding.
+    """
+    size = np.abs(phi).max(axis=0, initial=0.0)
+    phi = np.where(size > UNSEEN * size.max(initial=0.0), phi, 0.0)
     total = np.zeros((len(data.modes), phi.shape[1]))
     count = np.zeros((len(data.modes), 1))
     for k in range(len(data.sets)):

@@ -11,6 +11,7 @@ import numpy as np
 from modefront.data.modal import ModalData
 
 Members = Sequence[int] | Literal["all"]
+Scale = Literal["measured", "std"]
 
 
 @dataclass(frozen=True)
@@ -21,11 +22,14 @@ class Group:
     ----------
     name : how the group is called in results
     frequency, shape : numbers of measured modes, counted from 1, or ``"all"``
+    scale : what residuals are divided by: the measured values, as in equation (1), or their
+        standard deviations
     """
 
     name: str
     frequency: Members = ()
     shape: Members = ()
+    scale: Scale = "measured"
 
 
 def members(chosen: Members, modes: Sequence[int], measured: Sequence[bool]) -> tuple[int, ...]:

@@ -13,6 +13,12 @@ at the :math:`N_0` sensors that measured the mode in the data set, and
 
 .. math:: \beta' = (\hat\varphi^T \varphi' - 2 \beta \varphi^T \varphi') / \|\varphi\|^2 .
 
+On request residuals are over the standard deviations of the measurements instead:
+:math:`(\omega_r - \hat\omega_r) / \hat\sigma` and, component by component,
+:math:`(\beta \varphi - \hat\varphi) / \hat\sigma` with :math:`\beta` the least squares of these. A
+component whose standard deviation is 0, such as one to which a shape was normalised, takes the
+median of the others in its shape.
+
 An objective is the sum over the members of its group. Its count :math:`a_i` of measured
 properties is one for a frequency and :math:`N_0` (mean over data sets) for a shape.
 """
@@ -31,8 +37,17 @@ from modefront.errors import ModelError
 from modefront.models.base import Model
 from modefront.modes.result import Modes
 from modefront.pairing.match import Pairing, Pairs, match, modes_needed
-from modefront.residuals.groups import Group, measured_frequencies, measured_shapes, members
+from modefront.residuals.groups import (
+    Group,
+    Scale,
+    measured_frequencies,
+    measured_shapes,
+    members,
+)
 from modefront.solvers.problem import Evaluation, infeasible
+
+Member = tuple[str, int, Scale]
+"""A member of a group: frequency or shape, position of the measured mode, scale."""
 
 
 @dataclass(frozen=True)
@@ -63,6 +78,9 @@ class UpdatingProblem:
         for group, row in zip(self.groups, self._members, strict=True):
             if not row:
                 raise ValueError(f"group '{group.name}': at least one member, found none")
+            for kind, r, scale in row:
+                if scale == "std":
+                    check_std(self.data, kind, r)
 
     @property
     def objectives(self) -> tuple[str, ...]:
@@ -80,18 +98,21 @@ class UpdatingProblem:
         N0 = np.isfinite(self.data.shape).sum(axis=2).astype(float)
         sets = np.maximum((N0 > 0).sum(axis=0), 1)
         count = {"frequency": np.ones(len(self.data.modes)), "shape": N0.sum(axis=0) / sets}
-        return np.array([sum(count[kind][r] for kind, r in row) for row in self._members])
+        return np.array([sum(count[kind][r] for kind, r, _ in row) for row in self._members])
 
     @cached_property
-    def _members(self) -> list[list[tuple[str, int]]]:
+    def _members(self) -> list[list[Member]]:
         modes = self.data.modes
         measured = {
             "frequency": measured_frequencies(self.data),
             "shape": measured_shapes(self.data),
         }
         return [
-            [("frequency", r) for r in members(group.frequency, modes, measured["frequency"])]
-            + [("shape", r) for r in members(group.shape, modes, measured["shape"])]
+            [
+                (kind, r, group.scale)
+                for kind, chosen in (("frequency", group.frequency), ("shape", group.shape))
+                for r in members(chosen, modes, measured[kind])
+            ]
             for group in self.groups
         ]
 
@@ -131,41 +152,70 @@ class UpdatingProblem:
 
     def _residuals(self, modes: Modes, pairs: Pairs) -> tuple[Residual, ...]:
         parts = {
-            member: self._frequency(modes, pairs, member[1])
-            if member[0] == "frequency"
-            else self._shape(modes, pairs, member[1])
-            for member in {member for row in self._members for member in row}
+            (kind, r, scale): (self._frequency if kind == "frequency" else self._shape)(
+                modes, pairs, r, scale
+            )
+            for kind, r, scale in {member for row in self._members for member in row}
         }
         return tuple(_stack([parts[member] for member in row]) for row in self._members)
 
-    def _frequency(self, modes: Modes, pairs: Pairs, r: int) -> Residual:
-        measured = self.data.frequency[:, r]
-        measured = measured[np.isfinite(measured)]
-        scale = 1 / (measured * np.sqrt(measured.size))
+    def _frequency(self, modes: Modes, pairs: Pairs, r: int, scale: Scale) -> Residual:
+        at = np.isfinite(self.data.frequency[:, r])
+        measured = self.data.frequency[at, r]
+        unit = measured if scale == "measured" else self.data.frequency_std[at, r]
+        weight = 1 / (unit * np.sqrt(measured.size))
         q = pairs.index[r]
         return Residual(
-            (modes.frequency[q] - measured) * scale, np.outer(scale, modes.dfrequency[q])
+            (modes.frequency[q] - measured) * weight, np.outer(weight, modes.dfrequency[q])
         )
 
-    def _shape(self, modes: Modes, pairs: Pairs, r: int) -> Residual:
+    def _shape(self, modes: Modes, pairs: Pairs, r: int, scale: Scale) -> Residual:
         measured = np.isfinite(self.data.shape[:, r])
         sets = np.flatnonzero(measured.any(axis=1))
         q = pairs.index[r]
         parts = []
         for k in sets:
             at = measured[k]
-            psi, phi, dphi = self.data.shape[k, r, at], modes.phi[at, q], modes.dphi[at, q]
-            scale = np.sqrt(psi.size / (psi @ psi) / sets.size)
-            norm = phi @ phi
-            if norm == 0:
-                parts.append(Residual(-scale * psi, np.zeros(dphi.shape)))
-                continue
-            beta = psi @ phi / norm
-            dbeta = (psi @ dphi - 2 * beta * (phi @ dphi)) / norm
-            parts.append(
-                Residual(scale * (beta * phi - psi), scale * (np.outer(phi, dbeta) + beta * dphi))
-            )
+            psi = self.data.shape[k, r, at]
+            if scale == "measured":
+                weight = np.full(psi.size, np.sqrt(psi.size / (psi @ psi)))
+            else:
+                weight = 1 / usable_std(self.data.shape_std[k, r, at])
+            weight = weight / np.sqrt(sets.size)
+            phi, dphi = weight * modes.phi[at, q], weight[:, None] * modes.dphi[at, q]
+            parts.append(_misfit(weight * psi, phi, dphi))
         return _stack(parts)
+
+
+def _misfit(psi: Floats, phi: Floats, dphi: Floats) -> Residual:
+    """Return beta phi - psi and its derivatives, with beta the least squares."""
+    norm = phi @ phi
+    if norm == 0:
+        return Residual(-psi, np.zeros(dphi.shape))
+    beta = psi @ phi / norm
+    dbeta = (psi @ dphi - 2 * beta * (phi @ dphi)) / norm
+    return Residual(beta * phi - psi, np.outer(phi, dbeta) + beta * dphi)
+
+
+def usable_std(std: Floats) -> Floats:
+    """Return standard deviations with zeros replaced by the median of those above 0.
+
+    Raises ValueError where none is above 0 or one is not known.
+    """
+    if not np.isfinite(std).all() or not (std > 0).any():
+        raise ValueError("standard deviations of all measured components, one of them above 0")
+    return np.where(std > 0, std, np.median(std[std > 0]))
+
+
+def check_std(data: ModalData, kind: str, r: int) -> None:
+    """Raise ValueError where the standard deviations of a frequency or shape are not usable."""
+    if kind == "shape":
+        for values, std in zip(data.shape[:, r], data.shape_std[:, r], strict=True):
+            measured = np.isfinite(values)
+            if measured.any():
+                usable_std(std[measured])
+    elif not (data.frequency_std[np.isfinite(data.frequency[:, r]), r] > 0).all():
+        raise ValueError("standard deviations above 0 of all measured frequencies")
 
 
 def updating_problem(

@@ -21,12 +21,18 @@ from modefront.residuals.groups import Group, measured_frequencies, measured_sha
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.kinds import KINDS
-from modefront.study.reader import Table, is_number, repeated
+from modefront.study.reader import Table, describe, is_number, repeated
 
 METHODS = ("nbi",)
 """Methods that ``[pareto] method`` may name."""
 
 POINTS = 20
+
+RESERVED = (
+    *("nbi-", "edge-", "minima-", "gap-", "equal-weights", "optimal-weights"),
+    *("iterated-weights", "sample"),
+)
+"""Beginnings of the labels of results and of the names of pieces of work."""
 
 
 @dataclass(frozen=True)
@@ -90,7 +96,7 @@ def load(path: Path) -> Study:
     model = _model(root, names, path.parent)
     data, data_file = _data(root, model, path.parent)
     groups = _groups(root, data)
-    weights = _weights(root, [group.name for group in groups])
+    weights = _weights(root, [group.name for group in groups if group.name])
     method, points = _pareto(root)
     pairing, search = _pairing(root), _search(root)
     root.close()
@@ -115,12 +121,12 @@ def load(path: Path) -> Study:
 def _parse(path: Path) -> tuple[dict[str, Any], bytes]:
     try:
         content = path.read_bytes()
-        return tomllib.loads(content.decode()), content
+        return tomllib.loads(content.decode("utf-8-sig")), content
     except FileNotFoundError:
         raise InputError(Fault(str(path), "file", "a study file", "no such file")) from None
     except IsADirectoryError:
         raise InputError(Fault(str(path), "file", "a study file", "a folder")) from None
-    except (OSError, UnicodeDecodeError, tomllib.TOMLDecodeError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise InputError(Fault(str(path), "file", "TOML in UTF-8", str(error))) from None
 
 
@@ -130,7 +136,9 @@ def _parameters(root: Table) -> tuple[Parameter, ...]:
     for table in tables:
         name = table.text("name", "the name of the parameter")
         bounds = table.numbers(
-            "bounds", "[lower, upper] with lower < upper", lambda x: len(x) == 2 and x[0] < x[1]
+            "bounds",
+            "[lower, upper], two finite numbers with lower < upper",
+            lambda x: len(x) == 2 and x[0] < x[1],
         )
         nominal = table.number("nominal", "a finite number", math.isfinite)
         if bounds is not None and nominal is not None and not bounds[0] <= nominal <= bounds[1]:
@@ -168,17 +176,18 @@ def _data(root: Table, model: Model | None, folder: Path) -> tuple[ModalData | N
         return None, ""
     name = table.text("file", "the name of a file of modal data")
     table.close()
-    if name is None or model is None:
+    if name is None:
         return None, ""
     if not name.lower().endswith(".csv"):
         table.fault("file", "a file that ends in .csv", f"'{name}'")
         return None, ""
     try:
-        data = read_csv(folder / name, model.sensors)
+        # Without a model all columns may be sensors: what else is wrong is found nevertheless.
+        data = read_csv(folder / name, model.sensors if model else None)
     except InputError as error:
         root.faults.extend(error.faults)
         return None, ""
-    if len(data.modes) > model.size:
+    if model and len(data.modes) > model.size:
         found = f"{len(data.modes)} in '{name}'"
         root.fault("[data] file", f"at most {model.size} modes, as the model has", found)
     return data, name
@@ -189,6 +198,7 @@ def _groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
     tables = root.tables("group", required=True)
     expected = "'all' or a list of measured modes, counted from 1"
     for table in tables:
+        before = len(root.faults)
         name = table.text("name", "the name of the group") or ""
         chosen = {}
         for key, measured in (("frequency", measured_frequencies), ("shape", measured_shapes)):
@@ -204,7 +214,7 @@ def _groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
         table.close()
         group = Group(name, chosen["frequency"], chosen["shape"])
         if not (group.frequency or group.shape):
-            if not any(fault.place.startswith(table.place) for fault in root.faults):
+            if len(root.faults) == before:
                 table.fault("", "frequency or shape with at least one measured mode", "neither")
         elif data is not None and not (
             members(group.frequency, data.modes, measured_frequencies(data))
@@ -237,19 +247,19 @@ def _weights(root: Table, groups: Sequence[str]) -> tuple[Weighted, ...]:
             if key not in groups:
                 weights.fault(key, "the name of a group", suggestion(key, groups))
             elif not (is_number(value) and value > 0):
-                weights.fault(key, "a weight above 0", str(value))
+                weights.fault(key, "a weight above 0", describe(value))
         missing = [group for group in groups if group not in weights.values]
         for group in missing:
             weights.fault(group, "a weight above 0", "nothing")
         if not missing and all(is_number(weights.values[group]) for group in groups):
             out.append(Weighted(name, tuple(float(weights.values[g]) for g in groups)))
-    reserved = {"equal-weights", "optimal-weights", *(f"edge-{group}" for group in groups)}
     names = [str(table.values["name"]) for table in tables if _is_name(table)]
     for label in repeated(names):
         root.fault("[[weighted]]", "each name once", f"'{label}' twice")
     for label in names:
-        if label in reserved or label.startswith("nbi-"):
-            root.fault("[[weighted]]", "a name that is no label of results", f"'{label}'")
+        if label.startswith(RESERVED):
+            expected = f"a name that does not begin with one of {', '.join(RESERVED)}"
+            root.fault("[[weighted]]", expected, f"'{label}'")
     return tuple(out)
 
 
@@ -278,10 +288,11 @@ def _search(root: Table) -> Search:
     table = root.table("search", default=None)
     if table is None:
         return Search()
+    before = len(root.faults)
     starts = table.integer("starts", 1, 10**6, default=Search.starts)
     limit = table.integer("limit", 1, 10**6, default=max(Search.limit, starts))
     evolutions = table.integer("evolutions", 0, 10**6, default=Search.evolutions)
-    if limit < starts:
+    if limit < starts and len(root.faults) == before:
         table.fault("limit", f"at least starts, {starts}", str(limit))
     table.close()
     return Search(starts, limit, evolutions)
@@ -289,13 +300,12 @@ def _search(root: Table) -> Search:
 
 def _try_model(root: Table, problem: UpdatingProblem) -> None:
     """Note what only an evaluation shows: an indefinite matrix, a parameter without effect."""
+    for name in problem.model.unused:
+        root.fault(f"[[parameter]] '{name}'", "a parameter that the model uses", "no use of it")
     try:
         problem.modes(problem.start, derivatives=False)
     except ModelError as error:
         root.fault("[model]", "modes at the nominal parameters", str(error))
-        return
-    for name in problem.model.unused:
-        root.fault(f"[[parameter]] '{name}'", "a parameter that the model uses", "no use of it")
 
 
 def _matrix_files(values: dict[str, Any]) -> list[str]:

@@ -9,18 +9,31 @@ from typing import Any
 
 from modefront.errors import Fault, suggestion
 
+LARGEST = 1e100
+"""Greatest number that a study file may hold."""
+
+SHORT = 6
+"""Longest list that a message shows item by item."""
+
 
 def describe(value: object) -> str:
     """Return a value and its kind as a message shows them."""
     if isinstance(value, bool):
         return str(value).lower()
     if isinstance(value, str):
-        return f"the text '{value}'"
+        return f"the text {value!r}"
     if isinstance(value, dict):
         return "a table"
     if isinstance(value, list):
-        return f"a list of {len(value)}"
-    return repr(value)
+        short = len(value) <= SHORT and not any(isinstance(x, dict) for x in value)
+        return f"[{', '.join(map(_item, value))}]" if short else f"a list of {len(value)}"
+    if isinstance(value, int | float) and LARGEST < abs(value) < math.inf:
+        return f"a number beyond {LARGEST:g}"
+    return str(value)
+
+
+def _item(value: object) -> str:
+    return repr(value) if isinstance(value, str) else describe(value)
 
 
 @dataclass
@@ -35,7 +48,8 @@ class Table:
 
     def fault(self, key: str, expected: str, found: str) -> None:
         """Note that something is wrong; an empty key means the table itself."""
-        place = f"{self.place} {key}".strip() if key else self.place
+        shown = key if key.isprintable() else repr(key)
+        place = f"{self.place} {shown}".strip() or "top level"
         self.faults.append(Fault(self.file, place, expected, found))
 
     def take(self, key: str, expected: str, test: Callable[[Any], bool], default: Any) -> Any:
@@ -56,8 +70,8 @@ class Table:
         return value
 
     def text(self, key: str, expected: str = "a text", default: Any = ...) -> str | None:
-        """Return a text that is not empty."""
-        value = self.take(key, expected, lambda x: isinstance(x, str) and bool(x.strip()), default)
+        """Return a text of printable characters that is not empty."""
+        value = self.take(key, expected, is_name, default)
         return None if value is None else str(value)
 
     def choice(self, key: str, options: Sequence[str], default: Any = ...) -> Any:
@@ -110,7 +124,7 @@ class Table:
             ... if required else [],
         )
         return [
-            Table(self.file, f"[[{key}]] {i + 1}{_named(item)},", item, self.faults)
+            Table(self.file, f"[[{key}]] {i + 1}{_named(item)}", item, self.faults)
             for i, item in enumerate(value or [])
         ]
 
@@ -122,8 +136,13 @@ class Table:
 
 
 def is_number(value: object) -> bool:
-    """Return whether a value is a finite number and no truth value."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    """Return whether a value is a finite number of which products are finite as well."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
+
+
+def is_name(value: object) -> bool:
+    """Return whether a value is a text that can be printed and is not blank."""
+    return isinstance(value, str) and bool(value.strip()) and value.isprintable()
 
 
 def repeated(names: Iterable[str | None]) -> list[str]:
@@ -139,4 +158,4 @@ def repeated(names: Iterable[str | None]) -> list[str]:
 
 def _named(item: dict[str, Any]) -> str:
     name = item.get("name")
-    return f" ('{name}')" if isinstance(name, str) else ""
+    return f" ({name!r})" if isinstance(name, str) else ""

@@ -19,6 +19,14 @@ from modefront.study.run import Front
 
 FILE = "results.nc"
 
+VARIABLES = (
+    *("label", "pareto", "theta", "objective", "error", "weight", "frequency", "mac", "converged"),
+    *("stationary_weight", "paired_mode", "measured_frequency", "exact", "bounds"),
+    *("minimum_of", "minimum_theta", "minimum_objective", "parameter", "group", "mode"),
+)
+ATTRIBUTES = ("version", "seed", "model_evaluations", "nbi_evaluations", "front_is_a_point")
+"""What every file of results holds."""
+
 
 def dataset(
     problem: UpdatingProblem, front: Front, attributes: Mapping[str, str | int | float]
@@ -176,9 +184,10 @@ def read(folder: Path) -> xr.Dataset:
     try:
         with xr.open_dataset(path, engine="h5netcdf") as data:
             data.load()
-    except (OSError, ValueError, KeyError) as error:
+    except Exception as error:  # what is raised for a damaged file is not documented
         raise InputError(Fault(str(path), "file", "results in netCDF", str(error))) from None
-    missing = [name for name in ("label", "theta", "objective") if name not in data]
+    missing = [name for name in VARIABLES if name not in data]
+    missing += [name for name in ATTRIBUTES if name not in data.attrs]
     if missing:
         found = f"none called {', '.join(missing)}"
         raise InputError(Fault(str(path), "variables", "results of modefront", found))

@@ -93,10 +93,10 @@ def write_piece(path: Path, solutions: Solutions, cost: Mapping[str, int]) -> No
 def read_piece(path: Path) -> tuple[Solutions, dict[str, int]] | None:
     """Return the solutions and the cost of a piece; None where there is no whole one."""
     try:
-        with np.load(path, allow_pickle=False) as file:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {key: file[key] for key in file.files}
         head = json.loads(arrays.pop("head").tobytes())
-    except (OSError, ValueError, KeyError, zipfile.BadZipFile):
+    except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile):
         return None
     solutions = []
     for i, (violation, status, evaluations) in enumerate(head["solutions"]):

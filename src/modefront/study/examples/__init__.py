@@ -27,15 +27,16 @@ def write_example(name: str, directory: Path) -> list[Path]:
         (item for item in resources.files(__package__).joinpath(name).iterdir()),
         key=lambda item: item.name,
     )
+    targets = [directory / source.name for source in sources]
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        for source in sources:
-            if (directory / source.name).exists():
-                there = Fault(str(directory / source.name), "file", "no such file", "one")
-                raise InputError(there)
-        for source in sources:
-            (directory / source.name).write_bytes(source.read_bytes())
+        there = [path for path in targets if path.exists() or path.is_symlink()]
+        if there:
+            expected = "no such file: nothing is overwritten"
+            raise InputError(Fault(str(path), "file", expected, "one") for path in there)
+        for source, path in zip(sources, targets, strict=True):
+            path.write_bytes(source.read_bytes())
     except OSError as error:
         expected = "a folder that can be written to"
         raise InputError(Fault(str(directory), "folder", expected, str(error))) from None
-    return [directory / source.name for source in sources]
+    return targets

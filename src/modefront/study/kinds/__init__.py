@@ -8,9 +8,14 @@ from pathlib import Path
 from modefront.models.base import Model
 from modefront.study.kinds.chain import read_chain
 from modefront.study.kinds.matrices import read_matrices
+from modefront.study.kinds.mesh import read_mesh_model
 from modefront.study.reader import Table
 
 Reader = Callable[[Table, Sequence[str], Path], Model | None]
 
-KINDS: Mapping[str, Reader] = {"chain": read_chain, "matrices": read_matrices}
+KINDS: Mapping[str, Reader] = {
+    "chain": read_chain,
+    "matrices": read_matrices,
+    "mesh": read_mesh_model,
+}
 """Readers of the ``[model]`` table: (table, names of parameters, folder) to a model or faults."""

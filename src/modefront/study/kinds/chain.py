@@ -19,13 +19,13 @@ def read_chain(table: Table, parameters: Sequence[str], _: Path) -> Model | None
     n = len(masses) if masses else 0
     stiffnesses = table.numbers(
         "stiffnesses",
-        f"a list of {n} spring stiffnesses of 0 or more, or one more for a spring from the top "
-        "to the ground",
+        f"a list of {n or 'as many'} spring stiffnesses of 0 or more, or one more for a spring "
+        "from the top to the ground",
         lambda x: (len(x) in (n, n + 1) if n else bool(x)) and min(x) >= 0,
     )
     added = table.numbers(
         "added_masses",
-        f"a list of {n} masses of 0 or more",
+        f"a list of {n or 'as many'} masses of 0 or more",
         lambda x: (len(x) == n if n else True) and all(m >= 0 for m in x),
         default=[0.0] * n,
     )
@@ -52,7 +52,7 @@ def _scales(
     """Return the parameter that scales each member; an empty text means that none does."""
     names = table.take(
         key,
-        f"a list of {count} names of parameters, '' where none scales",
+        f"a list of {count or 'as many'} names of parameters, '' where none scales",
         lambda x: (
             isinstance(x, list)
             and (len(x) == count or not count)

@@ -8,12 +8,12 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.errors import Fault, suggestion
+from modefront.errors import Fault, InputError, suggestion
 from modefront.models.base import Model
 from modefront.models.files import read_matrix
 from modefront.models.matrices import BASE, matrices
 from modefront.study.kinds.sensors import read_sensors
-from modefront.study.reader import Table, describe
+from modefront.study.reader import Table, describe, is_name
 
 
 def read_matrices(table: Table, parameters: Sequence[str], folder: Path) -> Model | None:
@@ -40,26 +40,17 @@ def _terms(model: Table, key: str, parameters: Sequence[str], folder: Path) -> d
     for name, value in table.values.items():
         if name != BASE and name not in parameters:
             table.fault(name, f"'{BASE}' or a parameter", suggestion(name, [BASE, *parameters]))
-        elif not isinstance(value, str):
+        elif not is_name(value):
             table.fault(name, "the name of a file", describe(value))
         else:
             try:
                 out[name] = read_matrix(folder / value)
-            except FileNotFoundError:
-                table.fault(name, "a matrix file", f"no file '{folder / value}'")
-            except (OSError, EOFError, KeyError, TypeError, IndexError) as error:
-                table.fault(name, "a readable matrix file", f"'{value}': {error}")
-            except ValueError as error:
-                _matrix_fault(table, name, folder / value, str(error))
+            except InputError as error:
+                table.faults += [
+                    Fault(one.file, f"{table.place} {name}, {one.place}", one.expected, one.found)
+                    for one in error.faults
+                ]
     return out
-
-
-def _matrix_fault(table: Table, name: str, path: Path, message: str) -> None:
-    expected, _, found = message.partition(", but ")
-    if found:
-        table.faults.append(Fault(str(path), f"{table.place} {name}", expected, found))
-    else:
-        table.fault(name, "a readable matrix file", f"'{path}': {message}")
 
 
 def _common_size(model: Table, matrices: dict[str, dict[str, Floats]]) -> int | None:

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from typing import Any
 
+from modefront.data.csv import is_reserved
 from modefront.models.matrices import SensorSpec
-from modefront.study.reader import Table, describe, is_number
+from modefront.study.reader import Table, describe, is_name, is_number
 
 
 def read_sensors(
@@ -17,6 +19,9 @@ def read_sensors(
         return None
     out: dict[str, SensorSpec] = {}
     for name, value in table.values.items():
+        if not is_name(name) or name != name.strip() or is_reserved(name, table.values):
+            table.fault(repr(name), "a name that a column of the data can have", repr(name))
+            continue
         pairs = [[value, 1.0]] if _is_dof(value) else value
         if not _is_weighted(pairs):
             expected = "a degree of freedom from 0, or a list [[degree of freedom, weight], ...]"
@@ -26,15 +31,21 @@ def read_sensors(
         if beyond and size is not None:
             found = ", ".join(map(str, beyond))
             table.fault(name, f"degrees of freedom from 0 to {size - 1}", found)
-        elif not any(weight for _, weight in pairs):
-            table.fault(name, "a weight that is not zero", "only zeros")
-        elif not name.strip():
-            table.fault(f"'{name}'", "a name", "nothing")
+        elif not _selects(pairs):
+            table.fault(name, "weights that do not cancel", describe(pairs))
         else:
             out[name] = [(int(dof), float(weight)) for dof, weight in pairs]
     if not table.values:
         table.fault("", "at least one sensor", "none")
     return out
+
+
+def _selects(pairs: Iterable[Any]) -> bool:
+    """Return whether any degree of freedom has a weight that is not zero."""
+    total: dict[int, float] = {}
+    for dof, weight in pairs:
+        total[dof] = total.get(dof, 0.0) + weight
+    return any(total.values())
 
 
 def _is_dof(value: object) -> bool:

@@ -1,0 +1,159 @@
+"""From the members of a structure to blocks of element matrices, checked on the way."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from modefront.fem.assembly import Block
+from modefront.fem.check import (
+    cell_array,
+    check_positive,
+    check_sizes,
+    node_list,
+    shell_sizes,
+    solid_sizes,
+    unit_vector,
+)
+from modefront.fem.elements.beam import beam
+from modefront.fem.elements.brick import brick
+from modefront.fem.elements.point import lumped_mass, spring
+from modefront.fem.elements.shapes import FloatArray
+from modefront.fem.elements.shell import shell
+from modefront.fem.elements.tetrahedron import tetrahedron
+from modefront.fem.errors import FemError
+from modefront.fem.structure import Beams, Mass, Shells, Solids, Spring
+
+TRANSLATIONS = (0, 1, 2)
+SIX = (0, 1, 2, 3, 4, 5)
+
+
+def element_blocks(X: FloatArray, groups: Sequence[Beams | Shells | Solids]) -> list[Block]:
+    """One block for each group of elements."""
+    blocks = []
+    for group in groups:
+        place = f"group {group.name!r}"
+        if isinstance(group, Beams):
+            blocks.append(_beams(X, group, place))
+        elif isinstance(group, Shells):
+            blocks.append(_shells(X, group, place))
+        else:
+            blocks.append(_solids(X, group, place))
+    return blocks
+
+
+def _beams(X: FloatArray, group: Beams, place: str) -> Block:
+    cells = cell_array(group.cells, (2,), len(X), place)
+    r = np.asarray(group.offsets, dtype=float)
+    if r.shape != (2, 3):
+        raise FemError(f"{place}: expected offsets of the shape (2, 3), found {r.shape}")
+    ends = X[cells] + r
+    axis = ends[:, 1] - ends[:, 0]
+    length = np.linalg.norm(axis, axis=1)
+    check_sizes(length / np.ptp(X, axis=0).max(initial=1e-300), cells, "length", place)
+    axis = axis / length[:, None]
+    section = group.section
+    if group.orientation is None:
+        if section.I_y != section.I_z or section.kappa_y != section.kappa_z:
+            raise FemError(
+                f"{place}: the section is not the same in y and z, so orientation is needed:"
+                " a vector in the plane of the beam's axis and its local y"
+            )
+        upright = np.abs(axis[:, 2:]) > 0.9
+        orientation = np.where(upright, np.eye(3)[0], np.eye(3)[2])
+    else:
+        v = unit_vector(tuple(group.orientation), f"{place}, orientation")[:3]
+        orientation = np.broadcast_to(v, axis.shape)
+        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < 1e-6)
+        if len(parallel):
+            raise FemError(
+                f"{place}: orientation {tuple(group.orientation)} must not be parallel to the"
+                f" axis, but it is at element {parallel[0]}"
+                f" (nodes {', '.join(map(str, cells[parallel[0]].tolist()))})"
+            )
+    return Block(group.name, cells, SIX, beam(X[cells], group.material, section, orientation, r))
+
+
+def _shells(X: FloatArray, group: Shells, place: str) -> Block:
+    cells = cell_array(group.cells, (3, 4), len(X), place)
+    check_positive(group.thickness, "thickness", place)
+    check_sizes(shell_sizes(X[cells]), cells, "area", place)
+    return Block(
+        group.name, cells, SIX, shell(X[cells], group.material, group.thickness, group.offset)
+    )
+
+
+def _solids(X: FloatArray, group: Solids, place: str) -> Block:
+    if np.ndim(group.cells) == 2 and np.shape(group.cells)[1] == 4:
+        raise FemError(
+            f"{place}: tetrahedra of 4 nodes are far too stiff in bending; mesh with second-order"
+            " elements (10 nodes)"
+        )
+    cells = cell_array(group.cells, (8, 10), len(X), place)
+    check_sizes(solid_sizes(X[cells]), cells, "volume", place)
+    element = brick if cells.shape[1] == 8 else tetrahedron
+    return Block(group.name, cells, TRANSLATIONS, element(X[cells], group.material))
+
+
+def spring_blocks(X: FloatArray, springs: Sequence[Spring]) -> list[Block]:
+    """One block for each named set of springs."""
+    return [_springs(X, s, f"spring {s.name!r}") for s in springs]
+
+
+def _springs(X: FloatArray, member: Spring, place: str) -> Block:
+    nodes = node_list(member.nodes, len(X), place)[:, None]
+    check_positive(member.stiffness, "stiffness", place)
+    gap = np.zeros((len(nodes), 3))
+    if member.to is not None:
+        to = node_list(member.to, len(X), place)
+        if len(to) != len(nodes):
+            raise FemError(f"{place}: expected {len(nodes)} partners, found {len(to)}")
+        nodes = np.stack([nodes[:, 0], to], 1)
+        gap = X[nodes[:, 1]] - X[nodes[:, 0]]
+    length = np.linalg.norm(gap, axis=1, keepdims=True)
+    size = np.ptp(X, axis=0).max()
+    if member.direction is None:
+        if member.to is None or (length <= 1e-9 * size).any():
+            raise FemError(f"{place}: a direction is needed unless it joins two distant nodes")
+        axis = np.pad(gap / length, ((0, 0), (0, 3)))
+    else:
+        axis = np.tile(unit_vector(member.direction, place), (len(nodes), 1))
+        slant = np.linalg.norm(np.cross(gap, axis[:, :3]), axis=1)
+        skew = np.flatnonzero(slant > 1e-6 * length[:, 0] + 1e-9 * size)
+        if axis[0, :3].any() and len(skew):
+            raise FemError(
+                f"{place}: between distant nodes it must act along their line, else it resists a"
+                f" rotation of the whole; nodes {nodes[skew[0], 0]} and {nodes[skew[0], 1]} do not"
+                f" lie along {member.direction!r}. Link one of them rigidly to a node at the other"
+            )
+    used = tuple(np.flatnonzero(axis.any(0)).tolist())
+    matrices = spring(axis[:, list(used)], member.stiffness, nodes.shape[1])
+    return Block(member.name, nodes, used, matrices)
+
+
+def mass_blocks(X: FloatArray, masses: Sequence[Mass]) -> list[Block]:
+    """One block for each named set of lumped masses."""
+    return [_masses(X, m, f"mass {m.name!r}") for m in masses]
+
+
+def _masses(X: FloatArray, member: Mass, place: str) -> Block:
+    nodes = node_list(member.nodes, len(X), place)[:, None]
+    inertia, c = np.asarray(member.inertia, dtype=float), np.asarray(member.offset, dtype=float)
+    if inertia.shape == (3,):
+        inertia = np.diag(inertia)
+    if inertia.shape != (3, 3) or c.shape != (3,):
+        raise FemError(
+            f"{place}: expected inertia (3,) or (3, 3) and offset (3,), found {inertia.shape} and"
+            f" {c.shape}"
+        )
+    symmetric = np.allclose(inertia, inertia.T, rtol=1e-9, atol=0)
+    if member.mass < 0 or not symmetric or np.linalg.eigvalsh(inertia)[0] < -1e-9 * inertia.max():
+        raise FemError(
+            f"{place}: expected mass >= 0 and inertia symmetric and not negative, found"
+            f" {member.mass!r} and {inertia.tolist()}"
+        )
+    rotates = bool(inertia.any() or c.any())
+    used = SIX if rotates else TRANSLATIONS
+    M = lumped_mass(member.mass, inertia, c, len(nodes), len(used))
+    return Block(member.name, nodes, used, M)

@@ -1,0 +1,197 @@
+r"""Checks of what a structure is made of: shapes, ranges, names, volumes.
+
+Each check says where, what was expected and what was found. Volumes and areas are judged by
+det J at the corners of the elements, relative to the element's size.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from difflib import get_close_matches
+
+import numpy as np
+import numpy.typing as npt
+
+from modefront.fem.dofs import direction_indices
+from modefront.fem.elements import shell
+from modefront.fem.elements.shapes import (
+    CUBE,
+    SQUARE,
+    TETRAHEDRON_EDGES,
+    FloatArray,
+    IntArray,
+    cube_8,
+    gauss_tetrahedron_4,
+    jacobian,
+    simplex_quadratic,
+    square_4,
+)
+from modefront.fem.errors import FemError
+from modefront.fem.structure import Direction, Shells, Structure
+
+FLAT = 1e-8
+
+
+def check_points(nodes: npt.ArrayLike) -> FloatArray:
+    """Nodes as finite floats (nodes, 3)."""
+    X = np.asarray(nodes, dtype=float)
+    if X.ndim != 2 or X.shape[1] != 3 or len(X) == 0:
+        raise FemError(f"nodes: expected the shape (nodes, 3), found {X.shape}")
+    wrong = np.flatnonzero(~np.isfinite(X).all(1))
+    if len(wrong):
+        raise FemError(f"nodes: node {wrong[0]} is at {X[wrong[0]].tolist()}, expected numbers")
+    return X
+
+
+def check_range(nodes: IntArray, count: int, place: str) -> None:
+    """All of `nodes` are nodes of a model of `count`."""
+    wrong = nodes[(nodes < 0) | (nodes >= count)]
+    if wrong.size:
+        raise FemError(f"{place}: expected nodes from 0 to {count - 1}, found {wrong[0]}")
+
+
+def node_list(nodes: npt.ArrayLike, count: int, place: str) -> IntArray:
+    """One node or a list of nodes as an array."""
+    array = np.atleast_1d(np.asarray(nodes))
+    if array.ndim != 1 or array.size == 0 or not np.issubdtype(array.dtype, np.integer):
+        raise FemError(f"{place}: expected a list of nodes, found {nodes!r}")
+    check_range(array, count, place)
+    return array.astype(np.int64)
+
+
+def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int, place: str) -> IntArray:
+    """Cells as integers (elements, k) with k one of `sizes` and nodes below `count`."""
+    array = np.asarray(cells)
+    integer = np.issubdtype(array.dtype, np.integer)
+    if array.ndim != 2 or array.shape[1] not in sizes or len(array) == 0 or not integer:
+        raise FemError(
+            f"{place}: expected cells, integers (elements, {' or '.join(map(str, sizes))}),"
+            f" found {array.dtype} of shape {array.shape}"
+        )
+    check_range(array, count, place)
+    return array.astype(np.int64)
+
+
+def unit_vector(direction: Direction, place: str) -> FloatArray:
+    """Unit vector (6,) in (u, r) of a named direction or a vector of displacement."""
+    vector = np.zeros(6)
+    if isinstance(direction, str):
+        name = direction.removeprefix("-")
+        vector[direction_indices((name,), place)] = -1.0 if direction != name else 1.0
+        return vector
+    components = np.asarray(direction, dtype=float)
+    length = np.linalg.norm(components)
+    if components.shape != (3,) or not 0 < length < np.inf:
+        raise FemError(f"{place}: expected a direction or vector (3,), found {direction!r}")
+    vector[:3] = components / length
+    return vector
+
+
+def check_positive(value: float, what: str, place: str) -> None:
+    """A stiffness, thickness or mass is positive and finite."""
+    if not 0 < value < np.inf:
+        raise FemError(f"{place}: {what} must be > 0, found {value!r}")
+
+
+def check_sizes(relative: FloatArray, cells: IntArray, what: str, place: str) -> None:
+    """No element has a relative length, area or volume of zero or less.
+
+    Parameters
+    ----------
+    relative
+        (elements,) smallest det J over the power of the element's extent.
+    cells, what, place
+        For the message.
+    """
+    wrong = np.flatnonzero(~(relative > FLAT))
+    if len(wrong):
+        e = wrong[0]
+        sign = "zero" if abs(relative[e]) <= FLAT else "negative"
+        raise FemError(
+            f"{place}: element {e} (nodes {', '.join(map(str, cells[e].tolist()))}) has {sign}"
+            f" {what}; expected > 0 at every corner. Such elements: {len(wrong)} of {len(cells)}"
+        )
+
+
+def shell_sizes(X: FloatArray) -> FloatArray:
+    """Smallest relative det J of each shell X (elements, 3 or 4, 3)."""
+    extent = np.linalg.norm(np.ptp(X, axis=1), axis=1)
+    extent = np.where(extent > 0, extent, 1)
+    if X.shape[1] == 3:
+        normal = np.cross(X[:, 1] - X[:, 0], X[:, 2] - X[:, 0])
+        return np.asarray(np.linalg.norm(normal, axis=1) / extent**2)
+    normal = np.cross(X[:, 2] - X[:, 0], X[:, 3] - X[:, 1])
+    flat = np.linalg.norm(normal, axis=1) <= FLAT * extent**2
+    safe = np.where(flat[:, None, None], np.pad(SQUARE, ((0, 0), (0, 1))), X)
+    x, _ = shell.project(safe, shell.axes(safe))
+    det = np.linalg.det(jacobian(x, square_4(SQUARE)[1])).min(1)
+    return np.where(flat, 0.0, det / extent**2)
+
+
+def solid_sizes(X: FloatArray) -> FloatArray:
+    """Smallest relative det J of each solid X (elements, 8 or 10, 3)."""
+    extent = np.linalg.norm(np.ptp(X, axis=1), axis=1)
+    extent = np.where(extent > 0, extent, 1)
+    if X.shape[1] == 8:
+        dN = cube_8(CUBE)[1]
+    else:
+        corners = np.vstack([np.zeros(3), np.eye(3), gauss_tetrahedron_4()[0]])
+        dN = simplex_quadratic(corners, TETRAHEDRON_EDGES)[1]
+    return np.asarray(np.linalg.det(jacobian(X, dN)).min(1) / extent**3)
+
+
+def check_names(structure: Structure) -> None:
+    """Names of springs, masses, sensors and parameters are unique; none is of two kinds."""
+    kinds = {
+        "group": {g.name for g in structure.groups},
+        "spring": [s.name for s in structure.springs],
+        "mass": [m.name for m in structure.masses],
+    }
+    members = [name for names in kinds.values() for name in names]
+    _check_unique(members, "member")
+    _check_unique([s.name for s in structure.sensors], "sensor")
+    _check_unique([p.name for p in structure.parameters], "parameter")
+    for name in {g.name for g in structure.groups}:
+        classes = {type(g).__name__ for g in structure.groups if g.name == name}
+        if len(classes) > 1:
+            raise FemError(f"group {name!r}: expected one kind, found {sorted(classes)}")
+
+
+def _check_unique(names: Iterable[str], what: str) -> None:
+    seen: set[str] = set()
+    for name in names:
+        if name in seen:
+            raise FemError(f"{what} {name!r}: expected a name used once, found it twice")
+        seen.add(name)
+
+
+def check_parameters(structure: Structure) -> None:
+    """Every parameter scales something that the named members have."""
+    elements = {g.name for g in structure.groups}
+    has: dict[str, set[str]] = {
+        "E": elements,
+        "density": elements,
+        "thickness": {g.name for g in structure.groups if isinstance(g, Shells)},
+        "spring": {s.name for s in structure.springs},
+        "mass": {m.name for m in structure.masses},
+    }
+    for parameter in structure.parameters:
+        place = f"parameter {parameter.name!r}"
+        if parameter.quantity not in has:
+            raise FemError(
+                f"{place}: quantity must be one of {', '.join(has)}, found {parameter.quantity!r}"
+            )
+        if isinstance(parameter.of, str) or not parameter.of:
+            raise FemError(f"{place}: expected a list of names, found {parameter.of!r}")
+        for name in parameter.of:
+            _check_known(name, has[parameter.quantity], parameter.quantity, place)
+
+
+def _check_known(name: str, known: set[str], quantity: str, place: str) -> None:
+    if name not in known:
+        close = get_close_matches(name, sorted(known), 1)
+        hint = f"; did you mean {close[0]!r}?" if close else ""
+        names = ", ".join(sorted(known)) or "none"
+        raise FemError(
+            f"{place}: nothing named {name!r} has a {quantity}; those that do: {names}{hint}"
+        )

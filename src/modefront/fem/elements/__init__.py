@@ -1,0 +1,1 @@
+"""Element matrices, vectorised over elements; each module opens with its derivation."""

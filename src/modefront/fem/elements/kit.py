@@ -1,0 +1,145 @@
+r"""What several elements share: elasticity, condensation, rigid attachment.
+
+A point at offset r from a node that moves rigidly with it has
+
+    u_p = u + omega x r = u - [r]x omega,     omega_p = omega,
+
+which is exact for small motions; with local axes R (rows) an element's own degrees of
+freedom are d = A(R, r) (u, omega). Warped quadrilaterals, eccentric shells and beams, rigid
+end zones and eccentric masses are all this one transformation.
+
+==========  =================================================================
+symbol      meaning
+==========  =================================================================
+R           local axes, rows, (elements, 3, 3)
+r           offset of an element's point from its node, global, (..., 3)
+D           plane stress: strains (xx, yy, engineering xy) to stresses
+==========  =================================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront.fem.elements.shapes import FloatArray
+
+
+@dataclass(frozen=True)
+class Part:
+    """Element matrices that all grow with the same power of the thickness.
+
+    Attributes
+    ----------
+    power
+        Exponent of the thickness; 0 where there is none.
+    matrices
+        (elements, dof, dof), symmetric, in global axes; DOFs node by node.
+    """
+
+    power: int
+    matrices: FloatArray
+
+
+@dataclass(frozen=True)
+class ElementMatrices:
+    """Stiffness, linear in Young's modulus, and mass, linear in density."""
+
+    stiffness: tuple[Part, ...]
+    mass: tuple[Part, ...]
+
+
+def symmetric(K: FloatArray) -> FloatArray:
+    """Symmetric part: rounding must not make assembled matrices unsymmetric."""
+    return np.asarray((K + np.swapaxes(K, -1, -2)) / 2)
+
+
+def plane_stress(E: float, nu: float) -> FloatArray:
+    """D (3, 3) of plane stress."""
+    return E / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
+
+
+def condense(K: FloatArray, kept: int) -> FloatArray:
+    """Static condensation of the last DOFs: K_kk - K_ki K_ii^-1 K_ik."""
+    K_ki = K[:, :kept, kept:]
+    return symmetric(
+        K[:, :kept, :kept] - K_ki @ np.linalg.solve(K[:, kept:, kept:], K[:, kept:, :kept])
+    )
+
+
+def cross_matrix(r: FloatArray) -> FloatArray:
+    """[r]x of shape (..., 3, 3), with [r]x a = r x a."""
+    zero = np.zeros(r.shape[:-1])
+    x, y, z = r[..., 0], r[..., 1], r[..., 2]
+    rows = [[zero, -z, y], [z, zero, -x], [-y, x, zero]]
+    return np.stack([np.stack(row, -1) for row in rows], -2)
+
+
+def attachment(R: FloatArray, r: FloatArray) -> FloatArray:
+    """A (elements, 6 nodes, 6 nodes) from node DOFs (global) to element DOFs (local axes).
+
+    Parameters
+    ----------
+    R
+        Local axes, rows, (elements, 3, 3).
+    r
+        Offsets of the element's points from its nodes, global, (elements, nodes, 3).
+    """
+    count, nodes = r.shape[:2]
+    A = np.zeros((count, nodes, 6, nodes, 6))
+    lever = -R[:, None] @ cross_matrix(r)
+    for n in range(nodes):
+        A[:, n, :3, n, :3] = A[:, n, 3:, n, 3:] = R
+        A[:, n, :3, n, 3:] = lever[:, n]
+    return A.reshape(count, 6 * nodes, 6 * nodes)
+
+
+def congruence(A: FloatArray, K: FloatArray) -> FloatArray:
+    """A^T K A, symmetric to the last digit."""
+    return symmetric(np.swapaxes(A, -1, -2) @ (K @ A))
+
+
+def solid_stiffness(g: FloatArray, weight: FloatArray, E: float, nu: float) -> FloatArray:
+    """Stiffness (elements, 3 nodes, 3 nodes) of an isotropic solid.
+
+    With eps = sym grad u and Lame's constants, sigma : eps = lam (div u)^2 + 2 G eps : eps, so
+
+        K_(ai)(bj) = int lam g_ai g_bj + G g_aj g_bi + G delta_ij g_ak g_bk dV,
+
+    three rearrangements of one product of the gradients g.
+
+    Parameters
+    ----------
+    g, weight
+        Gradients of the shape functions (elements, points, 3, nodes); w det J.
+    E, nu
+        Young's modulus and Poisson's ratio.
+    """
+    count, points, _, nodes = g.shape
+    lam, G = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
+    flat = np.swapaxes(g, 2, 3).reshape(count, points, 3 * nodes)
+    P = np.swapaxes(flat, 1, 2) @ (flat * weight[..., None])
+    P = P.reshape(count, nodes, 3, nodes, 3)
+    K = lam * P + G * np.swapaxes(P, 2, 4)
+    trace = G * np.einsum("eakbk->eab", P)
+    for d in range(3):
+        K[:, :, d, :, d] += trace
+    return symmetric(K.reshape(count, 3 * nodes, 3 * nodes))
+
+
+def solid_mass(N: FloatArray, weight: FloatArray) -> FloatArray:
+    """Consistent mass (elements, 3 nodes, 3 nodes) per density of a solid.
+
+    Parameters
+    ----------
+    N, weight
+        Shape functions (points, nodes) and w det J (elements, points).
+    """
+    count, nodes = len(weight), N.shape[1]
+    products = (N[:, :, None] * N[:, None, :]).reshape(len(N), -1)
+    m = symmetric((weight @ products).reshape(count, nodes, nodes))
+    M = np.zeros((count, nodes, 3, nodes, 3))
+    for d in range(3):
+        M[:, :, d, :, d] = m
+    return M.reshape(count, 3 * nodes, 3 * nodes)

@@ -1,0 +1,293 @@
+r"""Mechanisms: motions of a structure that no stiffness resists, found before any solve.
+
+Elements that share a node with rotations (beams, shells) or a face (solids) move together as
+one rigid body when nothing deforms. Every such body b has the motion (t_b, omega_b), and a
+displacement along a, rotation along a', at its node x is
+
+    a . (t_b + omega_b x (x - c_b)) + a' . omega_b.
+
+Supports, springs, links and nodes shared by bodies (hinges) each set one such expression, or
+the difference of two, to zero. The null space of these rows C is what can move freely. It is
+found for each part, a set of bodies that rows connect.
+
+========  =====================================================================
+symbol    meaning
+========  =====================================================================
+home      body of each node (the one with its rotations, if there is one)
+c_b       centroid of the body's nodes
+C         (rows, 6 bodies); columns of rotations scaled by the body's extent
+========  =====================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy import sparse
+from scipy.sparse.csgraph import connected_components
+from scipy.spatial import KDTree
+
+from modefront.fem.assembly import Block
+from modefront.fem.dofs import DIRECTIONS, BoolArray, LinkRows
+from modefront.fem.elements.shapes import FloatArray, IntArray
+from modefront.fem.errors import FemError
+
+BRICK_FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
+TETRAHEDRON_FACES = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
+RANK_TOLERANCE = 1e-12
+LARGEST_PART = 3000
+
+
+@dataclass(frozen=True)
+class Bodies:
+    """Rigid bodies of a structure.
+
+    Attributes
+    ----------
+    home
+        (nodes,) body, -1 for nodes without DOFs.
+    shared
+        (ties, 2): node and a body other than its home that it belongs to.
+    centre, extent
+        (bodies, 3) and (bodies,).
+    moves
+        (bodies, 6) whether the motion exists: a lone node may lack rotations.
+    """
+
+    home: IntArray
+    shared: IntArray
+    centre: FloatArray
+    extent: FloatArray
+    moves: BoolArray
+
+
+def rigid_bodies(X: FloatArray, elements: Sequence[Block], exists: BoolArray) -> Bodies:
+    """Bodies of the elements and of the nodes that belong to none."""
+    nodes = len(X)
+    counts = [len(block.cells) for block in elements]
+    first = nodes + np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
+    pairs = [np.zeros((0, 2), np.int64)]
+    solid_pairs = [np.zeros((0, 2), np.int64)]
+    faces: dict[int, list[tuple[IntArray, IntArray]]] = {3: [], 4: []}
+    for block, start in zip(elements, first, strict=False):
+        count, k = block.cells.shape
+        vertex = start + np.arange(count)
+        to_nodes = np.stack([block.cells.ravel(), np.repeat(vertex, k)], 1)
+        if len(block.directions) == 6:
+            pairs.append(to_nodes)
+            continue
+        solid_pairs.append(to_nodes)
+        corners = np.array(BRICK_FACES if k == 8 else TETRAHEDRON_FACES)
+        faces[corners.shape[1]].append(
+            (
+                np.sort(block.cells[:, corners], -1).reshape(-1, corners.shape[1]),
+                np.repeat(vertex, len(corners)),
+            )
+        )
+    size = int(first[-1])
+    for sides in faces.values():
+        if sides:
+            keys = np.concatenate([side[0] for side in sides])
+            _, face = np.unique(keys, axis=0, return_inverse=True)
+            pairs.append(np.stack([size + face, np.concatenate([s[1] for s in sides])], 1))
+            size += int(face.max()) + 1
+    edges = np.concatenate(pairs)
+    graph = sparse.coo_array((np.ones(len(edges)), edges.T), shape=(size, size))
+    _, label = connected_components(graph, directed=False)
+
+    solid = np.concatenate(solid_pairs)
+    in_solid = np.zeros(nodes, dtype=bool)
+    in_solid[solid[:, 0]] = True
+    own = exists.any(1) & (exists[:, 3:].any(1) | ~in_solid)
+    incidence = np.concatenate(
+        [
+            np.stack([np.flatnonzero(own), label[:nodes][own]], 1),
+            np.unique(np.stack([solid[:, 0], label[solid[:, 1]]], 1), axis=0),
+        ]
+    )
+    bodies, compact = np.unique(incidence[:, 1], return_inverse=True)
+    incidence = np.stack([incidence[:, 0], compact], 1)
+    home = np.full(nodes, -1)
+    home_nodes, at = np.unique(incidence[:, 0], return_index=True)
+    home[home_nodes] = incidence[at, 1]
+    shared = incidence[incidence[:, 1] != home[incidence[:, 0]]]
+
+    n, b = incidence.T
+    members = np.bincount(b, minlength=len(bodies))
+    centre = np.stack(
+        [np.bincount(b, weights=X[n, d], minlength=len(bodies)) / members for d in range(3)], 1
+    )
+    extent = np.zeros(len(bodies))
+    np.maximum.at(extent, b, np.linalg.norm(X[n] - centre[b], axis=1))
+    moves = np.ones((len(bodies), 6), dtype=bool)
+    alone = members == 1
+    moves[alone] = False
+    np.logical_or.at(moves, b, exists[n])
+    extent[alone] = max(float(np.ptp(X, axis=0).max()), 1e-300)
+    return Bodies(home, shared, centre, extent, moves)
+
+
+def constraint_rows(
+    X: FloatArray,
+    bodies: Bodies,
+    springs: Sequence[Block],
+    links: Sequence[LinkRows],
+    held: BoolArray,
+) -> sparse.csr_array:
+    """C (rows, 6 bodies), rows of unit length."""
+    data, columns, rows = [], [], []
+    total = 0
+
+    def add(terms: Sequence[tuple[IntArray, IntArray, FloatArray]]) -> None:
+        """Add rows that are sums over (nodes, bodies, components in (u, r))."""
+        nonlocal total
+        for node, body, a in terms:
+            arm = X[node] - bodies.centre[body]
+            turn = np.cross(arm, a[:, :3]) + a[:, 3:]
+            values = np.concatenate([a[:, :3], turn / bodies.extent[body, None]], 1)
+            data.append(values.ravel())
+            columns.append((6 * body[:, None] + np.arange(6)).ravel())
+            rows.append(np.repeat(total + np.arange(len(node)), 6))
+        total += len(terms[0][0])
+
+    unit = np.eye(6)
+    node, body = bodies.shared.T
+    for d in range(3):
+        a = np.broadcast_to(unit[d], (len(node), 6))
+        add([(node, body, a), (node, bodies.home[node], -a)])
+    node, direction = np.nonzero(held & (bodies.home >= 0)[:, None])
+    add([(node, bodies.home[node], unit[direction])])
+    for block in springs:
+        # K = k s s^T, so the row of its largest diagonal is s but for a factor.
+        K = block.matrices.stiffness[0].matrices
+        e = np.arange(len(K))
+        s = K[e, np.argmax(np.diagonal(K, axis1=1, axis2=2), 1)]
+        s = s.reshape(*block.cells.shape, -1) / np.abs(s).max(1)[:, None, None]
+        a = np.zeros((*block.cells.shape, 6))
+        a[:, :, list(block.directions)] = s
+        add([(n, bodies.home[n], a[:, k]) for k, n in enumerate(block.cells.T)])
+    for link in links:
+        node, direction = np.divmod(link.slave, 6)
+        a = np.zeros((len(node), 6))
+        for k in range(3):
+            a[np.arange(len(node)), link.master[:, k] % 6] += link.weight[:, k]
+        master = link.master[:, 0] // 6
+        add([(node, bodies.home[node], unit[direction]), (master, bodies.home[master], -a)])
+    C = sparse.csr_array(
+        (np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))),
+        shape=(total, 6 * len(bodies.extent)),
+    )
+    norm = np.sqrt(np.asarray(C.power(2).sum(1)).ravel())
+    return sparse.diags_array(1 / np.where(norm > 0, norm, 1)).tocsr() @ C
+
+
+def null_space(C: sparse.csr_array, columns: IntArray) -> FloatArray:
+    """Orthonormal null space (columns, k) of C at the given columns."""
+    part = C[:, columns]
+    gram = (part.T @ part).toarray()
+    values, vectors = np.linalg.eigh(gram)
+    return np.asarray(vectors[:, values <= RANK_TOLERANCE * max(values[-1], 1.0)])
+
+
+def check_mechanisms(
+    X: FloatArray,
+    elements: Sequence[Block],
+    springs: Sequence[Block],
+    links: Sequence[LinkRows],
+    held: BoolArray,
+    exists: BoolArray,
+    floating: bool,
+) -> None:
+    """Refuse structures with a motion that nothing resists.
+
+    Parameters
+    ----------
+    X
+        Nodes (nodes, 3).
+    elements, springs, links
+        What connects them.
+    held, exists
+        (nodes, 6) whether a support holds the DOF and whether it exists.
+    floating
+        Whether the structure as a whole may move as a rigid body.
+
+    Raises
+    ------
+    FemError
+        Names the nodes of the part that moves, and how. Parts of more than `LARGEST_PART` / 6
+        hinged bodies are not examined.
+    """
+    bodies = rigid_bodies(X, elements, exists)
+    C = constraint_rows(X, bodies, springs, links, held)
+    count = len(bodies.extent)
+    body_of = sparse.csr_array(
+        (np.ones(6 * count), (np.arange(6 * count), np.repeat(np.arange(count), 6)))
+    )
+    touches = abs(C) @ body_of
+    parts, part_of = connected_components(touches.T @ touches, directed=False)
+    loose = 0
+    for part in range(parts):
+        inside = np.flatnonzero(part_of == part)
+        columns = (6 * inside[:, None] + np.arange(6))[bodies.moves[inside]]
+        if len(columns) > LARGEST_PART:
+            continue
+        N = null_space(C, columns)
+        if floating:
+            whole = _common_motions(bodies, inside)[np.isin(np.arange(6 * count), columns)]
+            allowed = null_space(sparse.csr_array(C[:, columns] @ whole), np.arange(6)).shape[1]
+            loose += allowed > 0
+            if N.shape[1] <= allowed and loose <= 1:
+                continue
+        if N.shape[1]:
+            raise FemError(_describe(X, bodies, columns, N, parts))
+
+
+def _common_motions(bodies: Bodies, inside: IntArray) -> FloatArray:
+    """Motions (6 bodies, 6) in which the bodies `inside` move as one, scaled like C."""
+    origin = bodies.centre[inside].mean(0)
+    size = float(np.max(np.linalg.norm(bodies.centre[inside] - origin, axis=1)))
+    size = max(size, float(bodies.extent[inside].max()))
+    motions = np.zeros((len(bodies.extent), 6, 6))
+    for d in range(3):
+        motions[inside, d, d] = 1
+        turn = np.eye(3)[d]
+        motions[inside, :3, 3 + d] = np.cross(turn, bodies.centre[inside] - origin) / size
+        motions[inside, 3 + d, 3 + d] = bodies.extent[inside] / size
+    return motions.reshape(-1, 6)
+
+
+def _describe(
+    X: FloatArray,
+    bodies: Bodies,
+    columns: IntArray,
+    N: FloatArray,
+    parts: int,
+) -> str:
+    """Message that names the nodes that move, how, and a likely reason."""
+    share = np.zeros((len(bodies.extent), 6))
+    share.ravel()[columns] = (N**2).sum(1)
+    moving = np.flatnonzero(share.max(1) > 1e-6)
+    total = share[moving].sum(0)
+    ways = ", ".join(DIRECTIONS[d] for d in np.flatnonzero(total > 0.05 * total.max()))
+    nodes = np.flatnonzero(np.isin(bodies.home, moving))
+    names = ", ".join(map(str, nodes[:8].tolist())) + (", ..." if len(nodes) > 8 else "")
+    centre = ", ".join(f"{c:.4g}" for c in X[nodes].mean(0))
+    message = (
+        f"mechanism: {len(nodes)} nodes ({names}) about ({centre}) can move freely in"
+        f" {ways} ({N.shape[1]} independent motions); expected every part to be held by"
+        " supports, springs or links"
+    )
+    if parts > 1:
+        message += f". The structure falls into {parts} parts that nothing connects"
+    others = np.flatnonzero((bodies.home >= 0) & ~np.isin(bodies.home, moving))
+    if len(others):
+        distance, at = KDTree(X[others]).query(X[nodes])
+        near = np.flatnonzero(distance <= 1e-6 * np.ptp(X, axis=0).max())
+        if len(near):
+            message += (
+                f". Nodes {nodes[near[0]]} and {others[at[near[0]]]} are at the same place but"
+                " not the same node: merge them"
+            )
+    return message

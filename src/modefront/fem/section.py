@@ -1,0 +1,110 @@
+r"""Sections of beams: constants about the principal axes y and z through the centroid.
+
+Shear centre and centroid coincide and warping is free; sections for which this is far from
+true (channels, open thin walls) are better meshed with shells.
+
+=========  ==============================================================
+symbol     meaning
+=========  ==============================================================
+A          area
+I_y, I_z   second moments: I_y = int z^2 dA, I_z = int y^2 dA
+J          torsion constant
+kappa      shear correction factors; `inf` leaves out shear deformation
+=========  ==============================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront.fem.errors import FemError
+
+
+@dataclass(frozen=True)
+class Section:
+    """Section constants of a beam; lengths in the unit of the nodes.
+
+    Attributes
+    ----------
+    A, I_y, I_z, J
+        Area, second moments of area and torsion constant, all > 0.
+    kappa_y, kappa_z
+        Shear correction factors for deflection along y and z.
+
+    Raises
+    ------
+    FemError
+        If a constant is not positive.
+    """
+
+    A: float
+    I_y: float
+    I_z: float
+    J: float
+    kappa_y: float = 5 / 6
+    kappa_z: float = 5 / 6
+
+    def __post_init__(self) -> None:
+        """Refuse constants that leave a motion of the section without stiffness."""
+        for name, value in vars(self).items():
+            if not value > 0:
+                raise FemError(f"section: {name} must be > 0, found {value!r}")
+
+
+def rectangle(b_y: float, b_z: float) -> Section:
+    """Solid rectangle, b_y along local y and b_z along local z.
+
+    J is Saint-Venant's series (S. Timoshenko, J. N. Goodier, "Theory of Elasticity", sec. 109).
+    """
+    long, short = max(b_y, b_z), min(b_y, b_z)
+    n = np.arange(1, 40, 2)
+    series = float(np.sum(np.tanh(n * np.pi * long / (2 * short)) / n**5))
+    J = long * short**3 * (1 / 3 - 64 / np.pi**5 * short / long * series)
+    return Section(b_y * b_z, b_y * b_z**3 / 12, b_y**3 * b_z / 12, J)
+
+
+def hollow_rectangle(b_y: float, b_z: float, wall: float) -> Section:
+    """Rectangular tube of outer sides b_y, b_z; J after Bredt, shear on the webs alone.
+
+    Raises
+    ------
+    FemError
+        If the walls meet: 2 wall >= min(b_y, b_z).
+    """
+    if 2 * wall >= min(b_y, b_z):
+        raise FemError(f"section: wall must be < {min(b_y, b_z) / 2}, found {wall}")
+    i_y, i_z = b_y - 2 * wall, b_z - 2 * wall
+    A = b_y * b_z - i_y * i_z
+    middle_y, middle_z = b_y - wall, b_z - wall
+    J = 2 * wall * (middle_y * middle_z) ** 2 / (middle_y + middle_z)
+    return Section(
+        A,
+        (b_y * b_z**3 - i_y * i_z**3) / 12,
+        (b_z * b_y**3 - i_z * i_y**3) / 12,
+        J,
+        2 * wall * b_y / A,
+        2 * wall * b_z / A,
+    )
+
+
+def circle(diameter: float) -> Section:
+    """Solid circle; shear factor 9/10."""
+    moment = np.pi * diameter**4 / 64
+    return Section(np.pi * diameter**2 / 4, moment, moment, 2 * moment, 0.9, 0.9)
+
+
+def tube(diameter: float, wall: float) -> Section:
+    """Circular tube of outer diameter; shear factor 1/2 of a thin wall.
+
+    Raises
+    ------
+    FemError
+        If the wall is not thinner than the radius.
+    """
+    inner = diameter - 2 * wall
+    if not 0 < inner < diameter:
+        raise FemError(f"section: wall must be between 0 and {diameter / 2}, found {wall}")
+    moment = np.pi * (diameter**4 - inner**4) / 64
+    return Section(np.pi * (diameter**2 - inner**2) / 4, moment, moment, 2 * moment, 0.5, 0.5)

@@ -1,0 +1,195 @@
+r"""A structure as a value: nodes, members, supports, links, sensors and parameters.
+
+Every class is plain data; `modefront.fem.affine.assemble` checks it and turns it into
+matrices. Nodes and elements are counted from 0. Units are consistent ones, such as SI.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy.typing as npt
+
+from modefront.fem.dofs import DIRECTIONS
+from modefront.fem.material import Material
+from modefront.fem.section import Section
+
+Direction = str | Sequence[float]
+Quantity = Literal["E", "density", "thickness", "spring", "mass"]
+ALL = DIRECTIONS
+
+
+@dataclass(frozen=True)
+class Beams:
+    """Group of Timoshenko beams.
+
+    Attributes
+    ----------
+    name
+        Of the group; several blocks may share it.
+    cells
+        Nodes (elements, 2).
+    material, section
+        Of all elements.
+    orientation
+        Vector in the plane of the axis and local y; needed unless the section is the same in
+        y and z.
+    offsets
+        Vectors (2, 3) from the first and second node to the flexible part's ends.
+    """
+
+    name: str
+    cells: npt.ArrayLike
+    material: Material
+    section: Section
+    orientation: Sequence[float] | None = None
+    offsets: npt.ArrayLike = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+
+
+@dataclass(frozen=True)
+class Shells:
+    """Group of flat shells of 3 or 4 nodes.
+
+    Attributes
+    ----------
+    name
+        Of the group; several blocks may share it.
+    cells
+        Nodes (elements, 3) or (elements, 4), counter-clockwise about the normal.
+    material, thickness
+        Of all elements.
+    offset
+        Distance of the mid-surface from the nodes along the normal.
+    """
+
+    name: str
+    cells: npt.ArrayLike
+    material: Material
+    thickness: float
+    offset: float = 0.0
+
+
+@dataclass(frozen=True)
+class Solids:
+    """Group of bricks (elements, 8) or tetrahedra (elements, 10) in VTK node order."""
+
+    name: str
+    cells: npt.ArrayLike
+    material: Material
+
+
+@dataclass(frozen=True)
+class Support:
+    """Nodes held in the given directions."""
+
+    nodes: npt.ArrayLike
+    directions: Sequence[str] = ALL
+
+
+@dataclass(frozen=True)
+class Spring:
+    """Springs of one stiffness, from each node to the ground or to a partner.
+
+    Attributes
+    ----------
+    name
+        Of the springs, for parameters.
+    nodes
+        One spring at each.
+    stiffness
+        Force per length, or moment per angle for rotations.
+    direction
+        One of x, y, z, rx, ry, rz, or a vector of displacement; None is along the line to the
+        partner. Between distant nodes a spring on displacements has to act along that line:
+        any other would resist a rotation of the whole.
+    to
+        Partner of each node; None is the ground.
+    """
+
+    name: str
+    nodes: npt.ArrayLike
+    stiffness: float
+    direction: Direction | None = None
+    to: npt.ArrayLike | None = None
+
+
+@dataclass(frozen=True)
+class Mass:
+    """Lumped mass, the same at each of the nodes.
+
+    Attributes
+    ----------
+    name
+        Of the masses, for parameters.
+    nodes
+        One mass at each.
+    mass
+        Of each.
+    inertia
+        About the mass's centre, global axes: (3,) principal or (3, 3).
+    offset
+        Of the centre from the node, (3,).
+    """
+
+    name: str
+    nodes: npt.ArrayLike
+    mass: float
+    inertia: npt.ArrayLike = (0.0, 0.0, 0.0)
+    offset: npt.ArrayLike = (0.0, 0.0, 0.0)
+
+
+@dataclass(frozen=True)
+class Link:
+    """Rigid link: the slaves follow the master in the given directions."""
+
+    master: int
+    slaves: npt.ArrayLike
+    directions: Sequence[str] = ALL
+
+
+@dataclass(frozen=True)
+class Sensor:
+    """Sensor at a node, or at coordinates where a node is.
+
+    Attributes
+    ----------
+    name
+        As in the modal data.
+    at
+        Node, or coordinates (3,).
+    direction
+        x, y, z, rx, ry, rz, with a minus sign before it for the opposite, or a vector of
+        displacement (it is normalised).
+    tolerance
+        Largest distance of the coordinates from a node; None is 1e-6 of the model's diagonal.
+    """
+
+    name: str
+    at: int | Sequence[float]
+    direction: Direction
+    tolerance: float | None = None
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """Factor on a quantity of all members with the given names."""
+
+    name: str
+    quantity: Quantity
+    of: Sequence[str]
+
+
+@dataclass(frozen=True)
+class Structure:
+    """What a model is made of; see the members' classes."""
+
+    nodes: npt.ArrayLike
+    groups: Sequence[Beams | Shells | Solids] = ()
+    supports: Sequence[Support] = ()
+    springs: Sequence[Spring] = ()
+    masses: Sequence[Mass] = ()
+    links: Sequence[Link] = ()
+    sensors: Sequence[Sensor] = ()
+    parameters: Sequence[Parameter] = ()

@@ -1,0 +1,210 @@
+r"""Exact derivatives of modes at the sensors, from the modes below a gap and two factors.
+
+With the forces :math:`f_{ri} = (K_i' - \lambda_r M_i') \varphi_r` and known modes
+:math:`\varphi_j`,
+
+.. math::
+    \lambda_r' &= \varphi_r^T f_{ri} \\
+    \varphi_r' &= \sum_{j \ne r} \varphi_j \frac{\varphi_j^T f_{ri}}{\lambda_r - \lambda_j}
+        - \tfrac12 \varphi_r\, \varphi_r^T M_i' \varphi_r - (K - \lambda_r M)^+ f_{ri}
+
+where the last term, the pseudoinverse on the M-complement of the known modes, is all that is left
+to solve. There :math:`K - \lambda_r M` is positive definite, and with the factor of
+:math:`B = K - \sigma M`
+
+.. math::
+    (K - \lambda_r M)^+ = (I + \tau_r T)^{-1} P B^{-1}, \quad
+    T = P B^{-1} M, \quad \tau_r = \sigma - \lambda_r
+
+with P the projection onto the complement. T is self-adjoint in B, so that Lanczos iteration from
+each right-hand side, :math:`B^{-1}b = \beta_1 q_1`,
+
+.. math:: T q_k = \beta_k q_{k-1} + \alpha_k q_k + \beta_{k+1} q_{k+1}
+
+gives :math:`c^T (K - \lambda_r M)^+ b = \sum_k (c^T q_k)\, y_k` with
+:math:`(I + \tau_r T_k) y = \beta_1 e_1`, for every r at once; no solution is ever formed. The
+condition number is that of :math:`1 + \tau_r / (\lambda - \sigma)` for :math:`\lambda` beyond the
+known modes: each mode takes the factor that makes it smallest. The form is symmetric, so b may be
+the forces (direct, parameters x modes columns) or the sensors (adjoint, sensors columns for all
+modes together), whichever is expected to need fewer solutions.
+
+Where modes coincide, their quotients are left out, and eigenvalues along a parameter are those of
+:math:`\Phi_c^T (K' - \lambda M') \Phi_c`, as in `modefront.modes.dense`.
+
+Source: Nelson 1976, doi:10.2514/3.7211; Lanczos for shifted systems: Golub & Meurant 2010,
+doi:10.1515/9781400833887.
+"""
+
+from __future__ import annotations
+
+from typing import TypeAlias
+
+import numpy as np
+import scipy.sparse
+
+from modefront._typing import Bools, Floats, Ints
+from modefront.errors import ModelError
+from modefront.modes.pencil import Pencil
+from modefront.modes.products import combine, gram
+from modefront.modes.spectrum import Shifted, Spectrum
+
+COINCIDENT = 1e-6
+"""Relative error of a quotient, as bounded by rounding in its gap, above which it is left out.
+
+The bound is ten to a hundred times the rounding itself, and far less in ill-conditioned models
+than the gaps between modes that anybody would call coincident.
+"""
+
+TOLERANCE = 1e-10
+"""Residual of a solution over that of zero."""
+
+STEPS = 1000
+"""Steps after which the iteration is given up."""
+
+COLUMNS = 64
+"""Right-hand sides that are solved together: more would only take more memory."""
+
+Sensors: TypeAlias = Floats | scipy.sparse.csr_array
+
+
+def at_sensors(
+    pencil: Pencil, sensors: Sensors, theta: Floats, found: Spectrum, count: int
+) -> tuple[Floats, Floats, Bools]:
+    """Return dlam (count, p), dphi (sensors, count, p) and which modes coincide with another one.
+
+    ``sensors`` has the shape (sensors, N). Raises ModelError where the iteration fails.
+    """
+    lam, noise = found.lam, found.noise + np.finfo(float).eps * np.abs(found.lam)
+    distance = np.abs(lam[:, None] - lam)
+    same = distance * COINCIDENT <= np.maximum(noise, noise[:, None])
+    c, p = count, theta.size
+    while c < found.proved and same[c, :c].any():
+        c += 1
+    r = np.arange(c)
+    dM = pencil.M.derivative_rows(theta, found.Phi[:, :c])
+    scale = scipy.sparse.dia_array((np.repeat(lam[:c], p)[None], 0), shape=(c * p, c * p))
+    force = pencil.K.derivative_rows(theta, found.Phi[:, :c]) - scale @ dM
+    S = (force @ found.Phi).reshape(c, p, -1)  # S[r, i, j] = phi_j^T (K_i' - lam_r M_i') phi_r
+    dlam = S[r, :, r]
+    coincident = np.asarray(same[:c, :c].sum(axis=0) > 1)
+    for group in {tuple(np.flatnonzero(same[k, :c])) for k in np.flatnonzero(coincident)}:
+        block = S[np.ix_(group, np.arange(p), group)]
+        dlam[list(group)] = np.linalg.eigvalsh(np.moveaxis(block, 1, 0)).T
+
+    gap = lam[:count, None] - lam
+    inside = S[:count] * np.where(same[:count], 0.0, 1 / np.where(same[:count], 1.0, gap))[:, None]
+    inside[r[:count], :, r[:count]] = -0.5 * (dM @ found.Phi).reshape(c, p, -1)[r, :, r][:count]
+    dphi = np.tensordot(sensors @ found.Phi, inside, axes=(1, 2))
+    force = force[: count * p].tocsr()
+    return dlam[:count], dphi - outside(sensors, force, found, count), coincident[:count]
+
+
+def outside(sensors: Sensors, force: scipy.sparse.csr_array, found: Spectrum, count: int) -> Floats:
+    """Return sensors (K - lam_r M)^+ f_ri, shape (sensors, count, p); f has rows (r, i)."""
+    nearest, steps = _nearest(found, count)
+    p = force.shape[0] // count
+    out = np.zeros((sensors.shape[0], count, p))
+    groups = [np.flatnonzero(nearest == which) for which in (0, 1)]
+    direct = p * steps.sum()
+    adjoint = sensors.shape[0] * sum(steps[r].max() for r in groups if r.size)
+    for which, group in enumerate(groups):
+        shifted = found.factors[which]
+        tau = shifted.sigma - found.lam[group]
+        rows = force[(group[:, None] * p + np.arange(p)).ravel()]
+        if not rows.nnz:
+            continue
+        if adjoint < direct:
+            for some in _chunks(sensors.shape[0]):
+                product = _forms(shifted, found, _columns(sensors, some), tau[:, None], rows)
+                terms = np.diagonal(product.reshape(group.size, p, *product.shape[1:]), 0, 0, 2)
+                out[some[:, None], group] = terms.transpose(1, 2, 0)
+        else:
+            for some in _chunks(rows.shape[0]):
+                right = _columns(rows, some)
+                product = _forms(shifted, found, right, tau[some // p][None], sensors)
+                out[:, group[some // p], some % p] = product[:, 0]
+    return out
+
+
+def _nearest(found: Spectrum, count: int) -> tuple[Ints, Floats]:
+    """Return the better factor for each mode, and how many steps it is expected to take."""
+    sigma = np.array([shifted.sigma for shifted in found.factors])
+    tau = sigma[:, None] - found.lam[:count]
+    condition = 1 + tau / np.maximum(found.beyond - sigma, 1e-300)[:, None]
+    condition = np.maximum(condition, 1 / condition)
+    root = np.sqrt(condition)
+    nearest = np.argmin(condition, axis=0)
+    rate = ((root - 1) / (root + 1))[nearest, np.arange(count)]
+    return nearest, 1 + np.log(TOLERANCE) / np.log(np.clip(rate, 1e-12, 0.999))
+
+
+def _chunks(columns: int) -> list[Ints]:
+    return [np.arange(k, min(k + COLUMNS, columns)) for k in range(0, columns, COLUMNS)]
+
+
+def _columns(rows: Sensors, some: Ints) -> Floats:
+    """Return some rows as dense columns."""
+    chosen = rows[some]
+    dense = chosen if isinstance(chosen, np.ndarray) else chosen.toarray()
+    return np.ascontiguousarray(np.asarray(dense, dtype=float).T)
+
+
+def _forms(shifted: Shifted, found: Spectrum, right: Floats, tau: Floats, left: Sensors) -> Floats:
+    """Return left (K - lam_r M)^+ right, shape (rows of left, shifts, columns of right).
+
+    ``tau`` holds sigma - lam_r: (shifts, 1), or one for each column, (1, columns). With
+    I + tau T_k = L diag(d) L^T, what is kept of each step is c^T q, d, the entry of L left of d
+    (``lower``) and u of L u = beta_1 e_1.
+    """
+    dual = right - combine(found.MPhi, gram(found.Phi, right))
+    W = _projected(found, shifted.factor.solve(dual))
+    first = beta = _norm(W, dual)
+    Q_old, dual_old = np.zeros_like(W), np.zeros_like(W)
+    lower = np.zeros((tau.shape[0], beta.size))
+    d, u = np.ones_like(lower), lower + beta
+    kept: list[tuple[Floats, Floats, Floats, Floats]] = []
+    for step in range(STEPS):
+        scale = np.divide(1.0, beta, out=np.zeros_like(beta), where=beta > 0)
+        W *= scale
+        dual *= scale
+        MQ = found.M @ W
+        alpha = np.einsum("nc,nc->c", W, MQ)
+        if step:
+            lower = tau * beta / d
+            u = -lower * u
+        d = 1 + tau * (alpha - lower * beta)
+        kept.append((left @ W, d, lower, u))
+        Q_old *= -beta
+        dual_old *= -beta
+        Q_old += shifted.factor.solve(MQ)
+        Q_old -= alpha * W
+        dual_old += MQ
+        dual_old -= alpha * dual
+        Q_old, W = W, _projected(found, Q_old)
+        dual_old, dual = dual, dual_old
+        beta = _norm(W, dual)
+        if (np.abs(tau * beta * u / d) <= TOLERANCE * first).all():
+            break
+    else:
+        raise ModelError("the derivatives do not converge: the matrices are too ill-conditioned")
+    moment, d, lower, u = kept.pop()
+    y = u / d
+    out = moment[:, None] * y
+    while kept:
+        right_of = lower
+        moment, d, lower, u = kept.pop()
+        y = u / d - right_of * y
+        out += moment[:, None] * y
+    return out
+
+
+def _projected(found: Spectrum, W: Floats) -> Floats:
+    """Return the part of W on the M-complement of the known modes; W is overwritten."""
+    W -= combine(found.Phi, gram(found.MPhi, W))
+    return W
+
+
+def _norm(W: Floats, dual: Floats) -> Floats:
+    """Return the norm of each column of W in B, given B W."""
+    out: Floats = np.sqrt(np.maximum(np.einsum("nc,nc->c", W, dual), 0.0))
+    return out

@@ -1,0 +1,179 @@
+r"""The greatest eigenvalues of :math:`T = A^{-1} M` by block Lanczos iteration.
+
+.. math:: T X = X \operatorname{diag}(\mu), \qquad X^T A X = I
+
+A is positive definite and M is symmetric, so T is self-adjoint in the inner product of A. This
+product, unlike that of M, sees the null space of M (massless degrees of freedom), so that nothing
+can grow there unseen. One step with the block Q of the basis V is
+
+.. math::
+    H &= V^T M Q \\
+    W &= A^{-1} M Q - V H = Q_+ R, \qquad Q_+^T A Q_+ = I
+
+which keeps :math:`T V = V H + Q_+ R E^T`, E the last columns. The Ritz pairs of H then have the
+residual :math:`\lVert R y \rVert` with y the last rows of its eigenvectors. A full basis is
+replaced by its leading Ritz vectors (thick restart), which keeps that relation.
+
+========  =====================================================================
+symbol    meaning
+========  =====================================================================
+V, AV     basis (N, d), orthonormal in A, and A times it
+Q, AQ     the block that was found last, not yet in V
+H         V^T M V, (d, d)
+R         coefficients of Q in the last residual, (columns of Q, columns of E)
+========  =====================================================================
+
+Source: Wu & Simon 2000, doi:10.1137/S0895479898334605 (thick restart); Grimes, Lewis & Simon 1994,
+doi:10.1137/S0895479888151111 (blocks, singular M).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse
+
+from modefront._typing import Floats
+from modefront.errors import ModelError
+from modefront.modes.products import combine, gram
+
+TOLERANCE = 1e-7
+"""Residual of a Ritz pair over its mu; the modes are refined once more with another shift."""
+
+LOST = 1e-13
+"""Share of the greatest mu below which a residual or an eigenvalue is taken for zero."""
+
+NEW = 1e-8
+"""Share of a random block, after T, outside the basis below which there are no more modes."""
+
+STEPS = 500
+"""Steps after which the iteration is given up."""
+
+Solve = Callable[[Floats], Floats]
+
+
+@dataclass(frozen=True)
+class Ritz:
+    """Ritz pairs of T, mu descending.
+
+    Attributes
+    ----------
+    mu : (k,) Ritz values
+    X : (N, k) Ritz vectors, orthonormal in A
+    converged : how many of the leading pairs have converged
+    complete : whether there are no eigenvalues but these
+    """
+
+    mu: Floats
+    X: Floats
+    converged: int
+    complete: bool
+
+
+def greatest(
+    solve: Solve,
+    A: scipy.sparse.csr_array,
+    M: scipy.sparse.csr_array,
+    start: Floats,
+    wanted: int,
+    steps: int = STEPS,
+) -> Ritz:
+    """Return Ritz pairs of T with the ``wanted`` greatest mu, or as many as ``steps`` allow.
+
+    ``start`` (N, b) is the first block; of an eigenvalue repeated more often than b times, some
+    may be missed. Raises ModelError where M is indefinite.
+    """
+    n, b = start.shape
+    capacity = min(n, max(3 * wanted, 40) + 4 * b)
+    V, AV, H = np.empty((n, capacity)), np.empty((n, capacity)), np.zeros((capacity, capacity))
+    d, complete = 0, False
+    Q, AQ, R = _orthonormal(start, A, 0.0)
+    for step in range(1, steps + 1):
+        if d + Q.shape[1] > capacity:
+            d = _restart(V, AV, H, d, min(capacity - Q.shape[1], wanted + 2 * b))
+        new = slice(d, d + Q.shape[1])
+        V[:, new], AV[:, new] = Q, AQ
+        d = new.stop
+        MQ = M @ Q
+        H[:d, new] = gram(V[:, :d], MQ)
+        H[new, :d] = H[:d, new].T
+        W = _outside(solve(MQ) - combine(V[:, :d], H[:d, new]), V[:, :d], AV[:, :d])
+        scale = np.abs(np.diagonal(H[:d, :d])).max()
+        Q, AQ, R = _orthonormal(W, A, LOST * scale, n - d)
+        if R.size and np.abs(R).max() < 1e-4 * scale:
+            Q, AQ, again = _orthonormal(_outside(Q, V[:, :d], AV[:, :d]), A, 0.0)
+            R = again @ R
+        if d < wanted and Q.size and step < steps:
+            continue
+        mu, Y = np.linalg.eigh(H[:d, :d])
+        mu, Y = mu[::-1], Y[:, ::-1]
+        if mu[-1] < -1e-10 * mu[0]:
+            raise ModelError("the mass matrix is indefinite")
+        good = np.linalg.norm(R @ Y[new], axis=0) <= np.maximum(TOLERANCE * mu, LOST * mu[0])
+        leading = d if good.all() else int(np.argmin(good))
+        if leading >= wanted and mu[wanted - 1] > LOST * mu[0]:
+            break
+        if leading == d:
+            Q, AQ = _fresh(solve, A, M, V[:, :d], AV[:, :d], step, b)
+            R = np.zeros((Q.shape[1], new.stop - new.start))
+            complete = not Q.size
+            if complete:
+                break
+    keep = min(d, max(leading, wanted) + 1)
+    return Ritz(mu[:keep], combine(V[:, :d], Y[:, :keep]), min(leading, keep), complete)
+
+
+def _outside(W: Floats, V: Floats, AV: Floats) -> Floats:
+    """Return the part of W that is orthogonal to V in A."""
+    out: Floats = W - combine(V, gram(AV, W))
+    return out
+
+
+def _fresh(
+    solve: Solve,
+    A: scipy.sparse.csr_array,
+    M: scipy.sparse.csr_array,
+    V: Floats,
+    AV: Floats,
+    seed: int,
+    columns: int,
+) -> tuple[Floats, Floats]:
+    """Return a new block Q and A Q, where the old one has led to all modes that it contains.
+
+    It has no columns where there are no more modes.
+    """
+    some = np.random.default_rng(seed).standard_normal((V.shape[0], columns))
+    W = solve(M @ some)
+    size = np.sqrt(np.einsum("nc,nc->c", W, A @ W).max())
+    W = _outside(_outside(W, V, AV), V, AV)
+    Q, _, _ = _orthonormal(W, A, NEW * size, V.shape[0] - V.shape[1])
+    Q, AQ, _ = _orthonormal(_outside(Q, V, AV), A, 0.0)
+    return Q, AQ
+
+
+def _orthonormal(
+    W: Floats, A: scipy.sparse.csr_array, least: float, most: int | None = None
+) -> tuple[Floats, Floats, Floats]:
+    """Return Q, A Q and R with W = Q R and Q orthonormal in A.
+
+    Directions shorter than ``least``, and the shortest ones beyond ``most``, are dropped.
+    """
+    AW = A @ W
+    squares, U = np.linalg.eigh(gram(W, AW))
+    there = squares > max(least**2, 1e-28 * squares.max(initial=0.0))
+    there[: squares.size - min(squares.size, squares.size if most is None else most)] = False
+    size = np.sqrt(squares[there])
+    U = U[:, there]
+    return combine(W, U / size), combine(AW, U / size), size[:, None] * U.T
+
+
+def _restart(V: Floats, AV: Floats, H: Floats, d: int, keep: int) -> int:
+    """Replace the basis by its ``keep`` leading Ritz vectors; the next block stays the same."""
+    mu, Y = np.linalg.eigh(H[:d, :d])
+    Y = Y[:, ::-1][:, :keep]
+    V[:, :keep], AV[:, :keep] = combine(V[:, :d], Y), combine(AV[:, :d], Y)
+    H[:] = 0.0
+    H[:keep, :keep] = np.diag(mu[::-1][:keep])
+    return keep

@@ -1,0 +1,225 @@
+r"""Modes and their exact derivatives for large models, with sparse matrices.
+
+.. math:: (K - \lambda_r M) \varphi_r = 0, \qquad \varphi_r^T M \varphi_s = \delta_{rs}
+
+1. A = K + s M is made positive definite: s = 0, or, where K is singular (rigid-body modes), of the
+   size of the eigenvalues asked for. Its factor drives a block Lanczos iteration.
+2. B = K - sigma M is factored for a sigma in a gap above the last mode asked for. Its number of
+   negative eigenvalues is the number of modes below sigma (Sylvester), however many were found:
+   this proves that none is missing. It needs a positive semidefinite M.
+3. One step of subspace iteration with B makes the modes exact to rounding, purges the null space
+   of M from them, and its size shows that they have converged.
+
+The factors of A and B then give the derivatives, see `modefront.modes.derivatives`. Nothing is
+carried from one theta to the next but the analysis of the pattern.
+
+========  =====================================================================
+symbol    meaning
+========  =====================================================================
+lam, Phi  eigenvalues, ascending, and mass-normalised modes (N, modes)
+D         diagonal of K: sum(D * phi**2) * eps is the rounding in an eigenvalue
+========  =====================================================================
+
+Source: Ericsson & Ruhe 1980, doi:10.1090/S0025-5718-1980-0583502-2.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse
+
+from modefront._typing import Floats
+from modefront.errors import ModelError
+from modefront.modes import derivatives as exact
+from modefront.modes.factorisation import Factorisation, SingularMatrixError
+from modefront.modes.lanczos import greatest
+from modefront.modes.pencil import Pencil
+from modefront.modes.products import combine, gram
+from modefront.modes.result import Modes
+from modefront.modes.spectrum import Shifted, Spectrum
+
+BLOCK = 4
+"""Columns of a block: how often an eigenvalue may be repeated and still be found at once."""
+
+ATTEMPTS = 4
+"""Runs, each with more modes and a larger block, before missing modes are an error."""
+
+SINGULAR = 1e-13
+"""x^T A x / x^T diag(A) x below which A is singular to working precision."""
+
+SHIFT = 1e-5
+"""First s over trace(K) / trace(M); lowered until it is no greater than the eigenvalues."""
+
+GAP = 1e-2
+"""Relative gap of eigenvalues that is wide enough for sigma; else the widest one is taken."""
+
+NARROW = 1e-6
+"""Relative gap that is too narrow for sigma: more modes are sought."""
+
+CONVERGED = 1e-8
+"""Change of a mode in subspace iteration, after which the next one is exact to rounding."""
+
+REFINEMENTS = 5
+"""Subspace iterations, after which more modes are sought instead."""
+
+
+def modes(
+    pencil: Pencil,
+    sensors: Floats | scipy.sparse.csr_array,
+    theta: Floats,
+    count: int,
+    derivatives: bool,
+) -> Modes:
+    """Return the ``count`` lowest modes at the sensors, shape (sensors, N), in ascending order.
+
+    Raises ModelError where K or M is indefinite, where both are singular together, where there
+    are fewer modes with a finite frequency than asked for, or where it cannot be proved that none
+    was missed.
+    """
+    found = lowest(pencil, theta, count)
+    phi = sensors @ found.Phi[:, :count]
+    if not derivatives:
+        empty = np.zeros((count, 0)), np.zeros((phi.shape[0], count, 0))
+        return Modes(found.lam[:count], phi, *empty, coincident=np.zeros(count, dtype=np.bool_))
+    dlam, dphi, coincident = exact.at_sensors(pencil, sensors, theta, found, count)
+    return Modes(found.lam[:count], phi, dlam, dphi, coincident)
+
+
+def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
+    """Return at least the ``count`` lowest modes, with the factors that found them."""
+    K, M = pencil.K.at(theta), pencil.M.at(theta)
+    wanted, block = count + max(2, count // 2), BLOCK
+    for attempt in range(ATTEMPTS):
+        wanted, block = min(wanted, pencil.size), min(block, pencil.size)
+        below, A, start = _positive_definite(pencil, K, M, wanted, block, attempt)
+        ritz = greatest(below.factor.solve, A, M, start, wanted)
+        finite = int(np.sum(ritz.mu > SINGULAR * ritz.mu[0]))
+        known = min(ritz.converged, finite)
+        if known < count and ritz.complete:
+            raise ModelError(f"{count} modes asked for, but only {known} have a finite frequency")
+        lam = 1 / ritz.mu[:finite] + below.sigma
+        if lam[0] < 1e-2 * below.sigma:
+            raise ModelError("the stiffness matrix is indefinite")
+        if (
+            known >= count
+            and (gap := _gap(lam, known, count, -below.sigma, ritz.complete)) is not None
+        ):
+            lower, sigma = gap
+            above = Shifted(sigma, pencil.factor(K.data, M.data, sigma))
+            if above.factor.negative == lower:
+                X = ritz.X[:, :known] / np.sqrt(ritz.mu[:known])
+                refined = _refined(above, M, lam[:known], X, lower)
+                if refined is not None:
+                    beyond = lam[refined[0].size] if finite > refined[0].size else np.inf
+                    noise = np.finfo(float).eps * (K.diagonal() @ refined[1] ** 2)
+                    return Spectrum(*refined, M, noise, beyond, lower, (below, above))
+        wanted, block = 2 * wanted, 2 * block
+    raise ModelError(
+        f"the lowest {count} modes could not be told from the next ones, or some were missed"
+    )
+
+
+def _gap(lam: Floats, known: int, count: int, s: float, complete: bool) -> tuple[int, float] | None:
+    """Return how many modes are below a gap after the first ``count`` ones, and a sigma in it.
+
+    None where there is none; ``complete`` says that there are no modes but the known ones. Gaps
+    are relative to lam + s, which is not small for rigid-body modes either.
+    """
+    if known > count:
+        gap = lam[count:known] - lam[count - 1 : known - 1]
+        relative = gap / (np.abs(lam[count:known]) + s)
+        wide = np.flatnonzero(relative > GAP)
+        at = int(wide[0] if wide.size else np.argmax(relative))
+        if relative[at] > NARROW:
+            return count + at, lam[count - 1 + at] + 0.2 * gap[at]
+    return (known, lam[known - 1] + max(abs(lam[known - 1]), s)) if complete else None
+
+
+def _positive_definite(
+    pencil: Pencil,
+    K: scipy.sparse.csr_array,
+    M: scipy.sparse.csr_array,
+    wanted: int,
+    block: int,
+    seed: int,
+) -> tuple[Shifted, scipy.sparse.csr_array, Floats]:
+    """Return the factor of A = K + s M, A, and a first block for the Lanczos iteration."""
+    right = np.random.default_rng(seed).standard_normal((pencil.size, block))
+    factor, start = _regular(pencil, K, M, 0.0, right)
+    if factor is not None:
+        return Shifted(0.0, factor), K, start
+    s = SHIFT * K.trace() / M.trace()
+    while True:
+        factor, start = _regular(pencil, K, M, s, right)
+        A = K + s * M
+        if factor is None:
+            dof = int(np.argmax(np.abs(start).max(axis=1))) if start.size else None
+            raise ModelError(_why_not(dof))
+        ritz = greatest(factor.solve, A, M, start, wanted, steps=6)
+        there = ritz.mu > SINGULAR * ritz.mu[0]
+        mu, X = ritz.mu[there], ritz.X[:, there]
+        noise = 1e3 * SINGULAR * (K.diagonal() @ X**2 / mu).max()
+        elastic = np.maximum(1 / mu - s, noise)[min(wanted, mu.size) - 1 :]
+        target = elastic[int(np.argmax(elastic > noise))]
+        if target > 0.1 * s:
+            return Shifted(-s, factor), A, start
+        s = target
+
+
+def _why_not(dof: int | None) -> str:
+    if dof is None:
+        return "the stiffness matrix is indefinite"
+    return (
+        "the stiffness and the mass matrix are singular together: "
+        f"degree of freedom {dof} (from 0) moves with neither stiffness nor mass"
+    )
+
+
+def _regular(
+    pencil: Pencil,
+    K: scipy.sparse.csr_array,
+    M: scipy.sparse.csr_array,
+    s: float,
+    right: Floats,
+) -> tuple[Factorisation | None, Floats]:
+    """Return the factor of A = K + s M and A^-1 right, or None unless A is positive definite.
+
+    The solution then shows where A is singular; it is empty where A is indefinite.
+    """
+    diagonal = K.diagonal() + s * M.diagonal()
+    try:
+        factor = pencil.factor(K.data, M.data, -s)
+    except SingularMatrixError:
+        return None, (diagonal <= diagonal.min())[:, None].astype(float)
+    if factor.negative != 0:
+        return None, np.zeros((0, right.shape[1]))
+    X = factor.solve(right)
+    energy = np.einsum("nb,nb->b", X, right)
+    if (energy < SINGULAR * (diagonal @ X**2)).any():
+        return None, X
+    return factor, X
+
+
+def _refined(
+    above: Shifted, M: scipy.sparse.csr_array, lam: Floats, Phi: Floats, needed: int
+) -> tuple[Floats, Floats, Floats] | None:
+    """Return eigenvalues, modes and M times the modes after subspace iteration with B.
+
+    Of the modes beyond the ``needed`` ones, those are left out that would take longer; None where
+    the needed ones do not converge.
+    """
+    MPhi = M @ Phi
+    for _ in range(REFINEMENTS):
+        distance = lam - above.sigma
+        Y = above.factor.solve(MPhi) * distance
+        MY = M @ Y
+        error = np.sqrt(np.abs(np.einsum("nr,nr->r", Y - Phi, MY - MPhi)))
+        B = gram(Y, MPhi) * distance
+        distance, Z = scipy.linalg.eigh((B + B.T) / 2, gram(Y, MY))
+        lam, Phi, MPhi = above.sigma + distance, combine(Y, Z), combine(MY, Z)
+        good = error < CONVERGED
+        if good[:needed].all():
+            keep = lam.size if good.all() else int(np.argmin(good))
+            return lam[:keep], Phi[:, :keep], MPhi[:, :keep]
+    return None

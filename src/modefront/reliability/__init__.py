@@ -1,0 +1,38 @@
+"""First-passage probabilities of linear structures under Gaussian noise."""
+
+from types import MappingProxyType
+from typing import Final
+
+from modefront.reliability.additive import additive_rules
+from modefront.reliability.directional import directional_importance_sampling
+from modefront.reliability.estimate import Estimate, Estimator
+from modefront.reliability.importance import importance_sampling
+from modefront.reliability.monte_carlo import monte_carlo
+from modefront.reliability.problem import FirstPassage, KanaiTajimi, Sided, WhiteNoise
+from modefront.reliability.step_effect import StepEffect, step_effect
+
+METHODS: Final = MappingProxyType(
+    {
+        "importance": importance_sampling,
+        "directional": directional_importance_sampling,
+        "additive": additive_rules,
+        "monte-carlo": monte_carlo,
+    }
+)
+"""The methods by the names that a user gives them; all are called alike."""
+
+__all__ = [
+    "METHODS",
+    "Estimate",
+    "Estimator",
+    "FirstPassage",
+    "KanaiTajimi",
+    "Sided",
+    "StepEffect",
+    "WhiteNoise",
+    "additive_rules",
+    "directional_importance_sampling",
+    "importance_sampling",
+    "monte_carlo",
+    "step_effect",
+]

@@ -1,0 +1,150 @@
+"""From the weights of samples to an estimate of P, the same on one worker as on many.
+
+Every method returns, for each sample and level, a weight whose mean is P. Samples are drawn in
+chunks; each chunk has a generator of its own, spawned from the seed by the chunk's number, and
+the chunk's size follows from the problem alone, so who computes it changes nothing.
+"""
+
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from dataclasses import dataclass, field
+from queue import SimpleQueue
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from modefront.reliability.gaussian import Convolution, GaussianResponse, gaussian_response
+from modefront.reliability.problem import FirstPassage, Sided
+from modefront.response.checks import FloatArray, positive_count, real_array
+
+LARGEST_CHUNK = 32
+"""Samples in a chunk: enough for the loops in C, few enough for the cache."""
+
+LARGEST_BLOCK = 2**20
+"""Normal numbers in a chunk, 8 MB: bounds the memory of a worker to some 100 MB."""
+
+Weigh = Callable[[Convolution, np.random.Generator, int], FloatArray]
+"""(a worker's convolution, generator, samples) → weights, (n_levels, samples)."""
+
+Prepare = Callable[[GaussianResponse, FloatArray], Weigh]
+"""(response, levels) → what weighs samples at these levels."""
+
+Estimator = Callable[
+    [FirstPassage, ArrayLike, int, np.random.SeedSequence, int], "tuple[Estimate, ...]"
+]
+"""What every method is: (problem, levels, samples, seed, workers) → an estimate a level."""
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """A first-passage probability and all that it depends on.
+
+    Attributes
+    ----------
+    probability
+        Estimate of P.
+    unit_coefficient_of_variation
+        δ, standard deviation of one sample's weight over P; inf if no sample failed.
+    samples
+        Number of samples N; each takes one evaluation of the response.
+    method
+        Name of the method.
+    level
+        Barrier b; failure is |x| > b for any response.
+    duration, time_step
+        T and Δt in s; the response is looked at on the times j Δt only.
+    density, sided
+        Spectral density of the noise, per rad/s, and how it is meant.
+    barrier, start
+        Said for the record: both sides, and at rest.
+
+    """
+
+    probability: float
+    unit_coefficient_of_variation: float
+    samples: int
+    method: str
+    level: float
+    duration: float
+    time_step: float
+    density: float
+    sided: Sided
+    barrier: str = field(default="two-sided", init=False)
+    start: str = field(default="at rest", init=False)
+
+    @property
+    def coefficient_of_variation(self) -> float:
+        """Return δ/√N, the coefficient of variation of the estimate."""
+        return float(self.unit_coefficient_of_variation / np.sqrt(self.samples))
+
+    @property
+    def standard_error(self) -> float:
+        """Return the standard deviation of the estimate; nan if no sample failed."""
+        return self.probability * self.coefficient_of_variation if self.probability else np.nan
+
+
+def spawn(seed: np.random.SeedSequence, number: int) -> np.random.SeedSequence:
+    """Return the child of that number; unlike `seed.spawn`, the same one whenever asked for."""
+    key = (*seed.spawn_key, number)
+    return np.random.SeedSequence(seed.entropy, spawn_key=key, pool_size=seed.pool_size)
+
+
+def estimate(
+    method: str,
+    prepare: Prepare,
+    problem: FirstPassage,
+    levels: ArrayLike,
+    samples: int,
+    seed: np.random.SeedSequence,
+    workers: int,
+) -> tuple[Estimate, ...]:
+    """Return the mean weight at each level, from `samples` samples drawn and weighed as prepared.
+
+    Raises
+    ------
+    ValueError
+        For levels that are not positive, or fewer than two samples or one worker.
+
+    """
+    b = real_array("levels", levels, (None,), "barriers")
+    if np.any(b <= 0):
+        at = int(np.argmax(b <= 0))
+        raise ValueError(f"levels: expected positive numbers, found {b[at]} at index {at}")
+    if positive_count("samples", samples) < 2:
+        raise ValueError("samples: expected at least 2, for a coefficient of variation, found 1")
+    positive_count("workers", workers)
+    response = gaussian_response(problem)
+    weigh = prepare(response, b)
+    largest = LARGEST_BLOCK // (response.n_inputs * response.n_steps)
+    chunk = min(max(largest, 1), LARGEST_CHUNK)
+    free: SimpleQueue[Convolution] = SimpleQueue()
+    for _ in range(workers):
+        free.put(Convolution(response, chunk))
+
+    def weights_of(number: int) -> FloatArray:
+        count = min(chunk, samples - number * chunk)
+        convolution = free.get()
+        try:
+            return weigh(convolution, np.random.default_rng(spawn(seed, number)), count)
+        finally:
+            free.put(convolution)
+
+    with ThreadPoolExecutor(workers) as pool:
+        chunks = pool.map(weights_of, range(-(-samples // chunk)))
+        weights = np.concatenate(list(chunks), axis=1)
+    mean = weights.mean(axis=1)
+    spread = weights.std(axis=1, ddof=1)
+    return tuple(
+        Estimate(
+            probability=float(p),
+            unit_coefficient_of_variation=float(s / p) if p > 0 else np.inf,
+            samples=samples,
+            method=method,
+            level=float(level),
+            duration=problem.duration,
+            time_step=problem.time_step,
+            density=problem.noise.density,
+            sided=problem.noise.sided,
+        )
+        for p, s, level in zip(mean, spread, b, strict=True)
+    )

@@ -1,0 +1,48 @@
+"""Importance sampling over elementary failures (Au and Beck, 2001).
+
+Samples are drawn from the mixture of the normal densities given each elementary failure,
+
+    h(z) = Σ_oj (P_oj/ΣP) φ(z) 1[z ∈ E_oj]/P_oj  =  φ(z) N(z)/ΣP,
+
+N(z) the number of (o, j) at which |x_oj| > b. All of them fail, and the weight is
+
+    φ(z)/h(z) = ΣP / N(z),            P = ΣP · E_h[1/N].
+
+S. K. Au, J. L. Beck, "First excursion probabilities for linear systems by very efficient
+importance sampling", Probab. Eng. Mech. 16 (2001) 193-207, doi:10.1016/S0266-8920(01)00002-9,
+eqs. 25-29.
+"""
+
+from collections.abc import Iterator
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from modefront.reliability.conditional import conditional
+from modefront.reliability.elementary import Failed
+from modefront.reliability.estimate import Estimate, estimate
+from modefront.reliability.problem import FirstPassage
+from modefront.response.checks import FloatArray
+
+
+def importance_sampling(
+    problem: FirstPassage,
+    levels: ArrayLike,
+    samples: int,
+    seed: np.random.SeedSequence,
+    workers: int = 1,
+) -> tuple[Estimate, ...]:
+    """Estimate the first-passage probability at each of (n_levels,) barriers.
+
+    See `modefront.reliability.estimate.estimate` for errors.
+    """
+    prepare = conditional(_share)
+    return estimate("importance sampling", prepare, problem, levels, samples, seed, workers)
+
+
+def _share(failed: Failed, level: float, magnitudes: Iterator[FloatArray]) -> FloatArray:
+    exceedances = np.zeros(failed.z.shape[0])
+    for x in magnitudes:
+        exceedances += np.count_nonzero(x > level, axis=1)
+    # The failure that was drawn is one of them, even where rounding leaves it on the barrier.
+    return 1 / np.maximum(exceedances, 1)

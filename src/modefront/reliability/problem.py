@@ -1,0 +1,164 @@
+"""What a first-passage probability is asked of.
+
+A structure at rest at t = 0 is loaded by Gaussian white noise; P is the probability that any of
+its responses leaves [-b, b] at one of the times t_j = j Δt, j = 1 … n, n Δt = T. The noise is
+held constant over a step: its value w_k on [t_k, t_k + Δt) is normal, independent from step to
+step, and of variance
+
+    2πS/Δt  (two-sided density S),     πG/Δt  (one-sided density G = 2S),
+
+so that its covariance tends to 2πS δ(τ) as Δt → 0. Densities are per rad/s. The noise may be
+modulated, q(t_k + Δt/2) w_k, and may then pass a Kanai-Tajimi filter, the absolute acceleration
+of a damped oscillator (the soil) on a base accelerated by it.
+
+======  =====================================  ==========================
+symbol  meaning                                field
+======  =====================================  ==========================
+T       duration, s                            ``duration``
+Δt      time step, s                           ``time_step``
+S, G    spectral density, (load)²/(rad/s)      ``noise``
+q       modulation, a function of time         ``modulation``
+======  =====================================  ==========================
+"""
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from enum import Enum
+
+import numpy as np
+
+from modefront.response.checks import FloatArray, positive, real_array
+from modefront.response.system import ModalSystem
+
+LARGEST_ANGLE = np.pi / 2
+"""Largest ω Δt: a quarter of a period. Beyond it the times t_j miss the peaks of the response."""
+
+
+class Sided(Enum):
+    """Whether a spectral density is meant over all ω (two-sided) or over ω ≥ 0 (one-sided)."""
+
+    ONE = "one-sided"
+    TWO = "two-sided"
+
+
+@dataclass(frozen=True)
+class WhiteNoise:
+    """Gaussian white noise, independent at each input and of the same density.
+
+    Inputs of different strengths are told apart by the columns of the system's `input`.
+
+    Attributes
+    ----------
+    density
+        Spectral density in (unit of load)²/(rad/s), positive.
+    sided
+        One- or two-sided.
+
+    """
+
+    density: float
+    sided: Sided
+
+    def __post_init__(self) -> None:
+        """Check the density."""
+        positive("density", self.density, "spectral density, (unit of load)²/(rad/s)")
+
+    def intensity(self) -> float:
+        """Return 2πS, the area of the covariance function."""
+        two_sided = self.density if self.sided is Sided.TWO else self.density / 2
+        return 2 * np.pi * two_sided
+
+
+@dataclass(frozen=True)
+class KanaiTajimi:
+    """The filter (ω_g² + 2iζ_g ω_g ω) / (ω_g² - ω² + 2iζ_g ω_g ω) of Kanai and Tajimi.
+
+    H. Tajimi, Proc. 2nd World Conf. Earthquake Eng. (1960) 781-797.
+
+    Attributes
+    ----------
+    omega
+        ω_g, circular frequency of the soil in rad/s, positive.
+    zeta
+        ζ_g, its damping ratio, positive.
+
+    """
+
+    omega: float
+    zeta: float
+
+    def __post_init__(self) -> None:
+        """Check both numbers."""
+        positive("omega", self.omega, "rad/s")
+        positive("zeta", self.zeta, "damping ratio of the filter")
+
+
+@dataclass(frozen=True)
+class FirstPassage:
+    """A linear structure at rest, its Gaussian load, and the times at which it is looked at.
+
+    The responses are displacements at the outputs of `system`, of its modes alone: white noise
+    has no quasi-static response, so `system.static` is not used. Responses with barriers of their
+    own are brought to a common one by scaling the rows of the system's `output`.
+
+    Attributes
+    ----------
+    system
+        The structure, with n_inputs loads and n_outputs responses.
+    noise
+        The white noise at its inputs.
+    duration
+        T in s, a whole number of time steps.
+    time_step
+        Δt in s, at most a quarter of the shortest period of a mode or of the filter.
+    filter
+        What the noise passes on its way to every input, or None.
+    modulation
+        q, mapping an (n,) array of times in s to (n,) factors; None for a constant 1.
+
+    Raises
+    ------
+    ValueError
+        For durations or steps that are not positive, do not fit, or are too long.
+
+    """
+
+    system: ModalSystem
+    noise: WhiteNoise
+    duration: float
+    time_step: float
+    filter: KanaiTajimi | None = None
+    modulation: Callable[[FloatArray], FloatArray] | None = None
+
+    def __post_init__(self) -> None:
+        """Check the times against each other and against the frequencies."""
+        positive("duration", self.duration, "s")
+        positive("time_step", self.time_step, "s")
+        limit = LARGEST_ANGLE / self.highest_omega()
+        if self.time_step > limit * (1 + 1e-12):
+            raise ValueError(
+                f"time_step: expected at most {limit:.6g} s, a quarter of the period of the "
+                f"highest frequency ({self.highest_omega():.6g} rad/s), found {self.time_step} s"
+            )
+        steps = self.duration / self.time_step
+        if steps < 0.5 or abs(steps - round(steps)) > 1e-6:
+            raise ValueError(
+                "duration: expected a whole number of time steps of "
+                f"{self.time_step} s, found {self.duration} s, which is {steps:.6g} of them"
+            )
+
+    def highest_omega(self) -> float:
+        """Return the highest circular frequency of the modes and of the filter, rad/s."""
+        soil = 0.0 if self.filter is None else self.filter.omega
+        return max(float(self.system.omega.max()), soil, np.finfo(float).tiny)
+
+    def steps(self) -> int:
+        """Return n, the number of time steps."""
+        return round(self.duration / self.time_step)
+
+    def modulation_factors(self) -> FloatArray:
+        """Return q at the middle of each step, (n,)."""
+        middle = np.asarray((np.arange(self.steps()) + 0.5) * self.time_step, dtype=np.float64)
+        if self.modulation is None:
+            return np.ones_like(middle)
+        return real_array("modulation", self.modulation(middle), (self.steps(),), "time steps")

@@ -1,0 +1,56 @@
+"""What the response and reliability rooms ask of their arguments.
+
+Every error is a ``ValueError`` that names the argument, what was expected and what was found.
+"""
+
+from collections.abc import Sequence
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+FloatArray = NDArray[np.float64]
+
+
+def real_array(
+    name: str, value: ArrayLike, shape: Sequence[int | None], meaning: str
+) -> FloatArray:
+    """Return `value` as a read-only array of finite floats of the given shape.
+
+    `shape` has one entry a dimension, None where any size of at least one is right; `meaning`
+    says in words what the dimensions are.
+    """
+    array = np.array(value, dtype=np.float64)
+    fits = array.ndim == len(shape) and all(
+        found == wanted or (wanted is None and found > 0)
+        for found, wanted in zip(array.shape, shape, strict=True)
+    )
+    if not fits:
+        wanted = ", ".join("n" if size is None else str(size) for size in shape)
+        raise ValueError(f"{name}: expected shape ({wanted}) ({meaning}), found {array.shape}")
+    if not np.all(np.isfinite(array)):
+        at = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        raise ValueError(f"{name}: expected finite numbers, found {array[at]} at index {at}")
+    array.setflags(write=False)
+    return array
+
+
+def positive(name: str, value: float, unit: str) -> float:
+    """Return `value` if it is a finite number above zero."""
+    if not (np.isfinite(value) and value > 0):
+        raise ValueError(f"{name}: expected a positive number ({unit}), found {value}")
+    return float(value)
+
+
+def positive_count(name: str, value: int) -> int:
+    """Return `value` if it is a whole number above zero."""
+    if not (np.isfinite(value) and value >= 1 and int(value) == value):
+        raise ValueError(f"{name}: expected a whole number of at least 1, found {value}")
+    return int(value)
+
+
+def no_negative(name: str, array: FloatArray, meaning: str) -> FloatArray:
+    """Return `array` if none of its elements is below zero."""
+    if np.any(array < 0):
+        at = tuple(int(i) for i in np.argwhere(array < 0)[0])
+        raise ValueError(f"{name}: expected no negative {meaning}, found {array[at]} at index {at}")
+    return array

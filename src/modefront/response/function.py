@@ -1,0 +1,117 @@
+"""Frequency response functions by modal superposition with a static correction.
+
+With p(t) = e^{iωt} in the equations of `modefront.response.system`, the receptance between an
+output and an input is (Ewins, *Modal Testing*, 2nd ed., eq. 2.65; the last term, for the modes
+above those given, is its residual, sec. 2.9 — here exact at ω = 0)
+
+    α(ω) = Σ_r A_r / d_r(ω) + R,    A_r = Y_r Γ_r,    d_r(ω) = ω_r² - ω² + 2iζ_r ω_r ω,
+                                    R = Y_s - Σ_r A_r / ω_r².
+
+All quantities are one form, T(ω) = (iω)^s α(ω) + D:
+
+=====================  ==  ====  ===========================================================
+quantity               s   D     for base motion, p the acceleration of the base
+=====================  ==  ====  ===========================================================
+receptance             0   0     relative displacement
+mobility               1   0     relative velocity
+accelerance            2   0     relative acceleration
+absolute accelerance   2   Y_b   absolute acceleration (the transmissibility); base motion only
+=====================  ==  ====  ===========================================================
+
+T is analytic in ω, so its derivatives are exact as well; the peaks rest on them.
+"""
+
+from enum import Enum
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from modefront.response.checks import no_negative, real_array
+from modefront.response.system import ModalSystem
+
+ComplexArray = NDArray[np.complex128]
+
+
+class Quantity(Enum):
+    """The response that is set against the load."""
+
+    RECEPTANCE = "receptance"
+    MOBILITY = "mobility"
+    ACCELERANCE = "accelerance"
+    ABSOLUTE_ACCELERANCE = "absolute accelerance"
+
+    @property
+    def order(self) -> int:
+        """The power s of iω: how often the displacement is differentiated in time."""
+        return {"receptance": 0, "mobility": 1}.get(self.value, 2)
+
+
+def frequency_response(
+    system: ModalSystem, omega: ArrayLike, quantity: Quantity = Quantity.RECEPTANCE
+) -> ComplexArray:
+    """Return T(ω) at the circular frequencies `omega`.
+
+    Parameters
+    ----------
+    system
+        The structure, with m modes, n_inputs loads and n_outputs responses.
+    omega
+        (n,) circular frequencies in rad/s, none negative.
+    quantity
+        What is set against the load.
+
+    Returns
+    -------
+    (n, n_outputs, n_inputs) complex response, in units of output per unit load.
+
+    Raises
+    ------
+    ValueError
+        For frequencies that are negative, or meet an undamped mode; for absolute acceleration of
+        a system that does not say how its outputs move with the base.
+
+    """
+    at = no_negative("omega", real_array("omega", omega, (None,), "frequencies"), "frequency")
+    return derivatives(system, at.astype(np.complex128), quantity)[0]
+
+
+def derivatives(
+    system: ModalSystem, omega: ComplexArray, quantity: Quantity
+) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
+    """Return T, dT/dω and d²T/dω², each (n, n_outputs, n_inputs), at (n,) frequencies."""
+    w = omega[:, None]
+    # ω_r² - ω² as a product: exact to rounding next to the mode, where the difference is small.
+    d = (system.omega - w) * (system.omega + w) + 2j * system.zeta * system.omega * w
+    if np.any(d == 0):
+        at, mode = (int(i) for i in np.argwhere(d == 0)[0])
+        raise ValueError(
+            f"omega: expected no frequency on that of an undamped mode, found {omega[at].real} "
+            f"rad/s with zeta[{mode}] = {system.zeta[mode]}: the response is unbounded there"
+        )
+    d1 = -2 * w + 2j * system.zeta * system.omega
+    modal = (1 / d, -d1 / d**2, 2 * d1**2 / d**3 + 2 / d**2)
+    alpha, alpha1, alpha2 = (
+        np.einsum("or,nr,ri->noi", system.output, term, system.input) for term in modal
+    )
+    alpha = alpha + system.residual_flexibility()
+
+    # Leibniz' rule on (iω)^s α.
+    s, w = quantity.order, omega[:, None, None]
+    power = (1j) ** s * w**s
+    power1 = (1j) ** s * s * w ** max(s - 1, 0)
+    power2 = (1j) ** s * s * (s - 1)
+    response = power * alpha + _rigid(system, quantity)
+    first = power1 * alpha + power * alpha1
+    second = power2 * alpha + 2 * power1 * alpha1 + power * alpha2
+    return response, first, second
+
+
+def _rigid(system: ModalSystem, quantity: Quantity) -> NDArray[np.float64] | float:
+    if quantity is not Quantity.ABSOLUTE_ACCELERANCE:
+        return 0.0
+    if system.rigid is None:
+        raise ValueError(
+            "rigid: expected the motion of the outputs with the base for absolute accelerance, "
+            "found None"
+        )
+    return system.rigid

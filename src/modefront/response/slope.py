@@ -1,0 +1,49 @@
+"""The slope of |T(ω)|², whose zeros are the peaks, and its accuracy.
+
+    g = d|T|²/dω = 2 Re(T* T'),        g' = 2 (|T'|² + Re(T* T'')),
+
+with T of `modefront.response.function`. What rounding leaves uncertain of g is bounded by the
+same sums with every term taken by its absolute value, and by g' times the spacing of floats at ω.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront.response.checks import FloatArray
+from modefront.response.function import Quantity, derivatives
+from modefront.response.system import ModalSystem
+
+
+@dataclass(frozen=True, eq=False)
+class Slope:
+    """g between the one output and the one input of `pair`, and how far it can be trusted."""
+
+    pair: ModalSystem
+    quantity: Quantity
+
+    def both(self, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return g and g'."""
+        at = omega.astype(np.complex128)
+        t, t1, t2 = (value[:, 0, 0] for value in derivatives(self.pair, at, self.quantity))
+        return 2 * (t.conj() * t1).real, 2 * (abs(t1) ** 2 + (t.conj() * t2).real)
+
+    def rounding(self, omega: FloatArray, g1: FloatArray) -> FloatArray:
+        """Return what rounding of the terms of T and of ω leaves uncertain of g.
+
+        Modes that cancel leave a small T that is no more accurate than they are.
+        """
+        one = self.pair
+        load = np.concatenate([abs(one.input), abs(one.residual_flexibility())])[:, 0]
+        shape = np.append(abs(one.output[0]), 1.0)
+        w = omega[:, None]
+        d = (one.omega - w) * (one.omega + w) + 2j * one.zeta * one.omega * w
+        inverse = np.hstack([1 / abs(d), np.ones_like(w)])
+        inverse1 = np.hstack([2 * (w + one.zeta * one.omega) / abs(d) ** 2, np.zeros_like(w)])
+        alpha, alpha1 = inverse @ (shape * load), inverse1 @ (shape * load)
+        s = self.quantity.order
+        rigid = 0.0 if one.rigid is None else abs(one.rigid[0, 0])
+        t = omega**s * alpha + rigid
+        t1 = omega**s * alpha1 + s * omega ** max(s - 1, 0) * alpha
+        size: FloatArray = 8 * np.finfo(float).eps * (t * t1 + omega * abs(g1))
+        return size

@@ -1,0 +1,96 @@
+"""A linear structure in modal coordinates.
+
+With mass-normalised mode shapes, u = Σ_r φ_r q_r and classical damping, the equations of motion
+M ü + C u̇ + K u = f p(t) fall apart into
+
+    q̈_r + 2 ζ_r ω_r q̇_r + ω_r² q_r = Γ_r p(t),        y = Σ_r Y_r q_r,
+
+==========  =================================================  ===========
+symbol      meaning                                            field
+==========  =================================================  ===========
+ω_r         natural circular frequency, rad/s                  ``omega``
+ζ_r         damping ratio                                      ``zeta``
+Γ           φᵀf for a force pattern f;  -φᵀM r for the         ``input``
+            acceleration of the base, r its rigid-body motion
+Y           mode shapes at the outputs: a sensor, or any       ``output``
+            weighted sum of DOFs, such as a story drift
+Y_s         full static response, output · K⁻¹ · load,         ``static``
+            load = f or -M r
+Y_b         motion of the outputs with the base, output · r    ``rigid``
+==========  =================================================  ===========
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront.response.checks import FloatArray, no_negative, real_array
+
+
+@dataclass(frozen=True, eq=False)
+class ModalSystem:
+    """A linear structure by its modes, between m modes, n_inputs loads and n_outputs responses.
+
+    Attributes
+    ----------
+    omega
+        (m,) natural circular frequencies in rad/s; zero for a rigid-body mode.
+    zeta
+        (m,) damping ratios, none negative.
+    input
+        (m, n_inputs) modal loads: φᵀf for forces, -φᵀM r for base acceleration.
+    output
+        (n_outputs, m) mode shapes at the outputs.
+    static
+        (n_outputs, n_inputs) full static response to the loads, or None where the modes are all
+        there is: its excess over the static response of the modes given is the correction for
+        those cut off. With rigid-body modes there is no static response.
+    rigid
+        (n_outputs, n_inputs) displacement of the outputs for a unit displacement of the base, or
+        None where the load is a force; needed for absolute acceleration only.
+
+    Raises
+    ------
+    ValueError
+        For wrong shapes, numbers that are not finite, negative frequencies or damping.
+
+    """
+
+    omega: FloatArray
+    zeta: FloatArray
+    input: FloatArray
+    output: FloatArray
+    static: FloatArray | None = None
+    rigid: FloatArray | None = None
+
+    def __post_init__(self) -> None:
+        """Check the arrays against one another and keep read-only copies."""
+        omega = real_array("omega", self.omega, (None,), "modes")
+        m = omega.size
+        zeta = real_array("zeta", self.zeta, (m,), "modes")
+        load = real_array("input", self.input, (m, None), "modes, inputs")
+        output = real_array("output", self.output, (None, m), "outputs, modes")
+        no_negative("omega", omega, "frequency")
+        no_negative("zeta", zeta, "damping ratio")
+        pair = (output.shape[0], load.shape[1])
+        for name, value in (("static", self.static), ("rigid", self.rigid)):
+            if value is not None:
+                checked = real_array(name, value, pair, "outputs, inputs")
+                object.__setattr__(self, name, checked)
+        if self.static is not None and np.any(omega == 0):
+            at = int(np.argmax(omega == 0))
+            raise ValueError(
+                "static: expected None, as a structure with a rigid-body mode has no static "
+                f"response, found an array with omega[{at}] = 0"
+            )
+        object.__setattr__(self, "omega", omega)
+        object.__setattr__(self, "zeta", zeta)
+        object.__setattr__(self, "input", load)
+        object.__setattr__(self, "output", output)
+
+    def residual_flexibility(self) -> FloatArray:
+        """Return static - Σ_r Y_r Γ_r / ω_r², (n_outputs, n_inputs); zero without `static`."""
+        if self.static is None:
+            return np.zeros((self.output.shape[0], self.input.shape[1]))
+        retained: FloatArray = (self.output / self.omega**2) @ self.input
+        return self.static - retained

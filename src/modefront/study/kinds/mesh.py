@@ -1,0 +1,293 @@
+"""``kind = "mesh"``: finite elements on a mesh from a file."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Mapping, Sequence
+from pathlib import Path
+from typing import Any, get_args
+
+from modefront import fem
+from modefront.data.csv import is_reserved
+from modefront.errors import suggestion
+from modefront.fem.mesh import Kind, Mesh, read_mesh
+from modefront.fem.structure import Quantity
+from modefront.models.base import Model
+from modefront.models.mesh import mesh_model
+from modefront.study.reader import Table, is_number
+
+_SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
+    "rectangle": (fem.rectangle, ("b_y", "b_z")),
+    "hollow_rectangle": (fem.hollow_rectangle, ("b_y", "b_z", "wall")),
+    "circle": (fem.circle, ("diameter",)),
+    "tube": (fem.tube, ("diameter", "wall")),
+    "constants": (fem.Section, ("A", "I_y", "I_z", "J")),
+}
+
+
+def read_mesh_model(table: Table, parameters: Sequence[str], folder: Path) -> Model | None:
+    """Return the model that a ``[model]`` table describes, or None where it has faults."""
+    before = len(table.faults)
+    name = table.text("file", "the name of a mesh file")
+    mesh: Mesh | None = None
+    if name is not None:
+        try:
+            mesh = read_mesh(folder / name)
+        except fem.FemError as error:
+            table.fault("file", "a mesh that can be read", str(error))
+    floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
+    structure = _structure(table, parameters, mesh) if mesh is not None else None
+    if structure is None or len(table.faults) > before:
+        return None
+    try:
+        return mesh_model(structure, parameters, floating=floating)
+    except fem.FemError as error:
+        table.fault("", "a structure that can be assembled", str(error))
+        return None
+
+
+def _structure(table: Table, parameters: Sequence[str], mesh: Mesh) -> fem.Structure:
+    materials = _materials(table)
+    return fem.Structure(
+        mesh.nodes,
+        _groups(table, mesh, materials),
+        [
+            fem.Support(nodes, directions)
+            for one in table.tables("support", required=False)
+            for nodes, directions in [(_nodes(one, "nodes", mesh), _directions(one))]
+            if _closed(one) and nodes is not None
+        ],
+        _springs(table, mesh),
+        _masses(table, mesh),
+        _links(table, mesh),
+        _sensors(table),
+        _scales(table, parameters),
+    )
+
+
+def _closed(table: Table) -> bool:
+    table.close()
+    return True
+
+
+def _materials(model: Table) -> dict[str, fem.Material]:
+    out: dict[str, fem.Material] = {}
+    table = model.table("material", "a table of materials")
+    for name in table.values if table else ():
+        one = table.table(name, "a table E, nu, rho") if table else None
+        if one is None:
+            continue
+        E = one.number("E", "Young's modulus above 0", lambda x: x > 0)
+        nu = one.number("nu", "Poisson's ratio between -1 and 0.5", lambda x: -1 < x < 0.5)
+        rho = one.number("rho", "a density of 0 or more", lambda x: x >= 0)
+        one.close()
+        if None not in (E, nu, rho):
+            out[name] = fem.Material(E, nu, rho)
+    return out
+
+
+def _groups(
+    model: Table, mesh: Mesh, materials: dict[str, fem.Material]
+) -> list[fem.Beams | fem.Shells | fem.Solids]:
+    """Return the blocks of all groups; one group may have cells of several types."""
+    out: list[fem.Beams | fem.Shells | fem.Solids] = []
+    for one in model.tables("group", required=True):
+        name = one.text("name", "the name of a group of cells")
+        kind: Kind | None = one.choice("elements", get_args(Kind))
+        label = one.choice("material", tuple(materials))
+        thickness = offset = section = orientation = None
+        if kind == "shell":
+            thickness = one.number("thickness", "a thickness above 0", lambda x: x > 0)
+            offset = one.number("offset", "a distance", math.isfinite, default=0.0)
+        if kind == "beam":
+            section = _section(one)
+            orientation = one.numbers(
+                "orientation", "a vector of 3 numbers", lambda x: len(x) == 3, default=None
+            )
+        one.close()
+        if name is None or kind is None or label is None:
+            continue
+        try:
+            blocks = mesh.cells_of(name, kind)
+        except fem.FemError as error:
+            one.fault("name", "a group of the mesh", str(error))
+            continue
+        for cells in blocks:
+            if kind == "beam" and section is not None:
+                out.append(fem.Beams(name, cells, materials[label], section, orientation))
+            elif kind == "shell" and thickness is not None:
+                out.append(fem.Shells(name, cells, materials[label], thickness, offset or 0.0))
+            elif kind == "solid":
+                out.append(fem.Solids(name, cells, materials[label]))
+    return out
+
+
+def _section(group: Table) -> fem.Section | None:
+    table = group.table("section", "a table with shape = " + ", ".join(_SHAPES))
+    shape = table.choice("shape", tuple(_SHAPES)) if table else None
+    if table is None or shape is None:
+        return None
+    make, keys = _SHAPES[shape]
+    values = [table.number(key, "a number above 0", lambda x: x > 0) for key in keys]
+    table.close()
+    if None in values:
+        return None
+    try:
+        section = make(*values)
+    except fem.FemError as error:
+        table.fault("", "a section that is possible", str(error))
+        return None
+    return section
+
+
+def _nodes(table: Table, key: str, mesh: Mesh, default: Any = ...) -> list[int] | None:
+    """Return nodes: one, a list, or those of a group or node set of the mesh."""
+    value = table.take(
+        key,
+        "a node counted from 0, a list of nodes, or the name of a group or node set",
+        lambda x: isinstance(x, str) or _is_node(x) or (isinstance(x, list) and _are_nodes(x)),
+        default,
+    )
+    if isinstance(value, str):
+        try:
+            return [int(node) for node in mesh.nodes_of(value)]
+        except fem.FemError as error:
+            table.fault(key, "a group or node set of the mesh", str(error))
+            return None
+    nodes = [value] if _is_node(value) else value
+    beyond = [node for node in nodes or [] if node >= len(mesh.nodes)]
+    if beyond:
+        table.fault(key, f"nodes from 0 to {len(mesh.nodes) - 1}", str(beyond[0]))
+        return None
+    return nodes
+
+
+def _is_node(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+
+
+def _are_nodes(values: list[object]) -> bool:
+    return bool(values) and all(map(_is_node, values))
+
+
+def _directions(table: Table) -> list[str]:
+    known = list(fem.DIRECTIONS)
+    value = table.take(
+        "directions",
+        "a list of " + ", ".join(known),
+        lambda x: isinstance(x, list) and bool(x) and all(y in known for y in x),
+        known,
+    )
+    return list(value)
+
+
+def _direction(table: Table, key: str, default: Any = ...) -> Any:
+    known = [sign + name for name in fem.DIRECTIONS for sign in ("", "-")]
+    return table.take(
+        key,
+        "one of " + ", ".join(known) + ", or a vector of 3 numbers",
+        lambda x: (
+            x in known
+            if isinstance(x, str)
+            else isinstance(x, list) and len(x) == 3 and all(map(is_number, x)) and any(x)
+        ),
+        default,
+    )
+
+
+def _springs(model: Table, mesh: Mesh) -> list[fem.Spring]:
+    out = []
+    for one in model.tables("spring", required=False):
+        name = one.text("name", "the name of the springs")
+        nodes = _nodes(one, "nodes", mesh)
+        to = _nodes(one, "to", mesh, default=None)
+        stiffness = one.number("stiffness", "a stiffness above 0", lambda x: x > 0)
+        direction = _direction(one, "direction", default=None)
+        one.close()
+        if name is not None and nodes is not None and stiffness is not None:
+            out.append(fem.Spring(name, nodes, stiffness, direction, to))
+    return out
+
+
+def _masses(model: Table, mesh: Mesh) -> list[fem.Mass]:
+    out = []
+    for one in model.tables("mass", required=False):
+        name = one.text("name", "the name of the masses")
+        nodes = _nodes(one, "nodes", mesh)
+        mass = one.number("mass", "a mass of 0 or more", lambda x: x >= 0)
+        inertia = one.numbers(
+            "inertia",
+            "3 moments of inertia of 0 or more",
+            lambda x: len(x) == 3 and min(x) >= 0,
+            default=[0.0, 0.0, 0.0],
+        )
+        offset = one.numbers(
+            "offset", "a vector of 3 numbers", lambda x: len(x) == 3, default=[0.0, 0.0, 0.0]
+        )
+        one.close()
+        if name is not None and nodes is not None and mass is not None:
+            out.append(fem.Mass(name, nodes, mass, inertia or (0, 0, 0), offset or (0, 0, 0)))
+    return out
+
+
+def _links(model: Table, mesh: Mesh) -> list[fem.Link]:
+    out = []
+    for one in model.tables("link", required=False):
+        master = _nodes(one, "master", mesh)
+        slaves = _nodes(one, "slaves", mesh)
+        directions = _directions(one)
+        one.close()
+        if master is not None and len(master) != 1:
+            one.fault("master", "one node", f"{len(master)} nodes")
+        elif master is not None and slaves is not None:
+            out.append(fem.Link(master[0], [n for n in slaves if n != master[0]], directions))
+    return out
+
+
+def _sensors(model: Table) -> list[fem.Sensor]:
+    out: list[fem.Sensor] = []
+    table = model.table("sensors", "a table of sensors")
+    for name in table.values if table else ():
+        one = table.table(name, "a table node or at, and direction") if table else None
+        if table is None or one is None:
+            continue
+        if is_reserved(name, table.values):
+            table.fault(repr(name), "a name that a column of the data can have", repr(name))
+        node = one.integer("node", 0, 10**9, default=None)
+        at = one.numbers("at", "3 coordinates", lambda x: len(x) == 3, default=None)
+        direction = _direction(one, "direction")
+        tolerance = one.number("tolerance", "a distance above 0", lambda x: x > 0, default=None)
+        one.close()
+        if (node is None) == (at is None):
+            one.fault("", "either node or at", "both" if node is not None else "neither")
+        elif direction is not None:
+            out.append(fem.Sensor(name, node if at is None else at, direction, tolerance))
+    if table is not None and not table.values:
+        table.fault("", "at least one sensor", "none")
+    return out
+
+
+def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:
+    """Return what each parameter scales: one quantity of named groups, springs or masses."""
+    out: list[fem.Parameter] = []
+    table = model.table("scale", "a table, parameter = { quantity, of }")
+    for name in table.values if table else ():
+        if table is None or name not in parameters:
+            if table is not None:
+                table.asked.append(name)
+                table.fault(name, "the name of a parameter", suggestion(name, parameters))
+            continue
+        one = table.table(name, "a table { quantity = ..., of = [...] }")
+        if one is None:
+            continue
+        quantity: Quantity | None = one.choice("quantity", get_args(Quantity))
+        of = one.take(
+            "of",
+            "a list of groups, springs or masses",
+            lambda x: isinstance(x, list) and bool(x) and all(isinstance(y, str) for y in x),
+            ...,
+        )
+        one.close()
+        if quantity is not None and of is not None:
+            out.append(fem.Parameter(name, quantity, of))
+    return out

@@ -1,0 +1,391 @@
+"""The commands: what they print, leave behind and return."""
+
+import errno
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Sequence
+from pathlib import Path
+
+import pytest
+import xarray as xr
+
+import modefront
+from modefront.cli.main import main
+from modefront.errors import UnfinishedError
+from modefront.study import session, store
+from modefront.study.results import FILE, read
+
+STUDY = """
+[study]
+name = "two masses"
+seed = 3
+
+[data]
+file = "modes.csv"
+
+[model]
+kind = "chain"
+masses = [2.0, 1.0]
+stiffnesses = [3000.0, 2000.0]
+stiffness_parameters = ["k1", "k2"]
+
+[[parameter]]
+name = "k1"
+nominal = 1.0
+bounds = [0.2, 5.0]
+
+[[parameter]]
+name = "k2"
+nominal = 1.0
+bounds = [0.2, 5.0]
+
+[[group]]
+name = "frequencies"
+frequency = "all"
+
+[[group]]
+name = "shapes"
+shape = "all"
+
+[[weighted]]
+name = "mine"
+weights = { frequencies = 2.0, shapes = 1.0 }
+
+[pareto]
+points = 3
+
+[search]
+starts = 1
+limit = 1
+evolutions = 0
+"""
+
+DATA = """set,mode,frequency,damping,floor1,floor2
+a,1,4.2,,0.6,1.0
+a,2,10.5,,1.0,-0.7
+b,1,4.1,,,1.0
+"""
+
+Run = Callable[..., tuple[int, str, str]]
+
+
+@pytest.fixture
+def modefront_(capfd: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> Run:
+    """Return a function that runs a command and returns (status, output, errors)."""
+
+    def run(*arguments: object) -> tuple[int, str, str]:
+        monkeypatch.setattr(sys, "argv", ["modefront", *map(str, arguments)])
+        with pytest.raises(SystemExit) as left:
+            main()
+        out, err = capfd.readouterr()
+        assert isinstance(left.value.code, int)
+        assert "Traceback" not in err
+        return left.value.code, out, err
+
+    return run
+
+
+def write_study(folder: Path) -> Path:
+    (folder / "modes.csv").write_text(DATA)
+    file = folder / "study.toml"
+    file.write_text(STUDY)
+    return file
+
+
+@pytest.fixture
+def study(tmp_path: Path) -> Path:
+    return write_study(tmp_path)
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """The folder of results of a run that was not interrupted."""
+    file = write_study(tmp_path_factory.mktemp("whole"))
+    modefront.run(modefront.load(file), file.with_name("study-results"))
+    return file.with_name("study-results")
+
+
+@pytest.fixture
+def done(study: Path, whole: Path) -> Path:
+    """A copy of these results where the study would put its own."""
+    return Path(shutil.copytree(whole, study.with_name("study-results")))
+
+
+def assert_same(one: xr.Dataset, other: xr.Dataset) -> None:
+    """Assert that two results agree to the last bit, in what they cost as well."""
+    assert one.attrs == other.attrs
+    assert set(one.variables) == set(other.variables)
+    for name in one.variables:
+        assert one[name].dims == other[name].dims
+        if one[name].dtype.kind in "fib":
+            assert one[name].values.tobytes() == other[name].values.tobytes(), name
+        else:
+            assert one[name].values.tolist() == other[name].values.tolist(), name
+
+
+def contents(folder: Path) -> list[bytes]:
+    return [path.read_bytes() for path in folder.rglob("*") if path.is_file()]
+
+
+def interrupt_after(pieces: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Interrupt the next run when so many pieces have been written, before the next one is."""
+    written: list[Path] = []
+    write = store.write_piece
+
+    def stop(path: Path, *rest: object) -> None:
+        if len(written) == pieces:
+            monkeypatch.setattr(store, "write_piece", write)
+            raise KeyboardInterrupt
+        written.append(path)
+        write(path, *rest)  # type: ignore[arg-type]
+
+    monkeypatch.setattr(store, "write_piece", stop)
+
+
+def test_help_and_version(modefront_: Run) -> None:
+    for arguments in (["--help"], ["-h"]):
+        status, out, err = modefront_(*arguments)
+        assert (status, err) == (0, "")
+        for command in ("init", "check", "run", "show"):
+            assert command in out
+            assert modefront_(command, "--help")[0] == 0
+    assert modefront_("--version") == (0, f"modefront, version {modefront.__version__}\n", "")
+
+
+def test_help_waits_for_nothing_that_takes_long_to_import() -> None:
+    code = (
+        "import sys, modefront.cli.main\n"
+        "sys.exit(' '.join({'numpy', 'scipy', 'xarray', 'rich', 'cma'} & set(sys.modules)) or 0)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
+def test_from_nothing_to_results(modefront_: Run, tmp_path: Path) -> None:
+    folder = tmp_path / "first"
+    status, out, _ = modefront_("init", folder)
+    assert status == 0
+    assert f"wrote {folder / 'study.toml'}" in out
+    assert f"modefront run {folder / 'study.toml'}" in out
+    status, out, err = modefront_("check", folder / "study.toml")
+    assert (status, err) == (0, "")
+    assert "derivatives agree with finite differences" in out
+    assert "no warnings" in out
+    assert sorted(path.name for path in folder.iterdir()) == ["modes.csv", "study.toml"]
+
+
+def test_results_lie_where_they_are_wanted(modefront_: Run, study: Path, done: Path) -> None:
+    status, out, _ = modefront_("run", study)
+    assert status == 0
+    assert f"modefront show {done}" in out
+    data = read(done)
+    assert data.attrs["study"] == "two masses"
+    assert data.attrs["seed"] == 3
+    labels = [f"nbi-{i + 1}" for i in range(3)]
+    labels += ["edge-frequencies", "edge-shapes", "mine", "equal-weights", "optimal-weights"]
+    assert data["label"].values.tolist() == labels
+    mine = data.isel(point=labels.index("mine"))
+    assert mine["weight"].values.tolist() == [2.0, 1.0]
+
+    wanted = study.with_name("elsewhere") / "deep"
+    assert modefront_("run", study, "-o", wanted)[0] == 0
+    assert_same(read(wanted), data)
+
+
+def test_show_prints_tables_and_json_without_nan(modefront_: Run, whole: Path) -> None:
+    status, out, err = modefront_("show", whole)
+    assert (status, err) == (0, "")
+    for text in ("two masses", "nbi-3", "equal-weights", "k1", "frequencies", "MAC 2"):
+        assert text in out
+
+    def refuse(constant: str) -> None:
+        raise AssertionError(f"{constant} is no JSON")
+
+    status, out, err = modefront_("show", whole, "--format", "json")
+    assert (status, err) == (0, "")
+    found = json.loads(out, parse_constant=refuse)
+    data = read(whole)
+    assert set(found["variables"]) == set(data.variables)
+    for name, value in found["variables"].items():
+        assert tuple(value["dimensions"]) == data[name].dims
+    assert found["variables"]["theta"]["values"] == data["theta"].values.tolist()
+    assert found["variables"]["weight"]["values"][0] == [None, None]
+    assert found["attributes"]["model_evaluations"] == data.attrs["model_evaluations"]
+
+
+@pytest.mark.parametrize("pieces", [0, 5])
+def test_an_interrupted_run_goes_on_to_the_same_results(
+    pieces: int, modefront_: Run, study: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    broken = study.with_name("broken")
+    interrupt_after(pieces, monkeypatch)
+    status, out, err = modefront_("run", study, "-o", broken)
+    assert status == 130
+    assert out == ""
+    assert "interrupted; what was done is kept" in err
+    assert not (broken / FILE).exists()
+    kept = {path: path.stat().st_mtime_ns for path in broken.rglob("*.npz")}
+    assert len(kept) == pieces
+    assert modefront_("run", study, "-o", broken)[0] == 0
+    assert {path: path.stat().st_mtime_ns for path in kept} == kept, "they are not done again"
+    assert_same(read(broken), read(whole))
+
+
+def test_a_run_that_is_done_is_not_done_again(
+    modefront_: Run, study: Path, done: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    interrupt_after(0, monkeypatch)
+    assert modefront_("run", study)[0] == 0
+    assert_same(read(done), read(whole))
+    assert [path.name for path in done.glob("*.nc")] == [FILE]
+
+
+@pytest.mark.filterwarnings("ignore::pytest.PytestUnraisableExceptionWarning")
+def test_a_damaged_piece_is_done_again(
+    modefront_: Run, study: Path, done: Path, whole: Path
+) -> None:
+    for i, piece in enumerate(sorted(done.rglob("*.npz"))[:6]):
+        content = piece.read_bytes()
+        piece.write_bytes([content[:-40], content[:30], b"no piece"][i % 3])
+    assert modefront_("run", study)[0] == 0
+    assert_same(read(done), read(whole))
+
+
+def test_fresh_starts_over_and_deletes_nothing(
+    modefront_: Run, study: Path, done: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before = contents(done)
+    interrupt_after(1, monkeypatch)
+    assert modefront_("run", study, "--fresh")[0] == 130, "it does the work again"
+    assert len(contents(done)) == len(before) + 1
+    assert modefront_("run", study, "--fresh")[0] == 0
+    assert_same(read(done), read(whole))
+    after = contents(done)
+    assert all(content in after for content in before)
+    assert len(after) == 2 * len(before) + 1
+
+
+@pytest.mark.parametrize(
+    ("file", "old", "new"),
+    [
+        ("study.toml", "seed = 3", "seed = 4"),
+        ("modes.csv", "10.5", "10.6"),
+    ],
+)
+def test_a_changed_study_mixes_with_nothing_old(
+    file: str, old: str, new: str, modefront_: Run, study: Path, done: Path
+) -> None:
+    clean = study.with_name("clean")
+    before = contents(done)
+    changed = study.with_name(file)
+    text = changed.read_text()
+    changed.write_text(text.replace(old, new))
+    assert modefront_("run", study)[0] == 0
+    modefront_("run", study, "-o", clean)
+    assert_same(read(done), read(clean))
+    after = contents(done)
+    assert all(content in after for content in before), "old pieces and results are kept"
+
+    changed.write_text(text)
+    assert modefront_("run", study)[0] == 0
+    assert len(contents(done)) == len(after) + 1, "only results.nc is written anew"
+
+
+def failing(error: BaseException) -> Callable[..., None]:
+    def run(*_: object, **__: object) -> None:
+        raise error
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("error", "status", "says"),
+    [
+        (UnfinishedError("no minimum was found"), 1, "modefront: no minimum was found\n"),
+        (OSError(errno.ENOSPC, "No space left on device"), 1, "No space left on device"),
+        (KeyboardInterrupt(), 130, "modefront: interrupted"),
+        (ZeroDivisionError("oh"), 1, "an error of the program itself: ZeroDivisionError: oh"),
+    ],
+)
+def test_what_goes_wrong_on_the_way_is_one_message(
+    error: BaseException,
+    status: int,
+    says: str,
+    modefront_: Run,
+    study: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(session, "run", failing(error))
+    found, out, err = modefront_("run", study)
+    assert (found, out) == (status, "")
+    assert says in err
+
+
+def test_the_traceback_is_there_for_those_who_ask(
+    study: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(session, "run", failing(ZeroDivisionError("oh")))
+    monkeypatch.setattr(sys, "argv", ["modefront", "run", str(study)])
+    monkeypatch.setenv("MODEFRONT_TRACEBACK", "1")
+    with pytest.raises(ZeroDivisionError):
+        main()
+
+
+def test_points_that_did_not_converge_are_said_and_kept(
+    modefront_: Run, study: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run = session.run
+
+    def doubtful(*arguments: object, **options: object) -> xr.Dataset:
+        data = run(*arguments, **options)  # type: ignore[arg-type]
+        data["converged"][1] = False
+        return data
+
+    monkeypatch.setattr(session, "run", doubtful)
+    status, out, err = modefront_("run", study)
+    assert status == 1
+    assert "not converged: nbi-2" in out
+    assert "modefront: not converged, kept and marked as such: nbi-2\n" in err
+    assert study.with_name("study-results").joinpath(FILE).exists()
+
+
+def start(arguments: Sequence[object]) -> "subprocess.Popen[str]":
+    return subprocess.Popen(
+        [sys.executable, "-m", "modefront", *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
+
+
+@pytest.mark.skipif(os.name == "nt", reason="Windows sends no signal to one process alone")
+def test_a_signal_interrupts_and_leaves_what_was_done(study: Path, tmp_path: Path) -> None:
+    study.write_text(STUDY.replace("points = 3", "points = 300"))
+    folder = tmp_path / "signalled"
+    with start(["run", study, "-o", folder]) as process:
+        while process.poll() is None and len(list(folder.rglob("*.npz"))) < 5:
+            time.sleep(0.01)
+        process.send_signal(signal.SIGINT)
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == 130
+    assert out == ""
+    assert "interrupted; what was done is kept" in err
+    assert "Traceback" not in err
+    assert len(list(folder.rglob("*.npz"))) >= 5
+    assert not (folder / FILE).exists()
+
+
+@pytest.mark.skipif(os.name == "nt", reason="pipes are closed otherwise on Windows")
+def test_a_reader_that_leaves_early_is_no_error_to_speak_of(whole: Path) -> None:
+    with start(["show", whole, "--format", "json"]) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        err = process.stderr.read()
+    assert process.returncode == 1
+    assert err == ""

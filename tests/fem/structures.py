@@ -1,0 +1,150 @@
+"""Structures with known answers, and the few tools that the tests of elements share."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+from scipy import linalg, sparse
+from scipy.sparse.linalg import eigsh
+
+from modefront import fem
+from modefront.fem.elements.beam import beam
+from modefront.fem.elements.brick import brick
+from modefront.fem.elements.kit import ElementMatrices
+from modefront.fem.elements.shapes import TETRAHEDRON_EDGES, FloatArray, IntArray
+from modefront.fem.elements.shell import shell
+from modefront.fem.elements.tetrahedron import tetrahedron
+
+STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
+
+
+def frequencies(model: fem.AffineMatrices, count: int, shift: float = 0.0) -> FloatArray:
+    """Lowest circular frequencies (count,) at theta = 1."""
+    theta = np.ones(len(model.parameters))
+    K, M = model.stiffness(theta), model.mass(theta)
+    if K.shape[0] < 200:
+        # Massless DOFs are infinite frequencies: solve M phi = mu K phi for the largest mu.
+        mu = linalg.eigh(M.toarray(), (K + shift * M).toarray(), eigvals_only=True)[::-1][:count]
+        return np.asarray(np.sqrt(np.abs(1 / mu - shift)))
+    lam = eigsh(K.tocsc(), count, M.tocsc(), sigma=-shift, return_eigenvectors=False)
+    return np.asarray(np.sqrt(np.abs(np.sort(lam))))
+
+
+def rigid_motions(X: FloatArray, directions: int) -> FloatArray:
+    """Six rigid motions (nodes x directions, 6) of nodes X (nodes, 3)."""
+    motions = np.zeros((len(X), 6, 6))
+    for d in range(3):
+        motions[:, d, d] = motions[:, 3 + d, 3 + d] = 1
+        motions[:, :3, 3 + d] = np.cross(np.eye(3)[d], X)
+    return motions[:, :directions].reshape(-1, 6)
+
+
+def rotation(rng: np.random.Generator) -> FloatArray:
+    """Random proper rotation (3, 3)."""
+    Q, R = np.linalg.qr(rng.normal(size=(3, 3)))
+    Q = Q * np.sign(np.diag(R))
+    return np.asarray(Q * np.linalg.det(Q))
+
+
+def move_inner(X: FloatArray, step: FloatArray, amplitude: float, seed: int) -> FloatArray:
+    """Nodes inside the bounding box moved at random by up to `amplitude` steps."""
+    rng = np.random.default_rng(seed)
+    low, high = X.min(0), X.max(0)
+    wide = high > low
+    tolerance = 1e-9 * (high - low).max()
+    inner = ((X > low + tolerance) & (X < high - tolerance) | ~wide).all(1)
+    moved = X.copy()
+    shift = rng.uniform(-1, 1, X.shape) * step * amplitude * wide
+    moved[inner] += shift[inner]
+    return moved
+
+
+def _tetrahedron_nodes() -> FloatArray:
+    corners = np.array([[0, 0, 0], [1.2, 0.1, -0.1], [0.2, 0.9, 0.1], [0.1, 0.3, 1.1]])
+    return np.concatenate([corners, [(corners[i] + corners[j]) / 2 for i, j in TETRAHEDRON_EDGES]])
+
+
+BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1],
+                [0, 1, 1]], dtype=float)  # fmt: skip
+SECTION = fem.rectangle(0.1, 0.2)
+
+
+def _beam(X: FloatArray, r: FloatArray) -> ElementMatrices:
+    axis = X[:, 1] - X[:, 0]
+    side = np.cross(axis, axis[:, [1, 2, 0]] + np.array([0.3, 0, 0]))
+    return beam(X, STEEL, SECTION, side, r)
+
+
+# name: (nodes, directions of each node, element)
+ELEMENTS: dict[str, tuple[FloatArray, int, Callable[[FloatArray], ElementMatrices]]] = {
+    "beam": (np.array([[0, 0, 0], [1.0, 0.5, 0.2]]), 6, lambda X: _beam(X, np.zeros((2, 3)))),
+    "beam, eccentric": (
+        np.array([[0, 0, 0], [1.0, 0.5, 0.2]]),
+        6,
+        lambda X: _beam(X, np.array([[0.1, 0.2, 0], [-0.2, 0.1, 0.3]])),
+    ),
+    "triangle": (
+        np.array([[0, 0, 0], [1.1, 0.2, 0], [0.3, 0.8, 0]]),
+        6,
+        lambda X: shell(X, STEEL, 0.1, 0.0),
+    ),
+    "triangle, eccentric": (
+        np.array([[0, 0, 0], [1.1, 0.2, 0], [0.3, 0.8, 0]]),
+        6,
+        lambda X: shell(X, STEEL, 0.1, 0.3),
+    ),
+    "quadrilateral": (
+        np.array([[0, 0, 0], [1.1, 0.2, 0], [0.9, 1.2, 0], [-0.2, 0.8, 0]]),
+        6,
+        lambda X: shell(X, STEEL, 0.1, 0.0),
+    ),
+    "quadrilateral, warped": (
+        np.array([[0, 0, 0.2], [1.1, 0.2, -0.1], [0.9, 1.2, 0.1], [-0.2, 0.8, 0]]),
+        6,
+        lambda X: shell(X, STEEL, 0.1, -0.2),
+    ),
+    "brick": (
+        BOX + 0.15 * np.sin(np.arange(24).reshape(8, 3) ** 2),
+        3,
+        lambda X: brick(X, STEEL),
+    ),
+    "tetrahedron": (_tetrahedron_nodes(), 3, lambda X: tetrahedron(X, STEEL)),
+    "tetrahedron, curved": (
+        _tetrahedron_nodes() + 0.03 * np.sin(np.arange(30).reshape(10, 3) ** 2),
+        3,
+        lambda X: tetrahedron(X, STEEL),
+    ),
+}
+
+
+def total(parts: tuple[fem.elements.kit.Part, ...]) -> FloatArray:
+    """Sum of the parts of the first element."""
+    return np.asarray(sum(part.matrices[0] for part in parts))
+
+
+def boundary(X: FloatArray, dims: tuple[int, ...]) -> IntArray:
+    """Nodes on the faces of the bounding box across the given axes."""
+    low, high = X.min(0), X.max(0)
+    on = [(np.isclose(X[:, d], low[d]) | np.isclose(X[:, d], high[d])) for d in dims]
+    return np.flatnonzero(np.any(on, axis=0))
+
+
+def solve_inner(model: fem.AffineMatrices, u: FloatArray, given: FloatArray) -> FloatArray:
+    """Displacements (nodes, 6) in equilibrium where the DOFs `given` have the values of u."""
+    K = model.stiffness(np.ones(len(model.parameters)))
+    node, direction = model.dofs.free.T
+    fixed = given[node, direction]
+    q = np.where(fixed, u[node, direction], 0.0)
+    free = np.flatnonzero(~fixed)
+    rhs = -(K @ q)[free]
+    q[free] = sparse.linalg.spsolve(K[free][:, free].tocsc(), rhs)
+    found = np.zeros_like(u)
+    found[node, direction] = q
+    return found
+
+
+def rate(errors: list[float], refinement: float = 2.0) -> FloatArray:
+    """Orders of convergence between successive refinements."""
+    e = np.abs(errors)
+    return np.asarray(np.log(e[:-1] / e[1:]) / np.log(refinement))

@@ -1,0 +1,220 @@
+"""Frequencies and deflections against closed forms, and the rates at which they converge."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scipy.sparse.linalg import spsolve
+from structures import STEEL, boundary, frequencies, move_inner, rate, rotation, solve_inner
+
+from modefront import fem
+from modefront.fem.elements.shapes import FloatArray
+
+# Roots of cos(x) cosh(x) = -1.
+CANTILEVER = np.array([1.875104068711961, 4.694091132974175])
+
+
+def _beam_model(
+    count: int, section: fem.Section, supports: tuple[fem.Support, ...], Q: FloatArray
+) -> fem.AffineMatrices:
+    X, cells = fem.grids.line(np.zeros(3), np.array([1.0, 0, 0]), count)
+    group = fem.Beams("b", cells, STEEL, section, orientation=Q[:, 1].tolist())
+    return fem.assemble(fem.Structure(X @ Q.T, (group,), supports))
+
+
+def test_cantilever_beam_of_8_elements() -> None:
+    b_y, b_z = 0.01, 0.004
+    Q = rotation(np.random.default_rng(0))
+    model = _beam_model(8, fem.rectangle(b_y, b_z), (fem.Support(0),), Q)
+    theory = np.concatenate(
+        [CANTILEVER**2 * np.sqrt(STEEL.E * b**2 / 12 / STEEL.rho) for b in (b_y, b_z)]
+    )
+    found = frequencies(model, 3)
+    assert found == pytest.approx(np.sort(theory)[:3], rel=5e-4)
+
+
+def _hinged_errors(section: fem.Section, theory: float) -> list[float]:
+    errors = []
+    for n in (2, 4, 8, 16):
+        supports = (fem.Support(0, ("x", "y", "z", "rx")), fem.Support(n, ("y", "z", "rx")))
+        found = frequencies(_beam_model(n, section, supports, np.eye(3)), 1)[0]
+        errors.append(found / theory - 1)
+    return errors
+
+
+def test_hinged_beam_with_rigid_shear_converges_with_order_4() -> None:
+    h, k = 0.05, np.pi
+    section = replace(fem.rectangle(h, h), kappa_y=np.inf, kappa_z=np.inf)
+    theory = np.sqrt(STEEL.E * h**2 / 12 * k**4 / STEEL.rho / (1 + k**2 * h**2 / 12))
+    errors = _hinged_errors(section, theory)
+    assert abs(errors[1]) < 3e-4
+    assert np.all(rate(errors) > 3.8)
+
+
+def test_hinged_stocky_timoshenko_beam_converges_with_order_2() -> None:
+    h, k = 0.2, np.pi
+    section = fem.rectangle(h, h)
+    # EI k^4 - rho A w^2 - rho I (1 + E / kappa G) k^2 w^2 + rho^2 I / (kappa G) w^4 = 0.
+    kappa_G, r2 = section.kappa_y * STEEL.G, h**2 / 12
+    linear = -(1 + k**2 * r2 * (1 + STEEL.E / kappa_G))
+    c = [STEEL.rho * r2 / kappa_G, linear, k**4 * STEEL.E * r2 / STEEL.rho]
+    errors = _hinged_errors(section, np.sqrt(np.roots(c).min()))
+    assert abs(errors[2]) < 1e-3
+    assert np.all(rate(errors) > 1.9)
+
+
+def test_beam_is_exact_in_statics_with_one_element() -> None:
+    L, F, section = 1.0, 1000.0, fem.hollow_rectangle(0.2, 0.1, 0.01)
+    model = _beam_model(1, section, (fem.Support(0),), np.eye(3))
+    K = model.stiffness([]).tocsc()
+    for d, inertia, kappa in ((1, section.I_z, section.kappa_y), (2, section.I_y, section.kappa_z)):
+        u = spsolve(K, F * (np.arange(6) == d))
+        exact = F * L**3 / (3 * STEEL.E * inertia) + F * L / (kappa * STEEL.G * section.A)
+        assert u[d] == pytest.approx(exact, rel=1e-12)
+    assert spsolve(K, F * (np.arange(6) == 3))[3] == pytest.approx(F * L / STEEL.G / section.J)
+
+
+def _plate_errors(n: int, amplitude: float, seed: int, triangles: bool) -> FloatArray:
+    """Relative errors of four frequencies of a simply supported square, h / a = 1/200."""
+    X, cells = fem.grids.plate(1.0, 1.0, n, n)
+    X = move_inner(X, np.array([1 / n, 1 / n, 0]), amplitude, seed)
+    cells = fem.grids.triangles(cells) if triangles else cells
+    h = 1 / 200
+    edges_x, edges_y = boundary(X, (0,)), boundary(X, (1,))
+    supports = (
+        fem.Support(np.arange(len(X)), ("x", "y", "rz")),
+        fem.Support(edges_x, ("z", "rx")),
+        fem.Support(edges_y, ("z", "ry")),
+    )
+    model = fem.assemble(fem.Structure(X, (fem.Shells("p", cells, STEEL, h),), supports))
+    stiffness = STEEL.E * h**2 / (12 * (1 - STEEL.nu**2) * STEEL.rho)
+    theory = np.pi**2 * np.array([2, 5, 5, 8]) * np.sqrt(stiffness)
+    return np.asarray(frequencies(model, 4) / theory - 1)
+
+
+@pytest.mark.parametrize("seed", range(4))
+@pytest.mark.parametrize("triangles", [False, True])
+def test_thin_plate_on_a_distorted_mesh(triangles: bool, seed: int) -> None:
+    assert np.abs(_plate_errors(16, 0.2, seed, triangles)).max() < 0.0125
+
+
+@pytest.mark.parametrize("triangles", [False, True])
+def test_thin_plate_converges_with_order_2(triangles: bool) -> None:
+    errors = [_plate_errors(n, 0.2, 1, triangles) for n in (6, 12, 24)]
+    for mode in range(4):
+        assert np.all(rate([e[mode] for e in errors]) > 1.6)
+
+
+@pytest.mark.parametrize("triangles", [False, True])
+@pytest.mark.parametrize("length", [2, 8])
+def test_shell_bends_in_its_plane_exactly(length: int, triangles: bool) -> None:
+    # Pure bending from its values at both ends: no parasitic shear at any aspect ratio.
+    L, b, t = 4.0, 0.5, 0.01
+    X, cells = fem.grids.plate(L, b, length, 1)
+    cells = fem.grids.triangles(cells) if triangles else cells
+    model = fem.assemble(fem.Structure(X, (fem.Shells("p", cells, STEEL, t),)), floating=True)
+    x, y = X[:, 0], X[:, 1] - b / 2
+    u = np.zeros((len(X), 6))
+    u[:, 0], u[:, 5] = x * y, -x
+    u[:, 1] = -(x**2 + STEEL.nu * y**2) / 2
+    given = np.zeros(u.shape, dtype=bool)
+    given[boundary(X, (0,))] = True
+    # The triangle has the exact energy; its loads on the free sides vanish in the mean only.
+    error = np.abs(solve_inner(model, u, given) - u).max()
+    assert error < (5e-3 if triangles else 1e-9) * np.abs(u).max()
+    node, direction = model.dofs.free.T
+    q = u[node, direction]
+    energy = q @ (model.stiffness([]) @ q) / 2
+    assert energy == pytest.approx(STEEL.E * t * b**3 / 12 * L / 2, rel=1e-9)
+
+
+def test_twisted_beam_of_warped_shells() -> None:
+    # R. H. MacNeal, R. L. Harder, doi:10.1016/0168-874X(85)90003-4: tip displacements.
+    L, b, t = 12.0, 1.1, 0.32
+    X, cells = fem.grids.plate(L, b, 24, 4)
+    angle, arm = np.pi / 2 * X[:, 0] / L, X[:, 1] - b / 2
+    twisted = np.stack([X[:, 0], arm * np.cos(angle), arm * np.sin(angle)], 1)
+    material = fem.Material(29e6, 0.22, 1.0)
+    root = np.flatnonzero(X[:, 0] == 0)
+    end = np.flatnonzero(X[:, 0] == L)
+    sensors = (
+        fem.Sensor("y", (L, 0, 0), "y"),
+        fem.Sensor("z", (L, 0, 0), "z"),
+    )
+    assert len(end) == 5
+    model = fem.assemble(
+        fem.Structure(
+            twisted,
+            (fem.Shells("s", cells, material, t),),
+            (fem.Support(root),),
+            sensors=sensors,
+        )
+    )
+    K = model.stiffness([]).tocsc()
+    S = model.selection.toarray()
+    flexibility = S @ spsolve(K, S.T)
+    # At the tip the section stands along z: z is in its plane, y across it.
+    assert flexibility[1, 1] == pytest.approx(5.424e-3, rel=0.02)
+    assert flexibility[0, 0] == pytest.approx(1.754e-3, rel=0.02)
+
+
+def test_cylindrical_roof_under_its_weight() -> None:
+    # Scordelis-Lo roof in the same collection: 0.3024 at the middle of the free edge.
+    n, R, L, t = 16, 25.0, 50.0, 0.25
+    X, cells = fem.grids.plate(L / 2, np.radians(40), n, n)
+    s, a = X[:, 0], X[:, 1]
+    roof = np.stack([s, R * np.sin(a), R * np.cos(a)], 1)
+    material = fem.Material(4.32e8, 0.0, 1.0)
+    supports = (
+        fem.Support(np.flatnonzero(s == 0), ("y", "z")),
+        fem.Support(np.flatnonzero(s == L / 2), ("x", "ry", "rz")),
+        fem.Support(np.flatnonzero(a == 0), ("y", "rx", "rz")),
+    )
+    group = (fem.Shells("roof", cells, material, t),)
+    sensor = (fem.Sensor("edge", tuple(roof[-1].tolist()), "z"),)
+    model = fem.assemble(fem.Structure(roof, group, supports, sensors=sensor))
+    weight = np.where(model.dofs.free[:, 1] == 2, 1.0, 0.0)
+    load = model.mass([]) @ weight * (-90.0 / t)
+    u = spsolve(model.stiffness([]).tocsc(), load)
+    assert (model.selection @ u)[0] == pytest.approx(-0.3024, rel=0.01)
+
+
+def test_cantilever_of_bricks_with_one_through_the_thickness() -> None:
+    X, cells = fem.grids.box((25.0, 1.0, 1.0), (25, 1, 1))
+    root = fem.Support(np.flatnonzero(X[:, 0] == 0), ("x", "y", "z"))
+    model = fem.assemble(fem.Structure(X, (fem.Solids("s", cells, STEEL),), (root,)))
+    theory = CANTILEVER[0] ** 2 / 25**2 * np.sqrt(STEEL.E / 12 / STEEL.rho)
+    assert frequencies(model, 2) == pytest.approx(theory, rel=5e-3)
+
+
+@pytest.mark.parametrize(
+    ("kind", "counts", "order"), [("brick", (4, 8, 12), 2), ("tetrahedron", (3, 4, 6), 4)]
+)
+def test_solids_converge_to_the_shear_mode_of_a_box(
+    kind: str, counts: tuple[int, ...], order: int
+) -> None:
+    # Faces that slide: u = (sin pi x cos pi y, -cos pi x sin pi y, 0), w^2 = 2 pi^2 G / rho.
+    theory = np.pi * np.sqrt(2 * STEEL.G / STEEL.rho)
+    errors = []
+    for n in counts:
+        X, cells = fem.grids.box((1.0, 1.0, 1.0), (n, n, n))
+        if kind == "tetrahedron":
+            X, cells = fem.grids.tetrahedra(X, cells)
+        supports = tuple(
+            fem.Support(boundary(X, (d,)), (name,)) for d, name in enumerate(("x", "y", "z"))
+        )
+        model = fem.assemble(fem.Structure(X, (fem.Solids("s", cells, STEEL),), supports))
+        errors.append(frequencies(model, 1)[0] / theory - 1)
+    orders = np.log(np.abs(errors[:-1]) / np.abs(errors[1:])) / np.log(
+        np.array(counts[1:]) / np.array(counts[:-1])
+    )
+    assert np.all(orders > order - 0.6), (errors, orders)
+
+
+def test_free_box_has_six_zero_frequencies() -> None:
+    X, cells = fem.grids.box((1.0, 0.5, 0.3), (3, 2, 2))
+    model = fem.assemble(fem.Structure(X, (fem.Solids("s", cells, STEEL),)), floating=True)
+    w = frequencies(model, 7, shift=1e4)
+    assert np.all(w[:6] < 1e-3 * w[6])

@@ -1,0 +1,117 @@
+"""What holds for every element alone: rigid motions, mass, invariance, symmetry."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from structures import BOX, ELEMENTS, SECTION, STEEL, rigid_motions, rotation, total
+
+from modefront.fem.elements.shapes import FloatArray, gauss_box, gauss_simplex, square_8
+
+NAMES = list(ELEMENTS)
+seeds = st.integers(0, 2**32 - 1)
+
+
+def _placed(name: str, seed: int) -> tuple[FloatArray, int]:
+    """Nodes of an element somewhere in space, and its directions."""
+    X, directions, _ = ELEMENTS[name]
+    rng = np.random.default_rng(seed)
+    return X @ rotation(rng).T + rng.normal(size=3), directions
+
+
+@pytest.mark.parametrize("name", NAMES)
+@settings(max_examples=10, deadline=None)
+@given(seed=seeds)
+def test_exactly_six_motions_without_energy(name: str, seed: int) -> None:
+    X, directions = _placed(name, seed)
+    K = total(ELEMENTS[name][2](X[None]).stiffness)
+    values = np.linalg.eigvalsh(K)
+    assert np.abs(K @ rigid_motions(X, directions)).max() < 1e-9 * values[-1]
+    assert np.all(np.abs(values[:6]) < 1e-9 * values[-1])
+    assert values[6] > 1e-6 * values[-1]
+
+
+# Orientation and offsets of a beam are global vectors: they do not turn with its nodes.
+@pytest.mark.parametrize("name", [name for name in NAMES if not name.startswith("beam")])
+def test_turning_the_element_turns_its_matrices(name: str) -> None:
+    X, directions, element = ELEMENTS[name]
+    Q = rotation(np.random.default_rng(3))
+    B = np.kron(np.eye(len(X) * directions // 3), Q)
+    for kind in ("stiffness", "mass"):
+        before = getattr(element(X[None]), kind)
+        after = getattr(element((X @ Q.T)[None]), kind)
+        for a, b in zip(before, after, strict=True):
+            K = B @ a.matrices[0] @ B.T
+            assert np.abs(b.matrices[0] - K).max() < 1e-12 * np.abs(K).max()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_matrices_are_symmetric_to_the_last_digit_and_mass_not_negative(name: str) -> None:
+    X, _, element = ELEMENTS[name]
+    matrices = element(X[None])
+    for part in matrices.stiffness + matrices.mass:
+        assert np.array_equal(part.matrices, np.swapaxes(part.matrices, 1, 2))
+    values = np.linalg.eigvalsh(total(matrices.mass))
+    assert values[0] > -1e-12 * values[-1]
+
+
+MEASURES = {
+    "beam": np.linalg.norm([1.0, 0.5, 0.2]) * SECTION.A,
+    "beam, eccentric": np.linalg.norm([0.7, 0.4, 0.5]) * SECTION.A,
+    "triangle": 0.1 * (1.1 * 0.8 - 0.3 * 0.2) / 2,
+    "triangle, eccentric": 0.1 * (1.1 * 0.8 - 0.3 * 0.2) / 2,
+    "quadrilateral": 0.1 * abs(np.cross([0.9, 1.2, 0], [-1.3, 0.6, 0])[2]) / 2,
+    "tetrahedron": abs(np.linalg.det([[1.2, 0.1, -0.1], [0.2, 0.9, 0.1], [0.1, 0.3, 1.1]])) / 6,
+}
+
+
+@pytest.mark.parametrize("name", list(MEASURES))
+def test_total_mass_is_exact(name: str) -> None:
+    X, directions, element = ELEMENTS[name]
+    M = total(element(X[None]).mass)
+    motions = rigid_motions(X, directions)
+    found = np.diag(motions.T @ M @ motions)[:3]
+    assert found == pytest.approx(STEEL.rho * MEASURES[name], rel=1e-13)
+
+
+def test_rigid_inertia_of_a_box_and_a_plate() -> None:
+    sides = np.array([2.0, 0.5, 0.3])
+    box = (BOX - 0.5) * sides
+    M = total(ELEMENTS["brick"][2](box[None]).mass)
+    m = STEEL.rho * sides.prod()
+    motions = rigid_motions(box, 3)
+    expected = m / 12 * ((sides**2).sum() - sides**2)
+    assert np.diag(motions.T @ M @ motions)[3:] == pytest.approx(expected, rel=1e-13)
+
+    flat = box[:4] * np.array([1, 1, 0])
+    M = total(ELEMENTS["quadrilateral"][2](flat[None]).mass)
+    motions = rigid_motions(flat, 6)
+    a, b, t = 2.0, 0.5, 0.1
+    m = STEEL.rho * a * b * t
+    # About its own normal a flat shell has the inertia of its points alone.
+    expected = m / 12 * np.array([b**2 + t**2, a**2 + t**2, a**2 + b**2])
+    assert np.diag(motions.T @ M @ motions)[3:] == pytest.approx(expected, rel=1e-13)
+
+
+def test_quadrature_integrates_the_degree_it_promises() -> None:
+    from math import factorial
+
+    xi, w = gauss_simplex(3, 3)
+    for p, q, r in [(5, 0, 0), (2, 2, 1), (0, 1, 4), (1, 1, 3)]:
+        exact = factorial(p) * factorial(q) * factorial(r) / factorial(p + q + r + 3)
+        found = (w * xi[:, 0] ** p * xi[:, 1] ** q * xi[:, 2] ** r).sum()
+        assert found == pytest.approx(exact, rel=1e-13)
+    xi, w = gauss_box(2, 2)
+    assert (w * xi[:, 0] ** 2 * xi[:, 1] ** 2).sum() == pytest.approx(4 / 9)
+
+
+def test_shape_functions_agree_with_their_derivatives() -> None:
+    rng = np.random.default_rng(0)
+    xi, step = rng.uniform(-1, 1, (5, 2)), 1e-6
+    _, dN = square_8(xi)
+    for d in range(2):
+        e = step * np.eye(2)[d]
+        numeric = (square_8(xi + e)[0] - square_8(xi - e)[0]) / (2 * step)
+        assert np.abs(numeric - dN[..., d]).max() < 1e-9

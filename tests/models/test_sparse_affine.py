@@ -1,0 +1,70 @@
+"""Sparse affine matrices say the same as dense ones, and as complex steps."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse
+from hypothesis import given
+from hypothesis import strategies as st
+
+from modefront.models.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
+
+
+def pair(size: int, terms: int, parameters: int, seed: int) -> tuple[SparseAffine, DenseAffine]:
+    """Return the same random matrix in both forms; some terms may be zero."""
+    rng = np.random.default_rng(seed)
+    found = []
+    for _ in range(terms):
+        half = scipy.sparse.random_array((size, size), density=2 / size**2, rng=rng)
+        found.append(scipy.sparse.coo_array(half + half.T))
+    coefficients = Monomials(rng.integers(-1, 4, (terms, parameters)).astype(float))
+    full = np.array([A.toarray() for A in found]).reshape(terms, size, size)
+    return sparse_affine(found, coefficients, size), DenseAffine(full, coefficients)
+
+
+sizes = st.tuples(st.integers(2, 12), st.integers(1, 5), st.integers(1, 4), st.integers(0, 10**6))
+
+
+@given(sizes)
+def test_same_as_dense(case: tuple[int, int, int, int]) -> None:
+    sparse, dense = pair(*case)
+    rng = np.random.default_rng(case[3])
+    theta, V = rng.uniform(0.5, 2.0, case[2]), rng.standard_normal((case[0], 3))
+    assert sparse.size == dense.size
+    assert sparse.used.tolist() == dense.used.tolist()
+    assert sparse.at(theta).toarray() == pytest.approx(dense.at(theta), abs=1e-12)
+    assert sparse.dense().terms == pytest.approx(dense.terms, abs=0)
+    expected = dense.derivatives_times(theta, V)
+    assert sparse.derivatives_times(theta, V) == pytest.approx(expected, abs=1e-12)
+    rows = sparse.derivative_rows(theta, V).toarray().reshape(3, case[2], case[0])
+    assert rows == pytest.approx(expected.transpose(1, 2, 0), abs=1e-12)
+
+
+@given(sizes)
+def test_derivatives_against_complex_step(case: tuple[int, int, int, int]) -> None:
+    sparse, _ = pair(*case)
+    rng = np.random.default_rng(case[3])
+    theta, V = rng.uniform(0.5, 2.0, case[2]), rng.standard_normal((case[0], 2))
+    found = sparse.derivatives_times(theta, V)
+    for i in range(case[2]):
+        step = theta + 1e-30j * np.eye(case[2])[i]
+        values = sparse.terms @ np.prod(step**sparse.coefficients.exponents, axis=1)
+        parts = values.imag / 1e-30, sparse.indices, sparse.indptr
+        slope = scipy.sparse.csr_array(parts, shape=(case[0], case[0]))
+        assert found[:, :, i] == pytest.approx(slope @ V, abs=1e-10)
+
+
+def test_pattern_is_the_union_and_does_not_depend_on_theta() -> None:
+    spring = scipy.sparse.coo_array(np.array([[1.0, -1.0], [-1.0, 1.0]]))
+    ground = scipy.sparse.coo_array(np.array([[1.0, 0.0], [0.0, 0.0]]))
+    A = sparse_affine([ground, spring], Monomials(np.eye(2)), 2)
+    assert A.at(np.array([1.0, 0.0])).nnz == A.at(np.array([1.0, 1.0])).nnz == 4
+    assert A.indptr.dtype == A.indices.dtype == np.int32
+
+
+def test_only_the_rows_a_term_touches_are_computed() -> None:
+    size = 1000
+    local = scipy.sparse.coo_array(([2.0], ([7], [7])), shape=(size, size))
+    A = sparse_affine([local], Monomials(np.eye(1)), size)
+    assert A.derivative_rows(np.ones(1), np.ones((size, 3))).nnz == 3

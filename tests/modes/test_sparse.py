@@ -1,0 +1,356 @@
+"""The sparse engine against the dense one, Nelson's method and the things that can go wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.sparse
+import scipy.sparse.linalg
+from hypothesis import given
+from hypothesis import strategies as st
+
+from modefront._typing import Floats
+from modefront.errors import ModelError
+from modefront.models.affine import Monomials, SparseAffine, sparse_affine
+from modefront.models.matrices import MatrixModel, matrices
+from modefront.modes import dense, derivatives, sparse
+from modefront.modes.factorisation import rslab_ldl, superlu
+from modefront.modes.lanczos import Ritz, greatest
+from modefront.modes.pencil import Pencil, pencil
+from modefront.modes.result import Modes
+from modefront.modes.spectrum import Shifted
+
+
+def springs(size: int, ends: Floats, k: Floats) -> scipy.sparse.coo_array:
+    """Return the stiffness of springs between degrees of freedom (or the ground, -1)."""
+    A = np.zeros((size + 1, size + 1))
+    for (a, b), value in zip(ends.astype(int), k, strict=True):
+        A[[a, b, a, b], [a, b, b, a]] += [value, value, -value, -value]
+    return scipy.sparse.coo_array(A[:-1, :-1])
+
+
+def network(size: int, seed: int, *, massless: float, free: bool) -> tuple[SparseAffine, ...]:
+    """Return K and M of a random network of springs with three stiffness and two mass regions."""
+    rng = np.random.default_rng(seed)
+    chain = np.column_stack([np.arange(size), np.arange(-1, size - 1)])[free:]
+    extra = rng.integers(0, size, (size // 2, 2))
+    ends = np.concatenate([chain, extra[extra[:, 0] != extra[:, 1]]])
+    k = rng.uniform(0.5, 2.0, len(ends))
+    region = rng.integers(0, 3, len(ends))
+    K = [springs(size, ends[region == j], k[region == j]) for j in range(3)]
+    m = np.where(rng.random(size) < massless, 0.0, rng.uniform(0.5, 2.0, size))
+    m[[0, size // 2, size - 1]] = 1.0
+    half = np.arange(size) < size // 2
+    M = [scipy.sparse.coo_array(np.diag(m * part)) for part in (half, ~half)]
+    exponents = np.zeros((3, 5)), np.zeros((2, 5))
+    exponents[0][[0, 1, 2], [0, 1, 2]] = [1.0, 1.0, 3.0]
+    exponents[1][[0, 1], [3, 4]] = 1.0
+    return (
+        sparse_affine(K, Monomials(exponents[0]), size),
+        sparse_affine(M, Monomials(exponents[1]), size),
+    )
+
+
+def lattice(
+    nx: int, ny: int, nz: int, *, clamped: bool = True
+) -> tuple[SparseAffine, SparseAffine]:
+    """Return K and M of a bar of springs with diagonals, three regions along its length."""
+    node = np.arange(nx * ny * nz).reshape(nx, ny, nz)
+    size = 3 * node.size
+    entries: list[tuple[Floats, Floats, Floats, int]] = []
+    for step in np.ndindex(2, 2, 2):
+        for sign in ((1, 1, 1), (1, -1, 1), (1, 1, -1)):
+            d = np.array(step) * sign
+            if not d.any() or any(s < 0 and not e for s, e in zip(sign, step, strict=True)):
+                continue
+            sides = list(zip(d, node.shape, strict=True))
+            a = node[tuple(slice(max(0, -v), n - max(0, v)) for v, n in sides)].ravel()
+            b = node[tuple(slice(max(0, v), n + min(0, v)) for v, n in sides)].ravel()
+            e = d / np.linalg.norm(d)
+            for first, second, s in ((a, a, 1), (b, b, 1), (a, b, -1), (b, a, -1)):
+                for i, j in np.ndindex(3, 3):
+                    for region in range(3):
+                        part = a // (ny * nz) * 3 // nx == region
+                        row, column = 3 * first[part] + i, 3 * second[part] + j
+                        entries.append((row, column, np.full(row.size, s * e[i] * e[j]), region))
+    held = 3 * ny * nz * clamped
+    K = []
+    for region in range(3):
+        row, column, value = (
+            np.concatenate([entry[k] for entry in entries if entry[3] == region]) for k in range(3)
+        )
+        inner = (row >= held) & (column >= held)
+        parts = value[inner], (row[inner] - held, column[inner] - held)
+        K.append(scipy.sparse.coo_array(parts, shape=(size - held, size - held)))
+    M = [scipy.sparse.coo_array(scipy.sparse.eye_array(size - held))]
+    return (
+        sparse_affine(K, Monomials(np.eye(3)), size - held),
+        sparse_affine(M, Monomials(np.zeros((1, 3))), size - held),
+    )
+
+
+def both(
+    K: SparseAffine, M: SparseAffine, theta: Floats, count: int, sensors: Floats | None = None
+) -> tuple[Modes, Modes]:
+    """Return the modes of the sparse and of the dense engine, with the same signs."""
+    S = np.eye(K.size) if sensors is None else sensors
+    found = sparse.modes(pencil(K, M), scipy.sparse.csr_array(S), theta, count, True)
+    expected = dense.modes(K.dense(), M.dense(), S, theta, count, True)
+    sign = np.where(np.sum(found.phi * expected.phi, axis=0) < 0, -1.0, 1.0)
+    signed = replace(found, phi=found.phi * sign, dphi=found.dphi * sign[:, None])
+    return signed, expected
+
+
+def agree(found: Modes, expected: Modes, tolerance: float = 1e-8) -> None:
+    """Check all that is defined: single modes, and subspaces of coinciding ones."""
+    scale = np.abs(expected.lam).max()
+    assert found.lam == pytest.approx(expected.lam, rel=1e-11, abs=1e-11 * scale)
+    assert found.coincident.tolist() == expected.coincident.tolist()
+    assert found.dlam == pytest.approx(expected.dlam, abs=tolerance * np.abs(expected.dlam).max())
+    one = ~expected.coincident
+    for r in np.flatnonzero(one):
+        size = np.abs(expected.dphi[:, r]).max() + np.abs(expected.phi[:, r]).max()
+        assert found.phi[:, r] == pytest.approx(expected.phi[:, r], abs=tolerance)
+        assert found.dphi[:, r] == pytest.approx(expected.dphi[:, r], abs=tolerance * size)
+
+
+@given(
+    st.integers(6, 40),
+    st.integers(0, 10**6),
+    st.sampled_from([0.0, 0.4]),
+    st.booleans(),
+    st.sampled_from([1, 2, 30]),
+)
+def test_same_as_dense(size: int, seed: int, massless: float, free: bool, sensors: int) -> None:
+    K, M = network(size, seed, massless=massless, free=free)
+    rng = np.random.default_rng(seed)
+    theta = rng.uniform(0.7, 1.5, 5)
+    agree(*both(K, M, theta, 3, rng.standard_normal((sensors, size))))
+
+
+@pytest.mark.parametrize("split", [1e-2, 1e-4, 0.0])
+def test_close_and_repeated_modes(split: float) -> None:
+    K, M = network(20, 1, massless=0.3, free=False)
+    two = scipy.sparse.block_diag
+    scaled = [(1 + split) * A for A in _terms(K)]
+    K2 = sparse_affine(
+        [two((A, B)).tocoo() for A, B in zip(_terms(K), scaled, strict=True)], K.coefficients, 40
+    )
+    M2 = sparse_affine([two((A, A)).tocoo() for A in _terms(M)], M.coefficients, 40)
+    found, expected = both(K2, M2, np.ones(5), 3)
+    assert found.coincident.all() == (split == 0.0)
+    agree(found, expected, 1e-7 if split else 1e-8)
+    if split == 0.0:
+        outer = [np.einsum("srp,tr->stp", m.dphi[:, :2], m.phi[:, :2]) for m in (found, expected)]
+        assert outer[0] == pytest.approx(outer[1], abs=1e-8)
+
+
+def _terms(A: SparseAffine) -> list[scipy.sparse.csr_array]:
+    return [scipy.sparse.csr_array(term) for term in A.dense().terms]
+
+
+@given(st.integers(0, 10**6))
+def test_derivatives_do_not_depend_on_the_side_from_which_they_are_found(seed: int) -> None:
+    K, M = network(40, seed, massless=0.3, free=False)
+    rng = np.random.default_rng(seed)
+    S = rng.standard_normal((12, 40))
+    engine = pencil(K, M)
+    direct = sparse.modes(engine, S, np.ones(5), 3, True)
+    for sensor in (0, 7):
+        adjoint = sparse.modes(engine, S[sensor : sensor + 1], np.ones(5), 3, True)
+        scale = np.abs(direct.dphi).max()
+        assert adjoint.dphi[0] == pytest.approx(direct.dphi[sensor], abs=1e-9 * scale)
+
+
+def nelson(K: SparseAffine, M: SparseAffine, theta: Floats, lam: float, phi: Floats) -> Floats:
+    """Return dphi (N, p) of a single mode with one factorisation of K - lam M (Nelson 1976)."""
+    Kt, Mt = K.at(theta), M.at(theta)
+    dK = K.derivatives_times(theta, phi[:, None])[:, 0]
+    dM = M.derivatives_times(theta, phi[:, None])[:, 0]
+    force = dK - lam * dM
+    right = np.outer(Mt @ phi, phi @ force) - force
+    fixed = int(np.argmax(np.abs(phi * (Mt @ phi))))
+    keep = scipy.sparse.diags_array((np.arange(phi.size) != fixed).astype(float))
+    one = scipy.sparse.diags_array((np.arange(phi.size) == fixed).astype(float))
+    right[fixed] = 0.0
+    A = (keep @ (Kt - lam * Mt) @ keep + one).tocsc()
+    factor = scipy.sparse.linalg.splu(A)
+    v = factor.solve(right)
+    v += factor.solve(right - A @ v)
+    own = -(Mt @ phi) @ v - 0.5 * phi @ dM
+    out: Floats = v + np.outer(phi, own)
+    return out
+
+
+@pytest.mark.parametrize("analyse", [rslab_ldl.analyse, superlu.analyse])
+def test_nelson(analyse: Callable[..., Any], monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("modefront.modes.pencil.analyse", analyse)
+    K, M = lattice(9, 4, 3)
+    theta = np.array([1.0, 1.3, 0.8])
+    engine = pencil(K, M)
+    found = sparse.modes(engine, np.eye(K.size), theta, 4, True)
+    for r in range(4):
+        expected = nelson(K, M, theta, found.lam[r], found.phi[:, r])
+        scale = np.abs(expected).max()
+        assert found.dphi[:, r] == pytest.approx(expected, abs=1e-8 * scale)
+
+
+def test_large_enough_to_restart_and_to_be_shared_between_threads() -> None:
+    K, M = lattice(24, 4, 4)
+    theta = np.array([1.0, 1.3, 0.8])
+    found = sparse.lowest(pencil(K, M), theta, 12)
+    expected = scipy.sparse.linalg.eigsh(
+        K.at(theta), 12, M.at(theta), 0.0, return_eigenvectors=False
+    )
+    assert found.lam[:12] == pytest.approx(np.sort(expected), rel=1e-10)
+
+
+def model(K: Floats, M: Floats) -> MatrixModel:
+    """Return a sparse model, however small, with two parameters that scale K and M."""
+    size = len(K)
+    terms = [scipy.sparse.coo_array(A) for A in (K, M)]
+    stiffness, mass = (
+        sparse_affine([A], Monomials(np.eye(2)[[j]]), size) for j, A in enumerate(terms)
+    )
+    names = tuple(map(str, range(size)))
+    selection = scipy.sparse.csr_array(np.eye(size))
+    return MatrixModel(("k", "m"), names, selection, stiffness, mass)
+
+
+def test_superlu_alone_gives_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
+    K, M = lattice(9, 4, 3)
+    theta = np.array([1.0, 1.3, 0.8]) * 1e9
+    expected = sparse.modes(pencil(K, M), np.eye(K.size), theta, 4, True)
+    monkeypatch.setattr("modefront.modes.pencil.analyse", superlu.analyse)
+    found = sparse.modes(pencil(K, M), np.eye(K.size), theta, 4, True)
+    assert found.lam == pytest.approx(expected.lam, rel=1e-11)
+    assert np.abs(found.dphi) == pytest.approx(np.abs(expected.dphi), abs=1e-17)
+
+
+def test_two_factorisations_an_evaluation() -> None:
+    found = model(np.diag(np.arange(1.0, 41.0)), np.eye(40))
+    for evaluation in range(1, 4):
+        assert found.modes(np.ones(2), 3).lam == pytest.approx([1, 2, 3])
+        assert found.counts.eigenproblems == evaluation
+        assert found.counts.factorisations == 2 * evaluation
+
+
+def test_eigenvalues_repeated_more_often_than_a_block_is_wide() -> None:
+    found = model(np.diag([1.0] * 9 + [2.0] * 30), np.eye(39)).modes(np.ones(2), 9)
+    assert found.lam == pytest.approx(np.ones(9))
+    assert found.coincident.all()
+    assert found.dlam == pytest.approx(np.tile([1.0, -1.0], (9, 1)))
+
+
+def blind(calls: int) -> Callable[..., Ritz]:
+    """Return a Lanczos iteration that overlooks the second mode in its first ``calls`` runs."""
+    left = [calls]
+
+    def run(*args: Any, **keywords: Any) -> Ritz:
+        ritz = greatest(*args, **keywords)
+        left[0] -= 1
+        if left[0] < 0:
+            return ritz
+        return replace(
+            ritz,
+            mu=np.delete(ritz.mu, 1),
+            X=np.delete(ritz.X, 1, axis=1),
+            converged=ritz.converged - 1,
+        )
+
+    return run
+
+
+def test_a_missed_mode_is_found(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sparse, "greatest", blind(1))
+    found = model(np.diag(np.arange(1.0, 41.0)), np.eye(40))
+    assert found.modes(np.ones(2), 3).lam == pytest.approx([1, 2, 3])
+    assert found.counts.factorisations == 4
+
+
+def test_a_missed_mode_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(sparse, "greatest", blind(100))
+    with pytest.raises(ModelError, match="missed"):
+        model(np.diag(np.arange(1.0, 41.0)), np.eye(40)).modes(np.ones(2), 3)
+
+
+def test_rigid_body_modes_only() -> None:
+    K = np.zeros((12, 12))
+    K[:3, :3] = [[1.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]]
+    K[3:, 3:] = np.diag(np.arange(2.0, 11.0))
+    K[3:5, 3:5] = [[1.0, -1.0], [-1.0, 1.0]]
+    found = model(K, np.eye(12)).modes(np.ones(2), 2)
+    assert found.lam == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert found.dlam == pytest.approx(np.zeros((2, 2)), abs=1e-12)
+
+
+@pytest.mark.parametrize("count", [1, 3, 6, 8])
+def test_six_rigid_body_modes(count: int) -> None:
+    K, M = lattice(6, 3, 3, clamped=False)
+    theta = np.array([1.0, 1.3, 0.8])
+    found = sparse.modes(pencil(K, M), np.eye(K.size), theta, count, True)
+    expected = dense.eigensolve(K.at(theta).toarray(), M.at(theta).toarray())[0][:count]
+    assert found.lam == pytest.approx(expected, rel=1e-10, abs=1e-12)
+    assert found.dlam[:6] == pytest.approx(np.zeros((min(count, 6), 3)), abs=1e-12)
+
+
+@pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
+@pytest.mark.parametrize("free", [True, False])
+def test_units_do_not_matter(scale: float, free: bool) -> None:
+    K, M = (A.at(np.ones(5)).toarray() for A in network(40, 3, massless=0.4, free=free))
+    expected, found = (model(s * K, M).modes(np.ones(2), 4) for s in (1.0, scale))
+    top = expected.lam[-1]
+    assert found.lam / scale == pytest.approx(expected.lam, rel=1e-10, abs=1e-12 * top)
+
+
+BROKEN = {
+    "nothing holds DOF 5": (np.r_[1:6, 0, 7:13], np.r_[1:6, 0, 7:13] > 0, "degree of freedom 5"),
+    "indefinite K": (np.r_[-3.0, 1:12], np.ones(12), "stiffness matrix is indefinite"),
+    "massless and unstable": (np.r_[-3.0, 1:12], np.r_[0.0, np.ones(11)], "indefinite"),
+    "indefinite M": (np.ones(12), np.r_[-1.0, 1:12], "mass matrix is indefinite"),
+    "few masses": (np.arange(1.0, 13), np.r_[1.0, 2.0, np.zeros(10)], "only 2 have a finite"),
+}
+
+
+@pytest.mark.parametrize(("K", "M", "message"), BROKEN.values(), ids=BROKEN)
+def test_broken_models(K: Floats, M: Floats, message: str) -> None:
+    with pytest.raises(ModelError, match=message):
+        model(np.diag(K.astype(float)), np.diag(M.astype(float))).modes(np.ones(2), 3)
+
+
+def test_modes_without_derivatives_are_the_same() -> None:
+    found = model(np.diag(np.arange(1.0, 41.0)), np.eye(40))
+    with_, without = (found.modes(np.ones(2), 3, derivatives=d) for d in (True, False))
+    assert np.array_equal(with_.lam, without.lam)
+    assert np.array_equal(with_.phi, without.phi)
+    assert without.dphi.shape == (40, 3, 0)
+
+
+def test_small_models_are_dense_and_large_ones_sparse() -> None:
+    for size, expected in ((20, True), (400, False)):
+        K = scipy.sparse.diags_array(np.arange(1.0, size + 1))
+        M = scipy.sparse.eye_array(size)
+        found = matrices(["k"], {"k": K}, {"base": M}, {"a": 0, "b": [(1, 0.5), (2, 0.5)]})
+        assert found.modes(np.ones(1), 2).lam == pytest.approx([1, 2])
+        assert (found.counts.factorisations == 0) == expected
+
+
+def test_a_solution_that_does_not_converge_is_an_error(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(derivatives, "STEPS", 1)
+    K, M = lattice(5, 3, 3)
+    with pytest.raises(ModelError, match="derivatives do not converge"):
+        sparse.modes(pencil(K, M), np.eye(K.size), np.array([1.0, 1.3, 0.8]), 3, True)
+
+
+def test_the_factor_is_of_the_pencil() -> None:
+    K, M = network(15, 4, massless=0.3, free=False)
+    engine: Pencil = pencil(K, M)
+    theta = np.ones(5)
+    Kt, Mt = K.at(theta), M.at(theta)
+    shifted = Shifted(0.3, engine.factor(Kt.data, Mt.data, 0.3))
+    X = np.random.default_rng(0).standard_normal((15, 2))
+    assert shifted.factor.solve((Kt - 0.3 * Mt) @ X) == pytest.approx(X, abs=1e-9)

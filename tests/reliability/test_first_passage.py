@@ -1,0 +1,274 @@
+"""The estimators against exact results, published-style reference values and one another."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.integrate import quad
+from scipy.optimize import brentq
+from scipy.stats import norm
+
+from modefront.reliability import (
+    METHODS,
+    FirstPassage,
+    KanaiTajimi,
+    Sided,
+    WhiteNoise,
+    additive_rules,
+    directional_importance_sampling,
+    importance_sampling,
+    monte_carlo,
+    step_effect,
+)
+from modefront.reliability.elementary import elementary_failures
+from modefront.reliability.gaussian import gaussian_response
+from modefront.response import ModalSystem
+
+CONDITIONAL = [importance_sampling, directional_importance_sampling, additive_rules]
+OSCILLATOR = ModalSystem(np.array([7.85]), np.array([0.02]), np.eye(1), np.eye(1))
+REFERENCE = FirstPassage(OSCILLATOR, WhiteNoise(1.0, Sided.TWO), 30.0, 0.02)
+REFERENCE_VALUES = {1.6: 8.37e-3, 1.8: 1.144e-3, 2.1: 3.48e-5, 2.4: 5.84e-7}
+
+
+def seed(number):
+    return np.random.SeedSequence(number)
+
+
+@pytest.mark.parametrize("method", CONDITIONAL, ids=lambda m: m.__name__)
+def test_reference_values(method):
+    for found in method(REFERENCE, list(REFERENCE_VALUES), 4000, seed(7), 1):
+        expected = REFERENCE_VALUES[found.level]
+        assert abs(found.probability - expected) < 4 * found.standard_error
+        assert found.coefficient_of_variation < 0.05
+
+
+def test_reference_values_by_counting():
+    found, _ = monte_carlo(REFERENCE, [1.6, 1.8], 20_000, seed(8), 1)
+    assert abs(found.probability - 8.37e-3) < 4 * found.standard_error
+    bernoulli = np.sqrt((1 - found.probability) / found.probability)
+    assert found.unit_coefficient_of_variation == pytest.approx(bernoulli, rel=1e-3)
+
+
+def test_unit_coefficients_of_variation_of_the_reference():
+    (plain,) = importance_sampling(REFERENCE, [2.1], 12_000, seed(1))
+    (directional,) = directional_importance_sampling(REFERENCE, [2.1], 12_000, seed(1))
+    assert plain.unit_coefficient_of_variation <= 1.0
+    assert directional.unit_coefficient_of_variation <= 0.8
+
+
+def test_estimated_coefficient_of_variation_is_that_of_repetitions():
+    short = replace(REFERENCE, duration=3.0)
+    for method in CONDITIONAL:
+        runs = [method(short, [1.0], 100, seed(k), 1)[0] for k in range(80)]
+        p = np.array([run.probability for run in runs])
+        claimed = np.sqrt(np.mean([run.standard_error**2 for run in runs]))
+        assert p.std(ddof=1) == pytest.approx(claimed, rel=0.3)
+
+
+@pytest.mark.parametrize("method", CONDITIONAL, ids=lambda m: m.__name__)
+def test_one_time_step_is_known_exactly(method):
+    """One response at one time: P = 2Φ(-b/σ), without any spread."""
+    problem = FirstPassage(OSCILLATOR, WhiteNoise(1.0, Sided.TWO), 0.02, 0.02)
+    sigma = gaussian_response(problem).deviation[0, 0]
+    for found, beta in zip(
+        method(problem, sigma * np.array([0.1, 3.0, 30.0]), 50, seed(0), 1),
+        (0.1, 3.0, 30.0),
+        strict=True,
+    ):
+        assert found.probability == pytest.approx(2 * norm.sf(beta), rel=1e-9)
+        assert found.unit_coefficient_of_variation < 1e-9
+
+
+@pytest.mark.parametrize("method", [*CONDITIONAL, monte_carlo], ids=lambda m: m.__name__)
+@pytest.mark.parametrize("beta", [0.3, 0.8])
+def test_two_time_steps_against_quadrature(method, beta):
+    """Two correlated normal numbers: one integral, also where P is no small number."""
+    problem = FirstPassage(OSCILLATOR, WhiteNoise(1.0, Sided.TWO), 0.04, 0.02)
+    response = gaussian_response(problem)
+    a = response.design_excitation(np.array([0, 0]), np.array([0, 1]))[:, 0]
+    level = beta * response.deviation[0, 1]
+
+    def stays(z):
+        low, high = ((s * level - a[1, 0] * z) / a[1, 1] for s in (-1, 1))
+        return norm.pdf(z) * (norm.cdf(high) - norm.cdf(low))
+
+    bound = min(level / a[0, 0], 9.0)
+    exact = 1 - quad(stays, -bound, bound, epsabs=1e-12)[0]
+    (found,) = method(problem, [level], 20_000, seed(4), 1)
+    assert abs(found.probability - exact) < 4 * found.standard_error + 1e-9
+
+
+@st.composite
+def problems(draw):
+    rng = np.random.default_rng(draw(st.integers(0, 2**32 - 1)))
+    m, outputs, inputs = (draw(st.integers(1, k)) for k in (4, 3, 2))
+    system = ModalSystem(
+        omega=rng.uniform(2, 15, m),
+        zeta=rng.uniform(0.005, 0.3, m),
+        input=rng.normal(size=(m, inputs)),
+        output=rng.normal(size=(outputs, m)),
+    )
+    soil = draw(st.sampled_from([None, KanaiTajimi(15.0, 0.6)]))
+    modulation = draw(st.sampled_from([None, lambda t: np.minimum(t / 2, 1)]))
+    noise = WhiteNoise(rng.uniform(0.1, 3), draw(st.sampled_from(Sided)))
+    return FirstPassage(system, noise, 6.0, 0.05, filter=soil, modulation=modulation)
+
+
+@settings(max_examples=12, deadline=None, derandomize=True)
+@given(problem=problems())
+def test_estimators_agree_with_counting(problem):
+    response = gaussian_response(problem)
+
+    def excess(factor):
+        return elementary_failures(response, factor * response.deviation.max()).total - 0.05
+
+    # P is about 1e-2 where the elementary failures sum to some times that.
+    level = brentq(excess, 0.5, 8) * response.deviation.max()
+    (counted,) = monte_carlo(problem, [level], 20_000, seed(11))
+    assert 3e-3 < counted.probability < 5.5e-2
+    for method in CONDITIONAL:
+        (found,) = method(problem, [level], 2_000, seed(12), 1)
+        error = np.hypot(found.standard_error, counted.standard_error)
+        assert abs(found.probability - counted.probability) < 4 * error
+
+
+@settings(max_examples=12, deadline=None)
+@given(problem=problems(), power=st.integers(-8, 8))
+def test_responses_and_levels_scale_together(problem, power):
+    """A factor of two is exact in floating point, so that nothing at all may change."""
+    system, factor = problem.system, 2.0**power
+    scaled = replace(problem, system=replace(system, output=factor * system.output))
+    level = 2 * gaussian_response(problem).deviation.max()
+    for method in METHODS.values():
+        (found,) = method(problem, [level], 40, seed(5), 1)
+        (other,) = method(scaled, [factor * level], 40, seed(5), 1)
+        assert replace(other, level=level) == found
+
+
+def test_directions_never_have_the_larger_spread():
+    """Rao and Blackwell: the radius integrated out, the variance can only fall."""
+    for level in (0.6, 1.0, 1.4):
+        (plain,) = importance_sampling(replace(REFERENCE, duration=4.0), [level], 8000, seed(2))
+        (directional,) = directional_importance_sampling(
+            replace(REFERENCE, duration=4.0), [level], 8000, seed(2)
+        )
+        delta = directional.unit_coefficient_of_variation
+        assert delta < 1.02 * plain.unit_coefficient_of_variation
+
+
+def test_a_response_counted_twice_fails_no_more_often():
+    twice = replace(REFERENCE, system=replace(OSCILLATOR, output=np.array([[1.0], [-1.0]])))
+    for method in CONDITIONAL:
+        (found,) = method(twice, [1.8], 4000, seed(3), 1)
+        assert abs(found.probability - 1.144e-3) < 4 * found.standard_error
+
+
+def test_an_input_split_in_two_is_the_same_input():
+    split = replace(REFERENCE, system=replace(OSCILLATOR, input=np.array([[0.6, 0.8]])))
+    (found,) = directional_importance_sampling(split, [1.8], 4000, seed(3))
+    assert abs(found.probability - 1.144e-3) < 4 * found.standard_error
+
+
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+def test_same_digits_on_one_worker_and_many(method):
+    short = replace(REFERENCE, duration=4.0)
+    given_seed = seed(9)
+    alone = method(short, [0.5, 0.9], 201, given_seed, 1)
+    assert method(short, [0.5, 0.9], 201, given_seed, 3) == alone
+    assert method(short, [0.9], 201, given_seed, 2) == alone[1:]
+    assert method(short, [0.5, 0.9], 201, seed(10), 1) != alone
+
+
+def test_one_pass_serves_levels_far_apart():
+    together = importance_sampling(REFERENCE, [1.6, 2.4], 500, seed(6))
+    apart = [importance_sampling(REFERENCE, [b], 500, seed(6))[0] for b in (1.6, 2.4)]
+    assert list(together) == apart
+
+
+def test_result_says_what_it_depends_on():
+    problem = replace(REFERENCE, duration=2.0, noise=WhiteNoise(2.0, Sided.ONE))
+    (found,) = directional_importance_sampling(problem, [0.8], 100, seed(0))
+    assert (found.level, found.samples, found.duration, found.time_step) == (0.8, 100, 2.0, 0.02)
+    assert (found.density, found.sided) == (2.0, Sided.ONE)
+    assert (found.barrier, found.start) == ("two-sided", "at rest")
+    assert found.method == "directional importance sampling"
+    delta = found.unit_coefficient_of_variation
+    assert found.coefficient_of_variation == pytest.approx(delta / 10)
+    assert found.standard_error == pytest.approx(found.probability * delta / 10)
+
+
+@pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
+def test_nothing_sampled_is_said(method):
+    """A barrier beyond the range of floating point, or one that no sample reached."""
+    (found,) = method(replace(REFERENCE, duration=1.0), [100.0], 10, seed(0), 1)
+    assert found.probability == 0
+    assert found.coefficient_of_variation == np.inf
+    assert np.isnan(found.standard_error)
+
+
+def test_halving_the_step():
+    """Peaks between the times are missed: the finer grid sees more failures."""
+    coarse = replace(REFERENCE, time_step=0.1)
+    (effect,) = step_effect(directional_importance_sampling, coarse, [1.8], 2000, seed(1))
+    assert (effect.given.time_step, effect.halved.time_step) == (0.1, 0.05)
+    assert effect.ratio == effect.halved.probability / effect.given.probability
+    assert effect.ratio - 1 > 2 * effect.standard_error
+    (fine,) = step_effect(directional_importance_sampling, REFERENCE, [1.8], 2000, seed(1))
+    assert abs(fine.ratio - 1) < max(0.1, 4 * fine.standard_error)
+
+
+def test_halving_the_step_where_nothing_failed():
+    (effect,) = step_effect(monte_carlo, replace(REFERENCE, duration=1.0), [100.0], 10, seed(1))
+    assert np.isnan(effect.ratio)
+    assert np.isnan(effect.standard_error)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"duration": 0.0}, r"duration: expected a positive number \(s\), found 0.0"),
+        ({"duration": np.nan}, "duration: expected a positive number"),
+        ({"duration": 1.005}, "duration: expected a whole number of time steps of 0.02 s, found"),
+        ({"duration": 1e-9}, "duration: expected a whole number of time steps"),
+        ({"time_step": -0.02}, "time_step: expected a positive number"),
+        ({"time_step": 0.25}, r"time_step: expected at most 0.200101 s.*7.85 rad/s.*found 0.25"),
+        ({"filter": KanaiTajimi(100.0, 0.6)}, "time_step: expected at most 0.015708 s"),
+    ],
+)
+def test_wrong_problems_say_what_is_wrong(change, message):
+    with pytest.raises(ValueError, match=message):
+        replace(REFERENCE, **change)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"levels": [1.0, 0.0]}, "levels: expected positive numbers, found 0.0 at index 1"),
+        ({"levels": [np.inf]}, "levels: expected finite numbers"),
+        ({"levels": 1.0}, r"levels: expected shape \(n\)"),
+        ({"levels": []}, r"levels: expected shape \(n\) \(barriers\), found \(0,\)"),
+        ({"samples": 0}, "samples: expected a whole number of at least 1, found 0"),
+        ({"samples": 1}, "samples: expected at least 2"),
+        ({"samples": 10.5}, "samples: expected a whole number"),
+        ({"samples": np.nan}, "samples: expected a whole number"),
+        ({"workers": 0}, "workers: expected a whole number of at least 1"),
+    ],
+)
+def test_wrong_calls_say_what_is_wrong(change, message):
+    good = {"levels": [1.0], "samples": 10, "seed": seed(0), "workers": 1}
+    with pytest.raises(ValueError, match=message):
+        importance_sampling(REFERENCE, **(good | change))
+
+
+def test_wrong_noise_filter_and_modulation():
+    with pytest.raises(ValueError, match="density: expected a positive number"):
+        WhiteNoise(0.0, Sided.TWO)
+    with pytest.raises(ValueError, match="zeta: expected a positive number"):
+        KanaiTajimi(15.0, -0.6)
+    with pytest.raises(ValueError, match="omega: expected a positive number"):
+        KanaiTajimi(0.0, 0.6)
+    wrong = replace(REFERENCE, modulation=lambda t: t[:-1])
+    with pytest.raises(ValueError, match=r"modulation: expected shape \(1500\)"):
+        importance_sampling(wrong, [1.0], 10, seed(0))

@@ -1,0 +1,243 @@
+"""Modal superposition against the direct solution, and the peaks against brute force."""
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from scipy.linalg import eigh
+
+from modefront.response import ModalSystem, Quantity, frequency_response, peaks
+from modefront.response.function import derivatives
+
+M = np.diag([22.6, 22.6, 0.76 * 22.6])
+K = 84763.8 * np.array([[2.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]])
+DRIFTS = np.array([[1.0, 0.0, 0.0], [-1.0, 1.0, 0.0], [0.0, -1.0, 1.0]])
+R = np.ones((3, 1))
+ZETA = np.array([0.02, 0.03, 0.05])
+OMEGA = np.linspace(0.0, 160.0, 97)
+
+
+def chain(load, output, modes=3, rigid=None):
+    """Return the chain of three stories with its first modes, and its damping matrix."""
+    lam, phi = eigh(K, M)
+    omega = np.sqrt(lam)
+    damping = M @ phi @ np.diag(2 * ZETA * omega) @ phi.T @ M
+    system = ModalSystem(
+        omega=omega[:modes],
+        zeta=ZETA[:modes],
+        input=phi[:, :modes].T @ load,
+        output=output @ phi[:, :modes],
+        static=output @ np.linalg.solve(K, load),
+        rigid=rigid,
+    )
+    return system, damping
+
+
+def direct(load, output, damping, omega):
+    return np.array(
+        [output @ np.linalg.solve(K - w**2 * M + 1j * w * damping, load) for w in omega]
+    )
+
+
+@pytest.mark.parametrize(
+    ("quantity", "factor"),
+    [
+        (Quantity.RECEPTANCE, np.ones_like(OMEGA)),
+        (Quantity.MOBILITY, 1j * OMEGA),
+        (Quantity.ACCELERANCE, -(OMEGA**2)),
+    ],
+    ids=lambda value: value.value if isinstance(value, Quantity) else "",
+)
+@pytest.mark.parametrize("load", [np.eye(3), -M @ R], ids=["forces", "base"])
+def test_superposition_is_the_direct_solution(quantity, factor, load):
+    system, damping = chain(load, DRIFTS)
+    exact = factor[:, None, None] * direct(load, DRIFTS, damping, OMEGA)
+    found = frequency_response(system, OMEGA, quantity)
+    assert found.shape == (97, 3, load.shape[1])
+    np.testing.assert_allclose(found, exact, rtol=1e-11, atol=1e-13 * abs(exact).max())
+
+
+def test_absolute_acceleration_follows_from_newtons_law():
+    system, damping = chain(-M @ R, np.eye(3), rigid=R)
+    relative = direct(-M @ R, np.eye(3), damping, OMEGA)
+    exact = 1 - OMEGA[:, None, None] ** 2 * relative
+    found = frequency_response(system, OMEGA, Quantity.ABSOLUTE_ACCELERANCE)
+    np.testing.assert_allclose(found, exact, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(found[0], R, rtol=1e-14)
+
+
+def test_static_correction_makes_the_error_fourth_order():
+    """Modes cut off leave ω²A/ω_r⁴ and 2iζωA/ω_r³; the correction leaves nothing at ω = 0."""
+    load = np.eye(3)
+    full, damping = chain(load, np.eye(3))
+    cut, _ = chain(load, np.eye(3), modes=1)
+    bare = ModalSystem(cut.omega, cut.zeta, cut.input, cut.output)
+    exact = direct(load, np.eye(3), damping, OMEGA[:30])
+    with_it = abs(frequency_response(cut, OMEGA[:30]) - exact).max(axis=(1, 2))
+    without = abs(frequency_response(bare, OMEGA[:30]) - exact).max(axis=(1, 2))
+    assert with_it[0] < 1e-12 * abs(exact[0]).max()
+    assert np.all(with_it < 0.5 * without)
+    assert np.all(full.residual_flexibility() < 1e-12 * abs(exact[0]).max())
+
+
+@pytest.mark.parametrize("quantity", list(Quantity))
+def test_derivatives_against_a_contour_integral(quantity):
+    """T is analytic in ω: by Cauchy's formula a ring of values gives its derivatives."""
+    system, _ = chain(-M @ R, DRIFTS, modes=2, rigid=DRIFTS @ R)
+    omega, radius = np.array([3.0, 29.0, 81.0, 140.0]), 0.2
+    _, *found = derivatives(system, omega.astype(complex), quantity)
+    turns = np.exp(2j * np.pi * np.arange(64) / 64)
+    ring = np.array([derivatives(system, omega + radius * turn, quantity)[0] for turn in turns])
+    for order, derivative in enumerate(found, start=1):
+        cauchy = order * (ring * turns[:, None, None, None] ** -order).mean(axis=0) / radius**order
+        np.testing.assert_allclose(derivative, cauchy, rtol=1e-9, atol=1e-9 * abs(cauchy).max())
+
+
+def one_mode(omega, zeta, **other):
+    return ModalSystem(np.array([omega]), np.array([zeta]), np.eye(1), np.eye(1), **other)
+
+
+@pytest.mark.parametrize(
+    ("quantity", "at"),
+    [
+        (Quantity.RECEPTANCE, lambda z: np.sqrt(1 - 2 * z**2)),
+        (Quantity.MOBILITY, lambda z: 1.0),
+        (Quantity.ACCELERANCE, lambda z: 1 / np.sqrt(1 - 2 * z**2)),
+    ],
+)
+@pytest.mark.parametrize("zeta", [1e-5, 0.02, 0.3])
+def test_peak_of_one_mode_is_where_the_textbook_has_it(quantity, at, zeta):
+    (peak,) = peaks(one_mode(29.2, zeta), quantity)
+    assert peak.omega == pytest.approx(29.2 * at(zeta), rel=1e-12)
+    assert peak.frequency == peak.omega / (2 * np.pi)
+    if quantity is Quantity.RECEPTANCE:
+        exact = 1 / (2 * zeta * np.sqrt(1 - zeta**2) * 29.2**2)
+        assert peak.amplitude == pytest.approx(exact, rel=1e-10)
+
+
+def test_heavily_damped_mode_has_no_peak():
+    assert peaks(one_mode(10.0, 0.8)) == ()
+
+
+@pytest.mark.parametrize(("split", "count"), [(1e-4, 1), (0.01, 1), (0.03, 2), (0.1, 2), (0.3, 2)])
+def test_close_modes_have_one_peak_or_two(split, count):
+    omega = 10 * np.array([1 - split / 2, 1 + split / 2])
+    system = ModalSystem(omega, np.full(2, 0.02), np.ones((2, 1)), np.array([[1.0, -1.0]]))
+    in_phase = ModalSystem(omega, np.full(2, 0.02), np.ones((2, 1)), np.array([[1.0, 1.0]]))
+    assert len(peaks(in_phase)) == count
+    assert all(abs(p.omega / 10 - 1) < split + 0.01 for p in peaks(system))
+
+
+def test_peak_close_to_an_antiresonance():
+    """A mode hardly seen at the sensor: a peak and a dip within a bandwidth."""
+    omega, zeta = np.array([10.0, 20.0]), np.array([0.02, 1e-4])
+    system = ModalSystem(omega, zeta, np.ones((2, 1)), np.array([[1.0, 1e-4]]))
+    first, second = peaks(system)
+    assert first.omega == pytest.approx(10, rel=1e-2)
+    assert second.omega == pytest.approx(20, rel=1e-3)
+    near = np.linspace(second.omega - 1e-4, second.omega + 1e-4, 201)
+    assert abs(frequency_response(system, near)).max() <= second.amplitude * (1 + 1e-15)
+
+
+@settings(max_examples=60, deadline=None)
+@given(seed=st.integers(0, 2**32 - 1), m=st.integers(1, 8), quantity=st.sampled_from(Quantity))
+def test_no_peak_is_missed(seed, m, quantity):
+    rng = np.random.default_rng(seed)
+    omega = np.sort(rng.uniform(1, 30, m))
+    zeta = 10 ** rng.uniform(-2.5, -0.7, m)
+    system = ModalSystem(
+        omega, zeta, rng.normal(size=(m, 1)), rng.normal(size=(1, m)), rigid=np.ones((1, 1))
+    )
+    found = np.array([p.omega for p in peaks(system, quantity)])
+    grid = np.linspace(0, 2 * omega[-1], 20001)
+    size = abs(frequency_response(system, grid, quantity))[:, 0, 0]
+    top = (size[1:-1] > size[:-2]) & (size[1:-1] > size[2:])
+    expected = grid[1:-1][top]
+    # The grid cannot see peaks closer than itself, but each that it sees is there.
+    assert all(np.min(abs(found - w)) <= grid[1] for w in expected)
+    slope = derivatives(system, found.astype(complex), quantity)
+    g = 2 * (slope[0].conj() * slope[1]).real[:, 0, 0]
+    bend = 2 * (abs(slope[1]) ** 2 + (slope[0].conj() * slope[2]).real)[:, 0, 0]
+    assert np.all(bend < 0)
+    assert np.all(abs(g / bend) <= 1e-9 * found)
+    assert len(found) <= len(expected) + 2
+
+
+@pytest.mark.parametrize("apart", [0.0, 1e-15, 1e-12, 1e-6])
+def test_modes_that_cancel_leave_nothing_to_search(apart):
+    """Opposite modes at one frequency: what rounding leaves of T has no peaks of its own."""
+    omega = 10 * np.array([1.0, 1 + apart])
+    system = ModalSystem(omega, np.full(2, 0.02), np.ones((2, 1)), np.array([[1.0, -1.0]]))
+    found = peaks(system)
+    assert len(found) <= 1
+    assert all(abs(p.omega - 10) < 0.01 for p in found)
+
+
+def test_a_response_at_a_node_has_no_peaks():
+    assert peaks(ModalSystem(np.ones(1), np.full(1, 0.02), np.ones((1, 1)), np.zeros((1, 1)))) == ()
+
+
+def test_hundred_modes():
+    omega = np.linspace(5, 500, 100)
+    shape = np.random.default_rng(0).normal(size=(1, 100))
+    system = ModalSystem(omega, np.full(100, 1e-3), shape.T, shape, static=np.eye(1))
+    found = np.array([p.omega for p in peaks(system)])
+    assert all(np.min(abs(found - w)) < 0.02 * w for w in omega[abs(shape[0]) > 0.1])
+
+
+def test_peaks_of_one_output_and_input_of_many():
+    system, _ = chain(np.eye(3), np.eye(3))
+    alone, _ = chain(np.eye(3)[:, 2:], np.eye(3)[:1])
+    assert peaks(system, output=0, input=2) == peaks(alone)
+    assert len(peaks(system)) == 3
+    low, *_ = peaks(system)
+    assert peaks(system, band=(20.0, 40.0)) == (low,)
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        (
+            {"zeta": np.array([0.02, -0.01])},
+            r"zeta: expected no negative damping.*index \(1,\)",
+        ),
+        ({"omega": np.array([1.0, np.nan])}, "omega: expected finite numbers, found nan"),
+        ({"omega": np.array([-1.0, 2.0])}, "omega: expected no negative frequency"),
+        ({"zeta": np.array([0.02])}, r"zeta: expected shape \(2\) \(modes\), found \(1,\)"),
+        ({"input": np.ones(2)}, r"input: expected shape \(2, n\) \(modes, inputs\), found \(2,\)"),
+        ({"output": np.ones((1, 3))}, r"output: expected shape \(n, 2\)"),
+        ({"static": np.ones((2, 2))}, r"static: expected shape \(1, 1\)"),
+        ({"omega": np.array([0.0, 2.0]), "static": np.ones((1, 1))}, "rigid-body mode"),
+    ],
+)
+def test_wrong_systems_say_what_is_wrong(change, message):
+    good = {
+        "omega": np.array([1.0, 2.0]),
+        "zeta": np.array([0.02, 0.02]),
+        "input": np.ones((2, 1)),
+        "output": np.ones((1, 2)),
+    }
+    with pytest.raises(ValueError, match=message):
+        ModalSystem(**(good | change))
+
+
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda s: frequency_response(s, [-1.0]), "omega: expected no negative frequency"),
+        (lambda s: frequency_response(s, 1.0), "omega: expected shape"),
+        (lambda s: frequency_response(s, [1.0], Quantity.ABSOLUTE_ACCELERANCE), "rigid: expected"),
+        (lambda s: peaks(s, output=1), "output: expected a number from 0 to 0, found 1"),
+        (lambda s: peaks(s, band=(2.0, 1.0)), "band: expected"),
+    ],
+)
+def test_wrong_calls_say_what_is_wrong(call, message):
+    with pytest.raises(ValueError, match=message):
+        call(one_mode(3.0, 0.02))
+
+
+def test_undamped_modes():
+    with pytest.raises(ValueError, match="undamped mode"):
+        frequency_response(one_mode(3.0, 0.0), [3.0])
+    with pytest.raises(ValueError, match="zeta: expected damped modes"):
+        peaks(one_mode(3.0, 0.0))
