@@ -355,8 +355,11 @@ def test_points_that_did_not_converge_are_said_and_kept(
 
 
 def start(arguments: Sequence[object]) -> "subprocess.Popen[str]":
+    # A test run in the background ignores interrupts, and so would its children.
+    heard = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+    code = f"{heard}; from modefront.cli.main import main; main()"
     return subprocess.Popen(
-        [sys.executable, "-m", "modefront", *map(str, arguments)],
+        [sys.executable, "-c", code, *map(str, arguments)],
         stdout=subprocess.PIPE,
         stderr=subprocess.PIPE,
         text=True,

@@ -97,6 +97,32 @@ def edge(
     return Edge(best, [best, *(one for one in minima if one is not best)])
 
 
+def near_best(
+    problem: Problem,
+    best: Solution,
+    objective: int,
+    tolerance: float,
+    sizes: Floats,
+    known: Sequence[Solution],
+) -> list[Solution]:
+    """Return, of the models within a tolerance of the best in an objective, the best in the others.
+
+    Where an objective hardly changes along a valley, the end of the valley says nothing, and the
+    front there is flat; this is the point from which it is not. It is solved from the one of the
+    ``known`` solutions that is closest in the objective. An objective that is fitted exactly
+    keeps its edge, and so does one for which the programme does not converge.
+    """
+    least = best.at.J[objective]
+    if least <= EXACT * sizes[objective]:
+        return [best]
+    value = (1 + tolerance) * least
+    others = np.where(np.arange(sizes.size) != objective, 1 / sizes, 0.0)
+    unit = np.eye(sizes.size)[[objective]] / value
+    start = min(known, key=lambda one: abs(np.log(one.at.J[objective] / value)))
+    found = solve(problem, Linear(others, unit, np.ones(1)), start)
+    return [found if found.converged else best]
+
+
 def _programme(objective: int, epsilon: float, sizes: Floats) -> Linear:
     w = np.full(sizes.size, epsilon)
     w[objective] = 1.0

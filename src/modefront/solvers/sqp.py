@@ -40,6 +40,10 @@ SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again."""
 
 
+NOISE = 1e-11
+"""Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
+
+
 class Status(Enum):
     """How a solution ended; the value says what it means and what to do about it."""
 
@@ -58,7 +62,7 @@ class Options:
     """
 
     step: float = 1e-7
-    constraint: float = 1e-8
+    constraint: float = 1e-7
     reduction: float = 1e-14
     iterations: int = 60
     radius: float = 0.15
@@ -115,7 +119,7 @@ def solve(
     state = _State(start.at, learned)
     radius, penalty = options.radius, 10.0
     multipliers: Floats | None = None
-    escaped = False
+    escaped, proposed = False, np.inf
     for count in range(options.iterations + 1):
         at = state.at
         df, A = programme.gradient(at.J), programme.A
@@ -133,6 +137,8 @@ def solve(
         multipliers = _multipliers(dc, g + B @ s, lo - s, hi - s)
         w = df + A.T @ multipliers
 
+        if _length(s) < 0.99 * radius:
+            proposed = _length(s)
         violation = max(map(abs, c.tolist()), default=0.0)
         value = programme.value(at.J)
         still = _length(s) <= options.step or bool(abs(g @ s) <= options.reduction * abs(value))
@@ -142,7 +148,10 @@ def solve(
         if still and violation <= options.constraint:
             return Solution(at, state.learned, w, violation, Status.CONVERGED, count)
         if _length(s) <= np.finfo(float).eps or radius <= options.step * 1e-3:
-            return Solution(at, state.learned, w, violation, Status.STALLED, count)
+            # Steps that were not held back were below the tolerance: rounding of J stops it here.
+            there = proposed <= options.step and violation <= 10 * options.constraint
+            status = Status.CONVERGED if there else Status.STALLED
+            return Solution(at, state.learned, w, violation, status, count)
         if count == options.iterations:
             break
 
@@ -159,7 +168,7 @@ def solve(
         c_new = programme.A @ new.J - programme.b
         actual = value - programme.value(new.J) + multipliers @ (c - c_new)
         actual += 0.5 * penalty * (c @ c - c_new @ c_new)
-        noise = 10 * np.finfo(float).eps * abs(value)
+        noise = NOISE * (abs(value) + np.abs(multipliers) @ np.abs(programme.A @ at.J))
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         state = state.move(new, moved=bool(ratio > 1e-4), learn=options.learn)
         if ratio < 0.25:

@@ -62,6 +62,7 @@ class Study:
     file : where it was read
     digest : hash of this file and of all files that it names
     method, points : how the front is found, and with how many points along each edge
+    tolerance : share by which an edge may exceed the least value of its group
     weighted : models wanted with given weights, besides equal and optimal ones
     """
 
@@ -73,6 +74,7 @@ class Study:
     problem: UpdatingProblem
     method: str
     points: int
+    tolerance: float
     weighted: tuple[Weighted, ...]
     search: Search
 
@@ -97,7 +99,7 @@ def load(path: Path) -> Study:
     data, data_file = _data(root, model, path.parent)
     groups = _groups(root, data)
     weights = _weights(root, [group.name for group in groups if group.name])
-    method, points = _pareto(root)
+    method, points, tolerance = _pareto(root)
     pairing, search = _pairing(root), _search(root)
     root.close()
     if faults or model is None or data is None:
@@ -115,7 +117,9 @@ def load(path: Path) -> Study:
     if faults:
         raise InputError(faults)
     digest = _digest(content, path.parent, [data_file, *_matrix_files(values)])
-    return Study(path, title, seed, digest, parameters, problem, method, points, weights, search)
+    return Study(
+        path, title, seed, digest, parameters, problem, method, points, tolerance, weights, search
+    )
 
 
 def _parse(path: Path) -> tuple[dict[str, Any], bytes]:
@@ -263,14 +267,15 @@ def _weights(root: Table, groups: Sequence[str]) -> tuple[Weighted, ...]:
     return tuple(out)
 
 
-def _pareto(root: Table) -> tuple[str, int]:
+def _pareto(root: Table) -> tuple[str, int, float]:
     table = root.table("pareto", default=None)
     if table is None:
-        return METHODS[0], POINTS
+        return METHODS[0], POINTS, 0.0
     method = table.choice("method", METHODS, default=METHODS[0])
     points = table.integer("points", 2, 10_000, default=POINTS)
+    tolerance = table.number("tolerance", "a share from 0 to 1", lambda x: 0 <= x <= 1, default=0.0)
     table.close()
-    return method, points
+    return method, points, tolerance
 
 
 def _pairing(root: Table) -> Pairing:

@@ -13,7 +13,7 @@ from modefront._typing import Floats
 from modefront.errors import UnfinishedError
 from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.dominance import nondominated
-from modefront.solvers.edges import EXACT, Edge, edge, sample, typical_sizes
+from modefront.solvers.edges import EXACT, Edge, edge, near_best, sample, typical_sizes
 from modefront.solvers.explore import Search, explore
 from modefront.solvers.nbi import nbi, payoff, simplex
 from modefront.solvers.pieces import Gap, gaps
@@ -63,6 +63,7 @@ def pareto_front(
     points: int = 20,
     seed: int = 0,
     search: Search | None = None,
+    tolerance: float = 0.0,
     given: Sequence[tuple[str, Floats]] = (),
     checkpoint: Checkpoint = compute_always,
     expect: Callable[[int], None] = ignore,
@@ -70,7 +71,8 @@ def pareto_front(
     """Find the edges, the weighted models, the front by NBI, and its gaps.
 
     ``a`` (n,) counts the measured properties of each objective; ``points`` lie along each edge of
-    the simplex of objectives; ``given`` are labelled weights (n,). ``expect`` is told how many
+    the simplex of objectives; an edge may exceed the least value of its objective by the share
+    ``tolerance``; ``given`` are labelled weights (n,). ``expect`` is told how many
     pieces of work there are. Raises UnfinishedError where no edge can be found.
     """
     search = search or Search()
@@ -111,6 +113,13 @@ def pareto_front(
         lambda: [one for one in [iterate_weights(problem, a, sizes, starts[0])] if one],
     )
 
+    if tolerance > 0:
+        known = [*optimal, *starts]
+        ends = [
+            checkpoint(f"near-{name}", partial(near_best, problem, one, i, tolerance, sizes, known))
+            for i, (name, one) in enumerate(zip(problem.objectives, bests, strict=True))
+        ]
+        bests = [found[0] for found in ends]
     target = payoff(bests, sizes) if n > 1 else None
     along: Sequence[Solution] = []
     breaks: list[Gap] = []

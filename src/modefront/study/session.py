@@ -33,12 +33,14 @@ def solve(
     problem: UpdatingProblem,
     *,
     points: int = POINTS,
+    tolerance: float = 0.0,
     seed: int = 0,
     search: Search | None = None,
 ) -> xr.Dataset:
     """Return all Pareto-optimal models, edges and weighted models of a problem.
 
-    ``points`` lie along each edge of the simplex of objectives. Raises UnfinishedError where
+    ``points`` lie along each edge of the simplex of objectives; an edge may exceed the least value
+    of its group by the share ``tolerance``. Raises UnfinishedError where
     no minimum of a group can be found.
     """
     from modefront.study.results import dataset
@@ -48,6 +50,7 @@ def solve(
         problem,
         problem.properties,
         points=points,
+        tolerance=tolerance,
         seed=seed,
         search=search,
         checkpoint=store,
@@ -82,6 +85,7 @@ def run(
         problem,
         problem.properties,
         points=study.points,
+        tolerance=study.tolerance,
         seed=study.seed,
         search=study.search,
         given=[(one.name, np.array(one.weights)) for one in study.weighted],
