@@ -116,7 +116,7 @@ def load(path: Path) -> Study:
     _try_model(root, problem)
     if faults:
         raise InputError(faults)
-    digest = _digest(content, path.parent, [data_file, *_matrix_files(values)])
+    digest = _digest(content, path.parent, [data_file, *_model_files(values)])
     return Study(
         path, title, seed, digest, parameters, problem, method, points, tolerance, weights, search
     )
@@ -313,10 +313,11 @@ def _try_model(root: Table, problem: UpdatingProblem) -> None:
         root.fault("[model]", "modes at the nominal parameters", str(error))
 
 
-def _matrix_files(values: dict[str, Any]) -> list[str]:
+def _model_files(values: dict[str, Any]) -> list[str]:
     model = values["model"]
     tables = [model.get(key) for key in ("stiffness", "mass")]
-    return [file for table in tables if isinstance(table, dict) for file in table.values()]
+    files = [file for table in tables if isinstance(table, dict) for file in table.values()]
+    return files + [model["file"]] * ("file" in model)
 
 
 def _digest(content: bytes, folder: Path, files: Sequence[str]) -> str:
