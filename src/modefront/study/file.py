@@ -317,7 +317,7 @@ def _model_files(values: dict[str, Any]) -> list[str]:
     model = values["model"]
     tables = [model.get(key) for key in ("stiffness", "mass")]
     files = [file for table in tables if isinstance(table, dict) for file in table.values()]
-    return files + [model["file"]] * ("file" in model)
+    return [*files, model["file"]] if "file" in model else files
 
 
 def _digest(content: bytes, folder: Path, files: Sequence[str]) -> str:
