@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import time
 from dataclasses import dataclass
+from typing import Any
 
 import moocore
 import numpy as np
@@ -73,16 +74,16 @@ class Race(Callback):
         self.reached: dict[float, tuple[int, float]] = {}
         self.best = 0.0
 
-    def notify(self, algorithm: object) -> None:
+    def notify(self, algorithm: Any) -> None:
         """Measure the present population."""
-        found = volume(algorithm.opt.get("F"), self.scale)  # type: ignore[attr-defined]
+        found = volume(algorithm.opt.get("F"), self.scale)
         self.best = max(self.best, found / self.wanted)
         for share in self.shares:
             if share not in self.reached and found >= share * self.wanted:
-                n = algorithm.evaluator.n_eval  # type: ignore[attr-defined]
+                n = algorithm.evaluator.n_eval
                 self.reached[share] = n, time.perf_counter() - self.started
         if len(self.reached) == len(self.shares):
-            algorithm.termination.force_termination = True  # type: ignore[attr-defined]
+            algorithm.termination.force_termination = True
 
 
 def volume(J: Floats, scale: Floats) -> float:

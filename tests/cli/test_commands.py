@@ -10,6 +10,7 @@ import sys
 import time
 from collections.abc import Callable, Sequence
 from pathlib import Path
+from typing import Any
 
 import pytest
 import xarray as xr
@@ -137,12 +138,12 @@ def interrupt_after(pieces: int, monkeypatch: pytest.MonkeyPatch) -> None:
     written: list[Path] = []
     write = store.write_piece
 
-    def stop(path: Path, *rest: object) -> None:
+    def stop(path: Path, *rest: Any) -> None:
         if len(written) == pieces:
             monkeypatch.setattr(store, "write_piece", write)
             raise KeyboardInterrupt
         written.append(path)
-        write(path, *rest)  # type: ignore[arg-type]
+        write(path, *rest)
 
     monkeypatch.setattr(store, "write_piece", stop)
 
@@ -341,8 +342,8 @@ def test_points_that_did_not_converge_are_said_and_kept(
 ) -> None:
     run = session.run
 
-    def doubtful(*arguments: object, **options: object) -> xr.Dataset:
-        data = run(*arguments, **options)  # type: ignore[arg-type]
+    def doubtful(*arguments: Any, **options: Any) -> xr.Dataset:
+        data = run(*arguments, **options)
         data["converged"][1] = False
         return data
 

@@ -1,10 +1,13 @@
 """Problems with known answers, for every solver."""
 
+from collections.abc import Callable
+
 import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from problems import (
+    Derivatives,
     Known,
     bowls,
     box,
@@ -86,8 +89,8 @@ def test_qp_comes_as_near_as_the_box_allows() -> None:
 
 
 @pytest.mark.parametrize("function", [circles, curved])
-def test_weighted_sums_have_their_minimum(function: object) -> None:
-    problem = box(function, [-2, -2], [2, 2])  # type: ignore[arg-type]
+def test_weighted_sums_have_their_minimum(function: Callable[[Floats], Derivatives]) -> None:
+    problem = box(function, [-2, -2], [2, 2])
     start = begin(problem.evaluate(np.array([1.5, -1.0])))
     found = solve(problem, weighted(np.array([1.0, 3.0])), start)
     x = 0.75
@@ -182,8 +185,8 @@ def test_edges_are_lexicographic() -> None:
 
 
 @pytest.mark.parametrize("function", [circles, curved])
-def test_the_front_of_two_bowls(function: object) -> None:
-    front = front_of(box(function, [-2, -2], [2, 2]))  # type: ignore[arg-type]
+def test_the_front_of_two_bowls(function: Callable[[Floats], Derivatives]) -> None:
+    front = front_of(box(function, [-2, -2], [2, 2]))
     J = np.array([one.at.J for one in front])
     assert all(one.converged for one in front)
     assert np.sqrt(J).sum(axis=1) == pytest.approx(1, abs=1e-6)

@@ -14,10 +14,10 @@ import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
-from modefront._typing import Floats
 from modefront.solvers.checkpoint import Solutions
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.sqp import Solution, Status
@@ -71,7 +71,7 @@ def hash_text(text: str) -> str:
 
 def write_piece(path: Path, solutions: Solutions, cost: Mapping[str, int]) -> None:
     """Write a piece whole or not at all."""
-    arrays: dict[str, Floats] = {}
+    arrays: dict[str, Any] = {}
     heads = []
     for i, one in enumerate(solutions):
         at = one.at
@@ -84,7 +84,7 @@ def write_piece(path: Path, solutions: Solutions, cost: Mapping[str, int]) -> No
     path.parent.mkdir(parents=True, exist_ok=True)
     temporary = path.with_suffix(".tmp")
     with temporary.open("wb") as stream:
-        np.savez(stream, head=np.frombuffer(head.encode(), np.uint8), **arrays)  # type: ignore[arg-type]
+        np.savez(stream, head=np.frombuffer(head.encode(), np.uint8), **arrays)
         stream.flush()
         os.fsync(stream.fileno())
     temporary.replace(path)
