@@ -13,7 +13,9 @@ from modefront.models.files import read_matrix
 from modefront.pairing.match import Pairing
 from modefront.residuals.groups import Group
 from modefront.solvers.explore import Search
-from modefront.study.file import POINTS, Study, Weighted, load
+from modefront.study.file import Study, load
+from modefront.study.tables.settings import Pareto
+from modefront.study.tables.weighted import Weighted
 
 HEAD = """
 [study]
@@ -86,7 +88,7 @@ def study(tmp_path: Path) -> Callable[[str], Study]:
 def test_what_is_not_said_has_defaults(study: Callable[[str], Study]) -> None:
     read = study(HEAD + CHAIN)
     assert (read.name, read.seed) == ("two masses", 0)
-    assert (read.method, read.points) == ("nbi", POINTS)
+    assert read.pareto == Pareto("nbi", 20, 0.0)
     assert read.weighted == ()
     assert read.search == Search()
     assert read.problem.pairing == Pairing()
@@ -130,7 +132,7 @@ def test_the_rest(study: Callable[[str], Study]) -> None:
         """
     )
     assert read.weighted == (Weighted("by hand", (0.5, 2.0)),)
-    assert read.points == 7
+    assert read.pareto.points == 7
     assert read.problem.pairing == Pairing("order", 2.0, 4)
     assert read.search == Search(5, 50, 0)
 

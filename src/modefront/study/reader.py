@@ -159,3 +159,8 @@ def repeated(names: Iterable[str | None]) -> list[str]:
 def _named(item: dict[str, Any]) -> str:
     name = item.get("name")
     return f" ({name!r})" if isinstance(name, str) else ""
+
+
+def has_name(table: Table) -> bool:
+    """Return whether a table holds a text called ``name``."""
+    return isinstance(table.values.get("name"), str)

@@ -13,9 +13,10 @@ import modefront
 from modefront.errors import Fault, InputError
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
-from modefront.study.file import POINTS, Study
+from modefront.study.file import Study
 from modefront.study.run import Front, ignore, pareto_front
 from modefront.study.store import PIECES, Store
+from modefront.study.tables.settings import Pareto
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -32,7 +33,7 @@ class Progress:
 def solve(
     problem: UpdatingProblem,
     *,
-    points: int = POINTS,
+    points: int = Pareto.points,
     tolerance: float = 0.0,
     seed: int = 0,
     search: Search | None = None,
@@ -84,8 +85,8 @@ def run(
     front = pareto_front(
         problem,
         problem.properties,
-        points=study.points,
-        tolerance=study.tolerance,
+        points=study.pareto.points,
+        tolerance=study.pareto.tolerance,
         seed=study.seed,
         search=study.search,
         given=[(one.name, np.array(one.weights)) for one in study.weighted],

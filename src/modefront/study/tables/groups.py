@@ -1,0 +1,49 @@
+"""``[[group]]``: which residuals add up to an objective."""
+
+from __future__ import annotations
+
+from modefront.data.modal import ModalData
+from modefront.residuals.groups import Group, measured_frequencies, measured_shapes, members
+from modefront.study.reader import Table, has_name, repeated
+
+
+def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
+    """Return the groups that a study names."""
+    out = []
+    tables = root.tables("group", required=True)
+    expected = "'all' or a list of measured modes, counted from 1"
+    for table in tables:
+        before = len(root.faults)
+        name = table.text("name", "the name of the group") or ""
+        chosen = {}
+        for key, measured in (("frequency", measured_frequencies), ("shape", measured_shapes)):
+            value = table.take(key, expected, _is_members, [])
+            if data is not None:
+                try:
+                    members(value, data.modes, measured(data))
+                except ValueError as error:
+                    wanted, _, found = str(error).partition(", found ")
+                    table.fault(key, wanted, found)
+                    value = []
+            chosen[key] = value if value == "all" else tuple(value)
+        table.close()
+        group = Group(name, chosen["frequency"], chosen["shape"])
+        if not (group.frequency or group.shape):
+            if len(root.faults) == before:
+                table.fault("", "frequency or shape with at least one measured mode", "neither")
+        elif data is not None and not (
+            members(group.frequency, data.modes, measured_frequencies(data))
+            or members(group.shape, data.modes, measured_shapes(data))
+        ):
+            table.fault("", "at least one measured property", "none in the data")
+        out.append(group)
+    for name in repeated(table.values.get("name") for table in tables if has_name(table)):
+        root.fault("[[group]]", "each name once", f"'{name}' twice")
+    return tuple(out)
+
+
+def _is_members(value: object) -> bool:
+    return value == "all" or (
+        isinstance(value, list)
+        and all(isinstance(x, int) and not isinstance(x, bool) and x > 0 for x in value)
+    )

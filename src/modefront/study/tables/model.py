@@ -1,0 +1,23 @@
+"""``[model]``: one of the kinds of models."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from modefront.models.base import Model
+from modefront.study.kinds import KINDS
+from modefront.study.reader import Table
+
+
+def read_model(root: Table, parameters: Sequence[str], folder: Path) -> Model | None:
+    """Return the model that a study describes, or None where it has faults."""
+    table = root.table("model", "a table [model]")
+    if table is None:
+        return None
+    kind = table.choice("kind", tuple(KINDS))
+    if kind is None:
+        return None
+    model = KINDS[kind](table, parameters, folder)
+    table.close()
+    return model
