@@ -121,6 +121,9 @@ def folder(tmp_path: Path) -> Path:
     scipy.sparse.save_npz(tmp_path / "K2.npz", scipy.sparse.csr_array(K2))
     scipy.io.mmwrite(tmp_path / "M.mtx", scipy.sparse.coo_array(M))
     (tmp_path / "folder.csv").mkdir()
+    scipy.io.savemat(tmp_path / "all.mat", {"K0": K0, "K1": K1, "text": "K1", "rows": 2.0})
+    scipy.io.savemat(tmp_path / "none.mat", {"rows": 2.0})
+    (tmp_path / "bad.mat").write_bytes((tmp_path / "all.mat").read_bytes()[:150])
     (tmp_path / "folder.mtx").mkdir()
     return tmp_path
 
@@ -732,7 +735,30 @@ MATRIX_KEYS = [
     (FIRST, "k1 = [[1.0]]", "[model] stiffness k1: expected the name of a file, found [[1.0]]"),
     (FIRST, 'k1 = ""', "[model] stiffness k1: expected the name of a file, found the text ''"),
     (FIRST, 'k1 = "a\\u0000.npy"', "k1: expected the name of a file, found the text 'a\\x00.npy'"),
-    (FIRST, 'k1 = "K1.mat"', "k1, file: expected a name that ends in .mtx, .npz, .npy, found 'K1."),
+    (FIRST, 'k1 = "K1.bin"', "k1, file: expected a name that ends in .mtx, .npz, .npy, .mat, fo"),
+    (
+        FIRST,
+        'k1 = "all.mat"',
+        'k1, file: expected one matrix, or { file = "...", name = "..." } to',
+    ),
+    (FIRST, 'k1 = "all.mat"', "to say which, found K0, K1"),
+    (FIRST, 'k1 = "none.mat"', "to say which, found none"),
+    (FIRST, 'k1 = "no.mat"', "no.mat: [model] stiffness k1, file: ... found no such file"),
+    (FIRST, 'k1 = "bad.mat"', "bad.mat: [model] stiffness k1, file: expected a readable matrix"),
+    (FIRST, 'k1 = { file = "all.mat", name = "k1" }', "a variable in it, found 'k1' (did you mean"),
+    (
+        FIRST,
+        'k1 = { file = "all.mat", name = "text" }',
+        "k1, file: expected a square matrix, found 1",
+    ),
+    (FIRST, 'k1 = { file = "all.mat", name = 1 }', "stiffness k1 name: expected the name of a mat"),
+    (
+        FIRST,
+        'k1 = { name = "K1" }',
+        "stiffness k1 file: expected the name of a file, found nothing",
+    ),
+    (FIRST, 'k1 = { file = "all.mat", nam = "K1" }', "expected a known key, found 'nam' (did you"),
+    (FIRST, 'k1 = { file = "K1.npy", name = "K1" }', "expected a .mat file, as only these have"),
     (FIRST, 'k1 = "K.npy"', "K.npy: [model] stiffness k1, file: expected a matrix, found no such"),
     (BASE, 'base = "no.mtx"', "no.mtx: [model] stiffness base, file: ... found no such file"),
     (BASE, 'base = "no.npz"', "no.npz: [model] stiffness base, file: ... found no such file"),

@@ -3,6 +3,7 @@
 from collections.abc import Callable
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pytest
 import scipy.io
@@ -192,7 +193,7 @@ def test_the_hash_tells_of_every_input(study: Callable[[str], Study], tmp_path: 
 @pytest.mark.parametrize("kind", ["csr", "csc", "coo", "bsr", "dia"])
 def test_every_sparse_storage_is_read(kind: str, tmp_path: Path) -> None:
     scipy.sparse.save_npz(tmp_path / "K.npz", scipy.sparse.csr_array(K2).asformat(kind))
-    np.testing.assert_array_equal(read_matrix(tmp_path / "K.npz"), K2)
+    np.testing.assert_array_equal(read_matrix(tmp_path / "K.npz").toarray(), K2)
 
 
 def test_matrix_market_formats_are_read(tmp_path: Path) -> None:
@@ -203,12 +204,55 @@ def test_matrix_market_formats_are_read(tmp_path: Path) -> None:
         f"{head} array real general\n2 2\n2000\n-2000\n-2000\n2000\n",
     ):
         (tmp_path / "K.mtx").write_text(text)
-        np.testing.assert_array_equal(read_matrix(tmp_path / "K.mtx"), K2)
+        np.testing.assert_array_equal(read_matrix(tmp_path / "K.mtx").toarray(), K2)
 
 
 def test_rounding_in_a_file_is_no_lack_of_symmetry(tmp_path: Path) -> None:
     np.save(tmp_path / "K.npy", K2 * np.array([[1.0, 1 + 1e-12], [1.0, 1.0]]))
-    K = read_matrix(tmp_path / "K.npy")
+    K = read_matrix(tmp_path / "K.npy").toarray()
     np.testing.assert_array_equal(K, K.T)
     np.save(tmp_path / "int.npy", K2.astype(np.int32))
-    np.testing.assert_array_equal(read_matrix(tmp_path / "int.npy"), K2)
+    np.testing.assert_array_equal(read_matrix(tmp_path / "int.npy").toarray(), K2)
+
+
+def write_version_7_3(path: Path, dense: bool) -> None:
+    """Write K2 among other variables as MATLAB writes large files."""
+    with h5py.File(path, "w") as file:
+        file["rows"] = np.array([[2.0]])
+        if dense:
+            file["K"] = K2
+            return
+        K = scipy.sparse.csc_array(K2)
+        group = file.create_group("K")
+        group.attrs["MATLAB_sparse"] = np.uint64(2)
+        group["data"], group["ir"], group["jc"] = K.data, K.indices, K.indptr
+
+
+@pytest.mark.parametrize("sparse", [True, False])
+@pytest.mark.parametrize("version", ["5", "7.3"])
+def test_matrices_of_matlab_are_read(tmp_path: Path, version: str, sparse: bool) -> None:
+    path = tmp_path / "model.mat"
+    if version == "7.3":
+        write_version_7_3(path, dense=not sparse)
+    else:
+        K = scipy.sparse.csc_array(K2) if sparse else K2
+        scipy.io.savemat(path, {"K": K, "rows": 2.0})
+    np.testing.assert_array_equal(read_matrix(path).toarray(), K2)
+    np.testing.assert_array_equal(read_matrix(path, "K").toarray(), K2)
+
+
+def test_a_study_takes_its_matrices_from_one_file_of_matlab(
+    study: Callable[[str], Study], tmp_path: Path
+) -> None:
+    plain = study(HEAD + MATRICES)
+    scipy.io.savemat(tmp_path / "model" / "all.mat", {"M": M, "K1": K1, "K2": K2, "rows": 2.0})
+    text = MATRICES
+    for file, name in (("K1.mtx", "K1"), ("K2.npz", "K2"), ("M.npy", "M")):
+        text = text.replace(
+            f'"../model/{file}"', f'{{ file = "../model/all.mat", name = "{name}" }}'
+        )
+    other = study(HEAD + text)
+    theta = plain.problem.start
+    np.testing.assert_array_equal(other.problem.evaluate(theta).J, plain.problem.evaluate(theta).J)
+    scipy.io.savemat(tmp_path / "model" / "all.mat", {"M": 2 * M, "K1": K1, "K2": K2})
+    assert study(HEAD + text).digest != other.digest

@@ -111,7 +111,8 @@ def _try_model(root: Table, problem: UpdatingProblem) -> None:
 def _model_files(values: dict[str, Any]) -> list[str]:
     model = values["model"]
     tables = [model.get(key) for key in ("stiffness", "mass")]
-    files = [file for table in tables if isinstance(table, dict) for file in table.values()]
+    terms = [term for table in tables if isinstance(table, dict) for term in table.values()]
+    files = [term["file"] if isinstance(term, dict) else term for term in terms]
     return [*files, model["file"]] if "file" in model else files
 
 

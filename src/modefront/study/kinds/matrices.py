@@ -6,14 +6,14 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+import scipy.sparse
 
-from modefront._typing import Floats
 from modefront.errors import Fault, InputError, suggestion
 from modefront.models.base import Model
 from modefront.models.files import read_matrix
 from modefront.models.matrices import BASE, matrices
 from modefront.study.kinds.sensors import read_sensors
-from modefront.study.reader import Table, describe, is_name
+from modefront.study.reader import Table
 
 
 def read_matrices(table: Table, parameters: Sequence[str], folder: Path) -> Model | None:
@@ -28,38 +28,57 @@ def read_matrices(table: Table, parameters: Sequence[str], folder: Path) -> Mode
     return matrices(parameters, stiffness, mass, sensors)
 
 
-def _terms(model: Table, key: str, parameters: Sequence[str], folder: Path) -> dict[str, Floats]:
+def _terms(
+    model: Table, key: str, parameters: Sequence[str], folder: Path
+) -> dict[str, scipy.sparse.coo_array]:
     """Return the matrices of one table of terms, each read from its file."""
     expected = f"a table of files, {BASE} = ... and one a parameter"
     table = model.table(key, expected)
-    out: dict[str, Floats] = {}
+    out: dict[str, scipy.sparse.coo_array] = {}
     if table is None:
         return out
     if not table.values:
         table.fault("", "at least one matrix", "none")
-    for name, value in table.values.items():
+    for name in table.values:
         if name != BASE and name not in parameters:
             table.fault(name, f"'{BASE}' or a parameter", suggestion(name, [BASE, *parameters]))
-        elif not is_name(value):
-            table.fault(name, "the name of a file", describe(value))
-        else:
-            try:
-                out[name] = read_matrix(folder / value)
-            except InputError as error:
-                table.faults += [
-                    Fault(one.file, f"{table.place} {name}, {one.place}", one.expected, one.found)
-                    for one in error.faults
-                ]
+            continue
+        found = _file(table, name)
+        if found is None:
+            continue
+        try:
+            out[name] = read_matrix(folder / found[0], found[1])
+        except InputError as error:
+            table.faults += [
+                Fault(one.file, f"{table.place} {name}, {one.place}", one.expected, one.found)
+                for one in error.faults
+            ]
     return out
 
 
-def _common_size(model: Table, matrices: dict[str, dict[str, Floats]]) -> int | None:
-    """Return N if all matrices are N x N; a fault names the ones that differ from most."""
-    sizes = {
-        f"{key} {name}": len(A) for key, terms in matrices.items() for name, A in terms.items()
-    }
-    if not sizes:
+def _file(table: Table, key: str) -> tuple[str, str | None] | None:
+    """Return the name of a file and, where given, that of a matrix in it."""
+    if not isinstance(table.values[key], dict):
+        name = table.text(key, "the name of a file")
+        return None if name is None else (name, None)
+    before = len(table.faults)
+    inner = table.table(key)
+    if inner is None:
         return None
+    file = inner.text("file", "the name of a file")
+    variable = inner.text("name", "the name of a matrix in the file", None)
+    inner.close()
+    return None if file is None or len(table.faults) > before else (file, variable)
+
+
+def _common_size(
+    model: Table, matrices: dict[str, dict[str, scipy.sparse.coo_array]]
+) -> int | None:
+    """Return N if all matrices are N x N; a fault names the ones that differ from most."""
+    found = {f"{key} {name}": A for key, terms in matrices.items() for name, A in terms.items()}
+    if not found:
+        return None
+    sizes = {place: int(A.shape[0]) for place, A in found.items()}
     counts = list(sizes.values())
     common = max(set(counts), key=lambda size: (counts.count(size), size))
     for place, size in sizes.items():
@@ -67,6 +86,13 @@ def _common_size(model: Table, matrices: dict[str, dict[str, Floats]]) -> int | 
             others = f"{common} x {common}, as the other matrices"
             model.fault(place, others, f"{size} x {size}")
     mass = matrices["mass"]
-    if mass and all(not np.any(A) for A in mass.values()):
+    if mass and not any(A.nnz for A in mass.values()):
         model.fault("mass", "a mass matrix that is not zero", "only zeros")
+    elif set(counts) == {common} and all(matrices.values()):
+        there = np.unique(np.concatenate([A.row for A in found.values()]))
+        if there.size < common:
+            gap = np.flatnonzero(there != np.arange(there.size))
+            missing = int(gap[0]) if gap.size else there.size
+            expected = "stiffness or mass at every degree of freedom"
+            model.fault("", expected, f"neither at {missing} (from 0)")
     return common
