@@ -40,6 +40,9 @@ SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again."""
 
 
+SWITCH = 0.5
+"""Share of the error of a prediction, below which that without (or with) S is preferred."""
+
 NOISE = 1e-11
 """Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
 
@@ -119,6 +122,7 @@ def solve(
     state = _State(start.at, learned)
     radius, penalty = options.radius, 10.0
     multipliers: Floats | None = None
+    full = bool(learned.any())
     escaped, proposed = False, np.inf
     for count in range(options.iterations + 1):
         at = state.at
@@ -131,7 +135,8 @@ def solve(
         if multipliers is None:
             multipliers = _multipliers(dc, g, lo, hi)
         w = df + A.T @ multipliers
-        B = np.tensordot(w, at.H + state.learned, axes=1) * np.outer(span, span)
+        S = np.tensordot(w, state.learned, axes=1) * np.outer(span, span)
+        B = np.tensordot(w, at.H, axes=1) * np.outer(span, span) + full * S
         B += dJ.T @ programme.hessian(at.J) @ dJ
         s = solve_qp(B, g, dc, -c, lo, hi)
         multipliers = _multipliers(dc, g + B @ s, lo - s, hi - s)
@@ -168,6 +173,9 @@ def solve(
         c_new = programme.A @ new.J - programme.b
         actual = value - programme.value(new.J) + multipliers @ (c - c_new)
         actual += 0.5 * penalty * (c @ c - c_new @ c_new)
+        other = predicted + (full - 0.5) * (s @ S @ s)
+        if abs(actual - other) < SWITCH * abs(actual - predicted):
+            full = not full
         noise = NOISE * (abs(value) + np.abs(multipliers) @ np.abs(programme.A @ at.J))
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         state = state.move(new, moved=bool(ratio > 1e-4), learn=options.learn)
@@ -211,11 +219,15 @@ class _State:
         if not learn:
             return _State(at, self.learned)
         s = new.theta - self.at.theta
-        v = new.dJ - self.at.dJ - (new.H + self.learned) @ s
+        unknown = new.dJ - self.at.dJ - new.H @ s
+        claimed = np.abs((self.learned @ s) @ s)
+        sized = np.minimum(np.abs(unknown @ s), claimed) / np.where(claimed > 0, claimed, 1.0)
+        known = sized[:, None, None] * self.learned
+        v = unknown - known @ s
         along = v @ s
         sure = np.abs(along) > 1e-6 * np.linalg.norm(v, axis=1) * np.linalg.norm(s)
         scale = np.where(sure, 1 / np.where(sure, along, 1.0), 0.0)
-        learned = self.learned + scale[:, None, None] * v[:, :, None] * v[:, None, :]
+        learned = known + scale[:, None, None] * v[:, :, None] * v[:, None, :]
         return _State(at, learned)
 
 
