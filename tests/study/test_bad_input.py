@@ -51,6 +51,7 @@ bounds = [0.3, 4.0]
 [[group]]
 name = "frequencies"
 frequency = "all"
+scale = "measured"
 
 [[group]]
 name = "shapes"
@@ -264,6 +265,13 @@ KEYS = [
     ),
     Key('name = "frequencies"', "[[group]] 1 name", "the name of the group", True, NO_TEXT),
     Key('frequency = "all"', "[[group]] 1 frequency", "list of measured modes", False, NO_MODES),
+    Key(
+        'scale = "measured"',
+        "[[group]] 1 scale",
+        "one of 'measured', 'std'",
+        False,
+        '"" "Std" 1 true nan [] {}',
+    ),
     Key("shape = [1, 2]", "[[group]] 2 shape", "list of measured modes", False, NO_MODES),
     Key('name = "mine"', "[[weighted]] 1 name", "a label", True, NO_TEXT),
     Key(
@@ -414,6 +422,18 @@ CONTRADICTIONS = [
         "",
         "[[group]] 1 ('frequencies'): ... one measured mode, found neither",
     ),
+    (
+        'scale = "measured"',
+        'scale = "std"',
+        "1 ('frequencies') scale: expected 'std' with standard deviations above 1e-09 of all measured "
+        "frequencies, found others for the frequency of mode 2",
+    ),
+    (
+        "shape = [1, 2]",
+        'shape = [1, 2]\nscale = "std"',
+        "2 ('shapes') scale: expected 'std' with standard deviations of all measured components, "
+        "one of them above 0, found others for the shape of mode 1",
+    ),
     ('frequency = "all"', "frequency = []", "1 ('frequencies'): ... measured mode, found neither"),
     ('frequency = "all"', "frequency = [3]", "expected one of the measured modes [1, 2], found 3"),
     ("shape = [1, 2]", "shape = [3]", "shape: expected one of the measured modes [1, 2], found 3"),
@@ -443,7 +463,7 @@ CONTRADICTIONS = [
     ("[study]", "[study", "file: expected TOML in UTF-8, found ... line 1"),
     ("seed = 1", "seed =", "file: expected TOML in UTF-8, found ... line 3"),
     ("seed = 1", "seed = 1\nseed = 2", "file: expected TOML in UTF-8, found ... line 4"),
-    ("[pareto]", "[study]", "file: expected TOML in UTF-8, found ... line 39"),
+    ("[pareto]", "[study]", "file: expected TOML in UTF-8, found ... line 40"),
     ("seed = 1", f"seed = {'9' * 5000}", "file: expected TOML in UTF-8, found "),
     ("seed = 1", f"seed = {'[' * 20000}", "file: expected TOML in UTF-8, found "),
 ]

@@ -16,8 +16,8 @@ at the :math:`N_0` sensors that measured the mode in the data set, and
 On request residuals are over the standard deviations of the measurements instead:
 :math:`(\omega_r - \hat\omega_r) / \hat\sigma` and, component by component,
 :math:`(\beta \varphi - \hat\varphi) / \hat\sigma` with :math:`\beta` the least squares of these. A
-component whose standard deviation is 0, such as one to which a shape was normalised, takes the
-median of the others in its shape.
+component whose standard deviation is 0 or rounding, such as one to which a shape was normalised,
+takes the median of the others in its shape.
 
 An objective is the sum over the members of its group. Its count :math:`a_i` of measured
 properties is one for a frequency and :math:`N_0` (mean over data sets) for a shape.
@@ -45,6 +45,9 @@ from modefront.residuals.groups import (
     members,
 )
 from modefront.solvers.problem import Evaluation, infeasible
+
+NEGLIGIBLE = 1e-9
+"""Standard deviation, over the greatest one or the frequency, below which it is rounding."""
 
 Member = tuple[str, int, Scale]
 """A member of a group: frequency or shape, position of the measured mode, scale."""
@@ -198,13 +201,14 @@ def _misfit(psi: Floats, phi: Floats, dphi: Floats) -> Residual:
 
 
 def usable_std(std: Floats) -> Floats:
-    """Return standard deviations with zeros replaced by the median of those above 0.
+    """Return standard deviations with negligible ones replaced by the median of the others.
 
     Raises ValueError where none is above 0 or one is not known.
     """
     if not np.isfinite(std).all() or not (std > 0).any():
         raise ValueError("standard deviations of all measured components, one of them above 0")
-    return np.where(std > 0, std, np.median(std[std > 0]))
+    real = std > NEGLIGIBLE * std.max()
+    return np.where(real, std, np.median(std[real]))
 
 
 def check_std(data: ModalData, kind: str, r: int) -> None:
@@ -214,8 +218,10 @@ def check_std(data: ModalData, kind: str, r: int) -> None:
             measured = np.isfinite(values)
             if measured.any():
                 usable_std(std[measured])
-    elif not (data.frequency_std[np.isfinite(data.frequency[:, r]), r] > 0).all():
-        raise ValueError("standard deviations above 0 of all measured frequencies")
+        return
+    at = np.isfinite(data.frequency[:, r])
+    if not (data.frequency_std[at, r] > NEGLIGIBLE * data.frequency[at, r]).all():
+        raise ValueError(f"standard deviations above {NEGLIGIBLE:g} of all measured frequencies")
 
 
 def updating_problem(

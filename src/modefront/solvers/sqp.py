@@ -41,7 +41,7 @@ SADDLE = 1e-3
 
 
 SWITCH = 0.5
-"""Share of the error of a prediction, below which that without (or with) S is preferred."""
+"""Share of the error of a prediction, below which the other model is the better one."""
 
 NOISE = 1e-11
 """Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
@@ -120,9 +120,9 @@ def solve(
     span = problem.upper - problem.lower
     learned = start.learned if options.learn else np.zeros_like(start.learned)
     state = _State(start.at, learned)
+    trusted = bool(learned.any())
     radius, penalty = options.radius, 10.0
     multipliers: Floats | None = None
-    full = bool(learned.any())
     escaped, proposed = False, np.inf
     for count in range(options.iterations + 1):
         at = state.at
@@ -135,8 +135,8 @@ def solve(
         if multipliers is None:
             multipliers = _multipliers(dc, g, lo, hi)
         w = df + A.T @ multipliers
-        S = np.tensordot(w, state.learned, axes=1) * np.outer(span, span)
-        B = np.tensordot(w, at.H, axes=1) * np.outer(span, span) + full * S
+        H = at.H + state.learned if trusted else at.H
+        B = np.tensordot(w, H, axes=1) * np.outer(span, span)
         B += dJ.T @ programme.hessian(at.J) @ dJ
         s = solve_qp(B, g, dc, -c, lo, hi)
         multipliers = _multipliers(dc, g + B @ s, lo - s, hi - s)
@@ -173,12 +173,15 @@ def solve(
         c_new = programme.A @ new.J - programme.b
         actual = value - programme.value(new.J) + multipliers @ (c - c_new)
         actual += 0.5 * penalty * (c @ c - c_new @ c_new)
-        other = predicted + (full - 0.5) * (s @ S @ s)
-        if abs(actual - other) < SWITCH * abs(actual - predicted):
-            full = not full
+        unsaid = 0.5 * w @ (state.learned @ (s * span) @ (s * span)) * (1 if trusted else -1)
+        if abs(actual - predicted - unsaid) < SWITCH * abs(actual - predicted):
+            trusted = not trusted
         noise = NOISE * (abs(value) + np.abs(multipliers) @ np.abs(programme.A @ at.J))
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
-        state = state.move(new, moved=bool(ratio > 1e-4), learn=options.learn)
+        if options.learn:
+            state = state.learn(new)
+        if ratio > 1e-4:
+            state = replace(state, at=new)
         if ratio < 0.25:
             radius = _length(s) / (4 if ratio < 1e-4 else 2)
         elif ratio > 0.7 and _length(s) > 0.9 * radius:
@@ -213,22 +216,23 @@ class _State:
     at: Evaluation
     learned: Floats
 
-    def move(self, new: Evaluation, *, moved: bool, learn: bool) -> _State:
-        """Return the state after an evaluation, at the new point or, if rejected, at the old."""
-        at = new if moved else self.at
-        if not learn:
-            return _State(at, self.learned)
+    def learn(self, new: Evaluation) -> _State:
+        """Return the state with what an evaluation tells of the second derivatives.
+
+        What was known is sized before it is corrected, by s^T y / s^T S s where that is below 1,
+        so that it vanishes with the residuals.
+        """
         s = new.theta - self.at.theta
         unknown = new.dJ - self.at.dJ - new.H @ s
-        claimed = np.abs((self.learned @ s) @ s)
-        sized = np.minimum(np.abs(unknown @ s), claimed) / np.where(claimed > 0, claimed, 1.0)
-        known = sized[:, None, None] * self.learned
+        claimed = np.abs(self.learned @ s @ s)
+        size = np.minimum(np.abs(unknown @ s), claimed) / np.where(claimed > 0, claimed, 1.0)
+        known = size[:, None, None] * self.learned
         v = unknown - known @ s
         along = v @ s
         sure = np.abs(along) > 1e-6 * np.linalg.norm(v, axis=1) * np.linalg.norm(s)
         scale = np.where(sure, 1 / np.where(sure, along, 1.0), 0.0)
         learned = known + scale[:, None, None] * v[:, :, None] * v[:, None, :]
-        return _State(at, learned)
+        return _State(self.at, learned)
 
 
 def _multipliers(dc: Floats, g: Floats, lo: Floats, hi: Floats) -> Floats:

@@ -2,8 +2,17 @@
 
 from __future__ import annotations
 
+from typing import get_args
+
 from modefront.data.modal import ModalData
-from modefront.residuals.groups import Group, measured_frequencies, measured_shapes, members
+from modefront.residuals.groups import (
+    Group,
+    Scale,
+    measured_frequencies,
+    measured_shapes,
+    members,
+)
+from modefront.residuals.problem import check_std
 from modefront.study.reader import Table, has_name, repeated
 
 
@@ -26,8 +35,9 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
                     table.fault(key, wanted, found)
                     value = []
             chosen[key] = value if value == "all" else tuple(value)
+        scale = table.choice("scale", get_args(Scale), default=Group.scale)
         table.close()
-        group = Group(name, chosen["frequency"], chosen["shape"])
+        group = Group(name, chosen["frequency"], chosen["shape"], scale)
         if not (group.frequency or group.shape):
             if len(root.faults) == before:
                 table.fault("", "frequency or shape with at least one measured mode", "neither")
@@ -36,10 +46,26 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
             or members(group.shape, data.modes, measured_shapes(data))
         ):
             table.fault("", "at least one measured property", "none in the data")
+        elif data is not None and scale == "std":
+            _check_std(table, group, data)
         out.append(group)
     for name in repeated(table.values.get("name") for table in tables if has_name(table)):
         root.fault("[[group]]", "each name once", f"'{name}' twice")
     return tuple(out)
+
+
+def _check_std(table: Table, group: Group, data: ModalData) -> None:
+    """Note members of a group whose standard deviations are missing or of no use."""
+    for kind, chosen, measured in (
+        ("frequency", group.frequency, measured_frequencies(data)),
+        ("shape", group.shape, measured_shapes(data)),
+    ):
+        for r in members(chosen, data.modes, measured):
+            try:
+                check_std(data, kind, r)
+            except ValueError as error:
+                found = f"others for the {kind} of mode {data.modes[r]}"
+                table.fault("scale", f"'std' with {error}", found)
 
 
 def _is_members(value: object) -> bool:

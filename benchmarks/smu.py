@@ -1,0 +1,88 @@
+"""Structures and measurements that others published, read from ``../shared/data/smu``.
+
+Matrices are triplets, K(alpha) = Kfixed + sum_j (1 + alpha_j) K_j; M does not change.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse
+
+from modefront import Group, ModalData, Pairing, UpdatingProblem, matrices, modal_data
+from modefront._typing import Floats
+from modefront.models.base import Model
+from modefront.residuals.groups import Scale
+
+FOLDER = Path(__file__).resolve().parents[1].parent / "shared" / "data" / "smu"
+
+
+@dataclass(frozen=True)
+class Structure:
+    """A model in alpha, its bounds, and what was measured on it.
+
+    ``true`` are the parameters from which simulated measurements come; None for real ones.
+    """
+
+    model: Model
+    data: ModalData
+    lower: Floats
+    upper: Floats
+    true: Floats | None
+
+
+def read(name: str) -> Structure:
+    """Return one of the structures: ``concrete_frame_sim``, ``steel_bridge_exp``, ``story18_exp``."""
+    with np.load(FOLDER / f"{name}.npz") as file:
+        found = dict(file)
+    size = int(found["N"])
+
+    def matrix(key: str) -> scipy.sparse.csr_array:
+        place = found[f"{key}_row"], found[f"{key}_col"]
+        return scipy.sparse.csr_array((found[f"{key}_val"], place), shape=(size, size))
+
+    terms = [matrix(f"K{j}") for j in range(int(found["n_par"]))]
+    fixed = matrix("Kfixed") if "Kfixed_row" in found else scipy.sparse.csr_array((size, size))
+    labels = found.get("names", np.array([f"alpha{j + 1}" for j in range(len(terms))]))
+    parameters = [str(label) for label in labels]
+    dofs = {f"dof{dof}": int(dof) for dof in found["meas_dofs0"]}
+    model = matrices(
+        parameters,
+        {"base": sum(terms, fixed), **dict(zip(parameters, terms, strict=True))},
+        {"base": matrix("M")},
+        dofs,
+    )
+    true = found.get("alpha_true")
+    if true is not None:
+        modes = model.modes(true, int(found["n_modes"]), derivatives=False)
+        data = modal_data(modes.frequency, modes.phi.T, tuple(dofs))
+        return Structure(model, data, found["lb"], found["ub"], true)
+    frequency = np.sqrt(found["lambda_exp"]) / (2 * np.pi)
+    std = {}
+    if "std_lambda" in found:
+        of_frequency = frequency * found["std_lambda"] / (2 * found["lambda_exp"])
+        std = {"frequency_std": of_frequency, "shape_std": found["std_psi"].T}
+    data = modal_data(frequency, found["psi_exp"].T, tuple(dofs), **std)
+    return Structure(model, data, found["lb"], found["ub"], None)
+
+
+def frequencies_and_shapes(
+    structure: Structure, pairing: Pairing | None = None, scale: Scale = "measured"
+) -> UpdatingProblem:
+    """Return the problem with all frequencies in a group and all shapes in another one."""
+    groups = (
+        Group("frequencies", frequency="all", scale=scale),
+        Group("shapes", shape="all", scale=scale),
+    )
+    start = np.zeros(structure.lower.size)
+    return UpdatingProblem(
+        structure.model,
+        structure.data,
+        groups,
+        structure.lower,
+        structure.upper,
+        start,
+        pairing or Pairing(),
+    )
