@@ -13,7 +13,7 @@ import scipy.sparse
 
 from modefront import Group, ModalData, Pairing, UpdatingProblem, matrices, modal_data
 from modefront._typing import Floats
-from modefront.models.base import Model
+from modefront.models.matrices import MatrixModel
 from modefront.residuals.groups import Scale
 
 FOLDER = Path(__file__).resolve().parents[1].parent / "shared" / "data" / "smu"
@@ -26,7 +26,7 @@ class Structure:
     ``true`` are the parameters from which simulated measurements come; None for real ones.
     """
 
-    model: Model
+    model: MatrixModel
     data: ModalData
     lower: Floats
     upper: Floats
@@ -34,7 +34,7 @@ class Structure:
 
 
 def read(name: str) -> Structure:
-    """Return one of the structures: ``concrete_frame_sim``, ``steel_bridge_exp``, ``story18_exp``."""
+    """Return ``concrete_frame_sim``, ``steel_bridge_exp`` or ``story18_exp``."""
     with np.load(FOLDER / f"{name}.npz") as file:
         found = dict(file)
     size = int(found["N"])

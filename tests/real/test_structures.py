@@ -2,14 +2,23 @@
 
 from __future__ import annotations
 
+import csv
+from pathlib import Path
+
 import numpy as np
 import pytest
-from smu import FOLDER, frequencies_and_shapes, read
+import scipy.sparse
+from smu import FOLDER, Structure, frequencies_and_shapes, read
 
-from modefront import Pairing
+from modefront import ModalData, Pairing
+from modefront.cli.show import remarks
+from modefront.models.affine import SparseAffine
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import begin
 from modefront.solvers.sqp import solve as descend
+from modefront.study.check import check
+from modefront.study.file import load
+from modefront.study.session import run
 
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason=f"there is no folder {FOLDER}")
 
@@ -29,8 +38,86 @@ def test_random_starts_find_the_true_concrete_frame() -> None:
 def test_modes_of_the_steel_bridge_come_in_another_order_than_in_the_test() -> None:
     bridge = read("steel_bridge_exp")
     problem = frequencies_and_shapes(bridge)
-    modes, pairs = problem.modes(problem.start, derivatives=False)
+    _, pairs = problem.modes(problem.start, derivatives=False)
     assert (pairs.index + 1).tolist() == [2, 1, 3, 4, 5]
     assert (pairs.mac > 0.9).all()
-    wrong, ordered = frequencies_and_shapes(bridge, Pairing("order")).modes(problem.start)
+    _, ordered = frequencies_and_shapes(bridge, Pairing("order")).modes(problem.start)
     assert (ordered.mac[:2] < 0.1).all()
+
+
+def write_data(data: ModalData, path: Path) -> None:
+    names = [*data.sensors, "frequency_std", *(f"{name}_std" for name in data.sensors)]
+    with path.open("w", newline="") as file:
+        rows = csv.writer(file)
+        rows.writerow(["set", "mode", "frequency", "damping", *names])
+        for r, mode in enumerate(data.modes):
+            values = [*data.shape[0, r], data.frequency_std[0, r], *data.shape_std[0, r]]
+            rows.writerow(["test", mode, data.frequency[0, r], "", *map(repr, map(float, values))])
+
+
+def write_study(structure: Structure, folder: Path) -> Path:
+    """Write a structure as its matrices, data and a study come from users: sparse and in files."""
+    model = structure.model
+    for key, matrix in (("K", model.stiffness), ("M", model.mass)):
+        assert isinstance(matrix, SparseAffine)
+        shape = matrix.size, matrix.size
+        for j in range(matrix.terms.shape[1]):
+            values = matrix.terms[:, [j]].toarray()[:, 0]
+            A = scipy.sparse.csr_array((values, matrix.indices, matrix.indptr), shape=shape)
+            scipy.sparse.save_npz(folder / f"{key}{j}.npz", A)
+    write_data(structure.data, folder / "modes.csv")
+    terms = ", ".join(f'{name} = "K{j + 1}.npz"' for j, name in enumerate(model.parameters))
+    sensors = ", ".join(
+        f"{name} = {dof}"
+        for name, dof in zip(model.sensors, model.selection.indices.tolist(), strict=True)
+    )
+    parameters = "".join(
+        f'[[parameter]]\nname = "{name}"\nnominal = 0\nbounds = [{lower}, {upper}]\n'
+        for name, lower, upper in zip(
+            model.parameters, structure.lower, structure.upper, strict=True
+        )
+    )
+    study = folder / "study.toml"
+    study.write_text(f"""
+[study]
+name = "steel bridge"
+[data]
+file = "modes.csv"
+[model]
+kind = "matrices"
+stiffness = {{ base = "K0.npz", {terms} }}
+mass = {{ base = "M0.npz" }}
+sensors = {{ {sensors} }}
+{parameters}
+[[group]]
+name = "frequencies"
+frequency = "all"
+scale = "std"
+[[group]]
+name = "shapes"
+shape = "all"
+scale = "std"
+[pareto]
+points = 6
+[search]
+starts = 1
+limit = 1
+evolutions = 0
+""")
+    return study
+
+
+def test_the_front_of_the_steel_bridge_over_its_standard_deviations(tmp_path: Path) -> None:
+    """474 of its 946 degrees of freedom have no mass; what scales a shape has no deviation."""
+    study = load(write_study(read("steel_bridge_exp"), tmp_path))
+    findings = check(study)
+    assert findings.sound
+    assert any("K_" in warning for warning in findings.warnings)
+    data = run(study, tmp_path / "results")
+    assert bool(data["converged"].all())
+    theta, bounds = data["theta"].values, data["bounds"].values
+    at_bounds = (theta <= bounds[:, 0]) | (theta >= bounds[:, 1])
+    assert at_bounds.any(axis=1).all()
+    named = next(line for line in remarks(data) if line.startswith("parameters at a bound"))
+    for name in data["parameter"].values[at_bounds.any(axis=0)]:
+        assert name in named

@@ -425,8 +425,8 @@ CONTRADICTIONS = [
     (
         'scale = "measured"',
         'scale = "std"',
-        "1 ('frequencies') scale: expected 'std' with standard deviations above 1e-09 of all measured "
-        "frequencies, found others for the frequency of mode 2",
+        "1 ('frequencies') scale: expected 'std' with standard deviations above 1e-09 of all "
+        "measured frequencies, found others for the frequency of mode 2",
     ),
     (
         "shape = [1, 2]",

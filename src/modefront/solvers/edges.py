@@ -34,6 +34,9 @@ EXACT = 1e-10
 TIE = 1e-6
 """Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal."""
 
+CANDIDATE = 1e-4
+"""Difference from the least minimum while exploring, over the typical size, of a possible edge."""
+
 _LEARNING = Options(step=1e-8, reduction=1e-24)
 
 _KNOWN = Options(step=1e-8, reduction=1e-24, learn=False)
@@ -80,8 +83,13 @@ def edge(
         f"minima-{name}",
         lambda: explore(problem, _programme(objective, EXPLORE, sizes), rng, search),
     )
+    limit = min((one.at.J[objective] for one in found), default=0.0) + CANDIDATE * sizes[objective]
     refined = checkpoint(
-        f"edge-{name}", lambda: [_refine(problem, objective, sizes, one) for one in found]
+        f"edge-{name}",
+        lambda: [
+            _refine(problem, objective, sizes, one) if one.at.J[objective] <= limit else one
+            for one in found
+        ],
     )
     minima: list[Solution] = []
     for one in refined:
