@@ -13,10 +13,12 @@ import scipy.sparse.linalg
 from hypothesis import given
 from hypothesis import strategies as st
 
+from modefront import fem
 from modefront._typing import Floats
 from modefront.errors import ModelError
-from modefront.models.affine import Monomials, SparseAffine, sparse_affine
+from modefront.models.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.models.matrices import MatrixModel, matrices
+from modefront.models.mesh import mesh_model
 from modefront.modes import dense, derivatives, sparse
 from modefront.modes.factorisation import rslab_ldl, superlu
 from modefront.modes.lanczos import Ritz, greatest
@@ -354,3 +356,20 @@ def test_the_factor_is_of_the_pencil() -> None:
     shifted = Shifted(0.3, engine.factor(Kt.data, Mt.data, 0.3))
     X = np.random.default_rng(0).standard_normal((15, 2))
     assert shifted.factor.solve((Kt - 0.3 * Mt) @ X) == pytest.approx(X, abs=1e-9)
+
+
+@pytest.mark.parametrize("held", [True, False])
+@pytest.mark.parametrize("cells", [3, 60])
+def test_singular_stiffness_is_told_from_a_held_one(cells: int, held: bool) -> None:
+    """Few cells give dense matrices, many give sparse ones; units of DOFs differ."""
+    X, beams = fem.grids.line(np.zeros(3), np.array([30.0, 0, 0]), cells)
+    support = (fem.Support(0),) if held else ()
+    structure = fem.Structure(
+        X,
+        (fem.Beams("beam", beams, fem.Material(210e9, 0.3, 7850.0), fem.circle(0.02)),),
+        support,
+        sensors=(fem.Sensor("tip", cells, "z"),),
+    )
+    model = mesh_model(structure, (), floating=not held)
+    assert isinstance(model.stiffness, DenseAffine) == (cells == 3)
+    assert model.is_singular(np.zeros(0)) is not held

@@ -9,7 +9,7 @@ import io
 import re
 import subprocess
 import sys
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -18,8 +18,7 @@ import numpy as np
 import pytest
 import scipy.io
 import scipy.sparse
-
-from modefront.cli.main import main
+from refusals import Check, command, edited
 
 STUDY = """\
 [study]
@@ -95,21 +94,6 @@ K1 = np.array([[3000.0, 0.0], [0.0, 0.0]])
 K2 = 2000.0 * np.array([[1.0, -1.0], [-1.0, 1.0]])
 M = np.diag([2.5, 1.0])
 
-Check = Callable[..., None]
-
-
-def command(*arguments: object) -> int:
-    """Run the command in this process and return its exit status."""
-    before = sys.argv
-    sys.argv = ["modefront", *map(str, arguments)]
-    try:
-        with pytest.raises(SystemExit) as left:
-            main()
-    finally:
-        sys.argv = before
-    assert isinstance(left.value.code, int)
-    return left.value.code
-
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
@@ -127,39 +111,6 @@ def folder(tmp_path: Path) -> Path:
     (tmp_path / "bad.mat").write_bytes((tmp_path / "all.mat").read_bytes()[:150])
     (tmp_path / "folder.mtx").mkdir()
     return tmp_path
-
-
-@pytest.fixture
-def refused(capsys: pytest.CaptureFixture[str]) -> Check:
-    """Assert that a run refuses a study, say these things, and write nothing.
-
-    What is said is given as ``place: expected ... found ...`` with " ... " for any text between.
-    """
-
-    def refuse(study: Path, *says: str) -> None:
-        output = study.parent / "output"
-        status = command("run", study, "-o", output)
-        out, err = capsys.readouterr()
-        assert status == 2, err
-        assert out == ""
-        lines = err.splitlines()
-        for line in lines:
-            assert re.fullmatch(r"\S.*: .+: expected .+, found .+", line), line
-            assert line.startswith(str(study.parent)), "the file is named"
-        for text in says:
-            pattern = ".*".join(map(re.escape, text.split(" ... ")))
-            assert any(re.search(pattern, line) for line in lines), (text, err)
-        assert not output.exists()
-        assert not list(study.parent.glob("*-results"))
-
-    return refuse
-
-
-def edited(text: str, *edits: tuple[str, str]) -> str:
-    for old, new in edits:
-        assert old in text, old
-        text = text.replace(old, new, 1)
-    return text
 
 
 def test_the_study_that_the_rest_is_made_from_is_right(
@@ -741,6 +692,13 @@ BASE, FIRST, MASS = 'base = "K0.mtx"', 'k1 = "K1.npy"', 'mass = { base = "M.mtx"
 TERMS = "expected a table of files, base = ... and one a parameter, found "
 
 MATRIX_KEYS = [
+    (MASS, f"{MASS}\nfloating = 1", "[model] floating: expected true or false, found 1"),
+    (
+        f"{{ {BASE}, {FIRST},",
+        '{ k1 = "K2.npz",',
+        "[model]: expected a structure that is held, or floating = true for rigid-body modes, "
+        "found a singular stiffness matrix at the nominal parameters",
+    ),
     (MASS, "", f"[model] mass: {TERMS}nothing"),
     (MASS, 'mass = "M.mtx"', f"[model] mass: {TERMS}the text 'M.mtx'"),
     (MASS, "mass = [1]", f"[model] mass: {TERMS}[1]"),

@@ -108,7 +108,7 @@ def read_mesh(path: str | Path) -> Mesh:
             "reading meshes needs meshio: install it with `pip install modefront[mesh]`"
         ) from error
     if not Path(path).is_file():
-        raise FemError(f"{path}: expected a mesh file, found none")
+        raise FemError(f"{path}: no such file")
     said = io.StringIO()
     try:
         # meshio prints what is wrong and then ends the process.
@@ -118,6 +118,8 @@ def read_mesh(path: str | Path) -> Mesh:
         words = " ".join(f"{said.getvalue()} {error}".split())
         raise FemError(f"{path}: expected a mesh that meshio can read ({words})") from error
     points = np.asarray(raw.points, dtype=float)
+    if points.ndim != 2 or not 1 <= points.shape[1] <= 3 or len(points) == 0:
+        raise FemError(f"{path}: expected nodes in up to 3 dimensions, found {points.shape}")
     blocks: dict[tuple[str, str], list[IntArray]] = {}
     for name, kind, cells in _named_cells(raw):
         blocks.setdefault((name, kind), []).append(cells)

@@ -52,6 +52,7 @@ class MatrixModel:
     sensors : names of the sensors
     selection : (sensors, N) weights of the degrees of freedom at each sensor
     stiffness, mass : K(theta), M(theta), N x N
+    floating : whether the stiffness matrix may be singular: rigid-body modes are wanted
     counts : what the evaluations have cost so far
     """
 
@@ -60,6 +61,7 @@ class MatrixModel:
     selection: scipy.sparse.csr_array
     stiffness: DenseAffine | SparseAffine
     mass: DenseAffine | SparseAffine
+    floating: bool = True
     counts: Counts = field(default_factory=Counts)
 
     @property
@@ -81,6 +83,12 @@ class MatrixModel:
             return dense.modes(self.stiffness, self.mass, selection, theta, count, derivatives)
         return sparse.modes(self._pencil, self.selection, theta, count, derivatives)
 
+    def is_singular(self, theta: Floats) -> bool:
+        """Return whether K(theta) is singular to working precision."""
+        if isinstance(self.stiffness, DenseAffine):
+            return dense.is_singular(self.stiffness.at(theta))
+        return sparse.is_singular(self._pencil, theta)
+
     @cached_property
     def _pencil(self) -> Pencil:
         """The sparse pencil; its pattern is analysed at the first evaluation, and only then."""
@@ -95,20 +103,24 @@ def matrices(
     stiffness: Mapping[str, Matrix],
     mass: Mapping[str, Matrix],
     sensors: Mapping[str, SensorSpec],
+    *,
+    floating: bool = True,
 ) -> MatrixModel:
     """Return the model with K(theta) = base + sum_j theta_j K_j and M(theta) likewise.
 
     ``stiffness`` and ``mass`` map ``"base"`` and names of parameters to symmetric matrices N x N,
-    dense or sparse. Raises ValueError for a term that is no parameter.
+    dense or sparse; ``floating`` says whether rigid-body modes are wanted. Raises ValueError for a
+    term that is no parameter.
     """
     size = next(iter(mass.values())).shape[0]
-    return affine_model(
+    model = affine_model(
         parameters,
         tuple(sensors),
         select(sensors, size),
         affine(parameters, stiffness, size),
         affine(parameters, mass, size),
     )
+    return replace(model, floating=floating)
 
 
 def affine_model(

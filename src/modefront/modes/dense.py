@@ -98,6 +98,13 @@ def eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
     return lam, X[:, finite] / np.sqrt(mu[finite])
 
 
+def is_singular(K: Floats) -> bool:
+    """Return whether a positive semidefinite K is singular to working precision, units apart."""
+    scale = 1 / np.sqrt(np.maximum(np.diag(K), np.finfo(float).tiny))
+    lam = scipy.linalg.eigvalsh(K * np.outer(scale, scale), check_finite=False)
+    return bool(lam[0] <= _ROUNDING * lam.size * lam[-1])
+
+
 def _inverse_eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
     """Solve M x = mu K x; empty arrays where K is not positive definite."""
     try:

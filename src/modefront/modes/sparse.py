@@ -120,6 +120,13 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
     )
 
 
+def is_singular(pencil: Pencil, theta: Floats) -> bool:
+    """Return whether a positive semidefinite K(theta) is singular to working precision."""
+    right = np.random.default_rng(0).standard_normal((pencil.size, BLOCK))
+    factor, _ = _regular(pencil, pencil.K.at(theta), pencil.M.at(theta), 0.0, right)
+    return factor is None
+
+
 def _gap(lam: Floats, known: int, count: int, s: float, complete: bool) -> tuple[int, float] | None:
     """Return how many modes are below a gap after the first ``count`` ones, and a sigma in it.
 

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from modefront.errors import Fault, InputError, ModelError
+from modefront.models.matrices import MatrixModel
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.reader import Table
@@ -106,6 +107,11 @@ def _try_model(root: Table, problem: UpdatingProblem) -> None:
         problem.modes(problem.start, derivatives=False)
     except ModelError as error:
         root.fault("[model]", "modes at the nominal parameters", str(error))
+        return
+    model = problem.model
+    if isinstance(model, MatrixModel) and not model.floating and model.is_singular(problem.start):
+        expected = "a structure that is held, or floating = true for rigid-body modes"
+        root.fault("[model]", expected, "a singular stiffness matrix at the nominal parameters")
 
 
 def _model_files(values: dict[str, Any]) -> list[str]:

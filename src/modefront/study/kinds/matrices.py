@@ -23,9 +23,10 @@ def read_matrices(table: Table, parameters: Sequence[str], folder: Path) -> Mode
     mass = _terms(table, "mass", parameters, folder)
     size = _common_size(table, {"stiffness": stiffness, "mass": mass})
     sensors = read_sensors(table, size)
+    floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
     if len(table.faults) > before or sensors is None:
         return None
-    return matrices(parameters, stiffness, mass, sensors)
+    return matrices(parameters, stiffness, mass, sensors, floating=floating)
 
 
 def _terms(

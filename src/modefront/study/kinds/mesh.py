@@ -24,6 +24,9 @@ _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
     "constants": (fem.Section, ("A", "I_y", "I_z", "J")),
 }
 
+KEYS = ("material", "group", "support", "spring", "mass", "link", "sensors", "scale")
+"""Tables that describe what the mesh is made of."""
+
 
 def read_mesh_model(table: Table, parameters: Sequence[str], folder: Path) -> Model | None:
     """Return the model that a ``[model]`` table describes, or None where it has faults."""
@@ -36,8 +39,11 @@ def read_mesh_model(table: Table, parameters: Sequence[str], folder: Path) -> Mo
         except fem.FemError as error:
             table.fault("file", "a mesh that can be read", str(error))
     floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
-    structure = _structure(table, parameters, mesh) if mesh is not None else None
-    if structure is None or len(table.faults) > before:
+    if mesh is None:
+        table.asked += KEYS  # what they say cannot be judged without the mesh
+        return None
+    structure = _structure(table, parameters, mesh)
+    if len(table.faults) > before:
         return None
     try:
         return mesh_model(structure, parameters, floating=floating)
@@ -73,6 +79,8 @@ def _closed(table: Table) -> bool:
 def _materials(model: Table) -> dict[str, fem.Material]:
     out: dict[str, fem.Material] = {}
     table = model.table("material", "a table of materials")
+    if table is not None and not table.values:
+        table.fault("", "at least one material", "none")
     for name in table.values if table else ():
         one = table.table(name, "a table E, nu, rho") if table else None
         if one is None:
@@ -94,7 +102,8 @@ def _groups(
     for one in model.tables("group", required=True):
         name = one.text("name", "the name of a group of cells")
         kind: Kind | None = one.choice("elements", get_args(Kind))
-        label = one.choice("material", tuple(materials))
+        names = tuple(materials)  # none where all are faulty, which is said there
+        label = one.choice("material", names) if names else one.text("material")
         thickness = offset = section = orientation = None
         if kind == "shell":
             thickness = one.number("thickness", "a thickness above 0", lambda x: x > 0)
@@ -105,7 +114,7 @@ def _groups(
                 "orientation", "a vector of 3 numbers", lambda x: len(x) == 3, default=None
             )
         one.close()
-        if name is None or kind is None or label is None:
+        if name is None or kind is None or label not in materials:
             continue
         try:
             blocks = mesh.cells_of(name, kind)

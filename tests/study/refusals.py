@@ -1,0 +1,33 @@
+"""Runs of the command that are to be refused."""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Callable
+
+import pytest
+
+from modefront.cli.main import main
+
+Check = Callable[..., None]
+
+
+def command(*arguments: object) -> int:
+    """Run the command in this process and return its exit status."""
+    before = sys.argv
+    sys.argv = ["modefront", *map(str, arguments)]
+    try:
+        with pytest.raises(SystemExit) as left:
+            main()
+    finally:
+        sys.argv = before
+    assert isinstance(left.value.code, int)
+    return left.value.code
+
+
+def edited(text: str, *edits: tuple[str, str]) -> str:
+    """Return a text with each old part, which has to be there, replaced by a new one."""
+    for old, new in edits:
+        assert old in text, old
+        text = text.replace(old, new, 1)
+    return text

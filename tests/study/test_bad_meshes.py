@@ -1,0 +1,268 @@
+"""Whatever is wrong with a mesh, or with what a study says of it, is said in one message."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from refusals import Check, command, edited
+
+from modefront import fem
+
+meshio = pytest.importorskip("meshio")
+
+STUDY = """\
+[study]
+name = "plate on a beam"
+
+[data]
+file = "modes.csv"
+
+[model]
+kind = "mesh"
+file = "mesh.msh"
+
+[model.material]
+steel = { E = 210e9, nu = 0.3, rho = 7850.0 }
+
+[[model.group]]
+name = "plate"
+elements = "shell"
+material = "steel"
+thickness = 0.01
+
+[[model.group]]
+name = "edge"
+elements = "beam"
+material = "steel"
+section = { shape = "rectangle", b_y = 0.02, b_z = 0.04 }
+orientation = [0.0, 0.0, 1.0]
+
+[[model.support]]
+nodes = "edge"
+
+[[model.spring]]
+name = "prop"
+nodes = 24
+stiffness = 1e5
+direction = "z"
+
+[[model.mass]]
+name = "tip"
+nodes = [20]
+mass = 0.5
+
+[[model.link]]
+master = 22
+slaves = [21, 23]
+
+[model.sensors]
+left = { node = 20, direction = "z" }
+right = { at = [1.0, 1.0, 0.0], direction = "z" }
+
+[model.scale]
+E = { quantity = "E", of = ["plate"] }
+m = { quantity = "mass", of = ["tip"] }
+
+[[parameter]]
+name = "E"
+nominal = 1.0
+bounds = [0.5, 2.0]
+
+[[parameter]]
+name = "m"
+nominal = 1.0
+bounds = [0.5, 2.0]
+
+[[group]]
+name = "all"
+frequency = "all"
+shape = "all"
+"""
+
+DATA = "set,mode,frequency,damping,left,right\na,1,8,,1,1\na,2,20,,1,-1\n"
+
+X, QUADS = fem.grids.plate(1.0, 1.0, 4, 4)
+EDGE = np.array([[0, 1], [1, 2], [2, 3], [3, 4]])
+
+
+def write_mesh(path: Path, nodes: np.ndarray = X, quads: np.ndarray = QUADS) -> None:
+    """Write the plate with its edge, cells named as in the study."""
+    tags = [np.full(len(EDGE), 1), np.full(len(quads), 2)]
+    meshio.Mesh(
+        nodes,
+        [("line", EDGE), ("quad", quads)],
+        cell_data={"gmsh:physical": tags, "gmsh:geometrical": tags},
+        field_data={"edge": np.array([1, 1]), "plate": np.array([2, 2])},
+    ).write(path, file_format="gmsh22", binary=False)
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a study of a mesh in which nothing is wrong."""
+    (tmp_path / "study.toml").write_text(STUDY)
+    (tmp_path / "modes.csv").write_text(DATA)
+    write_mesh(tmp_path / "mesh.msh")
+    return tmp_path
+
+
+def test_the_study_that_the_rest_is_made_from_is_right(
+    folder: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command("check", folder / "study.toml") == 0, capsys.readouterr().err
+    assert capsys.readouterr().err == ""
+
+
+STEEL = "steel = { E = 210e9, nu = 0.3, rho = 7850.0 }"
+SHELL = 'elements = "shell"'
+SECTION = 'section = { shape = "rectangle", b_y = 0.02, b_z = 0.04 }'
+SUPPORT = '[[model.support]]\nnodes = "edge"\n'
+LEFT = 'left = { node = 20, direction = "z" }'
+RIGHT = 'right = { at = [1.0, 1.0, 0.0], direction = "z" }'
+SCALE = 'E = { quantity = "E", of = ["plate"] }'
+
+WRONG = [
+    ('file = "mesh.msh"', "", "[model] file: expected the name of a mesh file, found nothing"),
+    ('"mesh.msh"', '"no.msh"', "[model] file: expected a mesh that can be read, found ... no such"),
+    ('"mesh.msh"', '"modes.csv"', "[model] file: expected a mesh that can be read, found "),
+    ('"mesh.msh"', '"mesh.msh"\nfloating = 1', "[model] floating: expected true or false, found 1"),
+    ('"mesh.msh"', '"mesh.msh"\nflotin = true', "expected a known key, found 'flotin' (did you me"),
+    (STEEL, "", "[model] material: expected at least one material, found none"),
+    (STEEL, "steel = 1", "steel: expected a table E, nu, rho, found 1"),
+    ("E = 210e9", "E = 0", "steel E: expected Young's modulus above 0, found 0"),
+    ("nu = 0.3", "nu = 0.5", "steel nu: expected Poisson's ratio between -1 and 0.5, found 0.5"),
+    ("rho = 7850.0", "rho = -1", "steel rho: expected a density of 0 or more, found -1"),
+    ("rho = 7850.0", "roh = 7850", "steel: expected a known key, found 'roh' (did you mean 'rho'?"),
+    ('name = "plate"', 'name = "plat"', "name: expected a group of the mesh, found ... plate"),
+    ('name = "plate"', "name = 1", "name: expected the name of a group of cells, found 1"),
+    (SHELL, 'elements = "shel"', "elements: expected one of 'beam', 'shell', 'solid', found"),
+    (SHELL, 'elements = "solid"', "expected a group of the mesh, found ... "),
+    (
+        '"steel"\nthickness',
+        '"iron"\nthickness',
+        "material: expected one of 'steel', found the text",
+    ),
+    (
+        "thickness = 0.01",
+        "thickness = -0.01",
+        "thickness: expected a thickness above 0, found -0.0",
+    ),
+    ("thickness = 0.01", "", "thickness: expected a thickness above 0, found nothing"),
+    (
+        "thickness = 0.01",
+        "thickness = 0.01\noffset = nan",
+        "offset: expected a distance, found nan",
+    ),
+    (SECTION, "", "section: expected a table with shape = rectangle,  ... found nothing"),
+    ('"rectangle"', '"square"', "section shape: expected one of 'rectangle' ... found the text"),
+    ("b_y = 0.02", "b_y = 0", "section b_y: expected a number above 0, found 0"),
+    ("b_y = 0.02, ", "", "section b_y: expected a number above 0, found nothing"),
+    (
+        '"rectangle", b_y = 0.02, b_z = 0.04',
+        '"hollow_rectangle", b_y = 0.02, b_z = 0.04, wall = 0.02',
+        "section: expected a section that is possible, found ",
+    ),
+    (
+        "[0.0, 0.0, 1.0]",
+        "[0.0, 1.0]",
+        "orientation: expected a vector of 3 numbers, found [0.0, 1.",
+    ),
+    ("[0.0, 0.0, 1.0]", "[0.0, 1.0, 0.0]", "parallel ... element 0"),
+    ("orientation = [0.0, 0.0, 1.0]\n", "", "group 'edge': ... orientation is needed"),
+    ('nodes = "edge"', 'nodes = "egde"', "nodes: expected a group or node set of the mesh, found"),
+    ('nodes = "edge"', "nodes = []", "nodes: expected a node counted from 0, a list of nodes, or"),
+    ('nodes = "edge"', "nodes = 25", "nodes: expected nodes from 0 to 24, found 25"),
+    ('nodes = "edge"', 'nodes = "edge"\ndirections = ["w"]', "directions: expected a list of x, y"),
+    ("stiffness = 1e5", "stiffness = 0", "('prop') stiffness: expected a stiffness above 0, found"),
+    (
+        'direction = "z"\n\n[[model.mass]]',
+        'direction = "q"\n\n[[model.mass]]',
+        "expected one of x,",
+    ),
+    ("mass = 0.5", "mass = -0.5", "('tip') mass: expected a mass of 0 or more, found -0.5"),
+    ("mass = 0.5", "mass = 0.5\ninertia = [1.0]", "inertia: expected 3 moments of inertia of 0 or"),
+    ("mass = 0.5", "mass = 0.5\noffset = 1.0", "offset: expected a vector of 3 numbers, found 1.0"),
+    ("master = 22", "master = [22, 20]", "master: expected one node, found 2 nodes"),
+    ("master = 22", "master = 99", "master: expected nodes from 0 to 24, found 99"),
+    ("slaves = [21, 23]", "", "slaves: expected a node counted from 0,  ... found nothing"),
+    (
+        LEFT,
+        "left = 20",
+        "[model] sensors left: expected a table node or at, and direction, found 20",
+    ),
+    (LEFT, 'left = { direction = "z" }', "sensors left: expected either node or at, found neither"),
+    (
+        LEFT,
+        "left = { node = 20 }",
+        "sensors left direction: expected one of x, -x ... found nothing",
+    ),
+    (
+        LEFT,
+        'left = { node = 99, direction = "z" }',
+        "sensor 'left': ... nodes from 0 to 24, found 99",
+    ),
+    (RIGHT, 'right = { at = [9.0, 9.0, 9.0], direction = "z" }', "sensor 'right': ... "),
+    (
+        RIGHT,
+        'right = { at = [1.0, 1.0], direction = "z" }',
+        "right at: expected 3 coordinates, foun",
+    ),
+    (
+        SCALE,
+        'E = { quantity = "e", of = ["plate"] }',
+        "E quantity: expected one of 'E', 'density',",
+    ),
+    (
+        SCALE,
+        'E = { quantity = "E", of = ["plat"] }',
+        "nothing named 'plat' ... did you mean 'plate'",
+    ),
+    (
+        SCALE,
+        'E = { quantity = "E", of = [] }',
+        "E of: expected a list of groups, springs or masses",
+    ),
+    (SCALE, 'F = { quantity = "E", of = ["plate"] }', "F: expected the name of a parameter, found"),
+    (SCALE, "", "[[parameter]] 'E': expected a parameter that the model uses, found no use of it"),
+]
+
+
+@pytest.mark.parametrize(("old", "new", "says"), WRONG)
+def test_a_study_of_a_mesh_with_something_wrong(
+    old: str, new: str, says: str, folder: Path, refused: Check
+) -> None:
+    (folder / "wrong.toml").write_text(edited(STUDY, (old, new)))
+    refused(folder / "wrong.toml", says)
+
+
+def test_a_structure_that_can_move_is_refused_with_its_motion(folder: Path, refused: Check) -> None:
+    (folder / "wrong.toml").write_text(
+        edited(STUDY, (SUPPORT, '[[model.support]]\nnodes = 0\ndirections = ["x", "y", "z"]\n'))
+    )
+    refused(
+        folder / "wrong.toml", "[model]: expected a structure that can be assembled, found ... "
+    )
+
+
+def test_cells_that_share_no_nodes_are_named(folder: Path, refused: Check) -> None:
+    far = np.concatenate([X, X + np.array([5.0, 0, 0])])
+    write_mesh(folder / "mesh.msh", far, np.concatenate([QUADS, QUADS + len(X)]))
+    refused(
+        folder / "study.toml", "[model]: ... 25 nodes (25, 26, ... 2 parts that nothing connects"
+    )
+
+
+def test_elements_turned_inside_out_are_named(folder: Path, refused: Check) -> None:
+    quads = QUADS.copy()
+    quads[3] = quads[3][[0, 2, 1, 3]]
+    write_mesh(folder / "mesh.msh", quads=quads)
+    refused(folder / "study.toml", "group 'plate': element 3 ")
+
+
+@pytest.mark.parametrize(
+    "content", [b"", b"$MeshFormat\n2.2 0 8\n$EndMeshFormat\n", b"\xff\xfe\x00"]
+)
+def test_files_that_are_no_mesh(content: bytes, folder: Path, refused: Check) -> None:
+    (folder / "mesh.msh").write_bytes(content)
+    refused(folder / "study.toml", "[model] file: expected a mesh that can be read, found ")
