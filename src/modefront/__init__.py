@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from modefront.errors import InputError as InputError
     from modefront.errors import ModelError as ModelError
     from modefront.errors import UnfinishedError as UnfinishedError
-    from modefront.identifiability import combinations as combinations
+    from modefront.identifiability.combinations import combinations as combinations
     from modefront.models.chain import chain as chain
     from modefront.models.matrices import matrices as matrices
     from modefront.pairing.mac import mac as mac
@@ -41,7 +41,7 @@ _HOMES = {
     "UnfinishedError": "errors",
     "UpdatingProblem": "residuals.problem",
     "chain": "models.chain",
-    "combinations": "identifiability",
+    "combinations": "identifiability.combinations",
     "load": "study.file",
     "mac": "pairing.mac",
     "matrices": "models.matrices",

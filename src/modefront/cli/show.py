@@ -70,6 +70,8 @@ def print_findings(study: Study, findings: Findings) -> None:
         console,
         f"derivatives {verdict} finite differences (relative {findings.derivative_error:.1e})",
     )
+    for line in findings.determined:
+        _print(console, line)
     for warning in findings.warnings:
         _print(console, f"warning: {warning}")
     if not findings.warnings:
