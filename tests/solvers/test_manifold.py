@@ -139,6 +139,16 @@ def test_a_parameter_pressed_against_its_bound_stays_there() -> None:
     assert thetas(found.models)[:, 2].tolist() == [0.5] * len(found.models)
 
 
+def test_residuals_that_bend_but_do_not_change_hold_a_minimum() -> None:
+    def bowl(theta: Floats) -> Derivatives:
+        x, y = theta
+        return squares(np.array([1 + x**2, y]), np.array([[2 * x, 0], [0, 1]]))
+
+    problem = of(bowl, [-1, -1], [1, 1])
+    found = follow(problem, ONE, problem.evaluate(np.zeros(2)), h=0.05, limit=20)
+    assert (found.dimension, found.extent) == (0, Extent.ISOLATED)
+
+
 def test_no_more_models_than_wanted() -> None:
     problem = of(circle, [-1, -1], [1, 1])
     found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=7)

@@ -81,7 +81,7 @@ def edge(
         lambda: explore(problem, _programme(objective, EXPLORE, sizes), rng, search),
     )
     refined = checkpoint(
-        f"edge-{name}", lambda: [_refine(problem, objective, sizes, one) for one in found]
+        f"edge-{name}", lambda: [refine(problem, objective, sizes, one) for one in found]
     )
     minima: list[Solution] = []
     for one in refined:
@@ -129,7 +129,7 @@ def _programme(objective: int, epsilon: float, sizes: Floats) -> Linear:
     return weighted(w / sizes)
 
 
-def _refine(problem: Problem, objective: int, sizes: Floats, start: Solution) -> Solution:
+def refine(problem: Problem, objective: int, sizes: Floats, start: Solution) -> Solution:
     """Return the limit of the minimisers for epsilon to 0, by Richardson's extrapolation."""
     options = _KNOWN if start.at.H[objective].any() else _LEARNING
     coarse = solve(problem, _programme(objective, COARSE, sizes), start, options)

@@ -184,6 +184,8 @@ def follow(
                     queue.append(len(charts) - 1)
     if ground.dimension == 1:
         charts = [charts[k] for k in np.argsort(position, kind="stable")]
+    if len(charts) == 1 and lost and not bounded:
+        return Manifold(0, [start], Extent.ISOLATED)  # residuals bend where they do not change
     extent = Extent.BOUNDED if bounded else Extent.CLOSED
     extent = Extent.CUT if cut else Extent.LOST if lost else extent
     return Manifold(ground.dimension, [chart.at for chart in charts], extent)
