@@ -9,7 +9,7 @@ import modefront as mf
 from modefront.data.modal import ModalData
 from modefront.residuals.groups import Scale
 from modefront.solvers.problem import Evaluation
-from modefront.uncertainty.noise import noise, source_of
+from modefront.uncertainty.noise import available, noise
 
 NAMES = ("k1", "k2", "k3")
 THETA = np.array([1.1, 0.9, 1.2])
@@ -41,11 +41,11 @@ def problem_of(data: ModalData, scale: Scale) -> mf.UpdatingProblem:
 
 def test_where_the_uncertainty_comes_from() -> None:
     data = measured(2)
-    assert source_of(data) == "std"
+    assert available(data) == ("std", "sets")
     bare = replace(data, frequency_std=np.nan * data.frequency, shape_std=np.nan * data.shape)
-    assert source_of(bare) == "sets"
+    assert available(bare) == ("sets",)
     f, phi = bare.frequency[:1], bare.shape[:1]
-    assert source_of(mf.modal_data(f, phi, MODEL.sensors)) is None
+    assert available(mf.modal_data(f, phi, MODEL.sensors)) == ()
 
 
 @pytest.mark.parametrize("scale", ["measured", "std"])

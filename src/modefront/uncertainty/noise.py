@@ -53,13 +53,13 @@ class Noise:
     dJ: Floats
 
 
-def source_of(data: ModalData) -> Source | None:
-    """Return what tells the uncertainty of data: standard deviations, else sets, else nothing."""
-    if (data.frequency_std > 0).any() or (data.shape_std > 0).any():
-        return "std"
-    repeated = (np.isfinite(data.frequency).sum(axis=0) > 1).any()
-    repeated |= (np.isfinite(data.shape).sum(axis=0) > 1).any()
-    return "sets" if repeated else None
+def available(data: ModalData) -> tuple[Source, ...]:
+    """Return what tells the uncertainty of data."""
+    std = (data.frequency_std > 0).any() or (data.shape_std > 0).any()
+    frequencies = np.isfinite(data.frequency).sum(axis=0)
+    shapes = np.isfinite(data.shape).any(axis=2).sum(axis=0)
+    sets = max(frequencies.max(), shapes.max()) > 1
+    return (*(("std",) if std else ()), *(("sets",) if sets else ()))
 
 
 def noise(problem: UpdatingProblem, theta: Floats, source: Source) -> Noise:
