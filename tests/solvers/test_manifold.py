@@ -139,6 +139,19 @@ def test_a_parameter_pressed_against_its_bound_stays_there() -> None:
     assert thetas(found.models)[:, 2].tolist() == [0.5] * len(found.models)
 
 
+def test_a_surface_is_followed_from_a_corner_along_the_bounds() -> None:
+    def plane(theta: Floats) -> Derivatives:
+        return squares(np.array([theta.sum() - 1.0]), np.ones((1, 3)))
+
+    problem = of(plane, [0, 0, 0], [1, 1, 1])
+    found = follow(problem, ONE, problem.evaluate(np.array([1.0, 0, 0])), h=0.2, limit=100)
+    assert (found.dimension, found.extent) == (2, Extent.BOUNDED)
+    theta = thetas(found.models)
+    assert theta.sum(axis=1) == pytest.approx(1, abs=1e-8)
+    assert theta.min() == 0
+    assert len(theta) >= 5
+
+
 def test_residuals_that_bend_but_do_not_change_hold_a_minimum() -> None:
     def bowl(theta: Floats) -> Derivatives:
         x, y = theta

@@ -13,6 +13,9 @@ from modefront.residuals.groups import Group
 SAME = 1e-3
 """Difference of two parts of a direction, over its greatest part, below which they are equal."""
 
+PARTS = 5
+"""Parameters that a combination of many names, at most."""
+
 SHOWN = 3
 """Directions that are not determined, at most, that a sentence names one by one."""
 
@@ -22,7 +25,7 @@ def in_words(combination: Combination, names: Sequence[str]) -> str:
     v = combination.direction
     order = np.argsort(-np.abs(v), kind="stable")
     parts = [f"{v[i]:+.2f} {names[i]}" for i in order if abs(v[i]) >= 0.1 * abs(v[order[0]])]
-    return " ".join(parts)
+    return " ".join(parts[:PARTS]) + " ..." * (len(parts) > PARTS)
 
 
 def measured_thing(groups: Sequence[Group]) -> str:
@@ -74,6 +77,8 @@ def direction_in_words(v: Floats, names: Sequence[str]) -> str:
     """
     v = v / v[np.argmax(np.abs(v))]
     members = np.flatnonzero(np.abs(v) > SAME).tolist()
+    if len(members) > PARTS:
+        return _of_many(v, members, names)
     named = enumeration([names[i] for i in members])
     if len(members) == 1:
         return f"{named} can be changed alone"
@@ -81,6 +86,19 @@ def direction_in_words(v: Floats, names: Sequence[str]) -> str:
         return f"{named} can be scaled together"
     return f"{named} can be changed by powers in the ratio " + " : ".join(
         f"{v[i]:.3g}" for i in members
+    )
+
+
+def _of_many(v: Floats, members: Sequence[int], names: Sequence[str]) -> str:
+    """Return the same of more parameters than are named."""
+    if (np.abs(v[members] - 1) <= SAME).all():
+        if len(members) == len(names):
+            return f"all {len(names)} parameters can be scaled together"
+        return f"{enumeration([names[i] for i in members])} can be scaled together"
+    most = sorted(np.argsort(-np.abs(v), kind="stable")[:PARTS].tolist())
+    return (
+        f"{len(members)} parameters, most of all {enumeration([names[i] for i in most])}, "
+        "can be changed by powers in a fixed ratio"
     )
 
 

@@ -34,6 +34,9 @@ EXACT = 1e-10
 TIE = 1e-6
 """Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal."""
 
+ATTEMPTS = 4
+"""Starts from which the end of a flat valley is looked for, at most."""
+
 _LEARNING = Options(step=1e-8, reduction=1e-24)
 
 _KNOWN = Options(step=1e-8, reduction=1e-24, learn=False)
@@ -108,9 +111,9 @@ def near_best(
     """Return, of the models within a tolerance of the best in an objective, the best in the others.
 
     Where an objective hardly changes along a valley, the end of the valley says nothing, and the
-    front there is flat; this is the point from which it is not. It is solved from the one of the
-    ``known`` solutions that is closest in the objective. An objective that is fitted exactly
-    keeps its edge, and so does one for which the programme does not converge.
+    front there is flat; this is the point from which it is not. It is solved from those of the
+    ``known`` solutions that are closest in the objective, one after another. An objective that is
+    fitted exactly keeps its edge, and so does one for which the programme does not converge.
     """
     least = best.at.J[objective]
     if least <= EXACT * sizes[objective]:
@@ -118,9 +121,12 @@ def near_best(
     value = (1 + tolerance) * least
     others = np.where(np.arange(sizes.size) != objective, 1 / sizes, 0.0)
     unit = np.eye(sizes.size)[[objective]] / value
-    start = min(known, key=lambda one: abs(np.log(one.at.J[objective] / value)))
-    found = solve(problem, Linear(others, unit, np.ones(1)), start)
-    return [found if found.converged else best]
+    closest = sorted(known, key=lambda one: abs(np.log(one.at.J[objective] / value)))
+    for start in closest[:ATTEMPTS]:
+        found = solve(problem, Linear(others, unit, np.ones(1)), start)
+        if found.converged:
+            return [found]
+    return [best]
 
 
 def _programme(objective: int, epsilon: float, sizes: Floats) -> Linear:

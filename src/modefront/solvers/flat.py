@@ -65,15 +65,17 @@ def identifiable_part(
     problem: Problem,
     points: Sequence[Solution],
     edges: Sequence[Solution],
+    known: Sequence[Solution],
     tolerance: float,
     sizes: Floats,
     divisions: int,
     checkpoint: Checkpoint,
 ) -> Identifiable | None:
-    """Return the part of a front that is not flat; None where nothing is flat.
+    """Return the part of a front that is not flat; None where nothing is flat, or
+    where the flat part has no end that can be found.
 
-    ``points`` lie along the whole front, ``edges`` are its edges; ``divisions`` are the steps
-    along each edge of the simplex.
+    ``points`` lie along the whole front, ``edges`` are its edges, ``known`` are solutions to start
+    from; ``divisions`` are the steps along each edge of the simplex.
     """
     n = len(edges)
     least = np.array([one.at.J[i] for i, one in enumerate(edges)])
@@ -84,9 +86,11 @@ def identifiable_part(
     ends = list(edges)
     for i in np.flatnonzero(flat).tolist():
         name = f"identifiable-edge-{problem.objectives[i]}"
-        cut = partial(near_best, problem, edges[i], i, tolerance, sizes, points)
+        cut = partial(near_best, problem, edges[i], i, tolerance, sizes, known)
         (ends[i],) = checkpoint(name, cut)
     flat = np.where([one is not edge for one, edge in zip(ends, edges, strict=True)], flat, 0)
+    if not flat.any():
+        return None
     target = payoff(ends, sizes)
     if target is None:
         return Identifiable(flat, ends, [])

@@ -16,7 +16,7 @@ with the inverse on the complement of the null space, until s vanishes: quadrati
 residuals vanish, linearly elsewhere. New points grow from points until every step from every point
 arrives next to a known one (a packing, as in Henderson 2002, doi:10.1142/S0218127402004498); a
 curve is the case of dimension 1. A step that would leave the bounds ends on the bound, from where
-the manifold is followed within the bound.
+the manifold is followed within the bound; one that starts at a bound goes along it.
 
 So found are all minima that one can get to from the start without a change of any residual. Not
 found are those at which residuals change while their sum of squares does not, and other pieces of
@@ -42,6 +42,7 @@ from dataclasses import dataclass, replace
 from enum import Enum
 
 import numpy as np
+import scipy.linalg
 
 from modefront._typing import Bools, Floats
 from modefront.solvers.problem import Evaluation, Problem
@@ -220,19 +221,26 @@ def _advance(
 ) -> tuple[_Chart | None, _Outcome]:
     """Return the point at the end of a step along a tangent t from chart i, if it is a new one."""
     chart = charts[i]
-    moving = np.abs(t) > np.finfo(float).eps
-    room = np.full(t.size, np.inf)
-    room[moving] = (((t > 0) - chart.u)[moving]) / t[moving]
+    room = _room(chart.u, t)
+    least = ARRIVED if ground.dimension == 1 else SHORT * h
+    base = chart.held
+    while room.min() < least:  # go along the bounds that are in the way
+        base = base | (room < least)
+        along = chart.T @ scipy.linalg.null_space(chart.T[base])
+        t = along @ (along.T @ t)
+        size = float(np.linalg.norm(t))
+        if size < SHORT:
+            return None, _Outcome.BOUND
+        t = np.where(base, 0.0, t / size)
+        room = _room(chart.u, t)
     to_bound = float(room.min())
-    if to_bound < (ARRIVED if ground.dimension == 1 else SHORT * h):
-        return None, _Outcome.BOUND
     length = min(h, to_bound)
     for _ in range(HALVINGS + 1):
         at_bound = length >= to_bound
         ahead = np.clip(chart.u + length * t, 0, 1)
         if _known(ahead, charts, NEAR * length):
             return None, _Outcome.INSIDE
-        held = chart.held | (room <= length) if at_bound else chart.held
+        held = base | (room <= length) if at_bound else base
         found = _correct(ground, ahead, held, first=charts[0])
         if found is not None and _continues(chart, found, length):
             radius = NEAR * min(length, float(np.linalg.norm(found.u - chart.u)))
@@ -241,6 +249,14 @@ def _advance(
             return new, _Outcome.BOUND if bound else _Outcome.INSIDE
         length /= 2
     return None, _Outcome.FAILED
+
+
+def _room(u: Floats, t: Floats) -> Floats:
+    """Return the length of a step along t after which each variable meets its bound, (p,)."""
+    moving = np.abs(t) > np.finfo(float).eps
+    room = np.full(t.size, np.inf)
+    room[moving] = ((t > 0) - u)[moving] / t[moving]
+    return room
 
 
 def _continues(chart: _Chart, found: _Chart, length: float) -> bool:

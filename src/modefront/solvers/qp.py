@@ -48,7 +48,9 @@ def solve_qp(B: Floats, g: Floats, A: Floats, b: Floats, lo: Floats, hi: Floats)
     s = s_n - T @ h
     if (s >= lo).all() and (s <= hi).all():
         return s
-    return np.clip(s_n + T @ (_least_distance(T, s_n - T @ h, lo, hi) - h), lo, hi)
+    unit = (hi - lo).max() / np.abs(T).max()  # q of size one, whatever the size of B
+    q = unit * _least_distance(unit * T, s_n - T @ h, lo, hi)
+    return np.clip(s_n + T @ (q - h), lo, hi)
 
 
 def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> tuple[Floats, Floats]:

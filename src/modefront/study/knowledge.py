@@ -92,7 +92,8 @@ def learn(
     part = None
     if identifiability.flat > 0 and len(along) > 1:
         part = identifiable_part(
-            problem, along, bests, identifiability.flat, sizes, points - 1, checkpoint
+            *(problem, along, bests, [one for _, one in front.points]),
+            *(identifiability.flat, sizes, points - 1, checkpoint),
         )
     extra = _labelled(problem, part, bests)
 
