@@ -98,23 +98,26 @@ class Manifold:
 
 @dataclass(frozen=True)
 class _Chart:
-    """A point on the manifold, which of its variables are held, and the tangents (p, d)."""
+    """A point on the manifold and its tangents (p, d)."""
 
     at: Evaluation
     u: Floats
-    held: Bools
     T: Floats
 
 
 @dataclass(frozen=True)
 class _Ground:
-    """What is the same everywhere on a manifold; ``top`` is the greatest eigenvalue of B."""
+    """What is the same everywhere on a manifold.
+
+    ``top`` is the greatest eigenvalue of B; ``held`` are variables that stay at a bound.
+    """
 
     problem: Problem
     programme: Scalarisation
     value: float
     size: float
     top: float
+    held: Bools
     dimension: int
 
     def slope(self, at: Evaluation) -> Floats:
@@ -205,15 +208,16 @@ def _begin(problem: Problem, programme: Scalarisation, at: Evaluation) -> tuple[
     """
     w = programme.gradient(at.J)
     size = float(np.abs(w) @ np.abs(at.J))
-    ground = _Ground(problem, programme, programme.value(at.J), size, 0.0, 0)
     u = (at.theta - problem.lower) / (problem.upper - problem.lower)
-    top = float(ground.curvature(at, np.ones(u.size, dtype=bool))[0][-1])
+    none = np.zeros(u.size, dtype=bool)
+    ground = _Ground(problem, programme, programme.value(at.J), size, 0.0, none, 0)
+    top = float(ground.curvature(at, ~none)[0][-1])
     slope = ground.slope(at)
     pressed = np.abs(slope) > EQUAL * np.sqrt(top * size) + ARRIVED * top
     held = pressed & np.where(slope > 0, u <= 0, u >= 1)
     lam, V = ground.curvature(at, ~held)
     T = V[:, lam <= FLAT * top]
-    return replace(ground, top=top, dimension=T.shape[1]), _Chart(at, u, held, T)
+    return replace(ground, top=top, held=held, dimension=T.shape[1]), _Chart(at, u, T)
 
 
 def _advance(
@@ -223,7 +227,7 @@ def _advance(
     chart = charts[i]
     room = _room(chart.u, t)
     least = ARRIVED if ground.dimension == 1 else SHORT * h
-    base = chart.held
+    base = ground.held
     while room.min() < least:  # go along the bounds that are in the way
         base = base | (room < least)
         along = chart.T @ scipy.linalg.null_space(chart.T[base])
@@ -241,11 +245,11 @@ def _advance(
         if _known(ahead, charts, NEAR * length):
             return None, _Outcome.INSIDE
         held = base | (room <= length) if at_bound else base
-        found = _correct(ground, ahead, held, first=charts[0])
+        found = _correct(ground, ahead, held)
         if found is not None and _continues(chart, found, length):
             radius = NEAR * min(length, float(np.linalg.norm(found.u - chart.u)))
             new = None if _known(found.u, charts, radius) else found
-            bound = bool((found.held & ~charts[0].held).any())
+            bound = bool((~ground.held & ((found.u == 0) | (found.u == 1))).any())
             return new, _Outcome.BOUND if bound else _Outcome.INSIDE
         length /= 2
     return None, _Outcome.FAILED
@@ -263,20 +267,19 @@ def _continues(chart: _Chart, found: _Chart, length: float) -> bool:
     """Return whether a point carries on from a chart: not back, and in a like direction."""
     if np.linalg.norm(found.u - chart.u) < SHORT * length:
         return False
-    if found.T.shape != chart.T.shape:
-        return True
     return bool(np.linalg.svd(chart.T.T @ found.T, compute_uv=False)[-1] >= AHEAD)
 
 
-def _correct(ground: _Ground, u: Floats, held: Bools, first: _Chart) -> _Chart | None:
+def _correct(ground: _Ground, u: Floats, held: Bools) -> _Chart | None:
     """Return the point of the manifold next to u; None where there is none.
 
-    A variable that leaves its bounds on the way is held there, which takes a dimension away.
+    Each variable that is held at a bound takes a dimension away from what is left to move on; one
+    that leaves its bounds on the way is held there.
     """
     problem = ground.problem
     for _ in range(CORRECTIONS):
         at = problem.evaluate(problem.lower + u * (problem.upper - problem.lower))
-        d = ground.dimension - int((held & ~first.held).sum())
+        d = ground.dimension - int((held & ~ground.held).sum())
         if not at.feasible or d < 0:
             return None
         lam, V = ground.curvature(at, ~held)
@@ -285,9 +288,10 @@ def _correct(ground: _Ground, u: Floats, held: Bools, first: _Chart) -> _Chart |
             return None
         s = -V @ ((V.T @ ground.slope(at)) / across)
         if np.abs(s).max(initial=0.0) <= ARRIVED:
-            lam, V = ground.curvature(at, ~held)
+            lam, V = ground.curvature(at, ~ground.held)
             T = V[:, lam <= FLAT * ground.top]
-            return _Chart(at, u, held, T) if ground.as_good(at) and T.shape[1] == d else None
+            there = ground.as_good(at) and T.shape[1] == ground.dimension
+            return _Chart(at, u, T) if there else None
         u = u + s
         held = held | (u < 0) | (u > 1)
         u = np.clip(u, 0, 1)
