@@ -30,14 +30,18 @@ if TYPE_CHECKING:
     from modefront.study.results import read as read_results
     from modefront.study.session import run as run
     from modefront.study.session import solve as solve
+    from modefront.study.tables.identifiability import Identifiability as Identifiability
+    from modefront.study.tables.uncertainty import Uncertainty as Uncertainty
 
 _HOMES = {
     "Group": "residuals.groups",
+    "Identifiability": "study.tables.identifiability",
     "InputError": "errors",
     "ModalData": "data.modal",
     "ModelError": "errors",
     "Pairing": "pairing.match",
     "Search": "solvers.explore",
+    "Uncertainty": "study.tables.uncertainty",
     "UnfinishedError": "errors",
     "UpdatingProblem": "residuals.problem",
     "chain": "models.chain",
@@ -55,11 +59,13 @@ _HOMES = {
 
 __all__ = [
     "Group",
+    "Identifiability",
     "InputError",
     "ModalData",
     "ModelError",
     "Pairing",
     "Search",
+    "Uncertainty",
     "UnfinishedError",
     "UpdatingProblem",
     "chain",

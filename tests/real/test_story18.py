@@ -13,7 +13,6 @@ import scipy.sparse
 import modefront as mf
 from modefront.identifiability.combinations import NONE, combinations
 from modefront.study.check import derivative_error, determined
-from modefront.study.tables.identifiability import Identifiability
 
 FILE = Path(__file__).parents[3] / "shared" / "data" / "smu" / "story18_exp.npz"
 STORIES = 18
@@ -77,7 +76,7 @@ def test_the_check_says_so_in_words(frame: mf.UpdatingProblem) -> None:
 def test_the_results_say_so_too(frame: mf.UpdatingProblem) -> None:
     search = mf.Search(starts=1, limit=1, evolutions=0)
     data = mf.solve(
-        first_two(frame), points=2, search=search, identifiability=Identifiability(models=10)
+        first_two(frame), points=2, search=search, identifiability=mf.Identifiability(models=10)
     )
     share = data["combination_share"].values
     at, of = data["combination_at"].values, data["combination_of"].values

@@ -11,8 +11,6 @@ import xarray as xr
 import modefront as mf
 from modefront._typing import Floats
 from modefront.cli.show import remarks
-from modefront.study.tables.identifiability import Identifiability
-from modefront.study.tables.uncertainty import Uncertainty
 
 NAMES = ("k1", "k2", "k3")
 MODEL = mf.chain(NAMES, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=NAMES)
@@ -42,7 +40,7 @@ def problem_of(*, sets: int = 1, std: float = 0.0, seed: int = 0) -> mf.Updating
 def results(source: str) -> xr.Dataset:
     problem = problem_of(sets=12) if source == "sets" else problem_of(std=0.002)
     return mf.solve(
-        problem, points=3, seed=1, search=SEARCH, uncertainty=Uncertainty("auto", bootstrap=40)
+        problem, points=3, seed=1, search=SEARCH, uncertainty=mf.Uncertainty("auto", bootstrap=40)
     )
 
 
@@ -146,8 +144,8 @@ def test_what_is_not_asked_for_is_not_there() -> None:
         problem,
         points=2,
         search=SEARCH,
-        identifiability=Identifiability(flat=0, models=0),
-        uncertainty=Uncertainty("none"),
+        identifiability=mf.Identifiability(flat=0, models=0),
+        uncertainty=mf.Uncertainty("none"),
     )
     assert "theta_std" not in data
     assert "bootstrap_theta" not in data
