@@ -213,8 +213,9 @@ bootstrap = 2
 """
 
 
+@pytest.mark.parametrize("tolerance", [0.0, 0.05])
 def test_a_study_runs_on_with_the_same_digits_and_shows_all(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+    tolerance: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from modefront.cli.show import print_results
 
@@ -222,13 +223,15 @@ def test_a_study_runs_on_with_the_same_digits_and_shows_all(
         "set,mode,frequency,damping,floor1,floor2\n"
         "a,1,4.2,,0.6,1.0\na,2,10.5,,1.0,-0.7\nb,1,4.1,,0.62,1.0\nb,2,10.4,,1.0,-0.68\n"
     )
-    (tmp_path / "study.toml").write_text(STUDY)
+    text = STUDY.replace("points = 3", f"points = 3\ntolerance = {tolerance}")
+    (tmp_path / "study.toml").write_text(text)
     study = mf.load(tmp_path / "study.toml")
     first = mf.run(study, tmp_path / "results")
     for piece in (tmp_path / "results" / "pieces").rglob("second-*.npz"):
         piece.unlink()
     again = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / "results")
     assert again.identical(first)
+    assert np.isfinite(first["theta_std"].values).all()
     assert again.attrs["model_evaluations"] == first.attrs["model_evaluations"]
     print_results(mf.read_results(tmp_path / "results"))
     out = capsys.readouterr().out

@@ -61,6 +61,11 @@ def flat_points(J: Floats, least: Floats, tolerance: float, sizes: Floats) -> In
     return np.where(enough, count, 0)
 
 
+def same(one: Solution, other: Solution) -> bool:
+    """Return whether two solutions are of the same parameters."""
+    return bool(np.array_equal(one.at.theta, other.at.theta))
+
+
 def identifiable_part(
     problem: Problem,
     points: Sequence[Solution],
@@ -88,7 +93,8 @@ def identifiable_part(
         name = f"identifiable-edge-{problem.objectives[i]}"
         cut = partial(near_best, problem, edges[i], i, tolerance, sizes, known)
         (ends[i],) = checkpoint(name, cut)
-    flat = np.where([one is not edge for one, edge in zip(ends, edges, strict=True)], flat, 0)
+    moved = [not same(one, edge) for one, edge in zip(ends, edges, strict=True)]
+    flat = np.where(moved, flat, 0)
     if not flat.any():
         return None
     target = payoff(ends, sizes)

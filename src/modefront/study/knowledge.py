@@ -14,7 +14,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.checkpoint import Checkpoint
 from modefront.solvers.curvature import SecondOrder, second_order
 from modefront.solvers.edges import EXACT, TIE
-from modefront.solvers.flat import Identifiable, identifiable_part
+from modefront.solvers.flat import Identifiable, identifiable_part, same
 from modefront.solvers.manifold import Extent, Manifold, equally_good
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
@@ -56,7 +56,7 @@ class Knowledge:
     points: Labelled
     identifiable: Identifiable | None
     tolerance: float
-    manifolds: Mapping[str, Sequence[Manifold]]
+    manifolds: Sequence[tuple[str, Sequence[Manifold]]]
     source: Source | None
     scatter: Mapping[str, Scatter]
     slopes: Mapping[str, Mapping[str, Floats]]
@@ -97,11 +97,12 @@ def learn(
         )
     extra = _labelled(problem, part, bests)
 
-    manifolds = {}
+    manifolds: list[tuple[str, Sequence[Manifold]]] = []
     if identifiability.models > 0:
-        for name, programme, minima in _equal_minima(problem, front, a, sizes):
+        for i, (name, programme, minima) in enumerate(_equal_minima(problem, front, a, sizes)):
             sample = partial(_manifolds, problem, programme, minima, identifiability)
-            manifolds[name] = _unpack_manifolds(checkpoint(f"manifold-{name}", sample))
+            packed = checkpoint(f"manifold-{i + 1}-{name}", sample)
+            manifolds.append((name, _unpack_manifolds(packed)))
 
     known = _roles(problem, front, extra, tolerance, identifiability.flat)
     slopes: dict[str, Mapping[str, Floats]] = {}
@@ -150,7 +151,7 @@ def _labelled(
         return []
     out = [(f"{PART}{i + 1}", one) for i, one in enumerate(part.points)]
     ends = zip(problem.objectives, part.ends, edges, strict=True)
-    return out + [(f"{PART}edge-{name}", one) for name, one, edge in ends if one is not edge]
+    return out + [(f"{PART}edge-{name}", one) for name, one, edge in ends if not same(one, edge)]
 
 
 def _equal_minima(
@@ -181,7 +182,7 @@ def _roles(
     out = []
     for i, (label, edge) in enumerate(zip(whole, front.edges, strict=True)):
         solution = dict(front.points)[label]
-        if tolerance > 0 and solution is not edge.best:
+        if tolerance > 0 and not same(solution, edge.best):
             out.append(Point(f"{label}-best", edge.best, Role("edge", objective=i)))
             out.append(Point(label, solution, Role("level", (), i, tolerance)))
         else:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.identifiability.collinearity import cosines, pairs
+from modefront.identifiability.collinearity import cosines, index, pairs
 from modefront.identifiability.combinations import (
     Combination,
     combinations_at,
@@ -72,8 +72,8 @@ def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables,
     gram = np.tensordot(weights, at.H, axes=1) / 2 * np.outer(unit, unit)
     said += [
         f"at {place}: {names[i]} and {names[j]} act nearly alike on the residuals "
-        f"(collinearity index {index:.2g})"
-        for i, j, index in pairs(gram)
+        f"(collinearity index {value:.2g})"
+        for i, j, value in pairs(gram)
     ]
     meaning = "combination of parameters: relative changes, length 1"
     return {
@@ -98,6 +98,11 @@ def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables,
             ("parameter", "parameter_other"),
             cosines(gram),
             f"cosines between the effects of parameters on all weighted residuals at {place}",
+        ),
+        "collinearity_index": (
+            (),
+            index(gram),
+            "1 / root of the least eigenvalue of these; infinite where some effects depend",
         ),
     }, said
 
@@ -147,12 +152,12 @@ def _manifolds(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variable
     names = problem.model.parameters
     rows = [
         (of, number, manifold, at)
-        for of, manifolds in knowledge.manifolds.items()
+        for of, manifolds in knowledge.manifolds
         for number, manifold in enumerate(manifolds, start=1)
         for at in manifold.models
     ]
     said = []
-    for of, manifolds in knowledge.manifolds.items():
+    for of, manifolds in knowledge.manifolds:
         isolated = sum(one.extent is Extent.ISOLATED for one in manifolds)
         if isolated > 1:
             said.append(f"{isolated} separate models fit {of} equally well")

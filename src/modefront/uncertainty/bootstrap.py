@@ -13,11 +13,18 @@ import numpy as np
 
 from modefront._typing import Bools
 from modefront.data.modal import ModalData
+from modefront.errors import UnfinishedError
 from modefront.uncertainty.noise import Source
+
+ATTEMPTS = 1000
+"""Drawings of data sets after which it is given up to have everything measured in one."""
 
 
 def redraw(data: ModalData, source: Source, rng: np.random.Generator) -> ModalData:
-    """Return data as they might have been measured."""
+    """Return data as they might have been measured.
+
+    Raises UnfinishedError where drawings of data sets hardly ever have all that was measured.
+    """
     if source == "std":
         f_std, phi_std = (np.nan_to_num(x) for x in (data.frequency_std, data.shape_std))
         return replace(
@@ -26,7 +33,7 @@ def redraw(data: ModalData, source: Source, rng: np.random.Generator) -> ModalDa
             shape=data.shape + phi_std * rng.standard_normal(phi_std.shape),
         )
     wanted = _measured(data)
-    while True:
+    for _ in range(ATTEMPTS):
         drawn = rng.integers(len(data.sets), size=len(data.sets))
         again = replace(
             data,
@@ -39,6 +46,10 @@ def redraw(data: ModalData, source: Source, rng: np.random.Generator) -> ModalDa
         )
         if (_measured(again) == wanted).all():
             return again
+    raise UnfinishedError(
+        f"none of {ATTEMPTS} drawings of the data sets has everything in it that was measured: "
+        "too much is measured in few sets; without bootstrap, the scatter is linearised"
+    )
 
 
 def _measured(data: ModalData) -> Bools:

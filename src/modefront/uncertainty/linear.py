@@ -8,6 +8,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.curvature import SecondOrder
+from modefront.solvers.flat import same
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
 from modefront.uncertainty.noise import Noise
@@ -57,7 +58,7 @@ def front_scatter(
                 J, out[one.label] = edges[role.objective]
                 ends[one.label] = J, out[one.label].J
             continue
-        twin = next((x for x in role.ends if _same(x, one, points)), None)
+        twin = next((x for x in role.ends if _is_end(x, one, points)), None)
         if twin is not None:
             if twin in out:
                 out[one.label] = out[twin]
@@ -92,7 +93,7 @@ def front_scatter(
     return out
 
 
-def _same(label: str, one: Point, points: Sequence[Point]) -> bool:
+def _is_end(label: str, one: Point, points: Sequence[Point]) -> bool:
     """Return whether a point is the end of this label itself."""
     (end,) = (point for point in points if point.label == label)
-    return bool(np.array_equal(end.solution.at.theta, one.solution.at.theta))
+    return same(end.solution, one.solution)

@@ -28,10 +28,18 @@ class Uncertainty:
     bootstrap: int = 0
 
     def of(self, data: ModalData) -> Source | None:
-        """Return the source that is used with these data."""
+        """Return the source that is used with these data.
+
+        Raises ValueError where the data do not have what is asked for.
+        """
+        there = available(data)
         if self.source == "auto":
-            return next(iter(available(data)), None)
-        return None if self.source == "none" else self.source
+            return next(iter(there), None)
+        if self.source == "none":
+            return None
+        if self.source not in there:
+            raise ValueError(f"expected one of {there} as the source, found '{self.source}'")
+        return self.source
 
 
 def read_uncertainty(root: Table, data: ModalData | None) -> Uncertainty:
