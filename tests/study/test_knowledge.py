@@ -38,7 +38,7 @@ def problem_of(*, sets: int = 1, std: float = 0.0, seed: int = 0) -> mf.Updating
 
 @cache
 def results(source: str) -> xr.Dataset:
-    problem = problem_of(sets=12) if source == "sets" else problem_of(std=0.002)
+    problem = problem_of(sets=8) if source == "sets" else problem_of(std=0.002)
     return mf.solve(
         problem, points=3, seed=1, search=SEARCH, uncertainty=mf.Uncertainty("auto", bootstrap=40)
     )

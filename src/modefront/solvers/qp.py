@@ -29,6 +29,9 @@ FLAT = 1e-10
 FAR = 1e-4
 """Inverse of the greatest step aimed at, in widths of the box: bounds what a flat B leads to."""
 
+LONG = 1e4
+"""Length of q from which it is scaled: least distances lose twice as many digits as q has."""
+
 NORMAL = 0.8
 """Share of the box that the normal step may use, so that something is left to descend."""
 
@@ -48,7 +51,8 @@ def solve_qp(B: Floats, g: Floats, A: Floats, b: Floats, lo: Floats, hi: Floats)
     s = s_n - T @ h
     if (s >= lo).all() and (s <= hi).all():
         return s
-    unit = (hi - lo).max() / np.abs(T).max()  # q of size one, whatever the size of B
+    size = (hi - lo).max() / np.abs(T).max()
+    unit = size if size > LONG else 1.0
     q = unit * _least_distance(unit * T, s_n - T @ h, lo, hi)
     return np.clip(s_n + T @ (q - h), lo, hi)
 
