@@ -1,8 +1,8 @@
 r"""Models that are equally good: manifolds of minima, followed and sampled to their ends.
 
 Where data do not determine all parameters, the minimisers of a scalarisation f(J) form a manifold
-(Katafygiotis & Lam 2002, doi:10.1002/eqe.129). Its tangent space at a minimum is the null space of
-the known part of the second derivatives,
+(Katafygiotis & Lam 2002, Earthquake Engineering and Structural Dynamics 31, 791-812). Its tangent
+space at a minimum is the null space of the known part of the second derivatives,
 
 .. math:: B = \sum_i w_i H_i = 2 \sum_i w_i\, \partial r_i^T \partial r_i, \qquad
     w = \partial f / \partial J ,
@@ -14,9 +14,9 @@ tangents and corrected back to the manifold across them,
 
 with the inverse on the complement of the null space, until s vanishes: quadratically where
 residuals vanish, linearly elsewhere. New points grow from points until every step from every point
-arrives next to a known one (a packing, as in Henderson 2002, doi:10.1142/S0218127402004498); a
-curve is the case of dimension 1. A step that would leave the bounds ends on the bound, from where
-the manifold is followed within the bound; one that starts at a bound goes along it.
+arrives next to a known one (a packing, as in Henderson 2002, International Journal of Bifurcation
+and Chaos 12, 451-476); a curve is the case of dimension 1. A step that would leave the bounds ends
+on them, and one that starts at a bound and would cross it goes along it.
 
 So found are all minima that one can get to from the start without a change of any residual. Not
 found are those at which residuals change while their sum of squares does not, and other pieces of

@@ -13,9 +13,9 @@ and with a uniform prior within the bounds
 
 .. math:: -\ln p(\theta \mid D) = \tfrac12 \sum_i a_i \ln J_i(\theta) + \text{const} = \tfrac12 I .
 
-So the optimally weighted model, equation (8), is the most probable one (Christodoulou &
-Papadimitriou 2007, doi:10.1002/nme.1822, for the equivalence with weights
-:math:`w_i = a_i / J_i`), and Laplace's approximation has the covariance
+So the optimally weighted model, equation (8), is the most probable one (compare Christodoulou &
+Papadimitriou 2007, Mechanical Systems and Signal Processing 21, 4-23), and
+Laplace's approximation has the covariance
 
 .. math:: C = \Big(\tfrac12 \nabla^2 I\Big)^{-1}, \qquad
     \nabla^2 I = \sum_i \frac{a_i}{J_i} H_i - \sum_i \frac{a_i}{J_i^2} \partial J_i \partial J_i^T .
