@@ -7,6 +7,7 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+from figures_of_knowledge import identifiability, uncertainty
 
 import modefront as mf
 from modefront.study.examples import write_example
@@ -41,3 +42,5 @@ def fronts(path: Path) -> None:
 
 if __name__ == "__main__":
     fronts(HERE / "fronts.svg")
+    identifiability(HERE / "identifiability.svg")
+    uncertainty(HERE / "uncertainty.svg")

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     from modefront.errors import InputError as InputError
     from modefront.errors import ModelError as ModelError
     from modefront.errors import UnfinishedError as UnfinishedError
-    from modefront.identifiability import combinations as combinations
+    from modefront.identifiability.combinations import combinations as combinations
     from modefront.models.chain import chain as chain
     from modefront.models.matrices import matrices as matrices
     from modefront.pairing.mac import mac as mac
@@ -30,18 +30,22 @@ if TYPE_CHECKING:
     from modefront.study.results import read as read_results
     from modefront.study.session import run as run
     from modefront.study.session import solve as solve
+    from modefront.study.tables.identifiability import Identifiability as Identifiability
+    from modefront.study.tables.uncertainty import Uncertainty as Uncertainty
 
 _HOMES = {
     "Group": "residuals.groups",
+    "Identifiability": "study.tables.identifiability",
     "InputError": "errors",
     "ModalData": "data.modal",
     "ModelError": "errors",
     "Pairing": "pairing.match",
     "Search": "solvers.explore",
+    "Uncertainty": "study.tables.uncertainty",
     "UnfinishedError": "errors",
     "UpdatingProblem": "residuals.problem",
     "chain": "models.chain",
-    "combinations": "identifiability",
+    "combinations": "identifiability.combinations",
     "load": "study.file",
     "mac": "pairing.mac",
     "matrices": "models.matrices",
@@ -55,11 +59,13 @@ _HOMES = {
 
 __all__ = [
     "Group",
+    "Identifiability",
     "InputError",
     "ModalData",
     "ModelError",
     "Pairing",
     "Search",
+    "Uncertainty",
     "UnfinishedError",
     "UpdatingProblem",
     "chain",

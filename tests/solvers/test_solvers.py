@@ -85,6 +85,19 @@ def test_qp_comes_as_near_as_the_box_allows() -> None:
     assert 0.5 < s[0] <= 1
 
 
+def test_qp_of_a_very_steep_objective() -> None:
+    """Curvature of 1e23 in a box of 0.005: what is left over of a least distance is rounding."""
+    T = 1e-12 * np.array([[-1.2546525, 2.7558925], [1.8330812, -14.992864], [7.4447152, 4.1560792]])
+    target = np.array([0.0016321922652506, 0.01227940154453663, 0.00619583705559531])
+    hi = np.full(3, 0.00469227039043077)
+    n = np.linalg.svd(T)[0][:, 2]
+    B = np.asarray(np.linalg.pinv(T @ T.T, rcond=1e-10, hermitian=True), dtype=float)
+    b = float(n @ target)
+    s = solve_qp(B, -B @ (target - n * b), n[None], np.array([b]), -hi, hi)
+    assert s[1:] == pytest.approx(hi[1:], rel=1e-6)
+    assert n @ s == pytest.approx(b, rel=1e-6)
+
+
 # ---- one programme ---------------------------------------------------------------------------
 
 

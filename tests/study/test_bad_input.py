@@ -73,6 +73,15 @@ spare = 0
 starts = 3
 limit = 9
 evolutions = 1
+
+[identifiability]
+flat = 0.01
+models = 50
+step = 0.05
+
+[uncertainty]
+source = "sets"
+bootstrap = 2
 """
 
 CHAIN = STUDY[STUDY.index('kind = "chain"') : STUDY.index("sensors =")]
@@ -254,6 +263,29 @@ KEYS = [
     Key("starts = 3", "[search] starts", "a whole number from 1", False, NO_WHOLE + " 0"),
     Key("limit = 9", "[search] limit", "a whole number from 1", False, NO_WHOLE + " 0"),
     Key("evolutions = 1", "[search] evolutions", "a whole number from 0", False, NO_WHOLE),
+    Key(
+        "flat = 0.01",
+        "[identifiability] flat",
+        "a share from 0 to 1",
+        False,
+        NO_NUMBER + " -0.1 1.1",
+    ),
+    Key("models = 50", "[identifiability] models", "a whole number from 0", False, NO_WHOLE),
+    Key(
+        "step = 0.05",
+        "[identifiability] step",
+        "a share of the ranges from 0.001 to 0.5",
+        False,
+        NO_NUMBER + " -0.1 0.0 0.0009 0.6",
+    ),
+    Key(
+        'source = "sets"',
+        "[uncertainty] source",
+        "one of 'auto', 'std', 'sets', 'none'",
+        False,
+        '"set" "STD" "" 1 true nan ["std"] {}',
+    ),
+    Key("bootstrap = 2", "[uncertainty] bootstrap", "a whole number from 0", False, NO_WHOLE),
 ]
 
 
@@ -320,6 +352,9 @@ CONTRADICTIONS = [
     ("[pareto]", "[paretto]", "expected a known key, found 'paretto' (did you mean 'pareto'?)"),
     ("[pairing]", "[pair]", "expected a known key, found 'pair' (did you mean 'pairing'?)"),
     ("[search]", "[research]", "expected a known key, found 'research' (did you mean 'search'?)"),
+    ("[identifiability]", "[identifiable]", "found 'identifiable' (did you mean 'identifiabil"),
+    ("[uncertainty]", "[[uncertainty]]", "uncertainty: expected a table, found a list of 1"),
+    ("[uncertainty]", "[certainty]", "found 'certainty' (did you mean 'uncertainty'?)"),
     # files
     ("modes.csv", "absent.csv", "absent.csv: file: expected a file of modal data, found no such"),
     ("modes.csv", "folder.csv", "folder.csv: file: expected CSV in UTF-8, found [Errno 21]"),
@@ -404,12 +439,18 @@ CONTRADICTIONS = [
         for label in (
             *("nbi-3", "edge-shapes", "equal-weights", "optimal-weights"),
             *("iterated-weights", "sample", "gap-1-2", "minima-shapes"),
+            *("identifiable-1", "manifold-x", "second-x", "bootstrap-1"),
         )
     ),
     # the rest
     ("points = 5", "points = 10001", "points: expected a whole number from 2 to 10000, found 1000"),
     ("spare = 0", "spare = 1001", "spare: expected a whole number from 0 to 1000, found 1001"),
     ("limit = 9", "limit = 2", "[search] limit: expected at least starts, 3, found 2"),
+    (
+        'source = "sets"',
+        'source = "none"',
+        "[uncertainty] bootstrap: expected 0 with source = 'none', found 2",
+    ),
     # what is no TOML
     ("[study]", "[study", "file: expected TOML in UTF-8, found ... line 1"),
     ("seed = 1", "seed =", "file: expected TOML in UTF-8, found ... line 3"),
@@ -576,6 +617,24 @@ def test_a_group_of_which_nothing_is_measured(folder: Path, refused: Check) -> N
     (folder / "modes.csv").write_text(data)
     says = "[[group]] 1 ('frequencies'): expected at least one measured property, found none"
     refused(folder / "chain.toml", says)
+
+
+@pytest.mark.parametrize(
+    ("source", "key", "expected", "what"),
+    [
+        ("std", "source", "standard deviations above 0 in the data for 'std'", "none"),
+        ("sets", "source", "a mode measured in two data sets for 'sets'", "none"),
+        ("auto", "bootstrap", "0, or data with standard deviations or a mode measured in two", "2"),
+    ],
+)
+def test_uncertainty_that_the_data_do_not_tell(
+    source: str, key: str, expected: str, what: str, folder: Path, refused: Check
+) -> None:
+    data = edited(DATA, (",0.1,0.01", ",,"), ("b,1,4.1,0.02,0.5,1.1,0.1,\n", ""))
+    (folder / "modes.csv").write_text(data)
+    study = folder / "wrong.toml"
+    study.write_text(edited(STUDY, ('source = "sets"', f'source = "{source}"')))
+    refused(study, f"[uncertainty] {key}: expected {expected} ... , found {what}")
 
 
 # --- matrices -------------------------------------------------------------------------------

@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import xarray as xr
-from rich import box
 from rich.console import Console
-from rich.table import Table
 
+from modefront.cli.show_knowledge import print_knowledge
+from modefront.cli.tables import safe as _safe
+from modefront.cli.tables import table as _table
 from modefront.study.check import Findings
 from modefront.study.file import Study
 
@@ -23,13 +23,6 @@ def _console() -> Console:
     """Return a console that does not cut tables where output is no terminal."""
     console = Console(highlight=False)
     return console if console.is_terminal else Console(highlight=False, width=10 * _WIDTH)
-
-
-def _table(title: str, columns: Sequence[str]) -> Table:
-    table = Table(title=title, box=box.SIMPLE_HEAD, title_justify="left", pad_edge=False)
-    for i, column in enumerate(columns):
-        table.add_column(column, justify="left" if i == 0 else "right", no_wrap=True)
-    return table
 
 
 def _print(console: Console, text: str) -> None:
@@ -70,6 +63,8 @@ def print_findings(study: Study, findings: Findings) -> None:
         console,
         f"derivatives {verdict} finite differences (relative {findings.derivative_error:.1e})",
     )
+    for line in findings.determined:
+        _print(console, line)
     for warning in findings.warnings:
         _print(console, f"warning: {warning}")
     if not findings.warnings:
@@ -140,7 +135,7 @@ def remarks(data: xr.Dataset) -> list[str]:
     failed = data["label"].values[~data["converged"].values]
     if failed.size:
         out.append(f"not converged: {', '.join(failed)}")
-    return out
+    return [*out, *data["finding"].values.tolist()]
 
 
 def _iteration(data: xr.Dataset) -> str:
@@ -242,6 +237,7 @@ def print_results(data: xr.Dataset) -> None:
             *(f"{x:.5g}" for x in data["minimum_theta"].values[i]),
         )
     console.print(minima)
+    print_knowledge(console, data)
     for line in remarks(data):
         _print(console, line)
     _print(
@@ -286,8 +282,3 @@ def _vector(values: np.ndarray[Any, Any]) -> str:
 
 def _number(value: float) -> str:
     return "" if np.isnan(value) else f"{value:.4g}"
-
-
-def _safe(text: object) -> str:
-    """Return a text that the terminal does not take for markup."""
-    return str(text).replace("[", "\\[")

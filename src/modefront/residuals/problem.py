@@ -78,7 +78,7 @@ class UpdatingProblem:
     pairing: Pairing = field(default_factory=Pairing)
 
     def __post_init__(self) -> None:
-        for group, row in zip(self.groups, self._members, strict=True):
+        for group, row in zip(self.groups, self.members, strict=True):
             if not row:
                 raise ValueError(f"group '{group.name}': at least one member, found none")
             for kind, r, scale in row:
@@ -101,10 +101,11 @@ class UpdatingProblem:
         N0 = np.isfinite(self.data.shape).sum(axis=2).astype(float)
         sets = np.maximum((N0 > 0).sum(axis=0), 1)
         count = {"frequency": np.ones(len(self.data.modes)), "shape": N0.sum(axis=0) / sets}
-        return np.array([sum(count[kind][r] for kind, r, _ in row) for row in self._members])
+        return np.array([sum(count[kind][r] for kind, r, _ in row) for row in self.members])
 
     @cached_property
-    def _members(self) -> list[list[Member]]:
+    def members(self) -> list[list[Member]]:
+        """The members of each group."""
         modes = self.data.modes
         measured = {
             "frequency": measured_frequencies(self.data),
@@ -155,12 +156,15 @@ class UpdatingProblem:
 
     def _residuals(self, modes: Modes, pairs: Pairs) -> tuple[Residual, ...]:
         parts = {
-            (kind, r, scale): (self._frequency if kind == "frequency" else self._shape)(
-                modes, pairs, r, scale
-            )
-            for kind, r, scale in {member for row in self._members for member in row}
+            member: self.residual(modes, pairs, member)
+            for member in {member for row in self.members for member in row}
         }
-        return tuple(_stack([parts[member] for member in row]) for row in self._members)
+        return tuple(_stack([parts[member] for member in row]) for row in self.members)
+
+    def residual(self, modes: Modes, pairs: Pairs, member: Member) -> Residual:
+        """Return the residual vector of one member, data set after data set."""
+        kind, r, scale = member
+        return (self._frequency if kind == "frequency" else self._shape)(modes, pairs, r, scale)
 
     def _frequency(self, modes: Modes, pairs: Pairs, r: int, scale: Scale) -> Residual:
         at = np.isfinite(self.data.frequency[:, r])

@@ -37,6 +37,9 @@ TIE = 1e-6
 CANDIDATE = 1e-4
 """Difference from the least minimum while exploring, over the typical size, of a possible edge."""
 
+ATTEMPTS = 4
+"""Starts from which the end of a flat valley is looked for, at most."""
+
 _LEARNING = Options(step=1e-8, reduction=1e-24)
 
 _KNOWN = Options(step=1e-8, reduction=1e-24, learn=False)
@@ -87,7 +90,7 @@ def edge(
     refined = checkpoint(
         f"edge-{name}",
         lambda: [
-            _refine(problem, objective, sizes, one) if one.at.J[objective] <= limit else one
+            refine(problem, objective, sizes, one) if one.at.J[objective] <= limit else one
             for one in found
         ],
     )
@@ -116,9 +119,9 @@ def near_best(
     """Return, of the models within a tolerance of the best in an objective, the best in the others.
 
     Where an objective hardly changes along a valley, the end of the valley says nothing, and the
-    front there is flat; this is the point from which it is not. It is solved from the one of the
-    ``known`` solutions that is closest in the objective. An objective that is fitted exactly
-    keeps its edge, and so does one for which the programme does not converge.
+    front there is flat; this is the point from which it is not. It is solved from those of the
+    ``known`` solutions that are closest in the objective, one after another. An objective that is
+    fitted exactly keeps its edge, and so does one for which the programme does not converge.
     """
     least = best.at.J[objective]
     if least <= EXACT * sizes[objective]:
@@ -126,9 +129,12 @@ def near_best(
     value = (1 + tolerance) * least
     others = np.where(np.arange(sizes.size) != objective, 1 / sizes, 0.0)
     unit = np.eye(sizes.size)[[objective]] / value
-    start = min(known, key=lambda one: abs(np.log(one.at.J[objective] / value)))
-    found = solve(problem, Linear(others, unit, np.ones(1)), start)
-    return [found if found.converged else best]
+    closest = sorted(known, key=lambda one: abs(np.log(one.at.J[objective] / value)))
+    for start in closest[:ATTEMPTS]:
+        found = solve(problem, Linear(others, unit, np.ones(1)), start)
+        if found.converged:
+            return [found]
+    return [best]
 
 
 def _programme(objective: int, epsilon: float, sizes: Floats) -> Linear:
@@ -137,7 +143,7 @@ def _programme(objective: int, epsilon: float, sizes: Floats) -> Linear:
     return weighted(w / sizes)
 
 
-def _refine(problem: Problem, objective: int, sizes: Floats, start: Solution) -> Solution:
+def refine(problem: Problem, objective: int, sizes: Floats, start: Solution) -> Solution:
     """Return the limit of the minimisers for epsilon to 0, by Richardson's extrapolation."""
     options = _KNOWN if start.at.H[objective].any() else _LEARNING
     coarse = solve(problem, _programme(objective, COARSE, sizes), start, options)

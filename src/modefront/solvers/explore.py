@@ -24,7 +24,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Scalarisation
-from modefront.solvers.sqp import Options, Solution, begin, solve
+from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 
 DISTINCT = 1e-3
 """Distance of two minima, over the ranges of the parameters, above which they are two."""
@@ -76,6 +76,9 @@ def explore(
         if not distinct(minima, rough, problem, NEAR):
             return False
         found = solve(problem, programme, rough, options)
+        if found.status is Status.EXHAUSTED:
+            # Many parameters that few residuals hold: what is learned there leads astray.
+            found = solve(problem, programme, begin(found.at), replace(options, learn=False))
         new = (
             found.converged
             and bool(np.isfinite(programme.value(found.at.J)))

@@ -18,9 +18,11 @@ from modefront.solvers.explore import Search
 from modefront.study.reader import Table
 from modefront.study.tables.data import read_data
 from modefront.study.tables.groups import read_groups
+from modefront.study.tables.identifiability import Identifiability, read_identifiability
 from modefront.study.tables.model import read_model
 from modefront.study.tables.parameters import Parameter, read_parameters
 from modefront.study.tables.settings import Pareto, read_pairing, read_pareto, read_search
+from modefront.study.tables.uncertainty import Uncertainty, read_uncertainty
 from modefront.study.tables.weighted import Weighted, read_weights
 
 
@@ -34,6 +36,8 @@ class Study:
     digest : hash of this file and of all files that it names
     pareto : how the front is found
     weighted : models wanted with given weights, besides equal and optimal ones
+    identifiability : what is done about what the data do not determine
+    uncertainty : what is done about errors of the data
     """
 
     file: Path
@@ -45,6 +49,8 @@ class Study:
     pareto: Pareto
     weighted: tuple[Weighted, ...]
     search: Search
+    identifiability: Identifiability
+    uncertainty: Uncertainty
 
 
 def load(path: Path) -> Study:
@@ -68,6 +74,7 @@ def load(path: Path) -> Study:
     groups = read_groups(root, data)
     weights = read_weights(root, [group.name for group in groups if group.name])
     pareto, pairing, search = read_pareto(root), read_pairing(root), read_search(root)
+    identifiability, uncertainty = read_identifiability(root), read_uncertainty(root, data)
     root.close()
     if faults or model is None or data is None:
         raise InputError(faults)
@@ -84,7 +91,10 @@ def load(path: Path) -> Study:
     if faults:
         raise InputError(faults)
     digest = _digest(content, path.parent, [data_file, *_model_files(values)])
-    return Study(path, title, seed, digest, parameters, problem, pareto, weights, search)
+    return Study(
+        *(path, title, seed, digest, parameters, problem, pareto, weights, search),
+        *(identifiability, uncertainty),
+    )
 
 
 def _parse(path: Path) -> tuple[dict[str, Any], bytes]:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -15,6 +16,8 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.pieces import piece_numbers
 from modefront.solvers.sqp import Solution
+from modefront.study.knowledge import PART, Knowledge
+from modefront.study.knowledge_variables import Variables, known_variables
 from modefront.study.run import Front
 
 FILE = "results.nc"
@@ -22,16 +25,20 @@ FILE = "results.nc"
 VARIABLES = (
     *("label", "pareto", "theta", "objective", "error", "weight", "frequency", "mac", "converged"),
     *("stationary_weight", "paired_mode", "measured_frequency", "exact", "bounds"),
-    *("minimum_of", "minimum_theta", "minimum_objective", "parameter", "group", "mode"),
+    *("minimum_of", "minimum_theta", "minimum_objective", "parameter", "group", "mode", "finding"),
 )
 ATTRIBUTES = ("version", "seed", "model_evaluations", "nbi_evaluations", "front_is_a_point")
 """What every file of results holds."""
 
 
 def dataset(
-    problem: UpdatingProblem, front: Front, attributes: Mapping[str, str | int | float]
+    problem: UpdatingProblem,
+    front: Front,
+    knowledge: Knowledge,
+    attributes: Mapping[str, str | int | float],
 ) -> xr.Dataset:
     """Return everything that was found with names and units; see the page on results."""
+    front = replace(front, points=[*front.points, *knowledge.points])
     labels = [label for label, _ in front.points]
     solutions = [one for _, one in front.points]
     groups, n = list(problem.objectives), len(problem.objectives)
@@ -40,10 +47,10 @@ def dataset(
     a = problem.properties
     weights = np.full(J.shape, np.nan)
     for i, label in enumerate(labels):
-        if not label.startswith(("nbi-", "edge-")):
+        if not label.startswith(("nbi-", "edge-", PART)):
             weights[i] = a / J[i] if label == "optimal-weights" else solutions[i].weights
     point, mode = ("point", "mode"), ("point", "group")
-    variables: dict[str, tuple[tuple[str, ...], object, str]] = {
+    variables: Variables = {
         "label": (("point",), labels, "what the point is"),
         "pareto": (("point",), optimal, "no other point dominates this one, equation (4)"),
         "theta": (("point", "parameter"), _thetas(solutions, problem), "parameter values"),
@@ -84,6 +91,7 @@ def dataset(
     variables["bounds"] = (("parameter", "bound"), np.column_stack([lower, upper]), "bounds")
     variables |= _minima(problem, front)
     variables |= _ends(problem, front, J, optimal)
+    variables |= known_variables(problem, front, knowledge)
     return xr.Dataset(
         {
             name: (dims, np.asarray(values), {"long_name": meaning})
@@ -94,14 +102,14 @@ def dataset(
             "group": groups,
             "mode": list(problem.data.modes),
             "bound": ["lower", "upper"],
+            "parameter_other": list(problem.model.parameters),
+            "group_other": groups,
         },
         attrs=dict(attributes),
     )
 
 
-def _minima(
-    problem: UpdatingProblem, front: Front
-) -> dict[str, tuple[tuple[str, ...], object, str]]:
+def _minima(problem: UpdatingProblem, front: Front) -> Variables:
     """Return all distinct minima of single objectives and of the optimally weighted residuals."""
     of = [
         name
@@ -127,9 +135,7 @@ def _minima(
     }
 
 
-def _ends(
-    problem: UpdatingProblem, front: Front, J: Floats, optimal: np.ndarray
-) -> dict[str, tuple[tuple[str, ...], object, str]]:
+def _ends(problem: UpdatingProblem, front: Front, J: Floats, optimal: np.ndarray) -> Variables:
     """Return where the pieces of a front of two objectives end, and on which one points lie."""
     if J.shape[1] != 2:
         return {}

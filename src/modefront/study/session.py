@@ -14,9 +14,12 @@ from modefront.errors import Fault, InputError
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.file import Study
+from modefront.study.knowledge import learn
 from modefront.study.run import Front, ignore, pareto_front
 from modefront.study.store import PIECES, Store
+from modefront.study.tables.identifiability import Identifiability
 from modefront.study.tables.settings import Pareto
+from modefront.study.tables.uncertainty import Uncertainty
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -37,11 +40,14 @@ def solve(
     tolerance: float = 0.0,
     seed: int = 0,
     search: Search | None = None,
+    identifiability: Identifiability | None = None,
+    uncertainty: Uncertainty | None = None,
 ) -> xr.Dataset:
     """Return all Pareto-optimal models, edges and weighted models of a problem.
 
     ``points`` lie along each edge of the simplex of objectives; an edge may exceed the least value
-    of its group by the share ``tolerance``. Raises UnfinishedError where
+    of its group by the share ``tolerance``; ``identifiability`` and ``uncertainty`` say what is
+    done about what the data do not determine and about their errors. Raises UnfinishedError where
     no minimum of a group can be found.
     """
     from modefront.study.results import dataset
@@ -56,7 +62,18 @@ def solve(
         search=search,
         checkpoint=store,
     )
-    return dataset(problem, front, _attributes(front, store, seed))
+    knowledge = learn(
+        problem,
+        front,
+        points=points,
+        tolerance=tolerance,
+        seed=seed,
+        identifiability=identifiability or Identifiability(),
+        uncertainty=uncertainty or Uncertainty(),
+        checkpoint=store,
+        expect=ignore,
+    )
+    return dataset(problem, front, knowledge, _attributes(front, store, seed))
 
 
 def run(
@@ -93,7 +110,18 @@ def run(
         checkpoint=store,
         expect=progress.expect,
     )
-    data = dataset(problem, front, {"study": study.name, "inputs": study.digest})
+    knowledge = learn(
+        problem,
+        front,
+        points=study.pareto.points,
+        tolerance=study.pareto.tolerance,
+        seed=study.seed,
+        identifiability=study.identifiability,
+        uncertainty=study.uncertainty,
+        checkpoint=store,
+        expect=lambda more: progress.expect(len(store.costs) + more),
+    )
+    data = dataset(problem, front, knowledge, {"study": study.name, "inputs": study.digest})
     data.attrs |= _attributes(front, store, study.seed)
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)

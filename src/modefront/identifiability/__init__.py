@@ -1,0 +1,1 @@
+"""What the data determine of a model, and what they leave open."""

@@ -1,0 +1,110 @@
+r"""Flat parts of a front: where one objective hardly changes while others do.
+
+The models next to an edge may all be nearly as good in its objective, far from each other as they
+are: the data do not say which of them it is. Of points that lie evenly along the front, those with
+
+.. math:: J_i \le (1 + \epsilon) \min J_i
+
+beyond the edge itself then are many. The identifiable part of the front begins where the best of
+the others at that level lies (`modefront.solvers.edges.near_best`), and is covered by
+normal-boundary intersection of its own.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+
+import numpy as np
+
+from modefront._typing import Floats, Ints
+from modefront.solvers.checkpoint import Checkpoint
+from modefront.solvers.edges import EXACT, near_best
+from modefront.solvers.nbi import nbi, payoff, simplex
+from modefront.solvers.problem import Problem
+from modefront.solvers.sqp import Solution
+
+SHARE = 0.1
+"""Share of the points of a front, beside the edge, that make a part of it flat."""
+
+
+@dataclass(frozen=True)
+class Identifiable:
+    """The part of a front that is not flat.
+
+    Attributes
+    ----------
+    flat : (n,) how many points of the whole front lie in the flat part at each edge, besides it
+    ends : where the part ends, one solution an objective
+    points : along it; empty where it is one point
+    """
+
+    flat: Ints
+    ends: Sequence[Solution]
+    points: Sequence[Solution]
+
+
+def flat_points(J: Floats, least: Floats, tolerance: float, sizes: Floats) -> Ints:
+    """Return how many rows of J (points, n) lie in the flat part at each edge, besides the edge.
+
+    ``least`` (n,) are the least values; an objective that is fitted exactly, compared with
+    ``sizes`` (n,), has no flat part. Fewer than two points, or a tenth of all, make none.
+
+    >>> J = np.array([[1.0, 3.0], [1.001, 2.0], [1.002, 1.0], [1.5, 0.5], [2.0, 0.4]])
+    >>> flat_points(J, np.array([1.0, 0.4]), 0.01, np.ones(2)).tolist()
+    [2, 0]
+    """
+    level = (1 + tolerance) * least
+    count = (level >= J).sum(axis=0) - 1
+    enough = (count >= max(2, SHARE * len(J))) & (least > EXACT * sizes)
+    return np.where(enough, count, 0)
+
+
+def same(one: Solution, other: Solution) -> bool:
+    """Return whether two solutions are of the same parameters."""
+    return bool(np.array_equal(one.at.theta, other.at.theta))
+
+
+def identifiable_part(
+    problem: Problem,
+    points: Sequence[Solution],
+    edges: Sequence[Solution],
+    known: Sequence[Solution],
+    tolerance: float,
+    sizes: Floats,
+    divisions: int,
+    checkpoint: Checkpoint,
+) -> Identifiable | None:
+    """Return the part of a front that is not flat; None where nothing is flat, or
+    where the flat part has no end that can be found.
+
+    ``points`` lie along the whole front, ``edges`` are its edges, ``known`` are solutions to start
+    from; ``divisions`` are the steps along each edge of the simplex.
+    """
+    n = len(edges)
+    least = np.array([one.at.J[i] for i, one in enumerate(edges)])
+    J = np.array([one.at.J for one in points])
+    flat = flat_points(J, least, tolerance, sizes)
+    if not flat.any():
+        return None
+    ends = list(edges)
+    for i in np.flatnonzero(flat).tolist():
+        name = f"identifiable-edge-{problem.objectives[i]}"
+        cut = partial(near_best, problem, edges[i], i, tolerance, sizes, known)
+        (ends[i],) = checkpoint(name, cut)
+    moved = [not same(one, edge) for one, edge in zip(ends, edges, strict=True)]
+    flat = np.where(moved, flat, 0)
+    if not flat.any():
+        return None
+    target = payoff(ends, sizes)
+    if target is None:
+        return Identifiable(flat, ends, [])
+    along = nbi(
+        problem,
+        ends,
+        target,
+        simplex(n, divisions),
+        lambda name, compute: checkpoint(f"identifiable-{name}", compute),
+    )
+    return Identifiable(flat, ends, along)

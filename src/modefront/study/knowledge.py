@@ -1,0 +1,278 @@
+"""What is known beyond the points of a front: its flat parts, equally good models, scatter."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.errors import ModelError
+from modefront.residuals.problem import UpdatingProblem
+from modefront.solvers.checkpoint import Checkpoint
+from modefront.solvers.curvature import SecondOrder, second_order
+from modefront.solvers.edges import EXACT, TIE
+from modefront.solvers.flat import Identifiable, identifiable_part, same
+from modefront.solvers.manifold import Extent, Manifold, equally_good
+from modefront.solvers.problem import Evaluation
+from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
+from modefront.solvers.sqp import Solution, begin, solve
+from modefront.study.run import Front, generator
+from modefront.study.tables.identifiability import Identifiability
+from modefront.study.tables.uncertainty import Uncertainty
+from modefront.uncertainty.bootstrap import redraw
+from modefront.uncertainty.laplace import Posterior, laplace
+from modefront.uncertainty.linear import Local, front_scatter
+from modefront.uncertainty.noise import Noise, Source, noise
+from modefront.uncertainty.points import Point, Role, solve_again
+from modefront.uncertainty.scatter import Scatter
+
+OPTIMAL = "optimal-weights"
+PART = "identifiable-"
+"""Beginning of the labels of points of the identifiable part of the front."""
+
+Labelled = Sequence[tuple[str, Solution]]
+
+
+@dataclass(frozen=True)
+class Knowledge:
+    """What is known beyond the points of a front.
+
+    Attributes
+    ----------
+    points : labelled points of the identifiable part of the front and its ends
+    identifiable : that part; None where nothing is flat
+    tolerance : the share within which objectives count as the same in a flat part
+    manifolds : of equally good models, by group or method
+    source : where the uncertainty of the data is taken from; None where it is not known
+    scatter : of the points by that uncertainty, by label
+    slopes : derivatives of predicted quantities at points, by label and quantity
+    posterior : of the parameters around the optimally weighted model; None where there is none
+    replicates : the points solved again with data drawn again, by label
+    """
+
+    points: Labelled
+    identifiable: Identifiable | None
+    tolerance: float
+    manifolds: Sequence[tuple[str, Sequence[Manifold]]]
+    source: Source | None
+    scatter: Mapping[str, Scatter]
+    slopes: Mapping[str, Mapping[str, Floats]]
+    posterior: Posterior | None
+    replicates: Sequence[Mapping[str, Solution]]
+
+
+def learn(
+    problem: UpdatingProblem,
+    front: Front,
+    *,
+    points: int,
+    tolerance: float,
+    seed: int,
+    identifiability: Identifiability,
+    uncertainty: Uncertainty,
+    checkpoint: Checkpoint,
+    expect: Callable[[int], None],
+) -> Knowledge:
+    """Find out what a front leaves open.
+
+    ``points`` and ``tolerance`` are those that it was found with; ``expect`` is told
+    about how many more pieces of work there are.
+    """
+    a = problem.properties
+    sizes = np.ones(a.size) if front.scale is None else front.scale
+    source = uncertainty.of(problem.data)
+    expect(len(front.points) * (source is not None) + a.size + 2 + uncertainty.bootstrap)
+
+    labels = dict(front.points)
+    bests = [labels[f"edge-{name}"] for name in problem.objectives]
+    along = [one for label, one in front.points if label.startswith("nbi-")]
+    part = None
+    if identifiability.flat > 0 and len(along) > 1:
+        part = identifiable_part(
+            *(problem, along, bests, [one for _, one in front.points]),
+            *(identifiability.flat, sizes, points - 1, checkpoint),
+        )
+    extra = _labelled(problem, part, bests)
+
+    manifolds: list[tuple[str, Sequence[Manifold]]] = []
+    if identifiability.models > 0:
+        for i, (name, programme, minima) in enumerate(_equal_minima(problem, front, a, sizes)):
+            sample = partial(_manifolds, problem, programme, minima, identifiability)
+            packed = checkpoint(f"manifold-{i + 1}-{name}", sample)
+            manifolds.append((name, _unpack_manifolds(packed)))
+
+    known = _roles(problem, front, extra, tolerance, identifiability.flat)
+    slopes: dict[str, Mapping[str, Floats]] = {}
+    done: dict[str, Local | None] = {}
+
+    def differentiate(label: str, start: Solution, w: Floats | None) -> Local | None:
+        if label not in done:
+            name = f"second-{label}"
+            found = checkpoint(name, lambda: _differentiate(problem, start, w, source))
+            done[label] = local = _unpack_local(found[0], a.size) if found else None
+            if local:
+                slopes[label] = local[0].slopes
+        return done[label]
+
+    scatter: Mapping[str, Scatter] = {}
+    if source is not None and front.scale is not None:
+        scatter = front_scatter(problem, known, a, sizes, differentiate)
+    posterior = None
+    if OPTIMAL in labels:
+        local = differentiate(OPTIMAL, labels[OPTIMAL], None)
+        posterior = laplace(problem, local[0], a) if local else None
+    replicates = []
+    if source is not None and front.scale is not None:
+        for b in range(uncertainty.bootstrap):
+            name = f"bootstrap-{b + 1}"
+            again = partial(_replicate, problem, known, a, sizes, source, seed, name)
+            solved = zip(known, checkpoint(name, again), strict=True)
+            replicates.append({point.label: one for point, one in solved})
+    return Knowledge(
+        extra,
+        part,
+        identifiability.flat,
+        manifolds,
+        source,
+        scatter,
+        slopes,
+        posterior,
+        replicates,
+    )
+
+
+def _labelled(
+    problem: UpdatingProblem, part: Identifiable | None, edges: Sequence[Solution]
+) -> Labelled:
+    if part is None:
+        return []
+    out = [(f"{PART}{i + 1}", one) for i, one in enumerate(part.points)]
+    ends = zip(problem.objectives, part.ends, edges, strict=True)
+    return out + [(f"{PART}edge-{name}", one) for name, one, edge in ends if not same(one, edge)]
+
+
+def _equal_minima(
+    problem: UpdatingProblem, front: Front, a: Floats, sizes: Floats
+) -> list[tuple[str, Scalarisation, list[Evaluation]]]:
+    """Return each group, and the optimal weights, with its programme and all its best minima."""
+    out: list[tuple[str, Scalarisation, list[Evaluation]]] = []
+    for i, (name, edge) in enumerate(zip(problem.objectives, front.edges, strict=True)):
+        level = (1 + TIE) * edge.best.at.J[i] + EXACT * sizes[i]
+        minima = [one.at for one in edge.minima if one.at.J[i] <= level]
+        out.append((name, weighted(np.eye(a.size)[i] / sizes), minima))
+    if front.optimal:
+        programme = LogSum(a)
+        level = programme.value(front.optimal[0].at.J) + TIE * a.sum()
+        minima = [one.at for one in front.optimal if programme.value(one.at.J) <= level]
+        out.append((OPTIMAL, programme, minima))
+    return out
+
+
+def _roles(
+    problem: UpdatingProblem, front: Front, extra: Labelled, tolerance: float, flat: float
+) -> list[Point]:
+    """Return the points of the front with what each of them solves."""
+    names = problem.objectives
+    whole = tuple(f"edge-{name}" for name in names)
+    cut = {label for label, _ in extra}
+    part = tuple(PART + label if PART + label in cut else label for label in whole)
+    out = []
+    for i, (label, edge) in enumerate(zip(whole, front.edges, strict=True)):
+        solution = dict(front.points)[label]
+        if tolerance > 0 and not same(solution, edge.best):
+            out.append(Point(f"{label}-best", edge.best, Role("edge", objective=i)))
+            out.append(Point(label, solution, Role("level", (), i, tolerance)))
+        else:
+            out.append(Point(label, edge.best, Role("edge", objective=i)))
+    for label, solution in [*front.points, *extra]:
+        if label in whole:
+            continue
+        if label == OPTIMAL:
+            role = Role("optimal")
+        elif label.startswith("nbi-"):
+            role = Role("boundary", whole)
+        elif label.startswith(f"{PART}edge-"):
+            role = Role("level", (), names.index(label.removeprefix(f"{PART}edge-")), flat)
+        elif label.startswith(PART):
+            role = Role("boundary", part)
+        else:
+            role = Role("weights")
+        out.append(Point(label, solution, role))
+    return out
+
+
+def _differentiate(
+    problem: UpdatingProblem, start: Solution, w: Floats | None, source: Source | None
+) -> list[Solution]:
+    """Return a point with second derivatives and noise, packed, or nothing where it has none."""
+    at = start.at
+    if w is not None:
+        at = solve(problem, weighted(w), begin(at)).at
+    point = second_order(problem, at)
+    if point is None:
+        return []
+    quantities = {**at.quantities, **{f"slope {name}": x for name, x in point.slopes.items()}}
+    if source is not None:
+        try:
+            own = noise(problem, at.theta, source)
+        except ModelError:
+            return []
+        quantities |= {"noise J": own.J, "noise dJ": own.dJ}
+    return [replace(start, at=replace(at, quantities=quantities), learned=point.H - at.H)]
+
+
+def _unpack_local(packed: Solution, n: int) -> Local:
+    at, p = packed.at, packed.at.theta.size
+    slopes = {
+        name.removeprefix("slope "): value
+        for name, value in at.quantities.items()
+        if name.startswith("slope ")
+    }
+    own = Noise(
+        at.quantities.get("noise J", np.zeros((0, n))),
+        at.quantities.get("noise dJ", np.zeros((0, n, p))),
+    )
+    return SecondOrder(at, at.H + packed.learned, slopes), own
+
+
+def _manifolds(
+    problem: UpdatingProblem,
+    programme: Scalarisation,
+    minima: Sequence[Evaluation],
+    how: Identifiability,
+) -> list[Solution]:
+    """Return equally good models as solutions, with the number and kind of their manifold."""
+    out = []
+    found = equally_good(problem, programme, minima, h=how.step, limit=how.models)
+    for number, manifold in enumerate(found):
+        kind = [number, manifold.dimension, list(Extent).index(manifold.extent)]
+        for at in manifold.models:
+            kept = {**at.quantities, "manifold": np.array(kind, dtype=float)}
+            out.append(begin(replace(at, quantities=kept)))
+    return out
+
+
+def _unpack_manifolds(packed: Sequence[Solution]) -> list[Manifold]:
+    numbers = [int(one.at.quantities["manifold"][0]) for one in packed]
+    out = []
+    for number in sorted(set(numbers)):
+        models = [one.at for one, i in zip(packed, numbers, strict=True) if i == number]
+        _, dimension, extent = models[0].quantities["manifold"].astype(int).tolist()
+        out.append(Manifold(dimension, models, list(Extent)[extent]))
+    return out
+
+
+def _replicate(
+    problem: UpdatingProblem,
+    known: Sequence[Point],
+    a: Floats,
+    sizes: Floats,
+    source: Source,
+    seed: int,
+    name: str,
+) -> list[Solution]:
+    data = redraw(problem.data, source, generator(seed, name))
+    return solve_again(replace(problem, data=data), known, a, sizes)

@@ -1,0 +1,373 @@
+"""What is known beyond the points of a front, as variables of results and in words."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.identifiability.collinearity import cosines, index, pairs
+from modefront.identifiability.combinations import (
+    Combination,
+    combinations_at,
+    optimal_weights,
+    relative_unit,
+)
+from modefront.identifiability.words import enumeration, measured_thing, summary
+from modefront.residuals.problem import UpdatingProblem
+from modefront.solvers.manifold import Extent, Manifold
+from modefront.solvers.sqp import Solution
+from modefront.study.knowledge import OPTIMAL, PART, Knowledge
+from modefront.study.run import Front
+from modefront.uncertainty.prediction import linear
+
+Variables = dict[str, tuple[tuple[str, ...], object, str]]
+"""Name: dimensions, values, meaning."""
+
+ALL = "all data"
+AT_BOUND = 1e-9
+"""Distance from a bound, over the range, up to which a parameter is at it."""
+
+
+def known_variables(problem: UpdatingProblem, front: Front, knowledge: Knowledge) -> Variables:
+    """Return the variables; ``front`` holds all points, those of ``knowledge`` too."""
+    out, said = _identifiability(problem, front)
+    out |= _bounds(problem, front)
+    for found, more in (
+        _flat(problem, front, knowledge),
+        _manifolds(problem, knowledge),
+        _scatter(problem, front, knowledge),
+        _posterior(problem, knowledge),
+        _replicates(problem, front, knowledge),
+    ):
+        out |= found
+        said += more
+    out["finding"] = (("finding",), np.array(said, dtype=str), "what is not determined, in words")
+    return out
+
+
+def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables, list[str]]:
+    """Return combinations at the optimally weighted model, else at each edge for its own group."""
+    names, groups = problem.model.parameters, problem.groups
+    labels = dict(front.points)
+    places = [OPTIMAL] if OPTIMAL in labels else []
+    rows: list[tuple[str, str, Combination]] = []
+    said = []
+    for place in [*places, *(f"edge-{name}" for name in problem.objectives)]:
+        at = labels[place].at
+        weights = optimal_weights(problem.properties, at.J)
+        at_edge = place != OPTIMAL
+        for i in [*range(len(groups)), None] if len(groups) > 1 else [0]:
+            of = ALL if i is None else groups[i].name
+            found = combinations_at(problem, at, i, weights)
+            rows += [(place, of, one) for one in found]
+            if not at_edge or (not places and (i is None or place == f"edge-{of}")):
+                thing = measured_thing(groups if i is None else [groups[i]])
+                said.append(f"at {place}: {summary(of, thing, found, names)}")
+    place = (places or [f"edge-{problem.objectives[0]}"])[0]
+    at = labels[place].at
+    unit = relative_unit(problem, at.theta)
+    weights = optimal_weights(problem.properties, at.J)
+    gram = np.tensordot(weights, at.H, axes=1) / 2 * np.outer(unit, unit)
+    said += [
+        f"at {place}: {names[i]} and {names[j]} act nearly alike on the residuals "
+        f"(collinearity index {value:.2g})"
+        for i, j, value in pairs(gram)
+    ]
+    meaning = "combination of parameters: relative changes, length 1"
+    return {
+        "combination_at": (("combination",), [row[0] for row in rows], "point where it was found"),
+        "combination_of": (("combination",), [row[1] for row in rows], "group, or all data"),
+        "combination_direction": (
+            ("combination", "parameter"),
+            np.array([row[2].direction for row in rows]),
+            meaning,
+        ),
+        "combination_sensitivity": (
+            ("combination",),
+            [row[2].sensitivity for row in rows],
+            "singular value: change of the weighted residuals for a unit change along it",
+        ),
+        "combination_share": (
+            ("combination",),
+            [row[2].share for row in rows],
+            "that over the greatest one of the same data",
+        ),
+        "collinearity": (
+            ("parameter", "parameter_other"),
+            cosines(gram),
+            f"cosines between the effects of parameters on all weighted residuals at {place}",
+        ),
+        "collinearity_index": (
+            (),
+            index(gram),
+            "1 / root of the least eigenvalue of these; infinite where some effects depend",
+        ),
+    }, said
+
+
+def _bounds(problem: UpdatingProblem, front: Front) -> Variables:
+    theta = np.array([one.at.theta for _, one in front.points])
+    margin = AT_BOUND * (problem.upper - problem.lower)
+    at = np.where(theta >= problem.upper - margin, 1, 0)
+    at = np.where(theta <= problem.lower + margin, -1, at)
+    meaning = "-1 at the lower bound, 1 at the upper one, 0 between them"
+    return {"at_bound": (("point", "parameter"), at, meaning)}
+
+
+def _flat(
+    problem: UpdatingProblem, front: Front, knowledge: Knowledge
+) -> tuple[Variables, list[str]]:
+    part = [
+        "whole" if label.startswith("nbi-") else "identifiable" if label.startswith(PART) else ""
+        for label, _ in front.points
+    ]
+    found = knowledge.identifiable
+    flat = found.flat if found else np.zeros(len(problem.objectives), dtype=int)
+    total = part.count("whole")
+    said = []
+    for name, count in zip(problem.objectives, flat.tolist(), strict=True):
+        if count and found:
+            text = (
+                f"the front is flat at edge-{name}: beside it, {count} of {total} points are "
+                f"within {100 * knowledge.tolerance:g} % of the least J of {name}; "
+            )
+            said.append(
+                text + f"{PART}1 to {PART}{len(found.points)} are the front without them"
+                if found.points
+                else text + "without them it is one point"
+            )
+    return {
+        "front_part": (
+            ("point",),
+            part,
+            "whole: the front between the edges; identifiable: the front without flat parts",
+        ),
+        "flat": (("group",), flat, "points in the flat part at the edge of the group, besides it"),
+    }, said
+
+
+def _manifolds(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variables, list[str]]:
+    names = problem.model.parameters
+    rows = [
+        (of, number, manifold, at)
+        for of, manifolds in knowledge.manifolds
+        for number, manifold in enumerate(manifolds, start=1)
+        for at in manifold.models
+    ]
+    said = []
+    for of, manifolds in knowledge.manifolds:
+        isolated = sum(one.extent is Extent.ISOLATED for one in manifolds)
+        if isolated > 1:
+            said.append(f"{isolated} separate models fit {of} equally well")
+        said += [_extent(of, one, names) for one in manifolds if one.extent != Extent.ISOLATED]
+    p, n = len(names), len(problem.objectives)
+    return {
+        "equal_of": (
+            ("equal",),
+            np.array([row[0] for row in rows], dtype=str),
+            "group or method that these models fit equally well",
+        ),
+        "equal_manifold": (
+            ("equal",),
+            np.array([row[1] for row in rows], dtype=int),
+            "number of the connected set to which the model belongs, from 1",
+        ),
+        "equal_dimension": (
+            ("equal",),
+            np.array([row[2].dimension for row in rows], dtype=int),
+            "dimension of that set; 0 is an isolated model",
+        ),
+        "equal_extent": (
+            ("equal",),
+            np.array([row[2].extent.name.lower() for row in rows], dtype=str),
+            "how far the set was followed: "
+            + "; ".join(f"{one.name.lower()}: {one.value}" for one in Extent),
+        ),
+        "equal_theta": (
+            ("equal", "parameter"),
+            np.array([row[3].theta for row in rows]).reshape(-1, p),
+            "parameter values",
+        ),
+        "equal_objective": (
+            ("equal", "group"),
+            np.array([row[3].J for row in rows]).reshape(-1, n),
+            "J_i",
+        ),
+    }, said
+
+
+def _extent(of: str, manifold: Manifold, names: Sequence[str]) -> str:
+    theta = np.array([one.theta for one in manifold.models])
+    kinds = {1: "a curve", 2: "a surface"}
+    kind = kinds.get(manifold.dimension, f"a manifold of dimension {manifold.dimension}")
+    varied = [
+        f"{name} from {least:.3g} to {most:.3g}"
+        for name, least, most in zip(names, theta.min(axis=0), theta.max(axis=0), strict=True)
+        if most - least > AT_BOUND * max(abs(most), abs(least))
+    ]
+    return (
+        f"{kind} of models fits {of} equally well ({len(theta)} of them, "
+        f"{manifold.extent.value}): {', '.join(varied)}"
+    )
+
+
+def _scatter(
+    problem: UpdatingProblem, front: Front, knowledge: Knowledge
+) -> tuple[Variables, list[str]]:
+    if knowledge.source is None:
+        return {}, []
+    labels = [label for label, _ in front.points]
+    m, n, p = len(labels), len(problem.objectives), len(problem.model.parameters)
+    r = len(problem.data.modes)
+    theta, J = np.full((m, p, p), np.nan), np.full((m, n, n), np.nan)
+    theta_std = np.full((m, p), np.nan)
+    predicted = {name: np.full((m, r), np.nan) for name in ("frequency", "mac")}
+    for i, label in enumerate(labels):
+        found = knowledge.scatter.get(label)
+        if found is None:
+            continue
+        theta[i], J[i] = found.covariance, found.J.T @ found.J
+        theta_std[i] = _std(found.covariance, found.free)
+        slopes = knowledge.slopes.get(label)
+        if slopes is not None:
+            for name, values in predicted.items():
+                values[i] = np.sqrt(np.diag(linear(found.covariance, slopes[name])))
+    why = {"std": "their standard deviations", "sets": "the scatter of the data sets"}
+    by = f"by errors of the data, from {why[knowledge.source]}"
+    said = [f"uncertainty of the data is taken from {why[knowledge.source]}"]
+    unknown = _without_std(problem) if knowledge.source == "std" else 0
+    if unknown:
+        said.append(
+            f"{unknown} measured values have no standard deviation above 0: they count as exact"
+        )
+    missing = [label for label in labels if label not in knowledge.scatter]
+    if missing:
+        said.append(f"no scatter is known at {', '.join(missing)}")
+    return {
+        "theta_std": (
+            ("point", "parameter"),
+            theta_std,
+            f"standard deviation of theta {by}; infinite where no data determine it",
+        ),
+        "theta_covariance": (
+            ("point", "parameter", "parameter_other"),
+            theta,
+            f"covariance of theta {by}, without directions that no data determine",
+        ),
+        "objective_std": (
+            ("point", "group"),
+            np.sqrt(np.einsum("mii->mi", J)),
+            f"standard deviation of J {by}",
+        ),
+        "objective_covariance": (("point", "group", "group_other"), J, f"covariance of J {by}"),
+        "frequency_std": (
+            ("point", "mode"),
+            predicted["frequency"],
+            f"standard deviation of the predicted frequency in Hz {by}",
+        ),
+        "mac_std": (
+            ("point", "mode"),
+            predicted["mac"],
+            f"standard deviation of the MAC with the data as they are {by}",
+        ),
+    }, said
+
+
+def _without_std(problem: UpdatingProblem) -> int:
+    data = problem.data
+    return int(
+        (np.isfinite(data.frequency) & ~(data.frequency_std > 0)).sum()
+        + (np.isfinite(data.shape) & ~(data.shape_std > 0)).sum()
+    )
+
+
+def _std(covariance: Floats, free: Floats) -> Floats:
+    """Return standard deviations, infinite for parameters that have a part in what is free."""
+    open_ = (np.abs(free) > 1e-9 * np.abs(free).max(initial=1e-300)).any(axis=1)
+    return np.where(open_, np.inf, np.sqrt(np.diag(covariance)))
+
+
+def _posterior(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variables, list[str]]:
+    found = knowledge.posterior
+    if found is None:
+        return {}, []
+    names = problem.model.parameters
+    said = []
+    held = [name for name, at in zip(names, found.held, strict=True) if at]
+    if held:
+        said.append(f"the posterior is given {enumeration(held)} at a bound")
+    slopes = knowledge.slopes[OPTIMAL]
+    return {
+        "posterior_std": (
+            ("parameter",),
+            _std(found.covariance, found.free),
+            "standard deviation of theta around optimal-weights, with the variance of the errors "
+            "of each group unknown; infinite where no data determine it",
+        ),
+        "posterior_covariance": (
+            ("parameter", "parameter_other"),
+            found.covariance,
+            "covariance of theta likewise, without directions that no data determine",
+        ),
+        "posterior_frequency_std": (
+            ("mode",),
+            np.sqrt(np.diag(linear(found.covariance, slopes["frequency"]))),
+            "standard deviation of the predicted frequency in Hz likewise",
+        ),
+        "posterior_mac_std": (
+            ("mode",),
+            np.sqrt(np.diag(linear(found.covariance, slopes["mac"]))),
+            "standard deviation of the MAC likewise",
+        ),
+    }, said
+
+
+def _replicates(
+    problem: UpdatingProblem, front: Front, knowledge: Knowledge
+) -> tuple[Variables, list[str]]:
+    if not knowledge.replicates:
+        return {}, []
+    p, n = len(problem.model.parameters), len(problem.objectives)
+    found = [[one.get(label) for label, _ in front.points] for one in knowledge.replicates]
+    theta = _stacked(found, p, lambda one: one.at.theta)
+    J = _stacked(found, n, lambda one: one.at.J)
+    failed = int(np.isnan(theta).all(axis=2).sum())
+    said = []
+    if failed:
+        said.append(f"bootstrap: {failed} of {theta[:, :, 0].size} solutions did not converge")
+    by = "with the data drawn again; NaN where it did not converge"
+    return {
+        "bootstrap_theta": (("replicate", "point", "parameter"), theta, f"theta {by}"),
+        "bootstrap_objective": (("replicate", "point", "group"), J, f"J {by}"),
+        "bootstrap_theta_std": (
+            ("point", "parameter"),
+            _spread(theta),
+            "standard deviation of theta over the data drawn again",
+        ),
+        "bootstrap_objective_std": (
+            ("point", "group"),
+            _spread(J),
+            "standard deviation of J over the data drawn again",
+        ),
+    }, said
+
+
+def _stacked(
+    found: Sequence[Sequence[Solution | None]], width: int, of: Callable[[Solution], Floats]
+) -> Floats:
+    """Return values (replicates, points, width), NaN where a solution did not converge."""
+    nothing = np.full(width, np.nan)
+    return np.array(
+        [[of(one) if one and one.converged else nothing for one in row] for row in found]
+    )
+
+
+def _spread(values: Floats) -> Floats:
+    """Return the standard deviation over the first dimension of what is there; NaN below two."""
+    there = np.isfinite(values)
+    count = there.sum(axis=0)
+    mean = np.where(there, values, 0.0).sum(axis=0) / np.maximum(count, 1)
+    square = np.where(there, (values - mean) ** 2, 0.0).sum(axis=0)
+    return np.where(count > 1, np.sqrt(square / np.maximum(count - 1, 1)), np.nan)

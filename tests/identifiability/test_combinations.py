@@ -1,0 +1,123 @@
+"""Combinations of parameters with known answers: the chain, and Jacobians made by hand."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+import modefront as mf
+from modefront.identifiability.collinearity import cosines, index, pairs
+from modefront.identifiability.combinations import (
+    NONE,
+    combinations,
+    combinations_at,
+    decompose,
+    optimal_weights,
+)
+from modefront.identifiability.words import direction_in_words, sparse_basis, summary
+
+NAMES = ("k1", "k2", "k3")
+
+
+def chain() -> mf.UpdatingProblem:
+    model = mf.chain(NAMES, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=NAMES)
+    at = model.modes(np.array([1.2, 0.8, 1.1]), 3)
+    data = mf.modal_data(at.frequency * [1.01, 0.98, 1.02], at.phi.T, model.sensors)
+    groups = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+    return mf.updating_problem(
+        model, data, groups, dict.fromkeys(NAMES, (0.1, 9.0)), dict.fromkeys(NAMES, 1.0)
+    )
+
+
+def test_shapes_leave_the_scale_of_all_stiffnesses() -> None:
+    problem = chain()
+    theta = np.array([1.3, 0.7, 2.0])
+    found = combinations(problem, theta, 1)
+    assert [one.share > NONE for one in found] == [True, True, False]
+    assert found[-1].direction == pytest.approx(np.ones(3) / np.sqrt(3), abs=1e-9)
+    said = summary("shapes", "shape", found, NAMES)
+    assert said.endswith("; k1, k2 and k3 can be scaled together: no shape changes")
+    assert said.startswith("shapes determine 2 of 3 combinations of parameters")
+
+
+def test_the_second_derivatives_tell_the_same_without_another_evaluation() -> None:
+    problem = chain()
+    at = problem.evaluate(np.array([1.3, 0.7, 2.0]))
+    before = problem.counts["eigenproblems"]
+    weights = optimal_weights(problem.properties, at.J)
+    found = combinations_at(problem, at, weights=weights)
+    assert problem.counts["eigenproblems"] == before
+    expected = combinations(problem, at.theta, weights=weights)
+    for one, other in zip(found, expected, strict=True):
+        assert one.sensitivity == pytest.approx(other.sensitivity, rel=1e-7)
+        assert abs(one.direction @ other.direction) == pytest.approx(1, abs=1e-7)
+    shapes = combinations_at(problem, at, 1)
+    assert [one.share > NONE for one in shapes] == [True, True, False]
+
+
+def test_weights_of_groups_move_what_is_determined_best() -> None:
+    problem = chain()
+    theta = problem.start
+    heavy = combinations(problem, theta, weights=np.array([1e12, 1.0]))
+    alone = combinations(problem, theta, 0)
+    assert abs(heavy[0].direction @ alone[0].direction) == pytest.approx(1, abs=1e-9)
+
+
+def test_a_group_that_is_fitted_exactly_has_no_weight() -> None:
+    assert optimal_weights(np.array([3.0, 9.0]), np.array([2.0, 4.5])).tolist() == [1.5, 2.0]
+    assert optimal_weights(np.array([3.0, 9.0]), np.array([0.0, 4.5])).tolist() == [1.0, 1.0]
+
+
+@given(st.integers(0, 2**31), st.integers(2, 6), st.integers(1, 4))
+def test_directions_not_determined_span_the_null_space(seed: int, p: int, d: int) -> None:
+    d = min(d, p - 1)
+    rng = np.random.default_rng(seed)
+    N = np.linalg.qr(rng.normal(size=(p, d)))[0]
+    G = rng.normal(size=(p + 2, p)) @ (np.eye(p) - N @ N.T)
+    found = decompose(G)
+    free = np.array([one.direction for one in found if one.share <= NONE]).T
+    assert free.shape == (p, d)
+    basis = sparse_basis(free)
+    assert basis.shape == (p, d)
+    assert np.linalg.matrix_rank(basis) == d
+    assert np.abs(basis - N @ (N.T @ basis)).max() < 2e-3 * np.abs(basis).max()
+
+
+def test_a_basis_is_made_of_what_can_be_said() -> None:
+    e = np.eye(5)
+    known = np.column_stack([e[4], e[0] + e[1] + e[2] + e[3], e[0] + 2 * e[1]])
+    mixed = np.linalg.qr(known)[0] @ np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
+    basis = sparse_basis(mixed)
+    names = ("a", "b", "c", "d", "m")
+    said = [direction_in_words(v, names) for v in basis.T]
+    assert said[:2] == ["m can be changed alone", "a, b, c and d can be scaled together"]
+    assert len(said) == 3
+
+
+def test_long_lists_are_cut() -> None:
+    names = tuple(f"k{i}" for i in range(6))
+    said = summary("data", "residual", decompose(np.eye(6)[:1]), names)
+    assert said == (
+        "data determine 1 of 6 combinations of parameters; k1 can be changed alone; "
+        "k2 can be changed alone; k3 can be changed alone; and 2 more: no residual changes"
+    )
+
+
+def test_what_is_hardly_determined_is_said() -> None:
+    said = summary("data", "shape", decompose(np.diag([1.0, 1e-3])), ("a", "b"))
+    assert said == (
+        "data determine 2 of 2 combinations of parameters, "
+        "1 of them hardly (below 1 % of the best): +1.00 b"
+    )
+
+
+def test_the_collinearity_index_of_known_angles() -> None:
+    c = np.cos(0.05)
+    gram = np.array([[1.0, 3 * c, 0.0], [3 * c, 9.0, 0.0], [0.0, 0.0, 4.0]])
+    assert cosines(gram)[0, 1] == pytest.approx(c)
+    assert index(gram) == pytest.approx(1 / np.sqrt(1 - c))
+    assert index(gram, (0, 2)) == 1.0
+    assert [one[:2] for one in pairs(gram)] == [(0, 1)]
+    parallel = np.ones((2, 2))
+    assert index(parallel) == np.inf
+    assert cosines(np.diag([1.0, 0.0])).tolist() == [[1.0, 0.0], [0.0, 0.0]]

@@ -1,0 +1,100 @@
+"""What is determined of a measured 18-story frame: 3 modes at 6 floors, 18 stiffnesses.
+
+The data lie beside the project (origin and licence: see the README there) and are not part of it.
+"""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.sparse
+
+import modefront as mf
+from modefront.identifiability.combinations import NONE, combinations
+from modefront.study.check import derivative_error, determined
+
+FILE = Path(__file__).parents[3] / "shared" / "data" / "smu" / "story18_exp.npz"
+STORIES = 18
+NAMES = tuple(f"k{i + 1}" for i in range(STORIES))
+
+
+@pytest.fixture(scope="module")
+def frame() -> mf.UpdatingProblem:
+    """The frame with story stiffnesses relative to nominal, within 30 %."""
+    if not FILE.is_file():
+        pytest.skip(f"no {FILE}: measured data lie beside the project and are not part of it")
+    with np.load(FILE, allow_pickle=False) as file:
+        found = {name: file[name] for name in file.files}
+
+    def matrix(name: str) -> scipy.sparse.csr_array:
+        entries = found[f"{name}_val"], (found[f"{name}_row"], found[f"{name}_col"])
+        return scipy.sparse.csr_array(entries, shape=(STORIES, STORIES))
+
+    stiffness = {name: matrix(f"K{i}") for i, name in enumerate(NAMES)}
+    sensors = {f"floor{dof + 1}": int(dof) for dof in found["meas_dofs0"]}
+    model = mf.matrices(NAMES, stiffness, {"base": matrix("M")}, sensors)
+    frequencies = np.sqrt(found["lambda_exp"]) / (2 * np.pi)
+    data = mf.modal_data(frequencies, found["psi_exp"].T, tuple(sensors))
+    groups = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+    bounds = dict.fromkeys(NAMES, (0.7, 1.3))
+    return mf.updating_problem(model, data, groups, bounds, dict.fromkeys(NAMES, 1.0))
+
+
+def first_two(frame: mf.UpdatingProblem) -> mf.UpdatingProblem:
+    """The two modes that the authors of the data use."""
+    return replace(frame, groups=(mf.Group("frequencies", [1, 2]), mf.Group("shapes", (), [1, 2])))
+
+
+def ranks(frame: mf.UpdatingProblem) -> list[int]:
+    found = [combinations(frame, frame.start, group) for group in (0, 1, None)]
+    return [sum(one.share > NONE for one in rows) for rows in found]
+
+
+def test_each_measured_number_determines_one_combination(frame: mf.UpdatingProblem) -> None:
+    """A frequency determines one combination, and a shape one a floor but for its scale."""
+    assert ranks(frame) == [3, 3 * 5, 18]
+    assert ranks(first_two(frame)) == [2, 2 * 5, 12]
+    scaled = combinations(frame, frame.start, 1)
+    free = np.array([one.direction for one in scaled if one.share <= NONE])
+    together = np.ones(STORIES) / np.sqrt(STORIES)
+    assert np.linalg.norm(free @ together) == pytest.approx(1, abs=1e-9)
+
+
+def test_the_check_says_so_in_words(frame: mf.UpdatingProblem) -> None:
+    frequencies, shapes, together = determined(first_two(frame))
+    assert frequencies.startswith("frequencies determine 2 of 18 combinations of parameters; ")
+    assert frequencies.endswith("; and 13 more: no frequency changes")
+    assert shapes.startswith("shapes determine 10 of 18 combinations of parameters")
+    assert "; all 18 parameters can be scaled together; " in shapes
+    assert shapes.endswith("; and 5 more: no shape changes")
+    assert together.startswith("all data together determine 12 of 18 combinations of parameters")
+    assert "; and 3 more: no residual changes" in together
+    assert derivative_error(frame) < 1e-5
+
+
+def test_the_results_say_so_too(frame: mf.UpdatingProblem) -> None:
+    search = mf.Search(starts=1, limit=1, evolutions=0)
+    data = mf.solve(
+        first_two(frame), points=2, search=search, identifiability=mf.Identifiability(models=10)
+    )
+    share = data["combination_share"].values
+    at, of = data["combination_at"].values, data["combination_of"].values
+    for place in ("optimal-weights", "edge-shapes"):
+        counts = [
+            int((share[(at == place) & (of == name)] > NONE).sum())
+            for name in ("frequencies", "shapes", "all data")
+        ]
+        assert counts == [2, 10, 12]
+    assert any(
+        text.startswith("at optimal-weights: all data determine 12 of 18 combinations")
+        for text in data["finding"].values
+    )
+    # What the data leave open the bounds decide: at least six parameters lie at one.
+    labels = data["label"].values.tolist()
+    assert np.abs(data["at_bound"].values[labels.index("optimal-weights")]).sum() >= 6
+    assert any(text.startswith("the posterior is given ") for text in data["finding"].values)
+    of = data["equal_of"].values
+    assert data["equal_dimension"].values[of == "frequencies"].tolist() == [16] * 10
+    J = data["equal_objective"].values[of == "frequencies", 0]
+    assert J == pytest.approx(J[0], abs=1e-9)

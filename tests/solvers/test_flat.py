@@ -1,0 +1,73 @@
+"""Fronts of which a part is flat, cut where a closed form says."""
+
+import numpy as np
+import pytest
+from problems import Derivatives, Known, box, circles
+
+from modefront._typing import Floats
+from modefront.solvers.checkpoint import compute_always
+from modefront.solvers.edges import edge
+from modefront.solvers.explore import Search
+from modefront.solvers.flat import flat_points, identifiable_part
+from modefront.solvers.nbi import nbi, payoff, simplex
+from modefront.solvers.sqp import Solution
+
+
+def flat(theta: Floats) -> Derivatives:
+    """J2 = 1 + exp(-4 x) + y**2 hardly falls any more where J1 = x**2 goes on to rise."""
+    x, y = theta
+    e = np.exp(-4 * x)
+    J, dJ = np.array([x**2, 1 + e + y**2]), np.array([[2 * x, 0], [-4 * e, 2 * y]])
+    return J, dJ, np.array([np.diag([2.0, 0]), np.diag([16 * e, 2.0])])
+
+
+def whole_front(problem: Known, sizes: Floats) -> tuple[list[Solution], list[Solution]]:
+    edges = []
+    for i in range(2):
+        found = edge(problem, i, sizes, np.random.default_rng(i), Search(starts=3))
+        assert found is not None
+        edges.append(found.best)
+    target = payoff(edges, sizes)
+    assert target is not None
+    return edges, nbi(problem, edges, target, simplex(2, 19))
+
+
+def test_a_flat_part_is_found_and_the_rest_covered_by_itself() -> None:
+    problem = box(flat, [0, -1], [4, 1])
+    sizes = np.array([16.0, 1.0])
+    edges, along = whole_front(problem, sizes)
+    part = identifiable_part(problem, along, edges, along, 0.01, sizes, 19, compute_always)
+    assert part is not None
+    least = 1 + np.exp(-16.0)
+    J = np.array([one.at.J for one in along])
+    assert part.flat.tolist() == [0, (J[:, 1] <= 1.01 * least).sum() - 1]
+    assert part.flat[1] >= 8
+    assert part.ends[0] is edges[0]
+    # J2 = 1.01 of the least at exp(-4 x) = 0.01 and a little
+    cut = -np.log(1.01 * least - 1) / 4
+    assert part.ends[1].at.theta == pytest.approx([cut, 0], abs=1e-6)
+    own = np.array([one.at.J for one in part.points])
+    assert all(one.converged for one in part.points)
+    assert own[:, 0].max() == pytest.approx(cut**2, rel=1e-6)
+    assert own[:, 1] == pytest.approx(1 + np.exp(-4 * np.sqrt(own[:, 0])), abs=1e-6)
+    # Even along the front in units of its range: what was one point is twenty.
+    scaled = own / np.ptp(own, axis=0)
+    steps = np.linalg.norm(np.diff(scaled, axis=0), axis=1)
+    assert steps.max() < 3 * steps.min()
+
+
+def test_a_front_that_bends_everywhere_is_left_alone() -> None:
+    problem = box(circles, [-2, -2], [2, 2])
+    sizes = np.ones(2)
+    edges, along = whole_front(problem, sizes)
+    assert identifiable_part(problem, along, edges, along, 0.01, sizes, 19, compute_always) is None
+
+
+def test_an_objective_that_is_fitted_exactly_has_no_flat_part() -> None:
+    J = np.column_stack([np.zeros(20), np.linspace(1, 2, 20)])
+    assert flat_points(J, np.array([0.0, 1.0]), 0.01, np.ones(2)).tolist() == [0, 0]
+
+
+def test_one_point_beside_the_edge_is_not_flat() -> None:
+    J = np.array([[1.0, 3.0], [1.001, 2.0], [1.5, 0.5], [2.0, 0.4]])
+    assert flat_points(J, np.array([1.0, 0.4]), 0.01, np.ones(2)).tolist() == [0, 0]

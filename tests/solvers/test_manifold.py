@@ -1,0 +1,183 @@
+"""Manifolds of equally good models that are known: curves, closed and bounded, surfaces, points."""
+
+from collections.abc import Callable, Sequence
+
+import numpy as np
+import pytest
+from problems import Derivatives, Known, box, many_minima
+
+from modefront._typing import Floats
+from modefront.solvers.explore import Search, explore
+from modefront.solvers.manifold import Extent, equally_good, follow
+from modefront.solvers.problem import Evaluation
+from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
+
+ONE = weighted(np.ones(1))
+
+
+def squares(r: Floats, dr: Floats) -> Derivatives:
+    """One objective from its residuals (rows,) and their derivatives (rows, p)."""
+    return np.array([r @ r]), (2 * r @ dr)[None], (2 * dr.T @ dr)[None]
+
+
+def circle(theta: Floats) -> Derivatives:
+    return squares(np.array([theta @ theta - 0.49]), 2 * theta[None])
+
+
+def two_circles(theta: Floats) -> Derivatives:
+    """Circles around (-1, 0) and (1, 0) of radius 0.5: r is the product of the two equations."""
+    a, b = theta - np.array([-1.0, 0]), theta - np.array([1.0, 0])
+    f, g = a @ a - 0.25, b @ b - 0.25
+    return squares(np.array([f * g]), (2 * f * b + 2 * g * a)[None])
+
+
+def sphere(theta: Floats) -> Derivatives:
+    return squares(np.array([theta @ theta - 0.64]), 2 * theta[None])
+
+
+def fitted_badly(theta: Floats) -> Derivatives:
+    """The curve y = x**2 on which a constant residual is left over, and z has its own."""
+    x, y, z = theta
+    r = np.array([y - x**2, z - 0.2, 0.3])
+    return squares(r, np.array([[-2 * x, 1, 0], [0, 0, 1], [0, 0, 0]]))
+
+
+def of(function: Callable[[Floats], Derivatives], lower: list[float], upper: list[float]) -> Known:
+    return box(function, lower, upper, 1)
+
+
+def thetas(models: Sequence[Evaluation]) -> Floats:
+    return np.array([one.theta for one in models])
+
+
+def test_a_circle_is_followed_until_it_closes() -> None:
+    problem = of(circle, [-1, -1], [1, 1])
+    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
+    assert (found.dimension, found.extent) == (1, Extent.CLOSED)
+    theta = thetas(found.models)
+    assert np.hypot(*theta.T) == pytest.approx(0.7, abs=1e-8)
+    angles = np.unwrap(np.arctan2(theta[:, 1], theta[:, 0]))
+    steps = np.diff(angles)
+    assert (np.sign(steps) == np.sign(steps[0])).all(), "in order along the curve"
+    around = np.append(np.abs(steps), 2 * np.pi - np.abs(steps).sum())
+    # h = 0.05 of ranges of 2: chords of 0.1, but where the two ends meet.
+    assert 0.7 * around.max() == pytest.approx(0.1, rel=0.71)
+    assert 0.7 * around.min() > 0.06
+    assert problem.counts["eigenproblems"] <= 6 * len(found.models)
+
+
+def test_a_circle_that_the_bounds_cut_ends_on_them() -> None:
+    problem = of(circle, [-1, -0.3], [1, 0.5])
+    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
+    assert found.extent is Extent.BOUNDED
+    theta = thetas(found.models)
+    ends = sorted(theta[[0, -1], 1].tolist())
+    assert ends == [-0.3, 0.5]
+    assert np.hypot(*theta.T) == pytest.approx(0.7, abs=1e-8)
+
+
+def test_disjoint_curves_are_all_followed_and_none_twice() -> None:
+    problem = of(two_circles, [-2, -2], [2, 2])
+    minima = explore(problem, ONE, np.random.default_rng(0), Search(starts=20))
+    assert len(minima) > 2
+    found = equally_good(problem, ONE, [one.at for one in minima], h=0.03, limit=200)
+    assert [one.extent for one in found] == [Extent.CLOSED] * 2
+    sides = [np.sign(thetas(one.models)[:, 0]) for one in found]
+    assert sorted(float(side.mean()) for side in sides) == [-1.0, 1.0]
+
+
+def test_a_sphere_is_covered() -> None:
+    problem = of(sphere, [-1, -1, -1], [1, 1, 1])
+    start = problem.evaluate(np.array([0.0, 0.0, 0.8]))
+    found = follow(problem, ONE, start, h=0.15, limit=400)
+    assert (found.dimension, found.extent) == (2, Extent.CLOSED)
+    theta = thetas(found.models)
+    assert np.linalg.norm(theta, axis=1) == pytest.approx(0.8, abs=1e-8)
+    rng = np.random.default_rng(0)
+    directions = rng.normal(size=(2000, 3))
+    anywhere = 0.8 * directions / np.linalg.norm(directions, axis=1, keepdims=True)
+    away = np.linalg.norm(anywhere[:, None] - theta, axis=2).min(axis=1)
+    # Steps are 0.3 in theta; no place on the sphere is farther than that from a sample.
+    assert away.max() < 0.3
+    apart = np.linalg.norm(theta[:, None] - theta, axis=2) + 9 * np.eye(len(theta))
+    assert apart.min() > 0.3 * 0.5
+
+
+def test_a_sphere_within_narrow_bounds_ends_on_them() -> None:
+    problem = of(sphere, [-1, -1, 0.3], [1, 1, 1])
+    start = problem.evaluate(np.array([0.0, 0.0, 0.8]))
+    found = follow(problem, ONE, start, h=0.1, limit=400)
+    assert found.extent is Extent.BOUNDED
+    assert thetas(found.models)[:, 2].min() == pytest.approx(0.3, abs=0.1 * 0.7 * 0.3 + 1e-9)
+
+
+def test_isolated_minima_are_counted() -> None:
+    problem = box(many_minima, [-4, -4], [4, 4])
+    programme = weighted(np.array([1.0, 0.0]))
+    minima = explore(problem, programme, np.random.default_rng(0), Search())
+    found = equally_good(problem, programme, [one.at for one in minima])
+    assert [one.extent for one in found] == [Extent.ISOLATED] * 4
+    assert [one.dimension for one in found] == [0] * 4
+
+
+@pytest.mark.parametrize("programme", [ONE, LogSum(np.array([4.0]))])
+def test_residuals_that_stay_do_not_hide_a_curve(programme: Scalarisation) -> None:
+    problem = of(fitted_badly, [-1, -0.5, 0], [1, 2, 1])
+    start = problem.evaluate(np.array([0.1, 0.01, 0.2]))
+    found = follow(problem, programme, start, h=0.05, limit=200)
+    assert (found.dimension, found.extent) == (1, Extent.BOUNDED)
+    x, y, z = thetas(found.models).T
+    assert y == pytest.approx(x**2, abs=1e-7)
+    assert z == pytest.approx(0.2, abs=1e-7)
+    assert sorted([x[0], x[-1]]) == [-1, 1]
+
+
+def test_a_parameter_pressed_against_its_bound_stays_there() -> None:
+    problem = of(fitted_badly, [-1, -0.5, 0.5], [1, 2, 1])
+    found = follow(problem, ONE, problem.evaluate(np.array([0.1, 0.01, 0.5])), h=0.05, limit=200)
+    assert (found.dimension, found.extent) == (1, Extent.BOUNDED)
+    assert thetas(found.models)[:, 2].tolist() == [0.5] * len(found.models)
+
+
+def test_a_surface_is_followed_from_a_corner_along_the_bounds() -> None:
+    def plane(theta: Floats) -> Derivatives:
+        return squares(np.array([theta.sum() - 1.0]), np.ones((1, 3)))
+
+    problem = of(plane, [0, 0, 0], [1, 1, 1])
+    found = follow(problem, ONE, problem.evaluate(np.array([1.0, 0, 0])), h=0.2, limit=100)
+    assert (found.dimension, found.extent) == (2, Extent.BOUNDED)
+    theta = thetas(found.models)
+    assert theta.sum(axis=1) == pytest.approx(1, abs=1e-8)
+    assert theta.min() == 0
+    # A triangle with sides of 1.41, in steps of 0.2: nowhere farther from a sample than a step.
+    rng = np.random.default_rng(0)
+    anywhere = rng.dirichlet(np.ones(3), 500)
+    away = np.linalg.norm(anywhere[:, None] - theta, axis=2).min(axis=1)
+    assert away.max() < 0.2
+
+
+def test_residuals_that_bend_but_do_not_change_hold_a_minimum() -> None:
+    def bowl(theta: Floats) -> Derivatives:
+        x, y = theta
+        return squares(np.array([1 + x**2, y]), np.array([[2 * x, 0], [0, 1]]))
+
+    problem = of(bowl, [-1, -1], [1, 1])
+    found = follow(problem, ONE, problem.evaluate(np.zeros(2)), h=0.05, limit=20)
+    assert (found.dimension, found.extent) == (0, Extent.ISOLATED)
+
+
+def test_no_more_models_than_wanted() -> None:
+    problem = of(circle, [-1, -1], [1, 1])
+    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=7)
+    assert (len(found.models), found.extent) == (7, Extent.CUT)
+
+
+def test_a_curve_that_ends_where_the_model_does_is_lost() -> None:
+    def half(theta: Floats) -> Derivatives:
+        J, dJ, H = circle(theta)
+        return (J if theta[0] > 0.2 else J * np.inf), dJ, H
+
+    problem = of(half, [-1, -1], [1, 1])
+    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
+    assert found.extent is Extent.LOST
+    assert thetas(found.models)[:, 0].min() < 0.25

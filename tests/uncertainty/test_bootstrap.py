@@ -1,0 +1,63 @@
+"""Data that are drawn again."""
+
+import numpy as np
+import pytest
+
+import modefront as mf
+from modefront.errors import UnfinishedError
+from modefront.uncertainty.bootstrap import redraw
+
+
+def data_of(sets: int) -> mf.ModalData:
+    rng = np.random.default_rng(0)
+    f, phi = rng.uniform(1, 2, (sets, 2)), rng.uniform(1, 2, (sets, 2, 3))
+    names = ("a", "b", "c")
+    return mf.modal_data(f, phi, names, frequency_std=0.1 * f, shape_std=0.2 * phi)
+
+
+def test_sets_are_drawn_whole_and_with_replacement() -> None:
+    data, rng = data_of(6), np.random.default_rng(1)
+    seen = np.zeros(6)
+    for _ in range(100):
+        drawn = redraw(data, "sets", rng)
+        assert drawn.frequency.shape == (6, 2)
+        assert len(set(drawn.sets)) == 6
+        index = [data.frequency[:, 0].tolist().index(x) for x in drawn.frequency[:, 0]]
+        assert (drawn.shape == data.shape[index]).all()
+        assert (drawn.frequency_std == data.frequency_std[index]).all()
+        seen += np.bincount(index, minlength=6)
+    # 600 drawings of six: 100 each, with a standard deviation of 9.
+    assert (np.abs(seen - 100) < 40).all()
+
+
+def test_what_was_measured_is_in_every_drawing() -> None:
+    data, rng = data_of(3), np.random.default_rng(1)
+    data.frequency[:2, 1] = np.nan
+    for _ in range(30):
+        assert np.isfinite(redraw(data, "sets", rng).frequency[:, 1]).any()
+
+
+def test_drawings_that_hardly_ever_hold_everything_are_given_up() -> None:
+    data = data_of(40)
+    wide = mf.modal_data(
+        np.where(np.eye(40) > 0, 1.0, np.nan), np.full((40, 40, 3), np.nan), data.sensors
+    )
+    with pytest.raises(UnfinishedError, match="none of 1000 drawings of the data sets"):
+        redraw(wide, "sets", np.random.default_rng(0))
+
+
+def test_values_are_drawn_with_their_standard_deviations() -> None:
+    data, rng = data_of(1), np.random.default_rng(1)
+    data.shape_std[0, 0, 0], data.shape_std[0, 0, 1] = np.nan, 0.0
+    drawn = [redraw(data, "std", rng) for _ in range(2000)]
+    f = np.array([one.frequency for one in drawn])
+    assert f.mean(axis=0) == pytest.approx(data.frequency, rel=0.01)
+    assert f.std(axis=0) == pytest.approx(data.frequency_std, rel=0.06)
+    phi = np.array([one.shape for one in drawn])
+    assert (phi[:, 0, 0, :2] == data.shape[0, 0, :2]).all(), "without one, it is exact"
+    assert phi[:, 0, 1].std(axis=0) == pytest.approx(data.shape_std[0, 1], rel=0.06)
+
+
+def test_a_source_that_the_data_do_not_have_is_refused() -> None:
+    with pytest.raises(ValueError, match=r"expected one of .* as the source, found 'sets'"):
+        mf.Uncertainty("sets").of(data_of(1))

@@ -1,0 +1,154 @@
+"""The posterior against closed forms and numerical integration."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import scipy.integrate
+import scipy.stats
+from problems import Derivatives, Known, box
+
+from modefront._typing import Floats
+from modefront.solvers.curvature import SecondOrder, second_order
+from modefront.solvers.scalarisation import LogSum
+from modefront.solvers.sqp import Options, begin, solve
+from modefront.uncertainty.laplace import Posterior, laplace
+from modefront.uncertainty.prediction import linear, sampled
+
+TIGHT = Options(step=1e-11, reduction=0.0, iterations=200)
+
+
+def squares(parts: list[tuple[Floats, Floats]]) -> Derivatives:
+    return (
+        np.array([r @ r for r, _ in parts]),
+        np.array([2 * r @ dr for r, dr in parts]),
+        np.array([2 * dr.T @ dr for _, dr in parts]),
+    )
+
+
+def found_at(problem: Known, a: Floats) -> tuple[SecondOrder, Posterior]:
+    at = solve(problem, LogSum(a), begin(problem.evaluate(problem.start)), TIGHT).at
+    point = second_order(problem, at)
+    assert point is not None
+    posterior = laplace(problem, point, a)
+    assert posterior is not None
+    return point, posterior
+
+
+def regression(rng: np.random.Generator, rows: int) -> tuple[Floats, Floats]:
+    A = rng.normal(size=(rows, 2))
+    return A, A @ [1.0, -2.0] + 0.1 * rng.normal(size=rows)
+
+
+def test_one_group_of_linear_residuals_has_students_covariance() -> None:
+    """With s unknown, theta has Student's t; Laplace has its peak: s = J / a, C = s (A^T A)^-1."""
+    A, y = regression(np.random.default_rng(0), 40)
+    problem = box(lambda theta: squares([(A @ theta - y, A)]), [-5, -5], [5, 5], 1)
+    point, posterior = found_at(problem, np.array([40.0]))
+    expected = point.at.J[0] / 40 * np.linalg.inv(A.T @ A)
+    assert posterior.covariance == pytest.approx(expected, rel=1e-6)
+    # The t distribution with a - 2 degrees of freedom has the greater variance J / (a - 4).
+    t = point.at.J[0] / (40 - 4) * np.linalg.inv(A.T @ A)
+    assert posterior.covariance == pytest.approx(t, rel=0.11)
+
+
+def two_groups(theta: Floats) -> Derivatives:
+    x, y = theta
+    rng = np.random.default_rng(4)
+    e, f = 0.1 * rng.normal(size=(2, 60))
+    r1 = x - 1 + e
+    r2 = y**2 / 2 + x / 2 - 1.2 + f
+    one, zero = np.ones(60), np.zeros(60)
+    return squares([(r1, np.column_stack([one, zero])), (r2, np.column_stack([one / 2, y * one]))])
+
+
+def test_two_groups_against_integration_over_parameters_and_variances() -> None:
+    """The variances are integrated numerically too: the marginal is not taken on trust."""
+    a = np.array([60.0, 60.0])
+    problem = box(two_groups, [0.5, 0.5], [1.5, 2.0], 2)
+    point, posterior = found_at(problem, a)
+    std = np.sqrt(np.diag(posterior.covariance))
+    grid = [np.linspace(m - 6 * s, m + 6 * s, 81) for m, s in zip(point.at.theta, std, strict=True)]
+    ln_s = np.linspace(-2.0, 2.5, 181)
+
+    def density(theta: Floats) -> float:
+        J = two_groups(theta)[0]
+        total = 1.0
+        for i in range(2):
+            s = np.exp(ln_s) * point.at.J[i] / a[i]
+            # p(D | theta, s) p(s) ds with p(s) = 1 / s, as an integral over ln s
+            ln_p = -a[i] / 2 * (np.log(s) + J[i] / (a[i] * s) - np.log(point.at.J[i] / a[i]) - 1)
+            total *= scipy.integrate.simpson(np.exp(ln_p), x=ln_s)
+        return total
+
+    p = np.array([[density(np.array([x, y])) for y in grid[1]] for x in grid[0]])
+    p /= p.sum()
+    x, y = np.meshgrid(*grid, indexing="ij")
+    mean = np.array([(p * x).sum(), (p * y).sum()])
+    d = np.stack([x - mean[0], y - mean[1]])
+    covariance = np.einsum("xy,ixy,jxy->ij", p, d, d)
+    assert mean == pytest.approx(point.at.theta, abs=0.05 * std.max())
+    assert posterior.covariance == pytest.approx(covariance, rel=0.06)
+    # ... and of a prediction, by its gradient and by a sample.
+    slope = np.array([[point.at.theta[1], point.at.theta[0]]])
+    product = linear(posterior.covariance, slope)[0, 0]
+    exact = (p * (x * y) ** 2).sum() - (p * x * y).sum() ** 2
+    assert product == pytest.approx(exact, rel=0.08)
+    drawn = sampled(
+        point.at.theta, posterior.covariance, np.prod, np.random.default_rng(0), count=4000
+    )
+    assert drawn.var() == pytest.approx(product, rel=0.08)
+
+
+def test_what_residuals_do_not_change_keeps_its_prior_and_is_named() -> None:
+    A, y = regression(np.random.default_rng(0), 40)
+    B = np.column_stack([A[:, 0], 2 * A[:, 0]])
+    problem = box(lambda theta: squares([(B @ theta - y, B)]), [-50, -50], [50, 50], 1)
+    point, posterior = found_at(problem, np.array([40.0]))
+    (direction,) = posterior.free.T
+    assert abs(direction / np.linalg.norm(direction) @ [2, -1]) == pytest.approx(np.sqrt(5))
+    variance = np.array([1.0, 2.0]) @ posterior.covariance @ [1.0, 2.0]
+    assert variance == pytest.approx(point.at.J[0] / 40 / (A[:, 0] @ A[:, 0]), rel=1e-6)
+
+
+def test_a_parameter_pressed_against_a_bound_is_given() -> None:
+    A, y = regression(np.random.default_rng(0), 40)
+    problem = box(lambda theta: squares([(A @ theta - y, A)]), [-5, -5], [0.9, 5], 1)
+    point, posterior = found_at(problem, np.array([40.0]))
+    assert posterior.held.tolist() == [True, False]
+    assert posterior.covariance[0].tolist() == [0, 0]
+    assert posterior.covariance[1, 1] == pytest.approx(
+        point.at.J[0] / 40 / (A[:, 1] @ A[:, 1]), rel=1e-6
+    )
+
+
+def exact_fit(theta: Floats) -> Derivatives:
+    return squares([(theta - 1, np.eye(2))])
+
+
+def hill(theta: Floats) -> Derivatives:
+    return squares([(1 - (theta - 1) ** 2, -2 * np.diag(theta - 1))])
+
+
+@pytest.mark.parametrize("function", [exact_fit, hill])
+def test_there_is_no_posterior_without_a_regular_minimum(
+    function: Callable[[Floats], Derivatives],
+) -> None:
+    problem = box(function, [-2, -2], [2, 2], 1)
+    point = second_order(problem, problem.evaluate(np.ones(2)))
+    assert point is not None
+    assert laplace(problem, point, np.array([2.0])) is None
+
+
+def test_a_truncated_sample_stays_within_the_bounds() -> None:
+    lower, upper = np.array([-0.5, -9.0]), np.array([0.5, 9.0])
+    rng = np.random.default_rng(0)
+    drawn = sampled(np.zeros(2), np.eye(2), lambda x: x, rng, 500, (lower, upper))
+    assert drawn.shape == (500, 2)
+    assert (drawn >= lower).all()
+    assert (drawn <= upper).all()
+    # Variance of a Gaussian truncated at half its standard deviation, in closed form.
+    z = 0.5
+    density = np.exp(-(z**2) / 2) / np.sqrt(2 * np.pi)
+    mass = 2 * (scipy.stats.norm.cdf(z) - 0.5)
+    assert drawn[:, 0].var() == pytest.approx(1 - 2 * z * density / mass, rel=0.15)

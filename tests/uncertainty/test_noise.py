@@ -1,0 +1,106 @@
+"""Sources of error: derivatives with respect to data, and the variance of means over data sets."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+
+import modefront as mf
+from modefront.data.modal import ModalData
+from modefront.residuals.groups import Scale
+from modefront.solvers.problem import Evaluation
+from modefront.uncertainty.noise import available, noise
+
+NAMES = ("k1", "k2", "k3")
+THETA = np.array([1.1, 0.9, 1.2])
+MODEL = mf.chain(NAMES, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=NAMES)
+
+
+def measured(sets: int, seed: int = 0) -> ModalData:
+    """Data of some sets around a model, with gaps, and shapes in any scale and sign."""
+    rng = np.random.default_rng(seed)
+    at = MODEL.modes(np.ones(3), 3)
+    f = at.frequency * (1 + 0.02 * rng.normal(size=(sets, 3)))
+    scale = rng.uniform(0.5, 2, (sets, 3, 1)) * rng.choice([-1, 1], (sets, 3, 1))
+    phi = scale * (at.phi.T + 0.05 * rng.normal(size=(sets, 3, 3)))
+    f_std, phi_std = 0.01 * f, rng.uniform(0.01, 0.05, phi.shape)
+    f[0, 2], phi[-1, 1, 2], phi_std[0, 0, 1] = np.nan, np.nan, 0.0
+    return mf.modal_data(f, phi, MODEL.sensors, frequency_std=f_std, shape_std=phi_std)
+
+
+def problem_of(data: ModalData, scale: Scale) -> mf.UpdatingProblem:
+    groups = [
+        mf.Group("frequencies", "all", scale=scale),
+        mf.Group("shapes", shape="all", scale=scale),
+        mf.Group("first", [1], [1], scale=scale),
+    ]
+    return mf.updating_problem(
+        MODEL, data, groups, dict.fromkeys(NAMES, (0.1, 9.0)), dict.fromkeys(NAMES, 1.0)
+    )
+
+
+def test_where_the_uncertainty_comes_from() -> None:
+    data = measured(2)
+    assert available(data) == ("std", "sets")
+    bare = replace(data, frequency_std=np.nan * data.frequency, shape_std=np.nan * data.shape)
+    assert available(bare) == ("sets",)
+    f, phi = bare.frequency[:1], bare.shape[:1]
+    assert available(mf.modal_data(f, phi, MODEL.sensors)) == ()
+
+
+@pytest.mark.parametrize("scale", ["measured", "std"])
+def test_standard_deviations_are_carried_by_exact_derivatives(scale: Scale) -> None:
+    data = measured(2)
+    if scale == "std":
+        data.shape_std[0, 0, 1] = 0.02  # a zero would be replaced by what others have
+    problem, step = problem_of(data, scale), 1e-4
+    found = noise(problem, THETA, "std")
+
+    def moved(k: int, r: int, s: int, by: float) -> Evaluation:
+        f, phi = data.frequency.copy(), data.shape.copy()
+        if s < 0:
+            f[k, r] += by * data.frequency_std[k, r]
+        else:
+            phi[k, r, s] += by * data.shape_std[k, r, s]
+        return replace(problem, data=replace(data, frequency=f, shape=phi)).evaluate(THETA)
+
+    uncertain = np.dstack([data.frequency_std[..., None] > 0, data.shape_std > 0])
+    uncertain &= np.isfinite(np.dstack([data.frequency[..., None], data.shape]))
+    sources = np.argwhere(uncertain).tolist()
+    assert len(found.J) == len(sources)
+    for J, dJ, (k, r, s) in zip(found.J, found.dJ, sources, strict=True):
+        one, other = (moved(k, r, s - 1, sign * step) for sign in (1, -1))
+        assert J == pytest.approx((one.J - other.J) / (2 * step), rel=1e-5, abs=1e-9)
+        assert dJ == pytest.approx((one.dJ - other.dJ) / (2 * step), rel=1e-5, abs=1e-8)
+
+
+def test_data_sets_scatter_as_the_mean_of_their_objectives() -> None:
+    """Without gaps, J is the mean of the objectives of single sets: so is its variance."""
+    data = measured(5)
+    data.frequency[0, 2], data.shape[-1, 1, 2] = 20.0, 0.1
+    problem = problem_of(data, "measured")
+    found = noise(problem, THETA, "sets")
+    single = []
+    for k in range(5):
+        one = replace(
+            data,
+            **{
+                name: getattr(data, name)[k : k + 1]
+                for name in ("frequency", "damping", "shape", "frequency_std", "shape_std")
+            },
+            sets=data.sets[k : k + 1],
+        )
+        single.append(problem_of(one, "measured").evaluate(THETA))
+    J = np.array([one.J for one in single])
+    assert J.mean(axis=0) == pytest.approx(problem.evaluate(THETA).J)
+    assert found.J.T @ found.J == pytest.approx(np.cov(J.T) / 5)
+    slopes = np.array([one.dJ.ravel() for one in single])
+    flat = found.dJ.reshape(5, -1)
+    assert flat.T @ flat == pytest.approx(np.cov(slopes.T) / 5, rel=1e-9, abs=1e-15)
+
+
+def test_a_mode_measured_once_counts_as_exact() -> None:
+    data = measured(2)
+    assert np.isfinite(data.frequency[:, 2]).sum() == 1
+    alone = replace(problem_of(data, "measured"), groups=(mf.Group("third", [3]),))
+    assert not noise(alone, THETA, "sets").J.any()

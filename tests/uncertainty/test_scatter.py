@@ -1,0 +1,203 @@
+"""Scatter of solutions: closed forms of linear problems, and solutions of perturbed problems."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from problems import Derivatives, Known, box
+
+from modefront._typing import Floats
+from modefront.solvers.curvature import SecondOrder, second_order
+from modefront.solvers.nbi import payoff
+from modefront.solvers.scalarisation import Linear, LogSum, Scalarisation, weighted
+from modefront.solvers.sqp import Options, Solution, begin, solve
+from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.scatter import (
+    Scatter,
+    boundary,
+    given_weights,
+    level,
+    optimal_weights,
+    scatter,
+)
+
+TIGHT = Options(step=1e-11, constraint=1e-12, reduction=0.0, iterations=200)
+
+
+@dataclass(frozen=True)
+class Bent:
+    """Objectives J_i = |A_i theta + bend (B_i theta)**2 - y_i|**2 whose data y have errors."""
+
+    A: Floats  # (n, rows, p)
+    B: Floats
+    y: Floats  # (n, rows)
+    std: Floats
+    bend: float = 0.0
+
+    def model(self, theta: Floats) -> tuple[Floats, Floats]:
+        u = self.B @ theta
+        return self.A @ theta + self.bend * u**2, self.A + 2 * self.bend * u[..., None] * self.B
+
+    def __call__(self, theta: Floats) -> Derivatives:
+        g, dg = self.model(theta)
+        r = g - self.y
+        H = 2 * np.einsum("irp,irq->ipq", dg, dg)
+        return (r**2).sum(axis=1), 2 * np.einsum("ir,irp->ip", r, dg), H
+
+    def problem(self, lower: float = -5.0, upper: float = 5.0) -> Known:
+        n, _, p = self.A.shape
+        return box(self, [lower] * p, [upper] * p, n)
+
+    def noise(self, theta: Floats) -> Noise:
+        g, dg = self.model(theta)
+        n, rows = self.y.shape
+        J, dJ = np.zeros((n * rows, n)), np.zeros((n * rows, n, theta.size))
+        for i in range(n):
+            for m in range(rows):
+                J[i * rows + m, i] = -2 * (g - self.y)[i, m] * self.std[i, m]
+                dJ[i * rows + m, i] = -2 * dg[i, m] * self.std[i, m]
+        return Noise(J, dJ)
+
+    def moved(self, source: int, by: float) -> "Bent":
+        y = self.y.copy()
+        y.flat[source] += by * self.std.flat[source]
+        return replace(self, y=y)
+
+
+def bent(seed: int, p: int = 3, n: int = 2, rows: int = 5, bend: float = 0.1) -> Bent:
+    rng = np.random.default_rng(seed)
+    A, B = rng.normal(size=(2, n, rows, p))
+    return Bent(A, B, rng.normal(size=(n, rows)), rng.uniform(0.1, 1, (n, rows)), bend)
+
+
+def minimum(problem: Known, programme: Scalarisation, theta: Floats) -> Solution:
+    found = solve(problem, programme, begin(problem.evaluate(theta)), TIGHT)
+    return solve(problem, programme, begin(found.at), TIGHT)
+
+
+def point_of(problem: Known, found: Solution) -> SecondOrder:
+    point = second_order(problem, found.at)
+    assert point is not None
+    return point
+
+
+def compare(found: Scatter, ahead: list[Solution], behind: list[Solution], by: float) -> None:
+    """Assert that a linearisation agrees with solutions of data moved to either side."""
+    for m, (one, other) in enumerate(zip(ahead, behind, strict=True)):
+        theta = (one.at.theta - other.at.theta) / (2 * by)
+        J = (one.at.J - other.at.J) / (2 * by)
+        assert found.theta[m] == pytest.approx(theta, rel=2e-4, abs=2e-5)
+        assert found.J[m] == pytest.approx(J, rel=2e-4, abs=2e-4)
+
+
+@given(st.integers(0, 10**6), st.integers(1, 3))
+def test_weighted_least_squares_have_their_closed_form(seed: int, n: int) -> None:
+    case = bent(seed, n=n, bend=0.0)
+    problem = case.problem(-50, 50)
+    w = np.random.default_rng(seed + 1).uniform(0.1, 1, n)
+    found = minimum(problem, weighted(w), np.zeros(3))
+    point, noise = point_of(problem, found), case.noise(found.at.theta)
+    result = scatter(problem, point, w, given_weights(noise), noise)
+    A, W = case.A.reshape(-1, 3), np.repeat(w, 5)
+    gain = np.linalg.solve(A.T @ (W[:, None] * A), A.T * W)
+    expected = gain @ np.diag(case.std.ravel() ** 2) @ gain.T
+    assert result.covariance == pytest.approx(expected, rel=1e-6, abs=1e-9)
+    assert result.free.shape == (3, 0)
+    assert not result.held.any()
+
+
+def test_optimal_weights_follow_the_data() -> None:
+    case, by = bent(3), 1e-3
+    a = np.array([5.0, 5.0])
+    problem = case.problem()
+    found = minimum(problem, LogSum(a), np.zeros(3))
+    noise, point = case.noise(found.at.theta), point_of(problem, found)
+    result = scatter(problem, point, a / found.at.J, optimal_weights(point, a, noise), noise)
+
+    def again(source: int, by: float) -> Solution:
+        return minimum(case.moved(source, by).problem(), LogSum(a), found.at.theta)
+
+    moved = [[again(m, s * by) for m in range(10)] for s in (1, -1)]
+    compare(result, moved[0], moved[1], by)
+
+
+def test_a_level_that_moves_with_the_data() -> None:
+    case, by, tolerance = bent(5), 1e-3, 0.3
+    first = minimum(case.problem(), weighted(np.array([1.0, 0.0])), np.zeros(3))
+
+    def cut(problem: Known) -> Solution:
+        best = minimum(problem, weighted(np.array([1.0, 0.0])), first.at.theta)
+        value = (1 + tolerance) * best.at.J[0]
+        programme = Linear(np.array([0.0, 1.0]), np.array([[1.0, 0.0]]), np.array([value]))
+        return minimum(problem, programme, best.at.theta + 0.01)
+
+    problem = case.problem()
+    found = cut(problem)
+    noise, point = case.noise(found.at.theta), point_of(problem, found)
+    dv = (1 + tolerance) * case.noise(first.at.theta).J[:, 0]
+    result = scatter(problem, point, found.weights, level(point, 0, dv, noise), noise)
+    moved = [[cut(case.moved(m, s * by).problem()) for m in range(10)] for s in (1, -1)]
+    compare(result, moved[0], moved[1], by)
+
+
+@pytest.mark.parametrize("n", [2, 3])
+def test_points_of_the_front_follow_their_edges(n: int) -> None:
+    case, by = bent(11, n=n, bend=0.05), 1e-3
+    beta = np.array([0.3, 0.7] if n == 2 else [0.3, 0.5, 0.2])
+
+    def solved(problem: Known) -> tuple[list[Solution], Solution]:
+        edges = [minimum(problem, weighted(w), np.zeros(3)) for w in np.eye(n)]
+        target = payoff(edges, np.ones(n))
+        assert target is not None
+        return edges, minimum(problem, target.subproblem(beta), edges[0].at.theta)
+
+    problem = case.problem()
+    edges, found = solved(problem)
+    columns = []
+    for i, one in enumerate(edges):
+        noise, point = case.noise(one.at.theta), point_of(problem, one)
+        columns.append(scatter(problem, point, np.eye(n)[i], given_weights(noise), noise).J)
+    E, dE = np.array([one.at.J for one in edges]).T, np.stack(columns, axis=2)
+    noise, point = case.noise(found.at.theta), point_of(problem, found)
+    w, conditions = boundary(point, found.weights, E, dE, noise)
+    result = scatter(problem, point, w, conditions, noise)
+    ahead, behind = (
+        [solved(case.moved(m, s * by).problem())[1] for m in range(5 * n)] for s in (1, -1)
+    )
+    compare(result, ahead, behind, by)
+
+
+def test_a_parameter_pressed_against_its_bound_does_not_scatter() -> None:
+    case = bent(3, bend=0.0)
+    inside = minimum(case.problem(), weighted(np.ones(2)), np.zeros(3)).at.theta
+    upper = np.array([inside[0] - 0.2, 5.0, 5.0])
+    problem = replace(case.problem(), upper=upper, start=np.minimum(0, upper - 0.1))
+    found = minimum(problem, weighted(np.ones(2)), problem.start)
+    point, noise = point_of(problem, found), case.noise(found.at.theta)
+    result = scatter(problem, point, np.ones(2), given_weights(noise), noise)
+    assert result.held.tolist() == [True, False, False]
+    A = case.A.reshape(-1, 3)[:, 1:]
+    gain = np.linalg.pinv(A)
+    expected = gain @ np.diag(case.std.ravel() ** 2) @ gain.T
+    assert result.covariance[1:, 1:] == pytest.approx(expected, rel=1e-6)
+    assert (result.covariance[0] == 0).all()
+
+
+def test_what_no_data_determine_is_named_and_left_out() -> None:
+    case = bent(3, bend=0.0)
+    A = case.A.copy()
+    A[..., 1] = 2 * A[..., 0]  # only theta_0 + 2 theta_1 matters
+    case = replace(case, A=A)
+    problem = case.problem()
+    found = minimum(problem, weighted(np.ones(2)), np.zeros(3))
+    point, noise = point_of(problem, found), case.noise(found.at.theta)
+    result = scatter(problem, point, np.ones(2), given_weights(noise), noise)
+    (direction,) = result.free.T
+    assert abs(direction / np.linalg.norm(direction) @ [2, -1, 0]) == pytest.approx(np.sqrt(5))
+    reduced = np.column_stack([A.reshape(-1, 3)[:, 0], A.reshape(-1, 3)[:, 2]])
+    gain = np.linalg.pinv(reduced)
+    expected = gain @ np.diag(case.std.ravel() ** 2) @ gain.T
+    combined = np.array([[1.0, 2.0, 0.0], [0.0, 0.0, 1.0]])
+    assert combined @ result.covariance @ combined.T == pytest.approx(expected, rel=1e-6)
