@@ -40,6 +40,12 @@ SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again."""
 
 
+PENALTY = 10.0
+"""Weight of the constraints in the augmented Lagrangian, at least."""
+
+FUNNEL = 10.0
+"""Growth of the constraints, where they are above 1, up to which a step is judged at all."""
+
 SWITCH = 0.5
 """Share of the error of a prediction, below which the other model is the better one."""
 
@@ -121,9 +127,9 @@ def solve(
     learned = start.learned if options.learn else np.zeros_like(start.learned)
     state = _State(start.at, learned)
     trusted = bool(learned.any())
-    radius, penalty = options.radius, 10.0
+    radius, penalty = options.radius, PENALTY
     multipliers: Floats | None = None
-    escaped, proposed = False, np.inf
+    escaped, proposed, farthest = False, np.inf, 1.0
     for count in range(options.iterations + 1):
         at = state.at
         df, A = programme.gradient(at.J), programme.A
@@ -144,7 +150,7 @@ def solve(
 
         if _length(s) < 0.99 * radius:
             proposed = _length(s)
-        violation = max(map(abs, c.tolist()), default=0.0)
+        violation = _length(c)
         value = programme.value(at.J)
         still = _length(s) <= options.step or bool(abs(g @ s) <= options.reduction * abs(value))
         if still and violation <= options.constraint and not escaped:
@@ -164,13 +170,17 @@ def solve(
         gain = -(g + multipliers @ dc) @ s - 0.5 * s @ B @ s
         drop = 0.5 * (c @ c - after @ after)
         if drop > 0:
-            penalty = max(penalty, float(-2 * gain / drop))
+            penalty = max(PENALTY, 0.1 * penalty, float(-2 * gain / drop))
         predicted = gain + penalty * drop
         new = problem.evaluate(np.clip(at.theta + s * span, problem.lower, problem.upper))
         if not new.feasible:
             radius = _length(s) / 4
             continue
         c_new = programme.A @ new.J - programme.b
+        farthest = max(farthest, FUNNEL * violation) if count == 0 else farthest
+        if _length(c_new) > farthest:
+            radius = _length(s) / 4
+            continue
         actual = value - programme.value(new.J) + multipliers @ (c - c_new)
         actual += 0.5 * penalty * (c @ c - c_new @ c_new)
         unsaid = 0.5 * w @ (state.learned @ (s * span) @ (s * span)) * (1 if trusted else -1)
@@ -190,7 +200,7 @@ def solve(
 
 
 def _length(s: Floats) -> float:
-    return float(np.max(np.abs(s)))
+    return float(np.max(np.abs(s), initial=0.0))
 
 
 def _off_the_saddle(B: Floats, g: Floats, dc: Floats, lo: Floats, hi: Floats) -> Floats:
