@@ -40,7 +40,7 @@ def problem_of(*, sets: int = 1, std: float = 0.0, seed: int = 0) -> mf.Updating
 def results(source: str) -> xr.Dataset:
     problem = problem_of(sets=8) if source == "sets" else problem_of(std=0.002)
     return mf.solve(
-        problem, points=3, seed=1, search=SEARCH, uncertainty=mf.Uncertainty("auto", bootstrap=40)
+        problem, points=2, seed=1, search=SEARCH, uncertainty=mf.Uncertainty("auto", bootstrap=100)
     )
 
 
@@ -97,17 +97,21 @@ def test_exact_fits_of_the_frequencies_are_points() -> None:
 
 @pytest.mark.parametrize("source", ["std", "sets"])
 def test_linearised_scatter_is_that_of_synthetic_data(source: str) -> None:
-    """40 drawings tell a standard deviation to 11 %; where it is smooth, the linear one agrees."""
+    """100 drawings tell a standard deviation to 7 %; where it is smooth, the linear one agrees.
+
+    Of K sets the bootstrap has the variance of their distribution, (K - 1) / K of the estimate.
+    """
+    factor = np.sqrt(7 / 8) if source == "sets" else 1.0
     data = results(source)
-    for label in ("edge-frequencies", "edge-shapes", "equal-weights", "optimal-weights", "nbi-3"):
+    for label in ("edge-frequencies", "edge-shapes", "equal-weights", "optimal-weights", "nbi-2"):
         for name in ("theta", "objective"):
-            linear = at(data, f"{name}_std", label)
+            linear = factor * at(data, f"{name}_std", label)
             drawn = at(data, f"bootstrap_{name}_std", label)
             kept = linear > 1e-3 * linear.max()
-            assert linear[kept] == pytest.approx(drawn[kept], rel=0.35), (label, name)
+            assert linear[kept] == pytest.approx(drawn[kept], rel=0.28), (label, name)
     covariance = at(data, "theta_covariance", "optimal-weights")
     assert np.sqrt(np.diag(covariance)) == pytest.approx(at(data, "theta_std", "optimal-weights"))
-    assert at(data, "theta_std", "nbi-3") == pytest.approx(at(data, "theta_std", "edge-shapes"))
+    assert at(data, "theta_std", "nbi-2") == pytest.approx(at(data, "theta_std", "edge-shapes"))
 
 
 def test_predictions_scatter_with_the_parameters() -> None:
