@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -12,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from modefront.errors import Fault, InputError, ModelError
+from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.reader import Table
@@ -19,6 +21,7 @@ from modefront.study.tables.data import read_data
 from modefront.study.tables.groups import read_groups
 from modefront.study.tables.model import read_model
 from modefront.study.tables.parameters import Parameter, read_parameters
+from modefront.study.tables.predict import complete, read_predictions
 from modefront.study.tables.settings import Pareto, read_pairing, read_pareto, read_search
 from modefront.study.tables.weighted import Weighted, read_weights
 
@@ -31,19 +34,23 @@ class Study:
     ----------
     file : where it was read
     digest : hash of this file and of all files that it names
+    work : the same for what the front depends on: all that it says but for predictions
     pareto : how the front is found
     weighted : models wanted with given weights, besides equal and optimal ones
+    predictions : what all models that are found are to predict
     """
 
     file: Path
     name: str
     seed: int
     digest: str
+    work: str
     parameters: tuple[Parameter, ...]
     problem: UpdatingProblem
     pareto: Pareto
     weighted: tuple[Weighted, ...]
     search: Search
+    predictions: tuple[Prediction, ...]
 
 
 def load(path: Path) -> Study:
@@ -67,6 +74,7 @@ def load(path: Path) -> Study:
     groups = read_groups(root, data)
     weights = read_weights(root, [group.name for group in groups if group.name])
     pareto, pairing, search = read_pareto(root), read_pairing(root), read_search(root)
+    drafts = read_predictions(root, model, data)
     root.close()
     if faults or model is None or data is None:
         raise InputError(faults)
@@ -80,10 +88,17 @@ def load(path: Path) -> Study:
         pairing,
     )
     _try_model(root, problem)
+    predictions = complete(drafts, problem) if not faults else ()
     if faults:
         raise InputError(faults)
-    digest = _digest(content, path.parent, [data_file, *_model_files(values)])
-    return Study(path, title, seed, digest, parameters, problem, pareto, weights, search)
+    files = [data_file, *_model_files(values)]
+    digest = _digest(content, path.parent, files)
+    rest = {key: value for key, value in values.items() if key != "predict"}
+    work = _digest(json.dumps(rest, sort_keys=True).encode(), path.parent, files)
+    return Study(
+        *(path, title, seed, digest, work, parameters, problem, pareto, weights, search),
+        predictions,
+    )
 
 
 def _parse(path: Path) -> tuple[dict[str, Any], bytes]:
@@ -116,7 +131,7 @@ def _model_files(values: dict[str, Any]) -> list[str]:
 
 
 def _digest(content: bytes, folder: Path, files: Sequence[str]) -> str:
-    """Return a hash of the study file and of all files that it names."""
+    """Return a hash of what the study file says and of all files that it names."""
     total = hashlib.sha256(content)
     for name in files:
         total.update(hashlib.sha256((folder / name).read_bytes()).digest())

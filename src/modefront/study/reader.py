@@ -123,8 +123,9 @@ class Table:
             lambda x: isinstance(x, list) and bool(x) and all(isinstance(y, dict) for y in x),
             ... if required else [],
         )
+        path = f"{self.place[1:-1]}.{key}" if self.place else key
         return [
-            Table(self.file, f"[[{key}]] {i + 1}{_named(item)}", item, self.faults)
+            Table(self.file, f"[[{path}]] {i + 1}{_named(item)}", item, self.faults)
             for i, item in enumerate(value or [])
         ]
 

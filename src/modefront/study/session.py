@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ import numpy as np
 
 import modefront
 from modefront.errors import Fault, InputError
+from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.file import Study
@@ -37,13 +38,15 @@ def solve(
     tolerance: float = 0.0,
     seed: int = 0,
     search: Search | None = None,
+    predictions: Sequence[Prediction] = (),
 ) -> xr.Dataset:
     """Return all Pareto-optimal models, edges and weighted models of a problem.
 
     ``points`` lie along each edge of the simplex of objectives; an edge may exceed the least value
-    of its group by the share ``tolerance``. Raises UnfinishedError where
-    no minimum of a group can be found.
+    of its group by the share ``tolerance``; ``predictions`` are made with every model. Raises
+    UnfinishedError where no minimum of a group can be found.
     """
+    from modefront.study.predictions import predicted
     from modefront.study.results import dataset
 
     store = Store(None, lambda: problem.counts, ignore, {})
@@ -56,7 +59,9 @@ def solve(
         search=search,
         checkpoint=store,
     )
-    return dataset(problem, front, _attributes(front, store, seed))
+    data = predicted(dataset(problem, front, {}), problem, predictions, seed, store)
+    data.attrs |= _attributes(front, store, seed)
+    return data
 
 
 def run(
@@ -68,10 +73,11 @@ def run(
     ``fresh`` sets them aside. Raises InputError where the folder cannot be written to and
     UnfinishedError where the work cannot be done.
     """
+    from modefront.study.predictions import pieces_of, predicted
     from modefront.study.results import FILE, dataset, write
 
     progress = progress or Progress()
-    pieces = folder / PIECES / f"{study.digest[:12]}-{modefront.__version__}"
+    pieces = folder / PIECES / f"{study.work[:12]}-{modefront.__version__}"
     try:
         pieces.mkdir(parents=True, exist_ok=True)
         if fresh:
@@ -91,9 +97,10 @@ def run(
         search=study.search,
         given=[(one.name, np.array(one.weights)) for one in study.weighted],
         checkpoint=store,
-        expect=progress.expect,
+        expect=lambda pieces: progress.expect(pieces + pieces_of(study)),
     )
     data = dataset(problem, front, {"study": study.name, "inputs": study.digest})
+    data = predicted(data, problem, study.predictions, study.seed, store, study.file)
     data.attrs |= _attributes(front, store, study.seed)
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)

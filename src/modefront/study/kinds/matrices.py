@@ -12,7 +12,7 @@ from modefront.errors import Fault, InputError, suggestion
 from modefront.models.base import Model
 from modefront.models.files import read_matrix
 from modefront.models.matrices import BASE, matrices
-from modefront.study.kinds.sensors import read_sensors
+from modefront.study.kinds.sensors import read_base, read_outputs, read_sensors
 from modefront.study.reader import Table, describe, is_name
 
 
@@ -23,9 +23,10 @@ def read_matrices(table: Table, parameters: Sequence[str], folder: Path) -> Mode
     mass = _terms(table, "mass", parameters, folder)
     size = _common_size(table, {"stiffness": stiffness, "mass": mass})
     sensors = read_sensors(table, size)
+    outputs, base = read_outputs(table, size, sensors), read_base(table, size)
     if len(table.faults) > before or sensors is None:
         return None
-    return matrices(parameters, stiffness, mass, sensors)
+    return matrices(parameters, stiffness, mass, sensors, outputs=outputs, base=base)
 
 
 def _terms(model: Table, key: str, parameters: Sequence[str], folder: Path) -> dict[str, Floats]:

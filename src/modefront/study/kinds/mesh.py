@@ -37,10 +37,11 @@ def read_mesh_model(table: Table, parameters: Sequence[str], folder: Path) -> Mo
             table.fault("file", "a mesh that can be read", str(error))
     floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
     structure = _structure(table, parameters, mesh) if mesh is not None else None
+    outputs = _outputs(table)
     if structure is None or len(table.faults) > before:
         return None
     try:
-        return mesh_model(structure, parameters, floating=floating)
+        return mesh_model(structure, parameters, floating=floating, outputs=outputs)
     except fem.FemError as error:
         table.fault("", "a structure that can be assembled", str(error))
         return None
@@ -245,14 +246,29 @@ def _links(model: Table, mesh: Mesh) -> list[fem.Link]:
 
 
 def _sensors(model: Table) -> list[fem.Sensor]:
-    out: list[fem.Sensor] = []
     table = model.table("sensors", "a table of sensors")
-    for name in table.values if table else ():
-        one = table.table(name, "a table node or at, and direction") if table else None
-        if table is None or one is None:
-            continue
+    if table is None:
+        return []
+    for name in table.values:
         if is_reserved(name, table.values):
             table.fault(repr(name), "a name that a column of the data can have", repr(name))
+    if not table.values:
+        table.fault("", "at least one sensor", "none")
+    return _places(table)
+
+
+def _outputs(model: Table) -> list[fem.Sensor]:
+    """Return the places besides the sensors that predictions may name."""
+    table = model.table("outputs", "a table of outputs", default=None)
+    return _places(table) if table is not None else []
+
+
+def _places(table: Table) -> list[fem.Sensor]:
+    out: list[fem.Sensor] = []
+    for name in table.values:
+        one = table.table(name, "a table node or at, and direction")
+        if one is None:
+            continue
         node = one.integer("node", 0, 10**9, default=None)
         at = one.numbers("at", "3 coordinates", lambda x: len(x) == 3, default=None)
         direction = _direction(one, "direction")
@@ -262,8 +278,6 @@ def _sensors(model: Table) -> list[fem.Sensor]:
             one.fault("", "either node or at", "both" if node is not None else "neither")
         elif direction is not None:
             out.append(fem.Sensor(name, node if at is None else at, direction, tolerance))
-    if table is not None and not table.values:
-        table.fault("", "at least one sensor", "none")
     return out
 
 

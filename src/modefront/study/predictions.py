@@ -1,0 +1,220 @@
+"""Predictions of all models that a study has found, piece by piece, and as results.
+
+Every model is shaken by the same random numbers, so that what differs is the models' doing.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from modefront._typing import Bools, Floats
+from modefront.errors import Fault, InputError
+from modefront.predict import Passage, PeakResponse, Prediction
+from modefront.reliability import StepError
+from modefront.residuals.problem import UpdatingProblem
+from modefront.study.file import Study
+from modefront.study.run import sequence
+from modefront.study.store import Arrays, Store, hash_text
+
+RANGE = ("minimum", "maximum", "spread")
+"""Over the Pareto-optimal models; the spread is the ratio of greatest to least."""
+
+REPRESENTATIVES = ("optimal-weights", "equal-weights")
+"""Labels of the model at which the time step is halved: the first that there is."""
+
+Variables = Mapping[str, tuple[tuple[str, ...], Any, str]]
+
+
+def pieces_of(study: Study) -> int:
+    """Return how many pieces of work the predictions of a study are, at most."""
+    n, points = len(study.problem.objectives), study.pareto.points
+    front = math.comb(points + n - 2, n - 1) if n > 1 else 0
+    models = front + n + len(study.weighted) + 2
+    passages = sum(isinstance(one, Passage) for one in study.predictions)
+    return len(study.predictions) * models + passages
+
+
+def predicted(
+    data: xr.Dataset,
+    problem: UpdatingProblem,
+    predictions: Sequence[Prediction],
+    seed: int,
+    store: Store,
+    file: Path = Path("study"),
+) -> xr.Dataset:
+    """Return results with the predictions of every point; see the page on results.
+
+    Raises InputError, in the name of the study's ``file``, where a time step is too long for a
+    model that was found.
+    """
+    if not predictions:
+        return data
+    labels = [str(label) for label in data["label"].values]
+    theta, optimal = data["theta"].values, data["pareto"].values
+    at = next((labels.index(x) for x in REPRESENTATIVES if x in labels), 0)
+    peaks: list[tuple[PeakResponse, list[Arrays]]] = []
+    passages: list[tuple[Passage, list[Arrays], Arrays]] = []
+    for one in predictions:
+        mark = hash_text(f"{one!r} {seed}")[:8]
+
+        def piece(label: str, what: str = "", mark: str = mark, name: str = one.name) -> str:
+            return f"predict-{name}{what}-{label}-{mark}"
+
+        if isinstance(one, PeakResponse):
+            found = [
+                store.arrays(piece(label), partial(one.at, problem, x))
+                for label, x in zip(labels, theta, strict=True)
+            ]
+            peaks.append((one, found))
+            continue
+        numbers = sequence(seed, f"predict-{one.name}")
+        found = [
+            store.arrays(piece(label), partial(_probability, one, problem, x, numbers, file, label))
+            for label, x in zip(labels, theta, strict=True)
+        ]
+        halving = partial(one.halved, problem, theta[at], numbers)
+        halved = store.arrays(piece(labels[at], "-half-step"), halving)
+        passages.append((one, found, halved))
+    variables = {
+        "frequency_range": (
+            ("range", "mode"),
+            _range(data["frequency"].values, optimal),
+            "of the frequencies in Hz over the Pareto-optimal models",
+        ),
+        **(_peak_variables(peaks, optimal) if peaks else {}),
+        **(_passage_variables(passages, optimal, labels[at]) if passages else {}),
+    }
+    coordinates: dict[str, list[str]] = {"range": list(RANGE)}
+    if peaks:
+        coordinates["frf"] = [f"{one.name}: {x}" for one, _ in peaks for x in one.responses]
+    if passages:
+        coordinates["failure"] = [f"{one.name}: {b:g}" for one, *_ in passages for b in one.levels]
+    return data.assign(
+        {
+            name: (dims, np.asarray(values), {"long_name": meaning})
+            for name, (dims, values, meaning) in variables.items()
+        }
+    ).assign_coords(coordinates)
+
+
+def _probability(
+    one: Passage,
+    problem: UpdatingProblem,
+    theta: Floats,
+    numbers: np.random.SeedSequence,
+    file: Path,
+    label: str,
+) -> Arrays:
+    """Return the probabilities of one model; InputError where the time step is too long for it."""
+    try:
+        return one.at(problem, theta, numbers)
+    except StepError as error:
+        place = f"[[predict.first_passage]] ({one.name!r}) step"
+        expected = f"at most {error.limit:.4g} s, a quarter of the shortest period of '{label}'"
+        raise InputError(Fault(str(file), place, expected, f"{one.step:g}")) from None
+
+
+def _range(values: Floats, optimal: Bools) -> Floats:
+    """Return least, greatest and their ratio over the optimal rows, (3, columns); NaN for none."""
+    known = optimal[:, None] & np.isfinite(values)
+    least = np.where(known, values, np.inf).min(axis=0)
+    greatest = np.where(known, values, -np.inf).max(axis=0)
+    none = ~known.any(axis=0)
+    least[none] = greatest[none] = np.nan
+    ratio = np.divide(greatest, least, out=np.full(least.shape, np.nan), where=least > 0)
+    return np.array([least, greatest, ratio])
+
+
+def _peak_variables(
+    peaks: Sequence[tuple[PeakResponse, list[Arrays]]], optimal: Bools
+) -> Variables:
+    def of(key: str) -> Floats:
+        return np.hstack([np.array([x[key] for x in found]) for _, found in peaks])
+
+    def each(value: Any) -> list[Any]:
+        return [value(one) for one, _ in peaks for _ in one.responses]
+
+    peak, frequency = of("peak"), of("frequency")
+    over = "over the Pareto-optimal models"
+    return {
+        "frf_peak": (("point", "frf"), peak, "greatest peak of |T| in the band"),
+        "frf_peak_frequency": (("point", "frf"), frequency, "frequency of that peak in Hz"),
+        "frf_peak_range": (("range", "frf"), _range(peak, optimal), f"of frf_peak {over}"),
+        "frf_peak_frequency_range": (
+            ("range", "frf"),
+            _range(frequency, optimal),
+            f"of frf_peak_frequency {over}",
+        ),
+        "frf_quantity": (("frf",), each(lambda one: one.quantity.value), "response over load"),
+        "frf_band": (
+            ("frf", "bound"),
+            each(lambda one: list(one.band)),
+            "where peaks are looked for, Hz",
+        ),
+        "frf_modes": (("frf",), each(lambda one: one.structure.modes), "modes superposed"),
+    }
+
+
+def _passage_variables(
+    passages: Sequence[tuple[Passage, list[Arrays], Arrays]], optimal: Bools, at: str
+) -> Variables:
+    def of(key: str) -> Floats:
+        return np.hstack([np.array([x[key] for x in found]) for _, found, _ in passages])
+
+    def each(value: Any) -> list[Any]:
+        return [value(one) for one, *_ in passages for _ in one.levels]
+
+    def halved(key: str) -> Floats:
+        return np.concatenate([half[key] for *_, half in passages])
+
+    one_a_level = ("failure",)
+    probability = of("probability")
+    levels = [b for one, *_ in passages for b in one.levels]
+    return {
+        "failure_probability": (
+            ("point", "failure"),
+            probability,
+            "probability that any response leaves [-level, level] within the duration, at rest "
+            "at first",
+        ),
+        "failure_variation": (
+            ("point", "failure"),
+            of("variation"),
+            "coefficient of variation of that estimate",
+        ),
+        "failure_probability_range": (
+            ("range", "failure"),
+            _range(probability, optimal),
+            "of failure_probability over the Pareto-optimal models",
+        ),
+        "failure_level": (one_a_level, levels, "barrier, two-sided"),
+        "failure_samples": (one_a_level, each(lambda one: one.samples), "samples a model"),
+        "failure_method": (one_a_level, each(lambda one: one.method), "method of estimation"),
+        "failure_duration": (one_a_level, each(lambda one: one.duration), "duration in s"),
+        "failure_step": (one_a_level, each(lambda one: one.step), "time step in s"),
+        "failure_density": (
+            one_a_level,
+            each(lambda one: one.noise.density),
+            "spectral density of the white noise, (unit of load)^2/(rad/s)",
+        ),
+        "failure_sided": (
+            one_a_level,
+            each(lambda one: one.noise.sided.value),
+            "whether that density is one- or two-sided",
+        ),
+        "failure_modes": (one_a_level, each(lambda one: one.structure.modes), "modes superposed"),
+        "failure_halved": (
+            one_a_level,
+            halved("ratio"),
+            "probability with half the time step over that with the step given",
+        ),
+        "failure_halved_error": (one_a_level, halved("error"), "standard error of that ratio"),
+        "failure_halved_at": (one_a_level, [at] * len(levels), "label of the model of that ratio"),
+    }
