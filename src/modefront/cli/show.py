@@ -13,6 +13,7 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from modefront.cli.predictions import prediction_tables
 from modefront.study.check import Findings
 from modefront.study.file import Study
 
@@ -212,22 +213,22 @@ def print_results(data: xr.Dataset) -> None:
         )
     console.print(points)
     modes = data["mode"].values
-    predicted = _table(
+    modal = _table(
         "frequencies in Hz and MAC",
         ["model", *(f"f{r}" for r in modes), *(f"error f{r} %" for r in modes)]
         + [f"MAC {r}" for r in modes],
     )
     measured = data["measured_frequency"].values
-    predicted.add_row("measured", *map(_number, measured), *[""] * (2 * modes.size))
+    modal.add_row("measured", *map(_number, measured), *[""] * (2 * modes.size))
     for i, label in enumerate(data["label"].values):
         f = data["frequency"].values[i]
-        predicted.add_row(
+        modal.add_row(
             _safe(label),
             *map(_number, f),
             *(f"{x:+.2f}" for x in 100 * (f / measured - 1)),
             *(f"{x:.4f}" for x in data["mac"].values[i]),
         )
-    console.print(predicted)
+    console.print(modal)
     weights = _table("weights", ["model", *groups])
     for i in np.flatnonzero(~np.isnan(data["weight"].values).all(axis=1)).tolist():
         weights.add_row(
@@ -242,6 +243,13 @@ def print_results(data: xr.Dataset) -> None:
             *(f"{x:.5g}" for x in data["minimum_theta"].values[i]),
         )
     console.print(minima)
+    for title, columns, rows, notes in prediction_tables(data):
+        predicted = _table(_safe(title), [_safe(column) for column in columns])
+        for row in rows:
+            predicted.add_row(*map(_safe, row))
+        console.print(predicted)
+        for line in notes:
+            _print(console, line)
     for line in remarks(data):
         _print(console, line)
     _print(

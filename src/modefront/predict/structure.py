@@ -15,7 +15,7 @@ from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.base import Model
-from modefront.models.ports import Ports, Transfer
+from modefront.models.ports import Pattern, Ports, Transfer
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 from modefront.response.system import ModalSystem
@@ -37,6 +37,21 @@ class Structure:
     modes: int
     damping: float | tuple[float, ...] | None
     static: bool = True
+
+    @property
+    def load(self) -> str:
+        """What loads the structure, in words."""
+        if self.ports.base is not None:
+            return f"base along {self.ports.base}"
+        return "force at " + ", and at ".join(map(_in_words, self.ports.forces))
+
+    @property
+    def damped(self) -> str:
+        """The damping ratios, in words."""
+        if self.damping is None:
+            return "as measured"
+        ratios = self.damping if isinstance(self.damping, tuple) else (self.damping,)
+        return ", ".join(f"{ratio:g}" for ratio in ratios)
 
     def system(self, problem: UpdatingProblem, theta: Floats) -> ModalSystem:
         """Return the structure in modal coordinates at ``theta``.
@@ -108,3 +123,10 @@ def _more(model: Model, theta: Floats, known: int) -> int:
         else:
             return upper
     return known
+
+
+def _in_words(pattern: Pattern) -> str:
+    """Return the places of a pattern, with weights that are not 1."""
+    return " + ".join(
+        name if weight == 1 else f"{weight:g} {name}" for name, weight in pattern.items()
+    )

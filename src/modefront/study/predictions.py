@@ -152,12 +152,15 @@ def _peak_variables(
             _range(frequency, optimal),
             f"of frf_peak_frequency {over}",
         ),
+        "frf_name": (("frf",), each(lambda one: one.name), "name of the prediction"),
         "frf_quantity": (("frf",), each(lambda one: one.quantity.value), "response over load"),
         "frf_band": (
             ("frf", "bound"),
             each(lambda one: list(one.band)),
             "where peaks are looked for, Hz",
         ),
+        "frf_load": (("frf",), each(lambda one: one.structure.load), "what loads the structure"),
+        "frf_damping": (("frf",), each(lambda one: one.structure.damped), "damping ratios"),
         "frf_modes": (("frf",), each(lambda one: one.structure.modes), "modes superposed"),
     }
 
@@ -194,6 +197,7 @@ def _passage_variables(
             _range(probability, optimal),
             "of failure_probability over the Pareto-optimal models",
         ),
+        "failure_name": (one_a_level, each(lambda one: one.name), "name of the prediction"),
         "failure_level": (one_a_level, levels, "barrier, two-sided"),
         "failure_samples": (one_a_level, each(lambda one: one.samples), "samples a model"),
         "failure_method": (one_a_level, each(lambda one: one.method), "method of estimation"),
@@ -209,6 +213,12 @@ def _passage_variables(
             each(lambda one: one.noise.sided.value),
             "whether that density is one- or two-sided",
         ),
+        "failure_load": (
+            one_a_level,
+            each(lambda one: one.structure.load),
+            "what loads the structure",
+        ),
+        "failure_damping": (one_a_level, each(lambda one: one.structure.damped), "damping ratios"),
         "failure_modes": (one_a_level, each(lambda one: one.structure.modes), "modes superposed"),
         "failure_halved": (
             one_a_level,
