@@ -244,7 +244,8 @@ def print_results(data: xr.Dataset) -> None:
         )
     console.print(minima)
     for title, columns, rows, notes in prediction_tables(data):
-        predicted = _table(_safe(title), [_safe(column) for column in columns])
+        _print(console, title)
+        predicted = _table("", [_safe(column) for column in columns])
         for row in rows:
             predicted.add_row(*map(_safe, row))
         console.print(predicted)
