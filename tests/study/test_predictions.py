@@ -16,7 +16,9 @@ from modefront._typing import Floats
 from modefront.cli import figures
 from modefront.cli.main import main
 from modefront.errors import InputError
+from modefront.predict import PeakResponse
 from modefront.study import store
+from modefront.study.examples import write_example
 from modefront.study.results import read
 
 Complex = NDArray[np.complex128]
@@ -363,6 +365,47 @@ def test_a_time_step_too_long_for_a_model_that_was_found(tmp_path: Path) -> None
     ):
         mf.run(mf.load(study), tmp_path / "results")
     assert not (tmp_path / "results" / "results.nc").exists()
+
+
+def test_in_memory_and_from_a_file_are_the_same(results: xr.Dataset, tmp_path: Path) -> None:
+    study = mf.load(write_study(tmp_path, FRF + PASSAGE))
+    assert [one.name for one in study.predictions][-1] == "drifts"
+    data = mf.solve(
+        study.problem, points=3, seed=3, search=study.search, predictions=study.predictions
+    )
+    for name in results.variables:
+        np.testing.assert_array_equal(data[name], results[name])
+
+
+SHAKEN_BUILDING = """
+[[predict.frf]]
+name = "shaken"
+base = "x"
+response = ["floor3", "back", "side"]
+damping = 0.02
+
+[model.outputs]
+back = { node = 112, direction = "-x" }
+side = { node = 112, direction = "y" }
+"""
+
+
+def test_outputs_of_a_mesh(tmp_path: Path) -> None:
+    write_example("three-story-fe-c0", tmp_path)
+    study = tmp_path / "study.toml"
+    study.write_text(study.read_text() + SHAKEN_BUILDING)
+    loaded = mf.load(study)
+    (shaken,) = loaded.predictions
+    assert isinstance(shaken, PeakResponse)
+    found = shaken.at(loaded.problem, loaded.problem.start)
+    # Both ends of a floor move alike, and along x alone.
+    assert found["peak"][1] == pytest.approx(found["peak"][0], rel=1e-3)
+    assert not found["peak"][2] > 1e-3 * found["peak"][0]
+    first = loaded.problem.modes(loaded.problem.start, derivatives=False)[0].frequency[0]
+    assert found["frequency"][0] == pytest.approx(first, rel=1e-3)
+    # One mode of displacement: its participation 1.2 to 1.3, 1 / (2 zeta omega^2) of the base's.
+    amplitude = found["peak"][0] * 2 * 0.02 * (2 * np.pi * first) ** 2
+    assert 1.15 < amplitude < 1.35
 
 
 def command(*arguments: object) -> int:
