@@ -15,8 +15,10 @@ import modefront as mf
 from modefront._typing import Floats
 from modefront.cli import figures
 from modefront.cli.main import main
-from modefront.errors import InputError
-from modefront.predict import PeakResponse
+from modefront.errors import InputError, ModelError, UnfinishedError
+from modefront.models.matrices import MatrixModel
+from modefront.predict import Passage, PeakResponse
+from modefront.reliability.gaussian import gaussian_response
 from modefront.study import store
 from modefront.study.examples import write_example
 from modefront.study.results import read
@@ -365,6 +367,38 @@ def test_a_time_step_too_long_for_a_model_that_was_found(tmp_path: Path) -> None
     ):
         mf.run(mf.load(study), tmp_path / "results")
     assert not (tmp_path / "results" / "results.nc").exists()
+
+
+def test_a_model_without_the_modes_that_are_wanted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = mf.load(write_study(tmp_path, FRF))
+
+    def refuse(*_: object) -> None:
+        raise ModelError("no such modes")
+
+    monkeypatch.setattr(MatrixModel, "transfer", refuse)
+    with pytest.raises(UnfinishedError, match="no prediction 'pushed' of 'nbi-1': no such modes"):
+        mf.run(study, tmp_path / "results")
+
+
+def test_several_inputs_have_noise_of_their_own(tmp_path: Path) -> None:
+    """Independent noises of densities 4 S and S at two places add up in the variance."""
+    quiet = PASSAGE.replace("samples = 1500", "samples = 2").replace("filter", "# ")
+    both = quiet.replace('base = "x"', 'force = [{ low = 2.0 }, "high"]')
+    study = mf.load(write_study(tmp_path, both))
+    (passage,) = study.predictions
+    assert isinstance(passage, Passage)
+    problem = passage.problem(study.problem, np.ones(2))
+    assert problem.system.input.shape == (2, 2)
+    total = gaussian_response(problem).deviation ** 2
+    parts = np.zeros_like(total)
+    for force in ("{ low = 2.0 }", '"high"'):
+        study = mf.load(write_study(tmp_path, quiet.replace('base = "x"', f"force = {force}")))
+        (one,) = study.predictions
+        assert isinstance(one, Passage)
+        parts += gaussian_response(one.problem(study.problem, np.ones(2))).deviation ** 2
+    assert total == pytest.approx(parts, rel=1e-9, abs=1e-12 * parts.max())
 
 
 def test_in_memory_and_from_a_file_are_the_same(results: xr.Dataset, tmp_path: Path) -> None:

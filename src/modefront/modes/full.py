@@ -56,7 +56,10 @@ def dense_modes(
     lam = _without_rounding(lam, Phi, np.diag(Kt))
     static = None
     if lam[0] > 0:
-        static = scipy.linalg.cho_solve(scipy.linalg.cho_factor(Kt), loads)
+        try:
+            static = scipy.linalg.cho_solve(scipy.linalg.cho_factor(Kt), loads)
+        except np.linalg.LinAlgError:
+            raise ModelError("the stiffness matrix is singular to working precision") from None
     return FullModes(lam[:count], Phi[:, :count], static)
 
 

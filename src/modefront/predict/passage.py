@@ -13,6 +13,9 @@ from modefront.predict.structure import Structure
 from modefront.reliability import METHODS, FirstPassage, KanaiTajimi, WhiteNoise, step_effect
 from modefront.residuals.problem import UpdatingProblem
 
+MOST_WORKERS = 8
+"""Threads at most; each takes some 100 MB."""
+
 
 @dataclass(frozen=True)
 class Passage:
@@ -93,5 +96,5 @@ class Passage:
 
 
 def _workers() -> int:
-    """Return the number of threads; how many there are changes no digit."""
-    return os.cpu_count() or 1
+    """Return the number of threads; how many there are changes no digit, only memory and time."""
+    return min(os.cpu_count() or 1, MOST_WORKERS)

@@ -35,11 +35,11 @@ LARGEST_ANGLE = np.pi / 2
 
 
 class StepError(ValueError):
-    """A time step is too long; ``limit`` is the longest one possible, in s."""
+    """A time step is too long: the one ``found`` and the ``limit``, in s."""
 
-    def __init__(self, message: str, limit: float) -> None:
+    def __init__(self, message: str, found: float, limit: float) -> None:
         super().__init__(message)
-        self.limit = limit
+        self.found, self.limit = found, limit
 
 
 class Sided(Enum):
@@ -147,6 +147,7 @@ class FirstPassage:
             raise StepError(
                 f"time_step: expected at most {limit:.6g} s, a quarter of the period of the "
                 f"highest frequency ({self.highest_omega():.6g} rad/s), found {self.time_step} s",
+                self.time_step,
                 limit,
             )
         steps = self.duration / self.time_step

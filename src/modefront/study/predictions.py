@@ -6,7 +6,7 @@ Every model is shaken by the same random numbers, so that what differs is the mo
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -15,7 +15,7 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Floats
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, ModelError, UnfinishedError
 from modefront.predict import Passage, PeakResponse, Prediction
 from modefront.reliability import StepError
 from modefront.residuals.problem import UpdatingProblem
@@ -52,7 +52,7 @@ def predicted(
     """Return results with the predictions of every point; see the page on results.
 
     Raises InputError, in the name of the study's ``file``, where a time step is too long for a
-    model that was found.
+    model that was found, and UnfinishedError where one has not the modes that are wanted.
     """
     if not predictions:
         return data
@@ -61,6 +61,15 @@ def predicted(
     at = next((labels.index(x) for x in REPRESENTATIVES if x in labels), 0)
     peaks: list[tuple[PeakResponse, list[Arrays]]] = []
     passages: list[tuple[Passage, list[Arrays], Arrays]] = []
+
+    def kept(
+        one: Prediction, piece: Callable[[str], str], at: Callable[..., Arrays]
+    ) -> list[Arrays]:
+        return [
+            store.arrays(piece(label), partial(_asked, one, label, file, partial(at, problem, x)))
+            for label, x in zip(labels, theta, strict=True)
+        ]
+
     for one in predictions:
         mark = hash_text(f"{one!r} {seed}")[:8]
 
@@ -68,17 +77,10 @@ def predicted(
             return f"predict-{name}{what}-{label}-{mark}"
 
         if isinstance(one, PeakResponse):
-            found = [
-                store.arrays(piece(label), partial(one.at, problem, x))
-                for label, x in zip(labels, theta, strict=True)
-            ]
-            peaks.append((one, found))
+            peaks.append((one, kept(one, piece, one.at)))
             continue
         numbers = sequence(seed, f"predict-{one.name}")
-        found = [
-            store.arrays(piece(label), partial(_probability, one, problem, x, numbers, file, label))
-            for label, x in zip(labels, theta, strict=True)
-        ]
+        found = kept(one, piece, partial(one.at, seed=numbers))
         halving = partial(one.halved, problem, theta[at], numbers)
         halved = store.arrays(piece(labels[at], "-half-step"), halving)
         passages.append((one, found, halved))
@@ -104,21 +106,16 @@ def predicted(
     ).assign_coords(coordinates)
 
 
-def _probability(
-    one: Passage,
-    problem: UpdatingProblem,
-    theta: Floats,
-    numbers: np.random.SeedSequence,
-    file: Path,
-    label: str,
-) -> Arrays:
-    """Return the probabilities of one model; InputError where the time step is too long for it."""
+def _asked(one: Prediction, label: str, file: Path, at: Callable[[], Arrays]) -> Arrays:
+    """Return the prediction of one model, or say of which one it cannot be had."""
     try:
-        return one.at(problem, theta, numbers)
+        return at()
     except StepError as error:
         place = f"[[predict.first_passage]] ({one.name!r}) step"
         expected = f"at most {error.limit:.4g} s, a quarter of the shortest period of '{label}'"
-        raise InputError(Fault(str(file), place, expected, f"{one.step:g}")) from None
+        raise InputError(Fault(str(file), place, expected, f"{error.found:g}")) from None
+    except ModelError as error:
+        raise UnfinishedError(f"no prediction '{one.name}' of '{label}': {error}") from None
 
 
 def _range(values: Floats, optimal: Bools) -> Floats:
