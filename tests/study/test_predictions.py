@@ -484,3 +484,16 @@ def test_show_prints_and_draws_predictions(
     monkeypatch.setitem(sys.modules, "matplotlib", None)
     assert command("show", tmp_path / "results", "--figures") == 2
     assert "pip install modefront[figures]" in capsys.readouterr().err
+
+
+def test_models_are_drawn_without_a_front_too(results: xr.Dataset, tmp_path: Path) -> None:
+    single = results.isel(point=[not x.startswith("nbi-") for x in results["label"].values])
+    paths = figures.write_figures(single, tmp_path)
+    assert len(paths) == 8
+    assert all(path.read_bytes().endswith(b"</svg>\n") for path in paths)
+    plain = results.drop_dims(["frf", "failure", "range"])
+    names = [path.name for path in figures.write_figures(plain, tmp_path / "plain")]
+    assert names == ["frequencies.svg", "mac.svg"]
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="a folder that can be written to"):
+        figures.write_figures(plain, tmp_path / "file")

@@ -101,28 +101,24 @@ def modes_reaching(model: Model, theta: Floats, frequency: float, known: int) ->
 
     ``known`` is a number of modes that the model is known to have.
     """
-    while True:
-        found = model.modes(theta, known, derivatives=False).frequency
-        beyond = np.flatnonzero(found >= frequency)
-        if beyond.size:
-            return int(beyond[0]) + 1
-        more = _more(model, theta, known)
-        if more == known:
-            return known
-        known = more
+    found = model.modes(theta, known, derivatives=False).frequency
+    while not (found >= frequency).any():
+        more = _more(model, theta, found)
+        if more.size == found.size:
+            return found.size
+        found = more
+    return int(np.argmax(found >= frequency)) + 1
 
 
-def _more(model: Model, theta: Floats, known: int) -> int:
-    """Return twice as many modes as are known, or as many as have a finite frequency."""
-    upper = min(2 * known, model.size)
-    while upper > known:
+def _more(model: Model, theta: Floats, found: Floats) -> Floats:
+    """Return the frequencies of up to twice as many modes, as far as there are finite ones."""
+    upper = min(2 * found.size, model.size)
+    while upper > found.size:
         try:
-            model.modes(theta, upper, derivatives=False)
+            return model.modes(theta, upper, derivatives=False).frequency
         except ModelError:
-            upper = (known + upper) // 2
-        else:
-            return upper
-    return known
+            upper = (found.size + upper) // 2
+    return found
 
 
 def _in_words(pattern: Pattern) -> str:
