@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -57,33 +58,10 @@ def predicted(
     if not predictions:
         return data
     labels = [str(label) for label in data["label"].values]
-    theta, optimal = data["theta"].values, data["pareto"].values
-    at = next((labels.index(x) for x in REPRESENTATIVES if x in labels), 0)
-    peaks: list[tuple[PeakResponse, list[Arrays]]] = []
-    passages: list[tuple[Passage, list[Arrays], Arrays]] = []
-
-    def kept(
-        one: Prediction, piece: Callable[[str], str], at: Callable[..., Arrays]
-    ) -> list[Arrays]:
-        return [
-            store.arrays(piece(label), partial(_asked, one, label, file, partial(at, problem, x)))
-            for label, x in zip(labels, theta, strict=True)
-        ]
-
-    for one in predictions:
-        mark = hash_text(f"{one!r} {seed}")[:8]
-
-        def piece(label: str, what: str = "", mark: str = mark, name: str = one.name) -> str:
-            return f"predict-{name}{what}-{label}-{mark}"
-
-        if isinstance(one, PeakResponse):
-            peaks.append((one, kept(one, piece, one.at)))
-            continue
-        numbers = sequence(seed, f"predict-{one.name}")
-        found = kept(one, piece, partial(one.at, seed=numbers))
-        halving = partial(one.halved, problem, theta[at], numbers)
-        halved = store.arrays(piece(labels[at], "-half-step"), halving)
-        passages.append((one, found, halved))
+    work = _Work(problem, labels, data["theta"].values, seed, store, file)
+    optimal = data["pareto"].values
+    peaks = [(one, work.peak(one)) for one in predictions if isinstance(one, PeakResponse)]
+    passages = [(one, *work.passage(one)) for one in predictions if isinstance(one, Passage)]
     variables = {
         "frequency_range": (
             ("range", "mode"),
@@ -91,13 +69,15 @@ def predicted(
             "of the frequencies in Hz over the Pareto-optimal models",
         ),
         **(_peak_variables(peaks, optimal) if peaks else {}),
-        **(_passage_variables(passages, optimal, labels[at]) if passages else {}),
+        **(_passage_variables(passages, optimal, labels[work.representative]) if passages else {}),
     }
     coordinates: dict[str, list[str]] = {"range": list(RANGE)}
     if peaks:
         coordinates["frf"] = [f"{one.name}: {x}" for one, _ in peaks for x in one.responses]
     if passages:
-        coordinates["failure"] = [f"{one.name}: {b:g}" for one, *_ in passages for b in one.levels]
+        coordinates["failure"] = [
+            f"{one.name}: {b:.12g}" for one, *_ in passages for b in one.levels
+        ]
     return data.assign(
         {
             name: (dims, np.asarray(values), {"long_name": meaning})
@@ -106,16 +86,52 @@ def predicted(
     ).assign_coords(coordinates)
 
 
-def _asked(one: Prediction, label: str, file: Path, at: Callable[[], Arrays]) -> Arrays:
-    """Return the prediction of one model, or say of which one it cannot be had."""
-    try:
-        return at()
-    except StepError as error:
-        place = f"[[predict.first_passage]] ({one.name!r}) step"
-        expected = f"at most {error.limit:.4g} s, a quarter of the shortest period of '{label}'"
-        raise InputError(Fault(str(file), place, expected, f"{error.found:g}")) from None
-    except ModelError as error:
-        raise UnfinishedError(f"no prediction '{one.name}' of '{label}': {error}") from None
+@dataclass(frozen=True)
+class _Work:
+    """Asks every model for predictions, a piece of work for each."""
+
+    problem: UpdatingProblem
+    labels: Sequence[str]
+    theta: Floats
+    seed: int
+    store: Store
+    file: Path
+
+    @property
+    def representative(self) -> int:
+        """The model at which the time step is halved."""
+        return next((self.labels.index(x) for x in REPRESENTATIVES if x in self.labels), 0)
+
+    def peak(self, one: PeakResponse) -> list[Arrays]:
+        """Return the peaks of every model."""
+        return [self._piece(one, i, one.at) for i in range(len(self.labels))]
+
+    def passage(self, one: Passage) -> tuple[list[Arrays], Arrays]:
+        """Return the probabilities of every model, and what half the time step does to one's."""
+        numbers = sequence(self.seed, f"predict-{one.name}")
+        at = partial(one.at, seed=numbers)
+        found = [self._piece(one, i, at) for i in range(len(self.labels))]
+        halved = partial(one.halved, seed=numbers)
+        return found, self._piece(one, self.representative, halved, "-half-step")
+
+    def _piece(self, one: Prediction, i: int, at: Callable[..., Arrays], what: str = "") -> Arrays:
+        """Keep what ``at`` gives of model i; the name tells apart all that it depends on."""
+        mark = hash_text(f"{one!r} {self.seed}")[:8]
+        name = f"predict-{one.name}{what}-{self.labels[i]}-{mark}"
+        return self.store.arrays(name, partial(self._asked, one, i, at))
+
+    def _asked(self, one: Prediction, i: int, at: Callable[..., Arrays]) -> Arrays:
+        """Return the prediction of model i, or say that it cannot be had."""
+        label = self.labels[i]
+        try:
+            return at(self.problem, self.theta[i])
+        except StepError as error:
+            place = f"[[predict.first_passage]] ({one.name!r}) step"
+            expected = f"at most {error.limit:.4g} s, a quarter of the shortest period of '{label}'"
+            fault = Fault(str(self.file), place, expected, f"{error.found:g}")
+            raise InputError(fault) from None
+        except ModelError as error:
+            raise UnfinishedError(f"no prediction '{one.name}' of '{label}': {error}") from None
 
 
 def _range(values: Floats, optimal: Bools) -> Floats:
