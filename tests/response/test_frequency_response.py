@@ -241,3 +241,19 @@ def test_undamped_modes():
         frequency_response(one_mode(3.0, 0.0), [3.0])
     with pytest.raises(ValueError, match="zeta: expected damped modes"):
         peaks(one_mode(3.0, 0.0))
+
+
+def test_peaks_above_a_rigid_body_mode():
+    """Two free masses on a spring: 1/((m1 + m2) ω²) and the elastic mode, on a fine grid."""
+    m, k = np.diag([2.0, 1.0]), 500.0 * np.array([[1.0, -1.0], [-1.0, 1.0]])
+    omega = np.sqrt(500.0 * 1.5)
+    phi = np.array([[1.0, 1.0], [1.0, -2.0]]) / np.sqrt([3.0, 6.0])
+    system = ModalSystem(np.array([0.0, omega]), np.array([0.0, 0.03]), phi.T[:, :1], phi[:1])
+    damping = m @ phi @ np.diag([0.0, 2 * 0.03 * omega]) @ phi.T @ m
+    with pytest.raises(ValueError, match=r"zeta: .* found omega\[0\] = 0.0"):
+        peaks(system)
+    (found,) = peaks(system, band=(1.0, 50.0))
+    w = found.omega + np.linspace(-1e-3, 1e-3, 201)
+    exact = [abs(np.linalg.solve(k - x**2 * m + 1j * x * damping, [1, 0])[0]) for x in w]
+    assert np.argmax(exact) == 100
+    assert found.amplitude == pytest.approx(exact[100], rel=1e-12)

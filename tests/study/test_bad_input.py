@@ -36,6 +36,7 @@ added_masses = [0.5, 0.0]
 stiffness_parameters = ["k1", "k2"]
 mass_parameters = ["", ""]
 sensors = { low = 0, top = [[0, 0.5], [1, 0.5]] }
+outputs = { middle = [[0, 0.7], [1, 0.3]] }
 
 [[parameter]]
 name = "k1"
@@ -82,6 +83,30 @@ step = 0.05
 [uncertainty]
 source = "sets"
 bootstrap = 2
+[[predict.frf]]
+name = "peak"
+force = "top"
+response = ["low", "middle"]
+quantity = "mobility"
+band = [0.5, 15.0]
+static = true
+damping = "measured"
+modes = 2
+
+[[predict.first_passage]]
+name = "drifts"
+base = "x"
+response = { drift = { top = 1.0, low = -1.0 } }
+density = 0.5
+sided = "two"
+filter = { frequency = 2.5, damping = 0.6 }
+modulation = [[0.0, 0.0], [2.0, 1.0]]
+levels = [0.1, 0.2]
+duration = 4.0
+step = 0.02
+samples = 20
+method = "additive"
+damping = 0.03
 """
 
 CHAIN = STUDY[STUDY.index('kind = "chain"') : STUDY.index("sensors =")]
@@ -89,6 +114,7 @@ MATRICES = """\
 kind = "matrices"
 stiffness = { base = "K0.mtx", k1 = "K1.npy", k2 = "K2.npz" }
 mass = { base = "M.mtx" }
+base = { x = [0, 1] }
 """
 
 DATA = """\
@@ -160,6 +186,12 @@ NO_MODES = '"al" "" 1 1.0 true nan inf {} [0] [-1] [1.0] [true] ["1"] [nan] [inf
 NO_MASSES = '[] 2.0 "2" true nan {} [2.0] [2.0,-1.0] [2.0,nan] [inf,1.0] [2.0,"1"] [2.0,true]'
 NO_NAMES = '["k1"] ["k1","k2",""] "k1" 1 true nan {} [1,2] [true,"k2"] [nan,"k2"]'
 
+NO_POSITIVE = NO_NUMBER + " 0 0.0 -1.0"
+NO_RATIO = '-0.01 0 0.0 1.0 2 "" "mesured" true nan inf [] {} [0.02,-0.02] [0.02,"0.02"] [true]'
+NO_FORCE = '"" 1 true nan [] ["top"] {} {top=0} {top=nan} {top="1"} {top=true}'
+NO_RESPONSE = '"" 1 true nan [] [1] [""] ["low","low"] {} {a=1} {a={}} {a={top=0}} {a={top=inf}}'
+FRF, PASSAGE = "[[predict.frf]] 1", "[[predict.first_passage]] 1"
+
 KEYS = [
     Key('name = "two masses"', "[study] name", "a text", True, NO_TEXT),
     Key("seed = 1", "[study] seed", "a whole number from 0", False, NO_WHOLE),
@@ -212,6 +244,13 @@ KEYS = [
         "a table of sensors",
         False,
         '0 [0,1] "low" true nan',
+    ),
+    Key(
+        "outputs = { middle = [[0, 0.7], [1, 0.3]] }",
+        "[model] outputs",
+        "a table of outputs",
+        False,
+        '0 [0,1] "middle" true nan',
     ),
     Key('name = "k1"', "[[parameter]] 1 name", "the name of the parameter", True, NO_TEXT),
     Key("nominal = 1.0", "[[parameter]] 1 nominal", "a finite number", True, NO_NUMBER),
@@ -286,6 +325,76 @@ KEYS = [
         '"set" "STD" "" 1 true nan ["std"] {}',
     ),
     Key("bootstrap = 2", "[uncertainty] bootstrap", "a whole number from 0", False, NO_WHOLE),
+    Key('name = "peak"', f"{FRF} name", "what the prediction is called", True, NO_TEXT),
+    Key('force = "top"', f"{FRF} force", "the name of a sensor or output", False, NO_FORCE),
+    Key('response = ["low", "middle"]', f"{FRF} response", "a list of sensors", True, NO_RESPONSE),
+    Key(
+        'quantity = "mobility"',
+        f"{FRF} quantity",
+        "one of 'receptance', 'mobility', 'accelerance'",
+        False,
+        '"" "Mobility" 1 true nan ["mobility"] {}',
+    ),
+    Key(
+        "band = [0.5, 15.0]",
+        f"{FRF} band",
+        "[lowest, highest] frequency in Hz",
+        False,
+        '[] [0.5] [15.0,0.5] [1.0,1.0] [-1.0,5.0] [0.5,inf] [nan,5.0] ["0",5.0] [1,2,3] 5.0 {}',
+    ),
+    Key("static = true", f"{FRF} static", "true or false", False, '1 0 "true" nan [] {}'),
+    Key('damping = "measured"', f"{FRF} damping", "'measured', or a ratio", False, NO_RATIO),
+    Key("modes = 2", f"{FRF} modes", "a whole number from 1 to 2", False, NO_WHOLE + " 0 3"),
+    Key('name = "drifts"', f"{PASSAGE} name", "what the prediction is called", True, NO_TEXT),
+    Key('base = "x"', f"{PASSAGE} base", "a direction in which the base moves", False, NO_TEXT),
+    Key(
+        "response = { drift = { top = 1.0, low = -1.0 } }",
+        f"{PASSAGE} response",
+        "a list of sensors or outputs, or a table",
+        True,
+        NO_RESPONSE,
+    ),
+    Key("density = 0.5", f"{PASSAGE} density", "a spectral density above 0", True, NO_POSITIVE),
+    Key(
+        'sided = "two"',
+        f"{PASSAGE} sided",
+        "one of 'one', 'two'",
+        True,
+        '"" "Two" 2 true nan [] {}',
+    ),
+    Key(
+        "filter = { frequency = 2.5, damping = 0.6 }",
+        f"{PASSAGE} filter",
+        "a Kanai-Tajimi filter",
+        False,
+        '1 [1] "soil" true nan',
+    ),
+    Key(
+        "modulation = [[0.0, 0.0], [2.0, 1.0]]",
+        f"{PASSAGE} modulation",
+        "a list of [time in s, factor]",
+        False,
+        '[] 1.0 "t" true nan {} [1.0] [[0.0]] [[0,0],[0,1]] [[1,0],[0,1]] [[-1,1]] [[0,0],[1,0]] '
+        "[[0,nan]] [[0,1,2]] [[0,true]]",
+    ),
+    Key(
+        "levels = [0.1, 0.2]",
+        f"{PASSAGE} levels",
+        "a list of different levels above 0",
+        True,
+        '[] 0.1 "0.1" true nan {} [0.0] [-0.1] [0.1,0.1] [0.1,nan] [inf] ["0.1"] [true]',
+    ),
+    Key("duration = 4.0", f"{PASSAGE} duration", "a duration above 0 s", True, NO_POSITIVE),
+    Key("step = 0.02", f"{PASSAGE} step", "a time step above 0 s", False, NO_POSITIVE),
+    Key("samples = 20", f"{PASSAGE} samples", "a whole number from 2", False, NO_WHOLE + " 0 1"),
+    Key(
+        'method = "additive"',
+        f"{PASSAGE} method",
+        "one of 'importance', 'directional', 'additive', 'monte-carlo'",
+        False,
+        '"" "subset" 1 true nan [] {}',
+    ),
+    Key("damping = 0.03", f"{PASSAGE} damping", "'measured', or a ratio", False, NO_RATIO),
 ]
 
 
@@ -442,6 +551,59 @@ CONTRADICTIONS = [
             *("identifiable-1", "manifold-x", "second-x", "bootstrap-1"),
         )
     ),
+    # predictions
+    ("[[predict.frf]]", "[[predict.fft]]", "[predict]: ... found 'fft' (did you mean 'frf'?)"),
+    ("[[predict.frf]]", "[predict.frf]", "[predict] frf: expected tables [[predict.frf]], found a"),
+    ("[[predict.frf]]", "[[predicted.frf]]", "found 'predicted' (did you mean 'predict'?)"),
+    ('"drifts"', '"peak"', "[predict]: expected each name once, found 'peak' twice"),
+    ('force = "top"', 'force = "tip"', "('peak') force: ... found 'tip' (did you mean 'top'?)"),
+    ('force = "top"', "force = { tip = 2.0 }", "('peak') force: ... found 'tip' (did you mean 't"),
+    ('force = "top"\n', "", "('peak'): expected either force or base, found neither"),
+    ('force = "top"', 'force = "top"\nbase = "x"', "either force or base, found both"),
+    (
+        'base = "x"',
+        'base = "y"',
+        "base: expected one of the directions of the base, 'x', found 'y'",
+    ),
+    ('"low", "middle"', '"low", "midle"', "response: ... found 'midle' (did you mean 'middle'?)"),
+    (
+        "top = 1.0, low",
+        "top = 1.0, lo",
+        "('drifts') response: ... found 'lo' (did you mean 'low'?)",
+    ),
+    ('"mobility"', '"absolute accelerance"', "quantity: ... where forces act, found 'absolute acc"),
+    ("modes = 2", "modes = 1", "modes: ... reach the end of the band, 15 Hz: 2, found 1, up to 4."),
+    ("modes = 2", "modes = 2\nmode = 2", "('peak'): ... found 'mode' (did you mean 'modes'?)"),
+    ('"measured"', "[0.01]", "damping: expected a list of 2, one a mode, found 1 of them"),
+    ('"measured"\nmodes = 2', "[0.1,0.1,0.1]", "damping: expected at most 2 ratios, as the model"),
+    (
+        "step = 0.02",
+        "step = 0.1",
+        "('drifts') step: expected at most 0.02 ... s, a quarter of the s",
+    ),
+    (
+        "step = 0.02",
+        "step = 0.03",
+        "step: expected a whole number of steps of 0.03 s in 4 s, found 1",
+    ),
+    ("step = 0.02", "step = 1e-7", "step: expected at most 1000000 time steps, found 4e+07"),
+    (
+        "frequency = 2.5",
+        "frequency = 0.0",
+        "filter frequency: expected a frequency of the soil abo",
+    ),
+    (
+        "damping = 0.6",
+        "damping = -0.6",
+        "filter damping: expected a damping ratio of the soil above",
+    ),
+    ("damping = 0.6", "damp = 0.6", "filter: ... found 'damp' (did you mean 'damping'?)"),
+    (
+        "middle = [",
+        "low = [",
+        "[model] outputs low: expected a name that no sensor has, found 'low'",
+    ),
+    ("middle = [[0,", "middle = [[2,", "outputs middle: expected degrees of freedom from 0 to 1"),
     # the rest
     ("points = 5", "points = 10001", "points: expected a whole number from 2 to 10000, found 1000"),
     ("spare = 0", "spare = 1001", "spare: expected a whole number from 0 to 1000, found 1001"),
@@ -468,6 +630,52 @@ def test_contradictions_of_the_study(
     study = folder / "wrong.toml"
     study.write_text(edited(STUDY, (old, new)))
     refused(study, says)
+
+
+APART = [
+    ("[3000.0, 2000.0]", "[3000.0, 0.0, 2000.0]"),
+    ('stiffness_parameters = ["k1", "k2"]', 'stiffness_parameters = ["k1", "", "k2"]'),
+    ('force = "top"', "force = { low = 2.0 }"),
+    ('"low", "middle"', '"middle"'),
+    ("[[0, 0.7], [1, 0.3]]", "1"),
+]
+FREE = [("[3000.0, 2000.0]", "[0.0, 2000.0]"), ('["", ""]', '["k1", ""]')]
+
+
+@pytest.mark.parametrize(
+    ("edits", "says"),
+    [
+        (APART, "('peak') response: expected responses that the load can move, found none"),
+        (FREE, "('peak') static: expected false, as a model with rigid-body modes has no static"),
+        (
+            [*FREE, ("static = true", "static = false"), ("band = [0.5,", "band = [0.0,")],
+            "('peak') band: expected a lowest frequency above 0, as rigid-body modes have no",
+        ),
+        (
+            [("step = 0.02\n", ""), ("duration = 4.0", "duration = 1e6")],
+            "('drifts') step: expected at most 1000000 time steps, found ",
+        ),
+        (
+            [("frequency = 2.5", "frequency = 25.0")],
+            "('drifts') step: expected at most 0.01 s, a quarter of the shortest period (25 Hz), ",
+        ),
+    ],
+)
+def test_predictions_that_the_nominal_model_cannot_make(
+    edits: list[tuple[str, str]], says: str, folder: Path, refused: Check
+) -> None:
+    study = folder / "wrong.toml"
+    study.write_text(edited(STUDY, *edits))
+    refused(study, says)
+
+
+def test_damping_that_was_not_measured(folder: Path, refused: Check) -> None:
+    data = edited(DATA, ("4.0,0.01", "4.0,"), ("4.1,0.02", "4.1,"))
+    (folder / "modes.csv").write_text(data)
+    says = "('peak') damping: expected a ratio, as the data have none, found 'measured'"
+    refused(folder / "chain.toml", says)
+    (folder / "modes.csv").write_text(edited(DATA, ("4.0,0.01", "4.0,0"), ("4.1,0.02", "4.1,")))
+    refused(folder / "chain.toml", "damping: expected a ratio, as measured ones are 0, found 'mea")
 
 
 @pytest.mark.parametrize(
@@ -812,6 +1020,28 @@ MATRIX_KEYS = [
         "[model] sensors: expected a table of sensors ... found nothing",
     ),
     ("[model]\n", "[model]\nmasses = [1.0]\n", "[model]: expected a known key, found 'masses'"),
+    (
+        "x = [0, 1]",
+        "x = [0, 2]",
+        "[model] base x: expected degrees of freedom from 0 to 1, found 2",
+    ),
+    (
+        "x = [0, 1]",
+        "x = [0, 1.5]",
+        "[model] base x: expected a degree of freedom from 0, or a list",
+    ),
+    ("x = [0, 1]", "x = []", "[model] base x: expected a degree of freedom from 0, or a list"),
+    (
+        "base = { x",
+        "bas = { x",
+        "[model]: expected a known key, found 'bas' (did you mean 'base'?)",
+    ),
+    ("base = { x = [0, 1] }", "base = [0, 1]", "base: expected a table, direction = list of the"),
+    (
+        "x = [0, 1]",
+        "y = [0, 1]",
+        "base: expected one of the directions of the base, 'y', found 'x'",
+    ),
 ]
 
 
@@ -876,7 +1106,8 @@ def test_names_may_hold_what_a_path_or_a_terminal_gives_a_meaning(
         "starts = 3\nlimit = 9\nevolutions = 1", "starts = 1\nlimit = 1\nevolutions = 0"
     )
     text = text.replace('"mine"', '"../[/]"').replace('"two masses"', '"[/] ${x}"')
-    study.write_text(text.replace("low = 0", '"[/low]" = 0'))
+    text = text.replace('"low"', '"[/low]"').replace("low = ", '"[/low]" = ')
+    study.write_text(text.replace('"peak"', '"../[/peak] $_"'))
     (folder / "modes.csv").write_text(DATA.replace("low", "[/low]"))
     assert command("check", study) == 0, capsys.readouterr().err
     assert "a/b [bold]" in capsys.readouterr().out
@@ -885,6 +1116,8 @@ def test_names_may_hold_what_a_path_or_a_terminal_gives_a_meaning(
     out = capsys.readouterr().out
     assert "../k/1 [red]" in out
     assert "../[/]" in out
+    assert "../[/peak] $_: force at top" in out
+    assert command("show", folder / "output", "--figures") == 0, capsys.readouterr().err
     assert not (folder / "k").exists()
 
 

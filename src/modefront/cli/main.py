@@ -83,12 +83,19 @@ def run(study: Path, directory: Path | None, fresh: bool) -> None:
 @click.option(
     "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
-def show(directory: Path, form: str) -> None:
+@click.option("--figures", is_flag=True, help="Draw predictions along the front, into DIRECTORY.")
+def show(directory: Path, form: str, figures: bool) -> None:
     """Print the results in DIRECTORY."""
     from modefront.cli.show import as_json, print_results
     from modefront.study.results import read
 
     data = read(directory)
+    if figures:
+        from modefront.cli.figures import write_figures
+
+        for path in write_figures(data, directory / "figures"):
+            click.echo(f"wrote {path}")
+        return
     if form == "json":
         click.echo(as_json(data))
     else:

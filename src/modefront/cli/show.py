@@ -10,6 +10,7 @@ import numpy as np
 import xarray as xr
 from rich.console import Console
 
+from modefront.cli.predictions import prediction_tables
 from modefront.cli.show_knowledge import print_knowledge
 from modefront.cli.tables import safe as _safe
 from modefront.cli.tables import table as _table
@@ -207,22 +208,22 @@ def print_results(data: xr.Dataset) -> None:
         )
     console.print(points)
     modes = data["mode"].values
-    predicted = _table(
+    modal = _table(
         "frequencies in Hz and MAC",
         ["model", *(f"f{r}" for r in modes), *(f"error f{r} %" for r in modes)]
         + [f"MAC {r}" for r in modes],
     )
     measured = data["measured_frequency"].values
-    predicted.add_row("measured", *map(_number, measured), *[""] * (2 * modes.size))
+    modal.add_row("measured", *map(_number, measured), *[""] * (2 * modes.size))
     for i, label in enumerate(data["label"].values):
         f = data["frequency"].values[i]
-        predicted.add_row(
+        modal.add_row(
             _safe(label),
             *map(_number, f),
             *(f"{x:+.2f}" for x in 100 * (f / measured - 1)),
             *(f"{x:.4f}" for x in data["mac"].values[i]),
         )
-    console.print(predicted)
+    console.print(modal)
     weights = _table("weights", ["model", *groups])
     for i in np.flatnonzero(~np.isnan(data["weight"].values).all(axis=1)).tolist():
         weights.add_row(
@@ -238,6 +239,14 @@ def print_results(data: xr.Dataset) -> None:
         )
     console.print(minima)
     print_knowledge(console, data)
+    for title, columns, rows, notes in prediction_tables(data):
+        _print(console, title)
+        predicted = _table("", [_safe(column) for column in columns])
+        for row in rows:
+            predicted.add_row(*map(_safe, row))
+        console.print(predicted)
+        for line in notes:
+            _print(console, line)
     for line in remarks(data):
         _print(console, line)
     _print(

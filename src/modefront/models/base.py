@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from typing import Protocol
 
 from modefront._typing import Floats
+from modefront.models.ports import Ports, Transfer
 from modefront.modes.result import Modes
 
 
@@ -50,4 +51,19 @@ class Model(Protocol):
         """Return the ``count`` lowest modes at ``theta``, shape (parameters,).
 
         Raises ModelError where the model has no such modes at ``theta``.
+        """
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Names of the sensors, and of what else can be loaded or looked at in predictions."""
+
+    @property
+    def directions(self) -> tuple[str, ...]:
+        """Names of the directions in which the base can move."""
+
+    def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
+        """Return what the ``count`` lowest modes at ``theta`` are between loads and outputs.
+
+        Raises ModelError where the model has no such modes, KeyError for unknown places or
+        directions.
         """

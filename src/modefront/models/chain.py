@@ -14,6 +14,9 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.models.matrices import BASE, MatrixModel, SensorSpec, matrices
 
+BASE_DIRECTION = "x"
+"""The one direction in which the masses, and the ground, can move."""
+
 
 def chain(
     parameters: Sequence[str],
@@ -24,12 +27,14 @@ def chain(
     stiffness_parameters: Sequence[str | None] | None = None,
     mass_parameters: Sequence[str | None] | None = None,
     sensors: Mapping[str, SensorSpec] | None = None,
+    outputs: Mapping[str, SensorSpec] | None = None,
 ) -> MatrixModel:
     """Return a chain of masses (kg) and springs (N/m), or in any other consistent units.
 
     ``added_masses`` are attached to the masses and are never scaled; ``stiffness_parameters`` and
     ``mass_parameters`` name the parameter that scales each spring and each mass (None: fixed).
-    Sensors default to every mass, named ``floor1``, ``floor2``, ...
+    Sensors default to every mass, named ``floor1``, ``floor2``, ...; ``outputs`` are other places
+    that predictions may name. The ground can move in the direction of the chain, ``"x"``.
     """
     n = len(masses)
     stiffness_scales = stiffness_parameters or [None] * len(stiffnesses)
@@ -44,7 +49,8 @@ def chain(
         M[name or BASE][i, i] += m
     if sensors is None:
         sensors = {f"floor{i + 1}": i for i in range(n)}
-    return matrices(parameters, K, M, sensors)
+    base = {BASE_DIRECTION: [(i, 1.0) for i in range(n)]}
+    return matrices(parameters, K, M, sensors, outputs=outputs, base=base)
 
 
 def _spring(n: int, i: int) -> Floats:

@@ -13,9 +13,11 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.models.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.models.base import Counts
-from modefront.modes import dense, sparse
+from modefront.models.ports import Pattern, Ports, Transfer
+from modefront.modes import dense, full, sparse
 from modefront.modes.factorisation import Factorisation, Symbolic
 from modefront.modes.pencil import Pencil, pencil
+from modefront.modes.products import gram
 from modefront.modes.result import Modes
 
 BASE = "base"
@@ -52,6 +54,8 @@ class MatrixModel:
     sensors : names of the sensors
     selection : (sensors, N) weights of the degrees of freedom at each sensor
     stiffness, mass : K(theta), M(theta), N x N
+    outputs : weights (N,) of the degrees of freedom at places that are no sensors, by name
+    base : motion (N,) of the degrees of freedom with the base, by the name of its direction
     floating : whether the stiffness matrix may be singular: rigid-body modes are wanted
     counts : what the evaluations have cost so far
     """
@@ -61,6 +65,8 @@ class MatrixModel:
     selection: scipy.sparse.csr_array
     stiffness: DenseAffine | SparseAffine
     mass: DenseAffine | SparseAffine
+    outputs: Mapping[str, Floats] = field(default_factory=dict)
+    base: Mapping[str, Floats] = field(default_factory=dict)
     floating: bool = True
     counts: Counts = field(default_factory=Counts)
 
@@ -89,6 +95,51 @@ class MatrixModel:
             return dense.is_singular(self.stiffness.at(theta))
         return sparse.is_singular(self._pencil, theta)
 
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Names of the sensors and of the other outputs."""
+        return (*self.sensors, *self.outputs)
+
+    @property
+    def directions(self) -> tuple[str, ...]:
+        """Names of the directions in which the base can move."""
+        return tuple(self.base)
+
+    def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
+        """Return the model between ``ports``; see `modefront.models.base.Model`."""
+        self.counts.eigenproblems += 1
+        outputs = self._patterns(ports.outputs)
+        if ports.base is None:
+            loads, rigid = self._patterns(ports.forces), None
+        else:
+            motion = self.base[ports.base][:, None]
+            loads, rigid = -(self.mass.at(theta) @ motion), gram(outputs, motion)
+        if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
+            found = full.dense_modes(self.stiffness, self.mass, theta, count, loads)
+        else:
+            found = full.sparse_modes(self._pencil, theta, count, loads)
+        phi = self.selection @ found.Phi
+        empty = np.zeros((count, 0)), np.zeros((*phi.shape, 0))
+        return Transfer(
+            Modes(found.lam, phi, *empty, coincident=np.zeros(count, dtype=np.bool_)),
+            input=gram(found.Phi, loads),
+            output=gram(outputs, found.Phi),
+            static=None if found.static is None else gram(outputs, found.static),
+            rigid=rigid,
+        )
+
+    def _patterns(self, patterns: Sequence[Pattern]) -> Floats:
+        """Return patterns over places as columns over the degrees of freedom, (N, patterns)."""
+        out = np.zeros((self.size, len(patterns)))
+        for column, pattern in zip(out.T, patterns, strict=True):
+            for name, weight in pattern.items():
+                if name in self.sensors:
+                    row = self.selection[[self.sensors.index(name)]].toarray()[0]
+                else:
+                    row = self.outputs[name]
+                column += weight * row
+        return out
+
     @cached_property
     def _pencil(self) -> Pencil:
         """The sparse pencil; its pattern is analysed at the first evaluation, and only then."""
@@ -105,12 +156,16 @@ def matrices(
     sensors: Mapping[str, SensorSpec],
     *,
     floating: bool = True,
+    outputs: Mapping[str, SensorSpec] | None = None,
+    base: Mapping[str, SensorSpec] | None = None,
 ) -> MatrixModel:
     """Return the model with K(theta) = base + sum_j theta_j K_j and M(theta) likewise.
 
     ``stiffness`` and ``mass`` map ``"base"`` and names of parameters to symmetric matrices N x N,
-    dense or sparse; ``floating`` says whether rigid-body modes are wanted. Raises ValueError for a
-    term that is no parameter.
+    dense or sparse; ``floating`` says whether rigid-body modes are wanted. For predictions,
+    ``outputs`` are places besides the sensors, and ``base`` says for each direction in which the
+    base can move which degrees of freedom move with it, and how far. Raises ValueError for a term
+    that is no parameter.
     """
     size = next(iter(mass.values())).shape[0]
     model = affine_model(
@@ -119,6 +174,8 @@ def matrices(
         select(sensors, size),
         affine(parameters, stiffness, size),
         affine(parameters, mass, size),
+        outputs=_rows(outputs or {}, size),
+        base=_rows(base or {}, size),
     )
     return replace(model, floating=floating)
 
@@ -129,8 +186,14 @@ def affine_model(
     selection: scipy.sparse.csr_array,
     stiffness: SparseAffine,
     mass: SparseAffine,
+    *,
+    outputs: Mapping[str, Floats] | None = None,
+    base: Mapping[str, Floats] | None = None,
 ) -> MatrixModel:
-    """Return the model of sparse affine matrices, made dense where that is faster."""
+    """Return the model of sparse affine matrices, made dense where that is faster.
+
+    See `MatrixModel` for what the arguments are.
+    """
     small = stiffness.size <= DENSE
     return MatrixModel(
         tuple(parameters),
@@ -138,6 +201,8 @@ def affine_model(
         selection,
         stiffness.dense() if small else stiffness,
         mass.dense() if small else mass,
+        outputs or {},
+        base or {},
     )
 
 
@@ -158,3 +223,8 @@ def select(sensors: Mapping[str, SensorSpec], size: int) -> scipy.sparse.csr_arr
         for dof, weight in [(spec, 1.0)] if isinstance(spec, int) else spec:
             selection[row, dof] += weight
     return selection.tocsr()
+
+
+def _rows(places: Mapping[str, SensorSpec], size: int) -> dict[str, Floats]:
+    """Return the weights (size,) of the degrees of freedom at each place, by name."""
+    return dict(zip(places, select(places, size).toarray(), strict=True))

@@ -8,7 +8,7 @@ from modefront.reliability.directional import directional_importance_sampling
 from modefront.reliability.estimate import Estimate, Estimator
 from modefront.reliability.importance import importance_sampling
 from modefront.reliability.monte_carlo import monte_carlo
-from modefront.reliability.problem import FirstPassage, KanaiTajimi, Sided, WhiteNoise
+from modefront.reliability.problem import FirstPassage, KanaiTajimi, Sided, StepError, WhiteNoise
 from modefront.reliability.step_effect import StepEffect, step_effect
 
 METHODS: Final = MappingProxyType(
@@ -29,6 +29,7 @@ __all__ = [
     "KanaiTajimi",
     "Sided",
     "StepEffect",
+    "StepError",
     "WhiteNoise",
     "additive_rules",
     "directional_importance_sampling",

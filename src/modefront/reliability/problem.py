@@ -34,6 +34,14 @@ LARGEST_ANGLE = np.pi / 2
 """Largest ω Δt: a quarter of a period. Beyond it the times t_j miss the peaks of the response."""
 
 
+class StepError(ValueError):
+    """A time step is too long: the one ``found`` and the ``limit``, in s."""
+
+    def __init__(self, message: str, found: float, limit: float) -> None:
+        super().__init__(message)
+        self.found, self.limit = found, limit
+
+
 class Sided(Enum):
     """Whether a spectral density is meant over all ω (two-sided) or over ω ≥ 0 (one-sided)."""
 
@@ -136,9 +144,11 @@ class FirstPassage:
         positive("time_step", self.time_step, "s")
         limit = LARGEST_ANGLE / self.highest_omega()
         if self.time_step > limit * (1 + 1e-12):
-            raise ValueError(
+            raise StepError(
                 f"time_step: expected at most {limit:.6g} s, a quarter of the period of the "
-                f"highest frequency ({self.highest_omega():.6g} rad/s), found {self.time_step} s"
+                f"highest frequency ({self.highest_omega():.6g} rad/s), found {self.time_step} s",
+                self.time_step,
+                limit,
             )
         steps = self.duration / self.time_step
         if steps < 0.5 or abs(steps - round(steps)) > 1e-6:

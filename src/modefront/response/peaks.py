@@ -80,7 +80,7 @@ def peaks(
     Parameters
     ----------
     system
-        The structure; every mode damped and above 0 Hz.
+        The structure; every mode in the band damped and above 0 Hz.
     quantity
         What is set against the load.
     output, input
@@ -92,19 +92,21 @@ def peaks(
     Raises
     ------
     ValueError
-        For undamped modes (their peaks are infinite), an unknown output or input, an empty band.
+        For undamped modes in the band (their peaks are infinite), an unknown output or input, an
+        empty band.
 
     """
     pair = _pair(system, output, input)
-    if np.any(pair.zeta * pair.omega == 0):
-        mode = int(np.argmax(pair.zeta * pair.omega == 0))
-        raise ValueError(
-            "zeta: expected damped modes above 0 Hz, as others have infinite peaks, found "
-            f"omega[{mode}] = {pair.omega[mode]}, zeta[{mode}] = {pair.zeta[mode]}"
-        )
     low, high = (0.0, 2 * float(pair.omega.max())) if band is None else band
     if not (0 <= low < high < np.inf):
         raise ValueError(f"band: expected 0 <= lowest < highest (rad/s), found ({low}, {high})")
+    infinite = (pair.zeta * pair.omega == 0) & (pair.omega >= low) & (pair.omega <= high)
+    if np.any(infinite):
+        mode = int(np.argmax(infinite))
+        raise ValueError(
+            "zeta: expected damped modes above 0 Hz in the band, as others have infinite peaks, "
+            f"found omega[{mode}] = {pair.omega[mode]}, zeta[{mode}] = {pair.zeta[mode]}"
+        )
     slope = Slope(pair, quantity)
     # The modes are natural breaks: with one at the end of an interval, its width is soon found.
     inside = pair.omega[(pair.omega > low) & (pair.omega < high)]

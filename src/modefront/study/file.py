@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import hashlib
+import json
 import tomllib
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -13,6 +14,7 @@ import numpy as np
 
 from modefront.errors import Fault, InputError, ModelError
 from modefront.models.matrices import MatrixModel
+from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.reader import Table
@@ -21,6 +23,7 @@ from modefront.study.tables.groups import read_groups
 from modefront.study.tables.identifiability import Identifiability, read_identifiability
 from modefront.study.tables.model import read_model
 from modefront.study.tables.parameters import Parameter, read_parameters
+from modefront.study.tables.predict import complete, read_predictions
 from modefront.study.tables.settings import Pareto, read_pairing, read_pareto, read_search
 from modefront.study.tables.uncertainty import Uncertainty, read_uncertainty
 from modefront.study.tables.weighted import Weighted, read_weights
@@ -34,16 +37,19 @@ class Study:
     ----------
     file : where it was read
     digest : hash of this file and of all files that it names
+    work : the same for what the front depends on: all that it says but for predictions
     pareto : how the front is found
     weighted : models wanted with given weights, besides equal and optimal ones
     identifiability : what is done about what the data do not determine
     uncertainty : what is done about errors of the data
+    predictions : what all models that are found are to predict
     """
 
     file: Path
     name: str
     seed: int
     digest: str
+    work: str
     parameters: tuple[Parameter, ...]
     problem: UpdatingProblem
     pareto: Pareto
@@ -51,6 +57,7 @@ class Study:
     search: Search
     identifiability: Identifiability
     uncertainty: Uncertainty
+    predictions: tuple[Prediction, ...]
 
 
 def load(path: Path) -> Study:
@@ -75,6 +82,7 @@ def load(path: Path) -> Study:
     weights = read_weights(root, [group.name for group in groups if group.name])
     pareto, pairing, search = read_pareto(root), read_pairing(root), read_search(root)
     identifiability, uncertainty = read_identifiability(root), read_uncertainty(root, data)
+    drafts = read_predictions(root, model, data)
     root.close()
     if faults or model is None or data is None:
         raise InputError(faults)
@@ -88,12 +96,16 @@ def load(path: Path) -> Study:
         pairing,
     )
     _try_model(root, problem)
+    predictions = complete(drafts, problem) if not faults else ()
     if faults:
         raise InputError(faults)
-    digest = _digest(content, path.parent, [data_file, *_model_files(values)])
+    files = [data_file, *_model_files(values)]
+    digest = _digest(content, path.parent, files)
+    rest = {key: value for key, value in values.items() if key != "predict"}
+    work = _digest(json.dumps(rest, sort_keys=True).encode(), path.parent, files)
     return Study(
-        *(path, title, seed, digest, parameters, problem, pareto, weights, search),
-        *(identifiability, uncertainty),
+        *(path, title, seed, digest, work, parameters, problem, pareto, weights, search),
+        *(identifiability, uncertainty, predictions),
     )
 
 
@@ -133,7 +145,7 @@ def _model_files(values: dict[str, Any]) -> list[str]:
 
 
 def _digest(content: bytes, folder: Path, files: Sequence[str]) -> str:
-    """Return a hash of the study file and of all files that it names."""
+    """Return a hash of what the study file says and of all files that it names."""
     total = hashlib.sha256(content)
     for name in files:
         total.update(hashlib.sha256((folder / name).read_bytes()).digest())

@@ -117,9 +117,10 @@ class Table:
 
     def tables(self, key: str, required: bool) -> list[Table]:
         """Return the tables of a list, such as ``[[parameter]]``."""
+        path = f"{self.place[1:-1]}.{key}" if self.place else key
         value = self.take(
             key,
-            f"at least one table [[{key}]]" if required else f"tables [[{key}]]",
+            f"at least one table [[{path}]]" if required else f"tables [[{path}]]",
             lambda x: isinstance(x, list) and bool(x) and all(isinstance(y, dict) for y in x),
             ... if required else [],
         )

@@ -53,7 +53,12 @@ def ignore(_: object) -> None:
 
 def generator(seed: int, name: str) -> np.random.Generator:
     """Return the random numbers of one piece of work, whatever was done before it."""
-    return np.random.default_rng([seed, zlib.crc32(name.encode())])
+    return np.random.default_rng(sequence(seed, name))
+
+
+def sequence(seed: int, name: str) -> np.random.SeedSequence:
+    """Return what the random numbers of one piece of work grow from."""
+    return np.random.SeedSequence([seed, zlib.crc32(name.encode())])
 
 
 def pareto_front(

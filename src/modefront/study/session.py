@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -11,6 +11,7 @@ import numpy as np
 
 import modefront
 from modefront.errors import Fault, InputError
+from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.file import Study
@@ -42,14 +43,16 @@ def solve(
     search: Search | None = None,
     identifiability: Identifiability | None = None,
     uncertainty: Uncertainty | None = None,
+    predictions: Sequence[Prediction] = (),
 ) -> xr.Dataset:
     """Return all Pareto-optimal models, edges and weighted models of a problem.
 
     ``points`` lie along each edge of the simplex of objectives; an edge may exceed the least value
     of its group by the share ``tolerance``; ``identifiability`` and ``uncertainty`` say what is
-    done about what the data do not determine and about their errors. Raises UnfinishedError where
-    no minimum of a group can be found.
+    done about what the data do not determine and about their errors; ``predictions`` are made with
+    every model. Raises UnfinishedError where no minimum of a group can be found.
     """
+    from modefront.study.predictions import predicted
     from modefront.study.results import dataset
 
     store = Store(None, lambda: problem.counts, ignore, {})
@@ -73,7 +76,10 @@ def solve(
         checkpoint=store,
         expect=ignore,
     )
-    return dataset(problem, front, knowledge, _attributes(front, store, seed))
+    data = dataset(problem, front, knowledge, {})
+    data = predicted(data, problem, predictions, seed, store)
+    data.attrs |= _attributes(front, store, seed)
+    return data
 
 
 def run(
@@ -85,10 +91,11 @@ def run(
     ``fresh`` sets them aside. Raises InputError where the folder cannot be written to and
     UnfinishedError where the work cannot be done.
     """
+    from modefront.study.predictions import pieces_of, predicted
     from modefront.study.results import FILE, dataset, write
 
     progress = progress or Progress()
-    pieces = folder / PIECES / f"{study.digest[:12]}-{modefront.__version__}"
+    pieces = folder / PIECES / f"{study.work[:12]}-{modefront.__version__}"
     try:
         pieces.mkdir(parents=True, exist_ok=True)
         if fresh:
@@ -108,7 +115,7 @@ def run(
         search=study.search,
         given=[(one.name, np.array(one.weights)) for one in study.weighted],
         checkpoint=store,
-        expect=progress.expect,
+        expect=lambda pieces: progress.expect(pieces + pieces_of(study)),
     )
     knowledge = learn(
         problem,
@@ -122,6 +129,7 @@ def run(
         expect=lambda more: progress.expect(len(store.costs) + more),
     )
     data = dataset(problem, front, knowledge, {"study": study.name, "inputs": study.digest})
+    data = predicted(data, problem, study.predictions, study.seed, store, study.file)
     data.attrs |= _attributes(front, store, study.seed)
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)

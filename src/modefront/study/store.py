@@ -1,8 +1,8 @@
 """Pieces of work in files, one small file a piece, so that an interrupted run loses only one.
 
-A piece is a list of solutions. Its file is written under another name and then renamed, so that
-it is there whole or not at all; arrays are stored exactly, so that a run that is continued gives
-the same results to the last digit as one that was not interrupted.
+A piece is a list of solutions, or named arrays. Its file is written under another name and then
+renamed, so that it is there whole or not at all; arrays are stored exactly, so that a run that is
+continued gives the same results to the last digit as one that was not interrupted.
 """
 
 from __future__ import annotations
@@ -14,15 +14,20 @@ import zipfile
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
+from modefront._typing import Floats
 from modefront.solvers.checkpoint import Solutions
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.sqp import Solution, Status
 
 PIECES = "pieces"
+
+Arrays = Mapping[str, Floats]
+
+T = TypeVar("T")
 
 
 @dataclass
@@ -39,18 +44,33 @@ class Store:
 
     def __call__(self, name: str, compute: Callable[[], Solutions]) -> Solutions:
         """Return the solutions of a piece that is there, or compute and keep it."""
+        return self._kept(name, compute, _packed, _unpacked)
+
+    def arrays(self, name: str, compute: Callable[[], Arrays]) -> Arrays:
+        """Return the named arrays of a piece that is there, or compute and keep it."""
+        return self._kept(name, compute, lambda arrays: (None, arrays), lambda _, arrays: arrays)
+
+    def _kept(
+        self,
+        name: str,
+        compute: Callable[[], T],
+        packed: Callable[[T], tuple[Any, Arrays]],
+        unpacked: Callable[[Any, Arrays], T],
+    ) -> T:
         path = self.folder / f"{_file_name(name)}.npz" if self.folder else None
-        kept = read_piece(path) if path else None
-        if kept is None:
+        found = read_piece(path) if path else None
+        if found is None:
             before = dict(self.counter())
-            solutions = compute()
+            result = compute()
             cost = {key: n - before[key] for key, n in self.counter().items()}
             if path:
-                write_piece(path, solutions, cost)
-            kept = solutions, cost
-        self.costs[name] = kept[1]
+                write_piece(path, *packed(result), cost)
+        else:
+            head, arrays, cost = found
+            result = unpacked(head, arrays)
+        self.costs[name] = cost
         self.done(name)
-        return kept[0]
+        return result
 
     def total(self, prefix: str = "") -> dict[str, int]:
         """Return what all pieces cost whose names begin so."""
@@ -69,9 +89,33 @@ def hash_text(text: str) -> str:
     return hashlib.sha256(text.encode()).hexdigest()[:16]
 
 
-def write_piece(path: Path, solutions: Solutions, cost: Mapping[str, int]) -> None:
-    """Write a piece whole or not at all."""
-    arrays: dict[str, Any] = {}
+def write_piece(path: Path, content: Any, arrays: Arrays, cost: Mapping[str, int]) -> None:
+    """Write a piece whole or not at all: what JSON holds, named arrays, and what they cost."""
+    head = json.dumps({"cost": dict(cost), "content": content})
+    named: dict[str, Any] = dict(arrays)
+    path.parent.mkdir(parents=True, exist_ok=True)
+    temporary = path.with_suffix(".tmp")
+    with temporary.open("wb") as stream:
+        np.savez(stream, head=np.frombuffer(head.encode(), np.uint8), **named)
+        stream.flush()
+        os.fsync(stream.fileno())
+    temporary.replace(path)
+
+
+def read_piece(path: Path) -> tuple[Any, Arrays, dict[str, int]] | None:
+    """Return what a piece holds and its cost; None where there is no whole one."""
+    try:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            arrays = {key: file[key] for key in file.files}
+        head = json.loads(arrays.pop("head").tobytes())
+    except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile):
+        return None
+    return head["content"], arrays, head["cost"]
+
+
+def _packed(solutions: Solutions) -> tuple[Any, Arrays]:
+    """Return solutions as what JSON holds and arrays."""
+    arrays: dict[str, Floats] = {}
     heads = []
     for i, one in enumerate(solutions):
         at = one.at
@@ -80,30 +124,16 @@ def write_piece(path: Path, solutions: Solutions, cost: Mapping[str, int]) -> No
         parts |= {f"quantity:{key}": value for key, value in at.quantities.items()}
         arrays |= {f"{i}:{key}": value for key, value in parts.items()}
         heads.append([one.violation, one.status.name, one.evaluations])
-    head = json.dumps({"cost": dict(cost), "solutions": heads})
-    path.parent.mkdir(parents=True, exist_ok=True)
-    temporary = path.with_suffix(".tmp")
-    with temporary.open("wb") as stream:
-        np.savez(stream, head=np.frombuffer(head.encode(), np.uint8), **arrays)
-        stream.flush()
-        os.fsync(stream.fileno())
-    temporary.replace(path)
+    return heads, arrays
 
 
-def read_piece(path: Path) -> tuple[Solutions, dict[str, int]] | None:
-    """Return the solutions and the cost of a piece; None where there is no whole one."""
-    try:
-        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            arrays = {key: file[key] for key in file.files}
-        head = json.loads(arrays.pop("head").tobytes())
-    except (OSError, EOFError, ValueError, KeyError, zipfile.BadZipFile):
-        return None
+def _unpacked(heads: Any, arrays: Arrays) -> Solutions:
     solutions = []
-    for i, (violation, status, evaluations) in enumerate(head["solutions"]):
+    for i, (violation, status, evaluations) in enumerate(heads):
         own = {key.split(":", 1)[1]: a for key, a in arrays.items() if key.startswith(f"{i}:")}
         kept = {key[9:]: value for key, value in own.items() if key.startswith("quantity:")}
         at = Evaluation(own["theta"], own["J"], own["dJ"], own["H"], kept)
         solutions.append(
             Solution(at, own["learned"], own["weights"], violation, Status[status], evaluations)
         )
-    return solutions, head["cost"]
+    return solutions

@@ -8,7 +8,7 @@ from pathlib import Path
 from modefront.errors import suggestion
 from modefront.models.base import Model
 from modefront.models.chain import chain
-from modefront.study.kinds.sensors import read_sensors
+from modefront.study.kinds.sensors import read_outputs, read_sensors
 from modefront.study.reader import Table
 
 
@@ -33,6 +33,7 @@ def read_chain(table: Table, parameters: Sequence[str], _: Path) -> Model | None
     stiffness_names = _scales(table, "stiffness_parameters", springs, parameters)
     mass_names = _scales(table, "mass_parameters", n, parameters)
     sensors = read_sensors(table, n or None, default=None)
+    outputs = read_outputs(table, n or None, sensors or [f"floor{i + 1}" for i in range(n)])
     if len(table.faults) > before or masses is None or stiffnesses is None:
         return None
     return chain(
@@ -43,6 +44,7 @@ def read_chain(table: Table, parameters: Sequence[str], _: Path) -> Model | None
         stiffness_parameters=stiffness_names,
         mass_parameters=mass_names,
         sensors=sensors,
+        outputs=outputs,
     )
 
 

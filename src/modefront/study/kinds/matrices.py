@@ -12,7 +12,7 @@ from modefront.errors import Fault, InputError, suggestion
 from modefront.models.base import Model
 from modefront.models.files import read_matrix
 from modefront.models.matrices import BASE, matrices
-from modefront.study.kinds.sensors import read_sensors
+from modefront.study.kinds.sensors import read_base, read_outputs, read_sensors
 from modefront.study.reader import Table
 
 
@@ -24,9 +24,12 @@ def read_matrices(table: Table, parameters: Sequence[str], folder: Path) -> Mode
     size = _common_size(table, {"stiffness": stiffness, "mass": mass})
     sensors = read_sensors(table, size)
     floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
+    outputs, base = read_outputs(table, size, sensors), read_base(table, size)
     if len(table.faults) > before or sensors is None:
         return None
-    return matrices(parameters, stiffness, mass, sensors, floating=floating)
+    return matrices(
+        parameters, stiffness, mass, sensors, floating=floating, outputs=outputs, base=base
+    )
 
 
 def _terms(

@@ -24,7 +24,7 @@ _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
     "constants": (fem.Section, ("A", "I_y", "I_z", "J")),
 }
 
-KEYS = ("material", "group", "support", "spring", "mass", "link", "sensors", "scale")
+KEYS = ("material", "group", "support", "spring", "mass", "link", "sensors", "outputs", "scale")
 """Tables that describe what the mesh is made of."""
 
 
@@ -42,11 +42,11 @@ def read_mesh_model(table: Table, parameters: Sequence[str], folder: Path) -> Mo
     if mesh is None:
         table.asked += KEYS  # what they say cannot be judged without the mesh
         return None
-    structure = _structure(table, parameters, mesh)
+    structure, outputs = _structure(table, parameters, mesh), _outputs(table)
     if len(table.faults) > before:
         return None
     try:
-        return mesh_model(structure, parameters, floating=floating)
+        return mesh_model(structure, parameters, floating=floating, outputs=outputs)
     except fem.FemError as error:
         table.fault("", "a structure that can be assembled", str(error))
         return None
@@ -254,14 +254,29 @@ def _links(model: Table, mesh: Mesh) -> list[fem.Link]:
 
 
 def _sensors(model: Table) -> list[fem.Sensor]:
-    out: list[fem.Sensor] = []
     table = model.table("sensors", "a table of sensors")
-    for name in table.values if table else ():
-        one = table.table(name, "a table node or at, and direction") if table else None
-        if table is None or one is None:
-            continue
+    if table is None:
+        return []
+    for name in table.values:
         if is_reserved(name, table.values):
             table.fault(repr(name), "a name that a column of the data can have", repr(name))
+    if not table.values:
+        table.fault("", "at least one sensor", "none")
+    return _places(table)
+
+
+def _outputs(model: Table) -> list[fem.Sensor]:
+    """Return the places besides the sensors that predictions may name."""
+    table = model.table("outputs", "a table of outputs", default=None)
+    return _places(table) if table is not None else []
+
+
+def _places(table: Table) -> list[fem.Sensor]:
+    out: list[fem.Sensor] = []
+    for name in table.values:
+        one = table.table(name, "a table node or at, and direction")
+        if one is None:
+            continue
         node = one.integer("node", 0, 10**9, default=None)
         at = one.numbers("at", "3 coordinates", lambda x: len(x) == 3, default=None)
         direction = _direction(one, "direction")
@@ -271,8 +286,6 @@ def _sensors(model: Table) -> list[fem.Sensor]:
             one.fault("", "either node or at", "both" if node is not None else "neither")
         elif direction is not None:
             out.append(fem.Sensor(name, node if at is None else at, direction, tolerance))
-    if table is not None and not table.values:
-        table.fault("", "at least one sensor", "none")
     return out
 
 

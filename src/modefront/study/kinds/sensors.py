@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import Any
 
 from modefront.data.csv import is_reserved
@@ -17,9 +17,43 @@ def read_sensors(
     table = model.table("sensors", "a table of sensors, name = degree of freedom", default)
     if table is None:
         return None
+    out = _read(table, size, lambda name: not is_reserved(name, table.values))
+    if not table.values:
+        table.fault("", "at least one sensor", "none")
+    return out
+
+
+def read_outputs(
+    model: Table, size: int | None, sensors: Iterable[str] | None
+) -> dict[str, SensorSpec]:
+    """Return the places besides the sensors that predictions may name, given as these are."""
+    expected = "a table of outputs, name = degree of freedom"
+    table = model.table("outputs", expected, default=None)
+    if table is None:
+        return {}
+    out = _read(table, size, is_name)
+    for name in set(sensors or ()).intersection(table.values):
+        table.fault(name, "a name that no sensor has", f"'{name}'")
+    return out
+
+
+def read_base(model: Table, size: int | None) -> dict[str, SensorSpec]:
+    """Return which degrees of freedom move with the base, for each direction of its motion."""
+    expected = "a table, direction = list of the degrees of freedom that move with the base"
+    table = model.table("base", expected, default=None)
+    if table is None:
+        return {}
+    for name, value in table.values.items():
+        if isinstance(value, list) and all(map(_is_dof, value)):
+            table.values[name] = [[dof, 1.0] for dof in value]
+    return _read(table, size, is_name)
+
+
+def _read(table: Table, size: int | None, is_right: Callable[[str], bool]) -> dict[str, SensorSpec]:
+    """Return named degrees of freedom, weighted or not; ``is_right`` tells good names."""
     out: dict[str, SensorSpec] = {}
     for name, value in table.values.items():
-        if not is_name(name) or name != name.strip() or is_reserved(name, table.values):
+        if not is_name(name) or name != name.strip() or not is_right(name):
             table.fault(repr(name), "a name that a column of the data can have", repr(name))
             continue
         pairs = [[value, 1.0]] if _is_dof(value) else value
@@ -35,8 +69,6 @@ def read_sensors(
             table.fault(name, "weights that do not cancel", describe(pairs))
         else:
             out[name] = [(int(dof), float(weight)) for dof, weight in pairs]
-    if not table.values:
-        table.fault("", "at least one sensor", "none")
     return out
 
 

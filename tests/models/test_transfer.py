@@ -1,0 +1,190 @@
+"""Models between their ports: dense, sparse and meshed ones, massless and rigid-body motion."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse
+
+from modefront import fem
+from modefront._typing import Floats
+from modefront.errors import ModelError
+from modefront.models.matrices import MatrixModel, SensorSpec, affine, matrices, select
+from modefront.models.mesh import mesh_model
+from modefront.models.ports import Ports, Transfer
+from modefront.predict.structure import modes_reaching
+from modefront.response import ModalSystem, frequency_response
+
+N = 60
+PLACES: dict[str, SensorSpec] = {"low": 3, "pair": [(40, 0.5), (41, 0.5)]}
+OUTPUTS: dict[str, SensorSpec] = {"top": N - 1, "massless": 20}
+SHAKEN = Ports(({"top": 1.0}, {"top": 1.0, "low": -1.0}, {"massless": 2.0}), base="x")
+PUSHED = Ports(SHAKEN.outputs, ({"top": 1.0}, {"pair": 3.0, "massless": -1.0}))
+THETA = np.array([1.3])
+
+
+def spring_chain(*, grounded: bool = True, dense: bool) -> MatrixModel:
+    """Return a chain with massless degrees of freedom, as dense or as sparse matrices."""
+    k = 1000.0 * (1 + 0.3 * np.cos(np.arange(N)))
+    k[0] *= grounded
+    K = np.diag(k) + np.diag(np.append(k[1:], 0.0)) - np.diag(k[1:], 1) - np.diag(k[1:], -1)
+    m = 1 + 0.2 * np.sin(np.arange(N))
+    m[20:25] = 0.0
+    stiffness = affine(["k"], {"k": scipy.sparse.csr_array(K)}, N)
+    mass = affine(["k"], {"base": scipy.sparse.csr_array(np.diag(m))}, N)
+    return MatrixModel(
+        ("k",),
+        tuple(PLACES),
+        select(PLACES, N),
+        stiffness.dense() if dense else stiffness,
+        mass.dense() if dense else mass,
+        dict(zip(OUTPUTS, select(OUTPUTS, N).toarray(), strict=True)),
+        {"x": np.ones(N)},
+    )
+
+
+def products(found: Transfer) -> Floats:
+    """Return the products of modal loads and shapes, which no sign changes: (o, i, modes)."""
+    out: Floats = np.einsum("om,mi->oim", found.output, found.input)
+    return out
+
+
+def agree(one: Transfer, other: Transfer) -> None:
+    assert one.modes.lam == pytest.approx(other.modes.lam, rel=1e-9, abs=1e-9)
+    scale = np.abs(products(other)).max()
+    assert products(one) == pytest.approx(products(other), abs=1e-9 * scale)
+    assert (one.static is None) == (other.static is None)
+    if one.static is not None and other.static is not None:
+        assert one.static == pytest.approx(other.static, rel=1e-9)
+    if one.rigid is not None and other.rigid is not None:
+        assert one.rigid == pytest.approx(other.rigid, rel=1e-12)
+
+
+@pytest.mark.parametrize("ports", [SHAKEN, PUSHED], ids=["base", "forces"])
+@pytest.mark.parametrize("grounded", [True, False])
+def test_sparse_and_dense_models_agree(ports: Ports, grounded: bool) -> None:
+    dense = spring_chain(grounded=grounded, dense=True)
+    sparse = spring_chain(grounded=grounded, dense=False)
+    one, other = dense.transfer(THETA, 6, ports), sparse.transfer(THETA, 6, ports)
+    agree(one, other)
+    assert (one.static is None) == (not grounded)
+    if not grounded:
+        assert one.modes.lam[0] == other.modes.lam[0] == 0
+    assert dense.counts.eigenproblems == sparse.counts.eigenproblems == 1
+
+
+@pytest.mark.parametrize("dense", [True, False])
+def test_few_modes_and_the_static_response_are_the_direct_solution(dense: bool) -> None:
+    """Massless degrees of freedom have no part in any mode: only the correction has theirs."""
+    model = spring_chain(dense=dense)
+    parts = model.stiffness.at(THETA), model.mass.at(THETA)
+    K, M = (scipy.sparse.csr_array(A).toarray() for A in parts)
+    columns = [1.0 * np.eye(N)[N - 1], 1.5 * (np.eye(N)[40] + np.eye(N)[41]) - np.eye(N)[20]]
+    rows = np.array([np.eye(N)[N - 1], np.eye(N)[N - 1] - np.eye(N)[3], 2 * np.eye(N)[20]])
+    found = model.transfer(THETA, 12, PUSHED)
+    assert found.static == pytest.approx(rows @ np.linalg.solve(K, np.array(columns).T), rel=1e-9)
+    omega = np.sqrt(found.modes.lam)
+    system = ModalSystem(omega, np.full(12, 1e-6), found.input, found.output, found.static)
+    w = 0.5 * (omega[0] + omega[1])
+    exact = rows @ np.linalg.solve(K - w**2 * M, np.array(columns).T)
+    error = abs(frequency_response(system, [w])[0].real - exact).max()
+    bare = ModalSystem(omega, np.full(12, 1e-6), found.input, found.output)
+    # What the correction leaves is smaller by (w / omega_13)^2.
+    assert error < 0.02 * abs(frequency_response(bare, [w])[0].real - exact).max()
+
+
+def test_rigid_body_motion_is_that_of_newtons_law() -> None:
+    """Far below its first elastic mode, a free structure is one mass."""
+    model = spring_chain(grounded=False, dense=True)
+    found = model.transfer(THETA, N - 5, PUSHED)
+    system = ModalSystem(np.sqrt(found.modes.lam), np.zeros(N - 5), found.input, found.output)
+    w = 1e-3 * system.omega[1]
+    mass = 1 + 0.2 * np.sin(np.arange(N))
+    mass[20:25] = 0.0
+    assert frequency_response(system, [w])[0, 0, 0] == pytest.approx(
+        -1 / (mass.sum() * w**2), rel=1e-4
+    )
+
+
+def test_a_base_that_moves_everything_moves_the_whole_mass() -> None:
+    """The squares of the modal loads of base motion add up to the mass that can move."""
+    model = spring_chain(dense=True)
+    found = model.transfer(THETA, N - 5, SHAKEN)
+    mass = 1 + 0.2 * np.sin(np.arange(N))
+    mass[20:25] = 0.0
+    assert (found.input**2).sum() == pytest.approx(mass.sum(), rel=1e-10)
+    assert found.rigid == pytest.approx(np.array([[1.0], [0.0], [2.0]]))
+
+
+def cantilever(elements: int) -> MatrixModel:
+    X, cells = fem.grids.line(np.zeros(3), np.array([0.0, 0.0, 2.0]), elements)
+    steel = fem.Material(E=210e9, nu=0.3, rho=7850.0)
+    structure = fem.Structure(
+        nodes=X,
+        groups=(fem.Beams("mast", cells, steel, fem.rectangle(0.04, 0.03), (1.0, 0.0, 0.0)),),
+        supports=(fem.Support(0),),
+        masses=(fem.Mass("head", elements, 20.0),),
+        links=(fem.Link(elements - 1, [elements]),),
+        sensors=(fem.Sensor("top", elements, "x"),),
+        parameters=(fem.Parameter("E", "E", ("mast",)),),
+    )
+    middle = fem.Sensor("middle", elements // 2, "x")
+    return mesh_model(structure, ["E"], outputs=[middle])
+
+
+@pytest.mark.parametrize("elements", [10, 60])
+def test_a_mesh_is_what_its_matrices_are(elements: int) -> None:
+    mesh = cantilever(elements)
+    assert mesh.places == ("top", "middle")
+    assert mesh.directions == ("x", "y", "z")
+    K, M = (
+        scipy.sparse.csr_array(A) for A in (mesh.stiffness.at(np.ones(1)), mesh.mass.at(np.ones(1)))
+    )
+    rows = {
+        "top": mesh.selection.toarray()[0],
+        "middle": mesh.outputs["middle"],
+        "x": mesh.base["x"],
+    }
+    spec = {
+        name: [(int(dof), float(row[dof])) for dof in np.flatnonzero(row)]
+        for name, row in rows.items()
+    }
+    given = matrices(
+        ["E"],
+        {"E": K},
+        {"base": M},
+        {"top": spec["top"]},
+        outputs={"middle": spec["middle"]},
+        base={"x": spec["x"]},
+    )
+    outputs = ({"top": 1.0}, {"top": 1.0, "middle": -2.0})
+    for ports in (Ports(outputs, base="x"), Ports(outputs, ({"middle": 5.0},))):
+        one, other = (model.transfer(np.array([1.2]), 5, ports) for model in (mesh, given))
+        assert one.modes.lam == pytest.approx(other.modes.lam, rel=1e-8)
+        assert one.static == pytest.approx(other.static, rel=1e-7)
+        assert products(one) == pytest.approx(products(other), rel=1e-6, abs=1e-9)
+
+
+def test_static_deflection_of_a_cantilever() -> None:
+    """F (3 L x^2 - x^3) / 6EI half-way up; shear adds less than a thousandth."""
+    model = cantilever(20)
+    found = model.transfer(np.ones(1), 2, Ports(({"middle": 1.0},), ({"top": 1.0},)))
+    assert found.static is not None
+    inertia, F, L, x = 0.04**3 * 0.03 / 12, 1.0, 2.0, 1.0
+    bending = F * (3 * L * x**2 - x**3) / (6 * 210e9 * inertia)
+    # The link at the top makes the last tenth of a metre rigid, which does not change this.
+    assert found.static[0, 0] == pytest.approx(bending, rel=1e-3)
+
+
+def test_how_many_modes_reach_a_frequency() -> None:
+    model = spring_chain(dense=True)
+    f = model.modes(THETA, N - 5, derivatives=False).frequency
+    for count in (1, 2, 7, 30, N - 5):
+        between = f[count - 1] * (1 - 1e-9)
+        assert modes_reaching(model, THETA, between, 3) == count
+    assert modes_reaching(model, THETA, 2 * f[-1], 3) == N - 5, "all that have a finite frequency"
+
+
+def test_more_modes_than_there_are() -> None:
+    with pytest.raises(ModelError, match="only 55 have a finite frequency"):
+        spring_chain(dense=True).transfer(THETA, 56, PUSHED)

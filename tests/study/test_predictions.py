@@ -1,0 +1,499 @@
+"""Predictions through the whole path of a study, against solutions that share nothing with it."""
+
+import sys
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.linalg
+import xarray as xr
+from numpy.typing import NDArray
+from scipy.signal import lsim
+
+import modefront as mf
+from modefront._typing import Floats
+from modefront.cli import figures
+from modefront.cli.main import main
+from modefront.errors import InputError, ModelError, UnfinishedError
+from modefront.models.matrices import MatrixModel
+from modefront.predict import Passage, PeakResponse
+from modefront.reliability.gaussian import gaussian_response
+from modefront.study import store
+from modefront.study.examples import write_example
+from modefront.study.results import read
+
+Complex = NDArray[np.complex128]
+
+MASSES = np.array([2.0, 1.0])
+STIFFNESS = np.array([3000.0, 2000.0])
+ZETA = np.array([0.02, 0.03])
+
+STUDY = """
+[study]
+name = "two masses"
+seed = 3
+
+[data]
+file = "modes.csv"
+
+[model]
+kind = "chain"
+masses = [2.0, 1.0]
+stiffnesses = [3000.0, 2000.0]
+stiffness_parameters = ["k1", "k2"]
+sensors = { low = 0, high = 1 }
+outputs = { middle = [[0, 0.5], [1, 0.5]] }
+
+[[parameter]]
+name = "k1"
+nominal = 1.0
+bounds = [0.2, 5.0]
+
+[[parameter]]
+name = "k2"
+nominal = 1.0
+bounds = [0.2, 5.0]
+
+[[group]]
+name = "frequencies"
+frequency = "all"
+
+[[group]]
+name = "shapes"
+shape = "all"
+
+[pareto]
+points = 3
+
+[pairing]
+method = "order"
+
+[search]
+starts = 1
+limit = 1
+evolutions = 0
+"""
+
+FRF = """
+[[predict.frf]]
+name = "pushed"
+force = { high = 2.0 }
+response = { low = "low", drift = { high = 1, low = -1 } }
+band = [0.0, 20.0]
+damping = [0.02, 0.03]
+quantity = "mobility"
+
+[[predict.frf]]
+name = "shaken"
+base = "x"
+response = ["low", "middle"]
+quantity = "accelerance"
+
+[[predict.frf]]
+name = "as if shaken"
+force = { low = -2.0, high = -1.0 }
+response = ["low", "middle"]
+quantity = "accelerance"
+
+[[predict.frf]]
+name = "ridden"
+base = "x"
+response = ["high"]
+damping = 0.02
+quantity = "absolute accelerance"
+
+[[predict.frf]]
+name = "between"
+force = "low"
+response = ["low"]
+band = [0.1, 0.2]
+modes = 2
+"""
+
+PASSAGE = """
+[[predict.first_passage]]
+name = "drifts"
+base = "x"
+response = { lower = "low", upper = { high = 1, low = -1 } }
+density = 0.05
+sided = "one"
+filter = { frequency = 4.0, damping = 0.6 }
+modulation = [[0.0, 0.0], [2.0, 1.0], [4.0, 0.5]]
+levels = [0.02, 0.025]
+duration = 6.0
+step = 0.01
+samples = 1500
+damping = 0.02
+"""
+
+DATA = """set,mode,frequency,damping,low,high
+a,1,4.2,0.02,0.6,1.0
+a,2,10.5,,1.0,-0.7
+b,1,4.1,0.04,,1.0
+"""
+
+
+def write_study(folder: Path, predictions: str) -> Path:
+    (folder / "modes.csv").write_text(DATA)
+    (folder / "study.toml").write_text(STUDY + predictions)
+    return folder / "study.toml"
+
+
+def run(folder: Path, predictions: str) -> xr.Dataset:
+    return mf.run(mf.load(write_study(folder, predictions)), folder / "results")
+
+
+@pytest.fixture(scope="module")
+def results(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
+    return run(tmp_path_factory.mktemp("all"), FRF + PASSAGE)
+
+
+def matrices(theta: Floats) -> tuple[Floats, Floats, Floats, Floats]:
+    """Return K, M, the circular frequencies and the modes of the chain."""
+    k1, k2 = STIFFNESS * theta
+    K = np.array([[k1 + k2, -k2], [-k2, k2]])
+    M = np.diag(MASSES)
+    lam, phi = scipy.linalg.eigh(K, M)
+    return K, M, np.sqrt(lam), phi
+
+
+def direct(theta: Floats, zeta: Floats, load: Floats, output: Floats, f: Floats) -> Complex:
+    """Return output (K - w^2 M + i w C)^-1 load at frequencies in Hz."""
+    K, M, omega, phi = matrices(theta)
+    C = M @ phi @ np.diag(2 * zeta * omega) @ phi.T @ M
+    w = 2 * np.pi * f[:, None, None]
+    u = np.linalg.solve(K - w**2 * M + 1j * w * C, np.broadcast_to(load[:, None], (f.size, 2, 1)))
+    return np.asarray(output @ u, dtype=np.complex128)[:, 0]
+
+
+def assert_peaks(
+    data: xr.Dataset,
+    name: str,
+    zeta: Floats,
+    load: Floats,
+    output: Floats,
+    order: int,
+    rigid: float,
+) -> None:
+    """Assert that |T| of the direct solution has its greatest value where it was found."""
+    i = data["frf"].values.tolist().index(name)
+    low, high = data["frf_band"].values[i]
+
+    def size(theta: Floats, f: Floats) -> Floats:
+        w = 2j * np.pi * f
+        return np.abs(w**order * direct(theta, zeta, load, output, f) + rigid)
+
+    for theta, peak, frequency in zip(
+        data["theta"].values,
+        data["frf_peak"].values[:, i],
+        data["frf_peak_frequency"].values[:, i],
+        strict=True,
+    ):
+        # Ever finer grids about the greatest value.
+        middle, width = (low + high) / 2, high - low
+        for _ in range(5):
+            grid = np.linspace(middle - width / 2, middle + width / 2, 801)[1:-1]
+            sizes = size(theta, grid)
+            middle, width = grid[sizes.argmax()], width / 100
+        assert size(theta, np.array([frequency]))[0] == pytest.approx(peak, rel=1e-10)
+        assert peak == pytest.approx(sizes.max(), rel=1e-12)
+        assert frequency == pytest.approx(middle, rel=1e-7)
+
+
+def test_peaks_are_those_of_the_direct_solution(results: xr.Dataset) -> None:
+    force = np.array([0.0, 2.0])
+    for name, output in (("low", [1.0, 0.0]), ("drift", [-1.0, 1.0])):
+        assert_peaks(results, f"pushed: {name}", ZETA, force, np.array(output), 1, 0.0)
+    # Measured damping: 0.03 in the mean of the first mode, and so in the second one.
+    for name, output in (("low", [1.0, 0.0]), ("middle", [0.5, 0.5])):
+        zeta = np.array([0.03, 0.03])
+        assert_peaks(results, f"shaken: {name}", zeta, -MASSES, np.array(output), 2, 0.0)
+    zeta = np.array([0.02, 0.02])
+    assert_peaks(results, "ridden: high", zeta, -MASSES, np.array([0.0, 1.0]), 2, 1.0)
+
+
+def test_a_moving_base_is_the_force_of_inertia(results: xr.Dataset) -> None:
+    for name in ("low", "middle"):
+        one, other = (
+            results["frf_peak"].sel(frf=f"{key}: {name}") for key in ("shaken", "as if shaken")
+        )
+        assert one.values == pytest.approx(other.values, rel=1e-12)
+
+
+def test_a_band_without_a_peak_is_said_to_have_none(results: xr.Dataset) -> None:
+    assert np.isnan(results["frf_peak"].sel(frf="between: low")).all()
+    assert np.isnan(results["frf_peak_range"].sel(frf="between: low")).all()
+
+
+def test_ranges_are_those_of_the_pareto_optimal_models(results: xr.Dataset) -> None:
+    optimal = results.isel(point=results["pareto"].values)
+    for name in ("frequency", "frf_peak", "frf_peak_frequency", "failure_probability"):
+        least, greatest, spread = results[f"{name}_range"].values
+        np.testing.assert_array_equal(least, optimal[name].min("point"))
+        np.testing.assert_array_equal(greatest, optimal[name].max("point"))
+        np.testing.assert_array_equal(spread, greatest / least)
+    assert results["range"].values.tolist() == ["minimum", "maximum", "spread"]
+
+
+def monte_carlo(theta: Floats, dt: float, samples: int, seed: int) -> Floats:
+    """Return the greatest drift of each sample, by SciPy's integrator of the whole structure."""
+    K, M, omega, phi = matrices(theta)
+    C = M @ phi @ np.diag(0.04 * omega) @ phi.T @ M
+    soil, damping = 2 * np.pi * 4.0, 0.6
+    A = np.zeros((6, 6))
+    A[:2, 2:4] = np.eye(2)
+    A[2:4, :2], A[2:4, 2:4] = -np.linalg.solve(M, K), -np.linalg.solve(M, C)
+    A[2:4, 4:] = -np.array([soil**2, 2 * damping * soil])
+    A[4, 5], A[5, 4:] = 1.0, [-(soil**2), -2 * damping * soil]
+    B = np.zeros((6, 1))
+    B[5] = 1.0
+    drifts = np.zeros((2, 6))
+    drifts[0, 0], drifts[1, :2] = 1.0, [-1.0, 1.0]
+    steps = round(6.0 / dt)
+    t = np.arange(steps + 1) * dt
+    q = np.interp(t[:-1] + dt / 2, [0.0, 2.0, 4.0], [0.0, 1.0, 0.5])
+    rng = np.random.default_rng(seed)
+    out = np.zeros(samples)
+    pulse = np.zeros(steps + 1)
+    pulse[0] = 1.0
+    _, h, _ = lsim((A, B, drifts, np.zeros((2, 1))), pulse, t, interp=False)
+    for k in range(samples):
+        w = np.sqrt(np.pi * 0.05 / dt) * q * rng.standard_normal(steps)
+        x = [np.convolve(w, column)[:steps] for column in h[1:].T]
+        out[k] = np.abs(x).max()
+    return out
+
+
+def test_drift_probabilities_are_those_of_an_own_monte_carlo(results: xr.Dataset) -> None:
+    samples = 1500
+    for at in (0, -1):
+        theta = results["theta"].values[at]
+        largest = monte_carlo(theta, 0.01, samples, seed=at + 7)
+        for i, level in enumerate((0.02, 0.025)):
+            P = results["failure_probability"].values[at, i]
+            error = P * results["failure_variation"].values[at, i]
+            counted = float(np.mean(largest > level))
+            assert 0.01 < counted < 0.9
+            own = np.sqrt(counted * (1 - counted) / samples)
+            assert abs(P - counted) < 4 * np.hypot(error, own)
+
+
+def test_what_a_probability_depends_on_is_told_with_it(results: xr.Dataset) -> None:
+    told = {
+        "level": [0.02, 0.025],
+        "duration": [6.0] * 2,
+        "step": [0.01] * 2,
+        "density": [0.05] * 2,
+        "sided": ["one-sided"] * 2,
+        "samples": [1500] * 2,
+        "method": ["importance"] * 2,
+        "modes": [2] * 2,
+        "load": ["base along x"] * 2,
+        "halved_at": ["optimal-weights"] * 2,
+    }
+    for name, values in told.items():
+        assert results[f"failure_{name}"].values.tolist() == values
+    # Responses are smooth at this step: halving it makes little difference.
+    ratio, error = results["failure_halved"].values, results["failure_halved_error"].values
+    assert np.all(np.abs(ratio - 1) < 0.1 + 4 * error)
+
+
+def assert_same(one: xr.Dataset, other: xr.Dataset) -> None:
+    xr.testing.assert_identical(one.drop_attrs(), other.drop_attrs())
+    assert one.attrs == other.attrs
+
+
+def interrupt_at(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Interrupt the next run when it comes to write a piece with this in its name."""
+    write = store.write_piece
+
+    def stop(path: Path, *rest: Any) -> None:
+        if name in path.name:
+            monkeypatch.setattr(store, "write_piece", write)
+            raise KeyboardInterrupt
+        write(path, *rest)
+
+    monkeypatch.setattr(store, "write_piece", stop)
+
+
+def test_an_interrupted_run_predicts_the_same_digits(
+    results: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for piece in ("predict-shaken-nbi-2", "predict-drifts-edge", "half-step"):
+        interrupt_at(piece, monkeypatch)
+        with pytest.raises(KeyboardInterrupt):
+            run(tmp_path, FRF + PASSAGE)
+        assert not (tmp_path / "results" / "results.nc").exists()
+    assert_same(run(tmp_path, FRF + PASSAGE), results)
+
+
+def test_other_predictions_do_no_old_work_again(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    run(tmp_path, FRF)
+    written: list[str] = []
+    write = store.write_piece
+
+    def note(path: Path, *rest: Any) -> None:
+        written.append(path.name)
+        write(path, *rest)
+
+    monkeypatch.setattr(store, "write_piece", note)
+    again = run(tmp_path, FRF.replace("damping = [0.02, 0.03]", "damping = 0.05"))
+    assert len(written) == again.sizes["point"]
+    assert all(name.startswith("predict-pushed-") for name in written)
+    assert (tmp_path / "results" / "results.1.nc").exists(), "other results are kept"
+    run(tmp_path, "")
+    assert len(written) == again.sizes["point"]
+
+
+def test_eigenproblems_of_predictions_are_counted(results: xr.Dataset, tmp_path: Path) -> None:
+    plain = run(tmp_path, "")
+    predictions = 5 + 1
+    more = results.attrs["model_evaluations"] - plain.attrs["model_evaluations"]
+    assert more == predictions * plain.sizes["point"] + 1
+    for name in plain.variables:
+        np.testing.assert_array_equal(plain[name], results[name])
+
+
+def test_a_time_step_too_long_for_a_model_that_was_found(tmp_path: Path) -> None:
+    study = write_study(tmp_path, PASSAGE.replace("step = 0.01", "step = 0.024"))
+    text = study.read_text()
+    # The nominal model is too soft by far, and its step is long enough.
+    study.write_text(text.replace("nominal = 1.0", "nominal = 0.5"))
+    with pytest.raises(
+        InputError, match=r"\('drifts'\) step: expected at most 0\.02\d* s.*'nbi-1'"
+    ):
+        mf.run(mf.load(study), tmp_path / "results")
+    assert not (tmp_path / "results" / "results.nc").exists()
+
+
+def test_a_model_without_the_modes_that_are_wanted(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study = mf.load(write_study(tmp_path, FRF))
+
+    def refuse(*_: object) -> None:
+        raise ModelError("no such modes")
+
+    monkeypatch.setattr(MatrixModel, "transfer", refuse)
+    with pytest.raises(UnfinishedError, match="no prediction 'pushed' of 'nbi-1': no such modes"):
+        mf.run(study, tmp_path / "results")
+
+
+def test_several_inputs_have_noise_of_their_own(tmp_path: Path) -> None:
+    """Independent noises of densities 4 S and S at two places add up in the variance."""
+    quiet = PASSAGE.replace("samples = 1500", "samples = 2").replace("filter", "# ")
+    both = quiet.replace('base = "x"', 'force = [{ low = 2.0 }, "high"]')
+    study = mf.load(write_study(tmp_path, both))
+    (passage,) = study.predictions
+    assert isinstance(passage, Passage)
+    problem = passage.problem(study.problem, np.ones(2))
+    assert problem.system.input.shape == (2, 2)
+    total = gaussian_response(problem).deviation ** 2
+    parts = np.zeros_like(total)
+    for force in ("{ low = 2.0 }", '"high"'):
+        study = mf.load(write_study(tmp_path, quiet.replace('base = "x"', f"force = {force}")))
+        (one,) = study.predictions
+        assert isinstance(one, Passage)
+        parts += gaussian_response(one.problem(study.problem, np.ones(2))).deviation ** 2
+    assert total == pytest.approx(parts, rel=1e-9, abs=1e-12 * parts.max())
+
+
+def test_in_memory_and_from_a_file_are_the_same(results: xr.Dataset, tmp_path: Path) -> None:
+    study = mf.load(write_study(tmp_path, FRF + PASSAGE))
+    assert [one.name for one in study.predictions][-1] == "drifts"
+    data = mf.solve(
+        study.problem, points=3, seed=3, search=study.search, predictions=study.predictions
+    )
+    for name in results.variables:
+        np.testing.assert_array_equal(data[name], results[name])
+
+
+SHAKEN_BUILDING = """
+[[predict.frf]]
+name = "shaken"
+base = "x"
+response = ["floor3", "back", "side"]
+damping = 0.02
+
+[model.outputs]
+back = { node = 112, direction = "-x" }
+side = { node = 112, direction = "y" }
+"""
+
+
+def test_outputs_of_a_mesh(tmp_path: Path) -> None:
+    write_example("three-story-fe-c0", tmp_path)
+    study = tmp_path / "study.toml"
+    study.write_text(study.read_text() + SHAKEN_BUILDING)
+    loaded = mf.load(study)
+    (shaken,) = loaded.predictions
+    assert isinstance(shaken, PeakResponse)
+    found = shaken.at(loaded.problem, loaded.problem.start)
+    # Both ends of a floor move alike, and along x alone.
+    assert found["peak"][1] == pytest.approx(found["peak"][0], rel=1e-3)
+    assert not found["peak"][2] > 1e-3 * found["peak"][0]
+    first = loaded.problem.modes(loaded.problem.start, derivatives=False)[0].frequency[0]
+    assert found["frequency"][0] == pytest.approx(first, rel=1e-3)
+    # One mode of displacement: its participation 1.2 to 1.3, 1 / (2 zeta omega^2) of the base's.
+    amplitude = found["peak"][0] * 2 * 0.02 * (2 * np.pi * first) ** 2
+    assert 1.15 < amplitude < 1.35
+
+
+def command(*arguments: object) -> int:
+    before = sys.argv
+    sys.argv = ["modefront", *map(str, arguments)]
+    try:
+        with pytest.raises(SystemExit) as left:
+            main()
+    finally:
+        sys.argv = before
+    assert isinstance(left.value.code, int)
+    return left.value.code
+
+
+def test_show_prints_and_draws_predictions(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    quick = PASSAGE.replace("samples = 1500", "samples = 20")
+    data = run(tmp_path, FRF + quick)
+    assert command("show", tmp_path / "results") == 0
+    out = capsys.readouterr().out
+    for text in (
+        "pushed: force at 2 high; mobility, greatest peak from 0 to 20 Hz, 2 modes, damping 0.02",
+        "two-sided barrier) within 6 s, at rest at first; one-sided spectral density 0.05, time",
+        "half the time step multiplies P at optimal-weights by",
+        f"{data['frf_peak_range'].values[1, 0]:.5g}",
+        "spread",
+    ):
+        assert text in out
+    assert command("show", tmp_path / "results", "--figures") == 0
+    out = capsys.readouterr().out
+    names = ["frequencies", "mac", "frf-pushed", "frf-shaken", "frf-as-if-shaken", "frf-ridden"]
+    names += ["frf-between", "failure-drifts"]
+    paths = [tmp_path / "results" / "figures" / f"{name}.svg" for name in names]
+    assert out.splitlines() == [f"wrote {path}" for path in paths]
+    drawn = [path.read_bytes() for path in paths]
+    assert all(b"</svg>" in content for content in drawn)
+    assert [
+        p.read_bytes() for p in figures.write_figures(read(tmp_path / "results"), tmp_path)
+    ] == drawn
+
+    monkeypatch.setitem(sys.modules, "matplotlib", None)
+    assert command("show", tmp_path / "results", "--figures") == 2
+    assert "pip install modefront[figures]" in capsys.readouterr().err
+
+
+def test_models_are_drawn_without_a_front_too(results: xr.Dataset, tmp_path: Path) -> None:
+    single = results.isel(point=[not x.startswith("nbi-") for x in results["label"].values])
+    paths = figures.write_figures(single, tmp_path)
+    assert len(paths) == 8
+    assert all(path.read_bytes().endswith(b"</svg>\n") for path in paths)
+    plain = results.drop_dims(["frf", "failure", "range"])
+    names = [path.name for path in figures.write_figures(plain, tmp_path / "plain")]
+    assert names == ["frequencies.svg", "mac.svg"]
+    (tmp_path / "file").write_text("")
+    with pytest.raises(InputError, match="a folder that can be written to"):
+        figures.write_figures(plain, tmp_path / "file")
