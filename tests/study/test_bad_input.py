@@ -574,7 +574,7 @@ CONTRADICTIONS = [
     ('"mobility"', '"absolute accelerance"', "quantity: ... where forces act, found 'absolute acc"),
     ("modes = 2", "modes = 1", "modes: ... reach the end of the band, 15 Hz: 2, found 1, up to 4."),
     ("modes = 2", "modes = 2\nmode = 2", "('peak'): ... found 'mode' (did you mean 'modes'?)"),
-    ('"measured"', "[0.01]", "damping: expected a list of 2, one a mode, found 1 of them"),
+    ('damping = "measured"', "damping = [0.01]", "damping: expected a list of 2, one a mode, found 1 of them"),
     ('"measured"\nmodes = 2', "[0.1,0.1,0.1]", "damping: expected at most 2 ratios, as the model"),
     (
         "step = 0.02",
@@ -614,10 +614,10 @@ CONTRADICTIONS = [
         "[uncertainty] bootstrap: expected 0 with source = 'none', found 2",
     ),
     # what is no TOML
-    ("[study]", "[study", "file: expected TOML in UTF-8, found ... line 1"),
-    ("seed = 1", "seed =", "file: expected TOML in UTF-8, found ... line 3"),
-    ("seed = 1", "seed = 1\nseed = 2", "file: expected TOML in UTF-8, found ... line 4"),
-    ("[pareto]", "[study]", "file: expected TOML in UTF-8, found ... line 40"),
+    ("[study]", "[study", "file: expected TOML in UTF-8, found ... line "),
+    ("seed = 1", "seed =", "file: expected TOML in UTF-8, found ... line "),
+    ("seed = 1", "seed = 1\nseed = 2", "file: expected TOML in UTF-8, found ... line "),
+    ("[pareto]", "[study]", "file: expected TOML in UTF-8, found ... line "),
     ("seed = 1", f"seed = {'9' * 5000}", "file: expected TOML in UTF-8, found "),
     ("seed = 1", f"seed = {'[' * 20000}", "file: expected TOML in UTF-8, found "),
 ]
