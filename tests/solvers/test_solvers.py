@@ -163,6 +163,17 @@ def test_the_evolution_strategy_finds_a_basin() -> None:
     assert np.abs(theta).max() < 0.5
 
 
+def test_the_evolution_strategy_is_left_to_rugged_objectives() -> None:
+    def cost(limit: int, evolutions: int) -> int:
+        problem = box(many_minima, [-4, -4], [4, 4])
+        search = Search(starts=3, limit=limit, evolutions=evolutions)
+        explore(problem, weighted(np.array([1.0, 0.0])), np.random.default_rng(0), search)
+        return problem.counts["eigenproblems"]
+
+    assert cost(60, 4) == cost(60, 0), "the starts met the rule"
+    assert cost(3, 4) > cost(3, 0), "the starts did not suffice"
+
+
 def test_searches_are_repeated_exactly_with_the_same_seed() -> None:
     runs = []
     for _ in range(2):
