@@ -29,12 +29,23 @@ FLAT = 1e-10
 FAR = 1e-4
 """Inverse of the greatest step aimed at, in widths of the box: bounds what a flat B leads to."""
 
+HELD = 1e-10
+"""Distance from a bound at which a variable without constraints stays that its slope pushes on."""
+
 NORMAL = 0.8
 """Share of the box that the normal step may use, so that something is left to descend."""
 
 
 def solve_qp(B: Floats, g: Floats, A: Floats, b: Floats, lo: Floats, hi: Floats) -> Floats:
     """Return the step s, shape (p,), for B (p, p), A (k, p) and a box around the origin."""
+    held = ((lo > -HELD) & (g > 0)) | ((hi < HELD) & (g < 0))
+    if len(A) == 0 and held.any() and not held.all():
+        # What a bound holds back says nothing of the steps of the others.
+        s = np.zeros(g.size)
+        free = ~held
+        part = solve_qp(B[np.ix_(free, free)], g[free], A[:, free], b, lo[free], hi[free])
+        s[free], s[held] = part, np.where(g > 0, lo, hi)[held]
+        return s
     s_n, Z = _normal_step(A, b, lo, hi)
     if Z.shape[1] == 0:
         return s_n
@@ -70,11 +81,15 @@ def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> tuple[Floats, 
 def _least_distance(T: Floats, offset: Floats, lo: Floats, hi: Floats) -> Floats:
     """Return the shortest q with lo <= offset + T q <= hi."""
     G = np.vstack([T, -T])
-    h = np.concatenate([lo - offset, offset - hi])
+    return least_distance(G, np.concatenate([lo - offset, offset - hi]))[0]
+
+
+def least_distance(G: Floats, h: Floats) -> tuple[Floats, Floats]:
+    """Return the shortest q with G q >= h, and its multipliers: q = G^T multipliers."""
     scale = np.maximum(np.linalg.norm(G, axis=1), np.finfo(float).tiny)
     E = np.vstack([(G / scale[:, None]).T, h / scale])
     f = np.zeros(len(E))
     f[-1] = 1.0
     u, _ = scipy.optimize.nnls(E, f)
     residual = E @ u - f
-    return -residual[:-1] / residual[-1]
+    return -residual[:-1] / residual[-1], -u / (scale * residual[-1])

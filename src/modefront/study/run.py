@@ -11,11 +11,13 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import UnfinishedError
+from modefront.solvers.advance import simplex
 from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.edges import EXACT, Edge, edge, near_best, sample, typical_sizes
 from modefront.solvers.explore import Search, explore
-from modefront.solvers.nbi import nbi, payoff, simplex
+from modefront.solvers.nbi import nbi
+from modefront.solvers.payoff import payoff
 from modefront.solvers.pieces import Gap, gaps
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import weighted
@@ -92,6 +94,7 @@ def pareto_front(
             raise UnfinishedError(f"no minimum of group '{name}' was found from any start")
         edges.append(found)
     bests = [one.best for one in edges]
+    minima_of_one = [one for each in edges for one in each.minima]
     least = np.array([one.best.at.J[i] for i, one in enumerate(edges)])
 
     models: list[tuple[str, Solution]] = []
@@ -120,11 +123,11 @@ def pareto_front(
             for i, (name, one) in enumerate(zip(problem.objectives, bests, strict=True))
         ]
         bests = [found[0] for found in ends]
-    target = payoff(bests, sizes) if n > 1 else None
+    target = payoff(bests, sizes, minima_of_one) if n > 1 else None
     along: Sequence[Solution] = []
     breaks: list[Gap] = []
     if target is not None and lattice is not None:
-        along = nbi(problem, bests, target, lattice, checkpoint)
+        along = nbi(problem, bests, target, lattice, checkpoint, minima_of_one)
         if n == 2:
             J = np.array([one.at.J for one in along])
             breaks = gaps(problem, along, nondominated(J), target.scale, checkpoint)
