@@ -15,6 +15,7 @@ from rich.table import Table
 
 from modefront.study.check import Findings
 from modefront.study.file import Study
+from modefront.study.results import front_points, not_converged
 
 _WIDTH = 110
 
@@ -79,16 +80,17 @@ def print_findings(study: Study, findings: Findings) -> None:
 def print_summary(data: xr.Dataset, folder: Path) -> None:
     """Print what a run has found, in a few lines."""
     console = _console()
-    nbi = _front(data)
-    optimal = int(data["pareto"].values[nbi].sum())
+    front = front_points(data)
+    optimal = int(data["pareto"].values[front].sum())
     _print(console, f"{data.attrs.get('study', '')}: results in {folder}")
-    if nbi.size:
-        cost = data.attrs["nbi_evaluations"] / nbi.size
+    if front.size:
+        cost = data.attrs["front_evaluations"] / front.size
         _print(
             console,
-            f"  {optimal} of {nbi.size} points of the front are Pareto optimal; "
+            f"  {optimal} of {front.size} points of the front are Pareto optimal; "
             f"{data.attrs['model_evaluations']} eigenproblems in all, {cost:.1f} a point",
         )
+        _print(console, f"  {in_numbers(data)}")
     for line in remarks(data):
         _print(console, f"  {line}")
     _print(console, f"next: modefront show {folder}")
@@ -137,10 +139,28 @@ def remarks(data: xr.Dataset) -> list[str]:
     bounded = _at_bounds(data)
     if bounded:
         out.append(f"parameters at a bound: {bounded}")
-    failed = data["label"].values[~data["converged"].values]
-    if failed.size:
+    failed = not_converged(data)
+    if failed:
         out.append(f"not converged: {', '.join(failed)}")
+    if (data["status"].values == "sampled").any():
+        out.append(
+            f"{data.attrs['method']} has no test of convergence: it stopped when its "
+            f"{data.attrs['front_evaluations']} evaluations were spent, and its points do not "
+            "count as converged"
+        )
     return out
+
+
+def in_numbers(data: xr.Dataset) -> str:
+    """Return how well the front is covered."""
+    attrs = data.attrs
+    text = (
+        f"hypervolume {attrs['hypervolume']:.5f} up to 1.1, IGD+ {attrs['igd_plus']:.2e} to all "
+        f"that was found, largest gap {attrs['largest_gap']:.3f}, in units of the ranges over the "
+        "edges"
+    )
+    missing = np.isnan(attrs["hypervolume"])
+    return text + (" (hypervolume: pip install modefront[metrics])" if missing else "")
 
 
 def _iteration(data: xr.Dataset) -> str:
@@ -165,7 +185,7 @@ def _poor_pairs(data: xr.Dataset) -> list[str]:
                 f"measured mode {r} resembles its model mode poorly (MAC below 0.5) at "
                 f"{', '.join(data['label'].values[column])}"
             )
-    front = _front(data)
+    front = front_points(data)
     pairs = data["paired_mode"].values[front]
     for r, column in zip(data["mode"].values, pairs.T, strict=True):
         for i in np.flatnonzero(np.diff(column)).tolist():
@@ -244,10 +264,12 @@ def print_results(data: xr.Dataset) -> None:
     console.print(minima)
     for line in remarks(data):
         _print(console, line)
+    if front_points(data).size:
+        _print(console, in_numbers(data))
     _print(
         console,
         f"{attrs['model_evaluations']} eigenproblems in all, "
-        f"{attrs['nbi_evaluations']} of them for the points of the front",
+        f"{attrs['front_evaluations']} of them for the points of the front",
     )
 
 
@@ -273,11 +295,6 @@ def _plain(values: Any) -> Any:
     if isinstance(values, float) and not np.isfinite(values):
         return None
     return values
-
-
-def _front(data: xr.Dataset) -> np.ndarray[Any, np.dtype[np.intp]]:
-    """Return the positions of the points of the front."""
-    return np.flatnonzero([label.startswith("nbi-") for label in data["label"].values])
 
 
 def _vector(values: np.ndarray[Any, Any]) -> str:

@@ -12,6 +12,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import partial
 from itertools import combinations
+from math import comb
 from typing import Protocol
 
 import numpy as np
@@ -56,6 +57,21 @@ def simplex(objectives: int, divisions: int) -> Simplex:
     return Simplex(np.diff(ends, axis=1)[::-1] - 1)
 
 
+def default_points(objectives: int) -> int:
+    """Return how many points lie along each edge if nothing else is wanted: 20, or fewer of many.
+
+    >>> [default_points(n) for n in (2, 3, 6)]
+    [20, 20, 6]
+    """
+    fitting = (points for points in range(20, 2, -1) if size(objectives, points) <= MANY)
+    return next(fitting, 2)
+
+
+def size(objectives: int, points: int) -> int:
+    """Return the number of points of the simplex with so many along each edge."""
+    return comb(points + objectives - 2, objectives - 1)
+
+
 def neighbours(place: Place) -> list[Place]:
     """Return the points of the lattice one step from one, within the simplex or beyond it."""
     n = len(place)
@@ -93,6 +109,9 @@ class Programmes(Protocol):
 
 BETTER = 1e-7
 """Difference of two values below which the solutions are the same."""
+
+MANY = 300
+"""Points of the simplex that are not exceeded if nothing else is wanted."""
 
 SAME = 1e-6
 """Distance of two points, over the ranges of the objectives, below which they are one."""

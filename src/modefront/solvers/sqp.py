@@ -53,6 +53,7 @@ class Status(Enum):
     CONVERGED = "converged"
     STALLED = "no step improves it further: the objectives are not smooth here, or bounds conflict"
     EXHAUSTED = "the limit of iterations was reached: more iterations, or another start"
+    SAMPLED = "the method has no tolerance: more evaluations, or normal-boundary intersection"
     INFEASIBLE = "the model cannot be evaluated at the start: narrower bounds, or another start"
 
 

@@ -14,6 +14,7 @@ from modefront.errors import Fault, InputError
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.file import Study
+from modefront.study.quality import indicators
 from modefront.study.run import Front, ignore, pareto_front
 from modefront.study.store import PIECES, Store
 from modefront.study.tables.settings import Pareto
@@ -33,16 +34,20 @@ class Progress:
 def solve(
     problem: UpdatingProblem,
     *,
-    points: int = Pareto.points,
+    method: str = Pareto.method,
+    points: int | None = None,
+    refined: float | None = None,
+    population: int = Pareto.population,
+    evaluations: int = Pareto.evaluations,
     tolerance: float = 0.0,
     seed: int = 0,
     search: Search | None = None,
 ) -> xr.Dataset:
     """Return all Pareto-optimal models, edges and weighted models of a problem.
 
-    ``points`` lie along each edge of the simplex of objectives; an edge may exceed the least value
-    of its group by the share ``tolerance``. Raises UnfinishedError where
-    no minimum of a group can be found.
+    The arguments are those of the study file, and ``refined``, for two groups, the distance of
+    neighbours on the front above which there are to be more points between them, in units of the
+    ranges of the objectives. Raises UnfinishedError where no minimum of a group can be found.
     """
     from modefront.study.results import dataset
 
@@ -50,23 +55,32 @@ def solve(
     front = pareto_front(
         problem,
         problem.properties,
+        method=method,
         points=points,
+        refined=refined,
+        population=population,
+        evaluations=evaluations,
         tolerance=tolerance,
         seed=seed,
         search=search,
         checkpoint=store,
     )
-    return dataset(problem, front, _attributes(front, store, seed))
+    return dataset(problem, front, _attributes(front, store, seed, refined))
 
 
 def run(
-    study: Study, folder: Path, *, fresh: bool = False, progress: Progress | None = None
+    study: Study,
+    folder: Path,
+    *,
+    fresh: bool = False,
+    refined: float | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Do the work of a study, write ``results.nc`` into a folder and return what it holds.
 
     Pieces of work that an earlier run of the same inputs has left there are not done again;
-    ``fresh`` sets them aside. Raises InputError where the folder cannot be written to and
-    UnfinishedError where the work cannot be done.
+    ``fresh`` sets them aside; ``refined`` is that of `solve`. Raises InputError where the folder
+    cannot be written to and UnfinishedError where the work cannot be done.
     """
     from modefront.study.results import FILE, dataset, write
 
@@ -85,7 +99,11 @@ def run(
     front = pareto_front(
         problem,
         problem.properties,
+        method=study.pareto.method,
         points=study.pareto.points,
+        refined=refined,
+        population=study.pareto.population,
+        evaluations=study.pareto.evaluations,
         tolerance=study.pareto.tolerance,
         seed=study.seed,
         search=study.search,
@@ -94,20 +112,34 @@ def run(
         expect=progress.expect,
     )
     data = dataset(problem, front, {"study": study.name, "inputs": study.digest})
-    data.attrs |= _attributes(front, store, study.seed)
+    data.attrs |= _attributes(front, store, study.seed, refined)
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)
     return data
 
 
-def _attributes(front: Front, store: Store, seed: int) -> dict[str, str | int | float]:
+def check_refinable(study: Study, refined: float | None) -> None:
+    """Raise InputError where a front is to be refined that is not one of two groups by NBI."""
+    groups = len(study.problem.objectives)
+    if refined is not None and (groups != 2 or study.pareto.method != "nbi"):
+        found = f"{groups} groups, method '{study.pareto.method}'"
+        raise InputError(Fault(str(study.file), "--refine", "two groups and method 'nbi'", found))
+
+
+def _attributes(
+    front: Front, store: Store, seed: int, refined: float | None
+) -> dict[str, str | int | float]:
     """Return what else is known: version, seed, cost, and remarks on what was found."""
     return {
         "version": modefront.__version__,
         "seed": seed,
         "model_evaluations": store.total()["eigenproblems"],
+        "method": front.method,
+        "front_evaluations": store.total(f"{front.method}-")["eigenproblems"],
         "nbi_evaluations": store.total("nbi-")["eigenproblems"],
-        "front_is_a_point": int(front.scale is None),
+        "front_is_a_point": int(front.target is None),
+        **({} if refined is None else {"refined": refined}),
+        **indicators(front),
     }
 
 
