@@ -63,6 +63,8 @@ weights = { frequencies = 1.0, shapes = 2.0 }
 [pareto]
 method = "nbi"
 points = 5
+population = 20
+evaluations = 2000
 
 [pairing]
 method = "mac"
@@ -271,9 +273,21 @@ KEYS = [
         '1.0 [1.0,2.0] "equal" true nan',
     ),
     Key(
-        'method = "nbi"', "[pareto] method", "one of 'nbi'", False, '"nib" "" 1 true nan ["nbi"] {}'
+        'method = "nbi"',
+        "[pareto] method",
+        "one of 'nbi', 'weights', 'spea2', 'nsga2'",
+        False,
+        '"nib" "" 1 true nan ["nbi"] {}',
     ),
     Key("points = 5", "[pareto] points", "a whole number from 2", False, NO_WHOLE + " 0 1"),
+    Key("population = 20", "[pareto] population", "a whole number from 4", False, NO_WHOLE + " 3"),
+    Key(
+        "evaluations = 2000",
+        "[pareto] evaluations",
+        "a whole number from 4",
+        False,
+        NO_WHOLE + " 3",
+    ),
     Key(
         'method = "mac"',
         "[pairing] method",
@@ -838,6 +852,10 @@ COMMANDS = [
     (["show", "{}/absent"], "absent/results.nc: file: expected results of a finished run, found"),
     (["show", "{}"], "results.nc: file: expected results of a finished run, found no such file"),
     (["show", "{}/chain.toml"], "results.nc: file: expected results of a finished run, found no"),
+    (["run", "{}/chain.toml", "--refine", "2"], "2.0 is not in the range"),
+    (["run", "{}/three.toml", "--refine", "0.1"], "--refine: expected two groups and method 'nbi'"),
+    (["compare"], "Missing argument 'DIRECTORIES...'"),
+    (["compare", "{}", "{}/absent"], "absent/results.nc: file: expected results of a finished run"),
     (["init", "{}/new", "--example", "x"], "--example: expected one of three-story-c0, three-stor"),
     (["init", "{}/new", "--example", "three-story-c2"], "(did you mean 'three-story-c"),
     (["init", "{}/new", "--example", "../examples"], "--example: expected one of three-story-c0"),
@@ -853,6 +871,9 @@ COMMANDS = [
 def test_misuse_of_the_command_line(
     arguments: list[str], says: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    third = ('[[group]]\nname = "mode 1"\nfrequency = [1]\n\n[[weighted]]', "[[weighted]]")
+    three = edited(STUDY, third[::-1], ("shapes = 2.0 }", 'shapes = 2.0, "mode 1" = 1.0 }'))
+    (folder / "three.toml").write_text(three)
     before = {path: path.read_bytes() for path in folder.iterdir() if path.is_file()}
     status = command(*(argument.format(folder) for argument in arguments))
     out, err = capsys.readouterr()

@@ -104,6 +104,23 @@ def show(directory: Path, form: str) -> None:
         print_results(data)
 
 
+@cli.command()
+@click.argument("directories", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
+)
+def compare(directories: tuple[Path, ...], form: str) -> None:
+    """Set the results in several DIRECTORIES side by side."""
+    from modefront.cli.compare import comparison_as_json, print_comparison
+    from modefront.study.compare import compare as compare_results
+
+    found = compare_results(directories)
+    if form == "json":
+        click.echo(comparison_as_json(found))
+    else:
+        print_comparison(found)
+
+
 def main() -> None:
     """Run the command and leave with its exit status; no input produces a traceback."""
     try:
