@@ -18,6 +18,7 @@ import xarray as xr
 import modefront
 from modefront.cli.main import main
 from modefront.errors import UnfinishedError
+from modefront.solvers import edges
 from modefront.study import session, store
 from modefront.study.results import FILE, read
 
@@ -246,6 +247,27 @@ def test_a_front_is_refined_where_neighbours_are_far_apart(
     assert bool(fine["converged"].all())
     assert modefront_("run", study)[0] == 0
     assert_same(read(done), coarse)
+
+
+def test_bounds_within_which_there_is_no_model_are_said_and_leave_no_results(
+    modefront_: Run, study: Path
+) -> None:
+    # The nominal model can be evaluated, and next to nothing else: stiffnesses are negative.
+    study.write_text(STUDY.replace("bounds = [0.2, 5.0]", "bounds = [-1e6, 1.0]"))
+    status, out, err = modefront_("run", study)
+    assert (status, out) == (1, "")
+    assert "modefront: the model cannot be evaluated at any of the parameters tried" in err
+    assert not study.with_name("study-results").joinpath(FILE).exists()
+
+
+def test_all_starts_failing_are_said_and_leave_no_results(
+    modefront_: Run, study: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(edges, "explore", lambda *_, **__: [])
+    status, out, err = modefront_("run", study)
+    assert (status, out) == (1, "")
+    assert "modefront: no minimum of group 'frequencies' was found from any start" in err
+    assert not study.with_name("study-results").joinpath(FILE).exists()
 
 
 @pytest.mark.parametrize("pieces", [0, 5])

@@ -20,6 +20,7 @@ import scipy.io
 import scipy.sparse
 
 from modefront.cli.main import main
+from modefront.study.tables import settings
 
 STUDY = """\
 [study]
@@ -458,6 +459,50 @@ CONTRADICTIONS = [
     ("seed = 1", f"seed = {'9' * 5000}", "file: expected TOML in UTF-8, found "),
     ("seed = 1", f"seed = {'[' * 20000}", "file: expected TOML in UTF-8, found "),
 ]
+
+
+def more_groups(*lines: str) -> str:
+    """Return further groups, and a study without given weights, which would have to name them."""
+    groups = [f'[[group]]\nname = "more {i}"\n{line}\n\n' for i, line in enumerate(lines)]
+    return "".join(groups) + "[pareto]"
+
+
+GIVEN = STUDY[STUDY.index("[[weighted]]") : STUDY.index("[pareto]")]
+
+GROUPED = [
+    (
+        more_groups("frequency = [1]", "frequency = [2]", "shape = [1]"),
+        "[[group]]: expected at most 4 groups, as many as measured ... , found 5",
+    ),
+    (
+        more_groups("shape = [2, 1]"),
+        "[[group]]: expected other members than those of 'shapes', found 'more 0'",
+    ),
+    (
+        more_groups("frequency = [1]") + "\npoints = 500",
+        "[pareto] points: expected a number with at most 10000 points on ... 3 groups, found 500",
+    ),
+]
+
+
+@pytest.mark.parametrize(("more", "says"), GROUPED)
+def test_groups_that_cannot_make_a_front(
+    more: str, says: str, folder: Path, refused: Check
+) -> None:
+    study = folder / "wrong.toml"
+    text = edited(STUDY, (GIVEN, ""), ("points = 5\n", ""))
+    study.write_text(edited(text, ("[pareto]", more)))
+    refused(study, says)
+
+
+def test_a_method_whose_package_is_missing(
+    folder: Path, refused: Check, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(settings, "available", lambda: False)
+    for method in ("spea2", "nsga2"):
+        study = folder / "wrong.toml"
+        study.write_text(edited(STUDY, ('method = "nbi"', f'method = "{method}"')))
+        refused(study, f"[pareto] method: expected the package pymoo for '{method}': pip install")
 
 
 @pytest.mark.parametrize(("old", "new", "says"), CONTRADICTIONS)

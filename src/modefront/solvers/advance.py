@@ -91,6 +91,10 @@ class Programmes(Protocol):
         """What the points are called."""
 
     @property
+    def beyond(self) -> bool:
+        """Whether points beyond the simplex are wanted, as far as the front goes."""
+
+    @property
     def scale(self) -> Floats:
         """Range of each objective over the edges, shape (n,)."""
 
@@ -103,12 +107,12 @@ class Programmes(Protocol):
     def value(self, beta: Floats, J: Floats) -> float:
         """Return what is least at the solution, in units of the range of the objectives."""
 
-    def goes_on(self, beta: Floats, J: Floats, step: float, /) -> bool:
-        """Return whether neighbours of beta beyond the simplex, ``step`` away, are wanted."""
-
 
 BETTER = 1e-7
 """Difference of two values below which the solutions are the same."""
+
+BEYOND = 300
+"""Points beyond the simplex that are tried at most, or 10 times those within if these are more."""
 
 MANY = 300
 """Points of the simplex that are not exceeded if nothing else is wanted."""
@@ -136,6 +140,7 @@ def advance(
     tried: set[tuple[Place, Place, int]] = set()
     divisions = lattice.divisions
     fixed: set[Place] = set()
+    room = max(BEYOND, 10 * len(lattice.counts))
 
     def beta(place: Place) -> Floats:
         return np.array(place) / divisions
@@ -143,8 +148,10 @@ def advance(
     def settle(place: Place, solution: Solution, of: int) -> None:
         solved[place], origin[place] = solution, of
         renewed[place] += 1
-        wider = programmes.goes_on(beta(place), solution.at.J, 1 / divisions)
-        queue.extend((near, place) for near in neighbours(place) if wider or min(near) >= 0)
+        here = programmes.beyond and place == _nearest(
+            divisions * programmes.place(of, solution.at.J), divisions
+        )
+        queue.extend((near, place) for near in neighbours(place) if here or min(near) >= 0)
 
     def worth_trying(place: Place, source: Place) -> bool:
         if place not in solved:
@@ -176,6 +183,10 @@ def advance(
         place, source = queue.popleft()
         if not worth_trying(place, source):
             continue
+        if place not in solved and min(place) < 0:
+            room -= 1
+            if room < 0:
+                continue
         tried.add((place, source, renewed[source]))
         known = solved.get(place)
         name = f"{programmes.label}-{_text(place)}-from-{_text(source)}-{renewed[source]}"

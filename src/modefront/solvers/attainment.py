@@ -14,8 +14,8 @@ all objectives keeps every weight positive (Wierzbicki 1980): no solution is wea
 
 Every point of the front is the solution for some :math:`\beta` with :math:`\sum \beta_i = 1`, its
 own projection onto the plane of the simplex, but not all of these lie in the simplex. Therefore
-the lattice goes on beyond it: to the neighbours of every point whose solution projects back to
-within half a step of it, and no farther, since there the front ends.
+the lattice goes on beyond it: to the neighbours of every point that is the nearest one to the
+projection of its solution, and no farther, since there the front ends.
 
 The active set is that of the quadratic programme
 
@@ -80,6 +80,7 @@ class Attainment:
     target: Payoff
     thetas: Floats
     label: str = "nbi"
+    beyond: bool = True
 
     @property
     def scale(self) -> Floats:
@@ -105,10 +106,6 @@ class Attainment:
         """Return max c + rho sum c."""
         c = self.excess(beta, J)
         return float(c.max() + SHARE * c.sum())
-
-    def goes_on(self, beta: Floats, J: Floats, step: float) -> bool:
-        """Return whether J projects to within half a step of beta."""
-        return bool(np.abs(self.target.place(J) - beta).max() <= step / 2)
 
     def subproblem(self, beta: Floats, active: Bools) -> Linear:
         """Return the programme in which the active bounds are equations."""

@@ -70,9 +70,10 @@ def evolve_front(
 
 def _algorithm(method: str, population: int) -> Any:
     if method == "spea2":
-        from pymoo.algorithms.moo.spea2 import SPEA2
+        from pymoo.algorithms.moo.spea2 import SPEA2, SPEA2Survival
 
-        return SPEA2(pop_size=population)
+        # The default survival is one object for all runs and remembers the ranges of the last one.
+        return SPEA2(pop_size=population, survival=SPEA2Survival(normalize=True))
     from pymoo.algorithms.moo.nsga2 import NSGA2
 
     return NSGA2(pop_size=population)

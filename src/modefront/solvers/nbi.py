@@ -40,6 +40,7 @@ class Projection:
 
     target: Payoff
     label: str = "nbi"
+    beyond: bool = False
 
     @property
     def scale(self) -> Floats:
@@ -57,10 +58,6 @@ class Projection:
     def value(self, beta: Floats, J: Floats) -> float:
         """Return -t."""
         return self.target.subproblem(beta).value(J)
-
-    def goes_on(self, *_: object) -> bool:
-        """Return False: the edges are the ends of the front."""
-        return False
 
 
 def nbi(

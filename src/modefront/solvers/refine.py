@@ -18,7 +18,7 @@ import numpy as np
 from modefront._typing import Bools, Floats
 from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.payoff import Payoff
-from modefront.solvers.pieces import Gap
+from modefront.solvers.pieces import Gap, piece_numbers
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution, solve
 
@@ -55,15 +55,13 @@ def refine(
 
 def pieces(points: Sequence[Solution], optimal: Bools, gaps: Sequence[Gap]) -> list[list[Solution]]:
     """Return the optimal points of each piece of a front, with its ends at gaps."""
-    J = np.array([one.at.J[0] for one in points])
+    J = np.array([one.at.J for one in points])
+    number = piece_numbers(J, optimal, gaps)
     out = []
-    starts = [-np.inf, *(gap.start.at.J[0] for gap in gaps)]
-    for k, least in enumerate(starts):
-        most = gaps[k].end.at.J[0] if k < len(gaps) else np.inf
-        inside = [points[i] for i in np.flatnonzero(optimal & (least <= J) & (most >= J)).tolist()]
+    for k in range(len(gaps) + 1):
         first = [gaps[k - 1].start] if k else []
         last = [gaps[k].end] if k < len(gaps) else []
-        out.append([*first, *inside, *last])
+        out.append([*first, *(points[i] for i in np.flatnonzero(number == k + 1).tolist()), *last])
     return out
 
 

@@ -1,6 +1,6 @@
 r"""The weight sweep: weighted sums with weights in uniform steps.
 
-.. math:: \min_\theta \sum_i \beta_i J_i / scale_i, \qquad \beta \text{ on the simplex}
+.. math:: \min_\theta \sum_i w_i J_i, \qquad w \text{ on the lattice of the simplex}
 
 It is here to be compared with. Every solution is Pareto optimal, but only points at which the
 front is convex are solutions, whatever the weights, and uniform steps of the weights give points
@@ -27,10 +27,14 @@ LEAST = 1e-6
 
 @dataclass(frozen=True)
 class WeightedSums:
-    """The programmes of the sweep; ``scale`` (n,) is the range of each objective."""
+    """The programmes of the sweep, whose weights are the points of the lattice.
+
+    ``scale`` (n,) is the range of each objective.
+    """
 
     scale: Floats
     label: str = "weights"
+    beyond: bool = False
 
     def place(self, edge: int, _: Floats) -> Floats:
         """Return the corner of the simplex at which an edge is the solution."""
@@ -38,7 +42,7 @@ class WeightedSums:
 
     def weights(self, beta: Floats) -> Floats:
         """Return the weights of the objectives at a point of the simplex, shape (n,)."""
-        return np.maximum(beta, LEAST) / self.scale
+        return np.maximum(beta, LEAST)
 
     def solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         """Return the minimum of the weighted sum, from a start."""
@@ -46,11 +50,8 @@ class WeightedSums:
 
     def value(self, beta: Floats, J: Floats) -> float:
         """Return the weighted sum."""
-        return float(self.weights(beta) @ J)
-
-    def goes_on(self, *_: object) -> bool:
-        """Return False: weights are not negative."""
-        return False
+        w = self.weights(beta)
+        return float(w @ J / (w @ self.scale))
 
 
 def weight_sweep(

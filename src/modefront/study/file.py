@@ -19,7 +19,13 @@ from modefront.study.tables.data import read_data
 from modefront.study.tables.groups import read_groups
 from modefront.study.tables.model import read_model
 from modefront.study.tables.parameters import Parameter, read_parameters
-from modefront.study.tables.settings import Pareto, read_pairing, read_pareto, read_search
+from modefront.study.tables.settings import (
+    Pareto,
+    check_size,
+    read_pairing,
+    read_pareto,
+    read_search,
+)
 from modefront.study.tables.weighted import Weighted, read_weights
 
 
@@ -67,6 +73,7 @@ def load(path: Path) -> Study:
     groups = read_groups(root, data)
     weights = read_weights(root, [group.name for group in groups if group.name])
     pareto, pairing, search = read_pareto(root), read_pairing(root), read_search(root)
+    check_size(root, pareto, len(groups))
     root.close()
     if faults or model is None or data is None:
         raise InputError(faults)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from modefront.data.modal import ModalData
 from modefront.residuals.groups import Group, measured_frequencies, measured_shapes, members
 from modefront.study.reader import Table, has_name, repeated
@@ -37,9 +39,30 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
         ):
             table.fault("", "at least one measured property", "none in the data")
         out.append(group)
+    if data is not None:
+        count = sum(measured_frequencies(data)) + sum(measured_shapes(data))
+        if len(tables) > count:
+            expected = f"at most {count} groups, as many as measured frequencies and shapes"
+            root.fault("[[group]]", expected, str(len(tables)))
+        _note_equal(root, out, data)
     for name in repeated(table.values.get("name") for table in tables if has_name(table)):
         root.fault("[[group]]", "each name once", f"'{name}' twice")
     return tuple(out)
+
+
+def _note_equal(root: Table, groups: Sequence[Group], data: ModalData) -> None:
+    """Note groups that hold the same: their objectives could not differ."""
+    seen: dict[tuple[frozenset[int], frozenset[int]], str] = {}
+    for group in groups:
+        held = (
+            frozenset(members(group.frequency, data.modes, measured_frequencies(data))),
+            frozenset(members(group.shape, data.modes, measured_shapes(data))),
+        )
+        if any(held) and held in seen:
+            root.fault(
+                "[[group]]", f"other members than those of '{seen[held]}'", f"'{group.name}'"
+            )
+        seen.setdefault(held, group.name)
 
 
 def _is_members(value: object) -> bool:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from modefront.pairing.match import Pairing
+from modefront.solvers.advance import size
 from modefront.solvers.evolutionary import EVOLUTIONARY, available
 from modefront.solvers.explore import Search
 from modefront.study.reader import Table
@@ -52,6 +53,14 @@ def read_pareto(root: Table) -> Pareto:
     tolerance = table.number("tolerance", "a share from 0 to 1", lambda x: 0 <= x <= 1, default=0.0)
     table.close()
     return Pareto(method, points, tolerance, population, evaluations)
+
+
+def check_size(root: Table, pareto: Pareto, groups: int) -> None:
+    """Note a simplex with more points than anybody can wait for."""
+    if pareto.points and groups > 1 and size(groups, pareto.points) > MOST:
+        expected = f"a number with at most {MOST} points on the simplex of {groups} groups"
+        found = f"{pareto.points}, which are {size(groups, pareto.points)}"
+        root.fault("[pareto] points", expected, found)
 
 
 def read_pairing(root: Table) -> Pairing:
