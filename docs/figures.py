@@ -7,12 +7,14 @@ from pathlib import Path
 
 import matplotlib.pyplot as plt
 import numpy as np
+import scipy.linalg
 import xarray as xr
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 import modefront as mf
 from modefront._typing import Bools, Floats
+from modefront.solvers.dominance import nondominated
 from modefront.study.examples import write_example
 from modefront.study.results import front_points
 
@@ -100,29 +102,28 @@ def beside(path: Path, dense: xr.Dataset, method: str, label: str) -> None:
 
 
 def three_groups(path: Path) -> None:
-    """Draw where the points of a front of three groups lie over the simplex of its edges."""
-    base = example("c0")
+    """Draw a front of three groups as seen along the normal of its simplex."""
+    base = example("c1")
     groups = (
         mf.Group("frequencies", "all"),
         mf.Group("shape 1", shape=[1]),
         mf.Group("shapes 2 and 3", shape=[2, 3]),
     )
     problem = mf.UpdatingProblem(base.model, base.data, groups, base.lower, base.upper, base.start)
-    data = mf.solve(problem, points=8, seed=1)
+    data = mf.solve(problem, points=12, seed=1)
     J, _ = points(data)
-    labels = data["label"].values.tolist()
-    edges = np.array([data["objective"].values[labels.index(f"edge-{one.name}")] for one in groups])
-    utopia, scale = np.diag(edges), (edges - np.diag(edges)).max(axis=0)
-    gamma = np.linalg.solve(((edges - utopia) / scale).T, ((J - utopia) / scale).T).T
-    beta = gamma - (gamma.sum(axis=1, keepdims=True) - 1) / 3
-    corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.5, np.sqrt(0.75)]])
+    # One edge is nearly the best in two groups, so the simplex is the one of the ranges.
+    single = np.isin(data["minimum_of"].values, data["group"].values)
+    minima = data["minimum_objective"].values[single]
+    minima = minima[nondominated(minima)]
+    utopia, scale = minima.min(axis=0), np.ptp(minima, axis=0)
+    across = scipy.linalg.null_space(np.ones((1, 3)))
+    corners, seen = across, ((J - utopia) / scale) @ across
     figure, axes = plt.subplots(figsize=(6.4, 4.2))
-    axes.plot(*corners[[0, 1, 2, 0]].T, "-", color="k", lw=0.8)
-    for corner, group, side in zip(corners, groups, ("right", "left", "center"), strict=True):
-        axes.annotate(group.name, corner, xytext=(0, 6), textcoords="offset points", ha=side)
-    within = 8 * 9 // 2
-    axes.plot(*(beta[:within] @ corners).T, "o", color="tab:blue", label="from the simplex")
-    axes.plot(*(beta[within:] @ corners).T, "o", color="tab:orange", ms=4, label="beyond it")
+    axes.fill(*corners.T, facecolor="0.9", edgecolor="k", lw=0.8, label="simplex")
+    within = 12 * 13 // 2
+    axes.plot(*seen[:within].T, "o", color="tab:blue", label="from the simplex")
+    axes.plot(*seen[within:].T, "o", color="tab:orange", ms=4, label="beyond it")
     axes.legend(frameon=False)
     axes.set_aspect("equal")
     axes.set_axis_off()
