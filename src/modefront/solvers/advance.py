@@ -112,7 +112,8 @@ BETTER = 1e-7
 """Difference of two values below which the solutions are the same."""
 
 BEYOND = 300
-"""Points beyond the simplex that are tried at most, or 10 times those within if these are more."""
+"""Points beyond the simplex that are tried at most; of three objectives, 10 times those within
+where these are more. With each further objective a point has more neighbours."""
 
 MANY = 300
 """Points of the simplex that are not exceeded if nothing else is wanted."""
@@ -140,7 +141,8 @@ def advance(
     tried: set[tuple[Place, Place, int]] = set()
     divisions = lattice.divisions
     fixed: set[Place] = set()
-    room = max(BEYOND, 10 * len(lattice.counts))
+    few = lattice.counts.shape[1] <= 3
+    room = max(BEYOND, 10 * len(lattice.counts)) if few else BEYOND
 
     def beta(place: Place) -> Floats:
         return np.array(place) / divisions
