@@ -18,6 +18,7 @@ import xarray as xr
 import modefront
 from modefront.cli.main import main
 from modefront.errors import UnfinishedError
+from modefront.solvers import edges
 from modefront.study import session, store
 from modefront.study.results import FILE, read
 
@@ -152,7 +153,7 @@ def test_help_and_version(modefront_: Run) -> None:
     for arguments in (["--help"], ["-h"]):
         status, out, err = modefront_(*arguments)
         assert (status, err) == (0, "")
-        for command in ("init", "check", "run", "show"):
+        for command in ("init", "check", "run", "show", "compare"):
             assert command in out
             assert modefront_(command, "--help")[0] == 0
     assert modefront_("--version") == (0, f"modefront, version {modefront.__version__}\n", "")
@@ -217,6 +218,56 @@ def test_show_prints_tables_and_json_without_nan(modefront_: Run, whole: Path) -
     assert found["variables"]["theta"]["values"] == data["theta"].values.tolist()
     assert found["variables"]["weight"]["values"][0] == [None, None]
     assert found["attributes"]["model_evaluations"] == data.attrs["model_evaluations"]
+
+
+def test_compare_prints_tables_and_json(modefront_: Run, whole: Path) -> None:
+    status, out, err = modefront_("compare", whole, whole)
+    assert (status, err) == (0, "")
+    for text in ("fronts in the space of errors", "frequency 2", "k1, k2", "optimal weights"):
+        assert text in out
+    status, out, err = modefront_("compare", whole, whole, "--format", "json")
+    assert (status, err) == (0, "")
+    found = json.loads(out)
+    assert found["groups"] == ["frequencies", "shapes"]
+    assert found["fronts"][1]["length_ratio"] == 1.0
+    assert found["pairs"][0]["common"] == ["k1", "k2"]
+
+
+def test_a_front_is_refined_where_neighbours_are_far_apart(
+    modefront_: Run, study: Path, done: Path
+) -> None:
+    coarse = read(done)
+    status, out, _ = modefront_("run", study, "--refine", "0.1")
+    assert status == 0
+    assert "largest gap 0." in out
+    fine = read(done)
+    assert fine.attrs["refined"] == 0.1
+    assert fine.attrs["largest_gap"] <= 0.1 < coarse.attrs["largest_gap"]
+    assert fine.attrs["hypervolume"] >= coarse.attrs["hypervolume"]
+    assert bool(fine["converged"].all())
+    assert modefront_("run", study)[0] == 0
+    assert_same(read(done), coarse)
+
+
+def test_bounds_within_which_there_is_no_model_are_said_and_leave_no_results(
+    modefront_: Run, study: Path
+) -> None:
+    # The nominal model can be evaluated, and next to nothing else: stiffnesses are negative.
+    study.write_text(STUDY.replace("bounds = [0.2, 5.0]", "bounds = [-1e6, 1.0]"))
+    status, out, err = modefront_("run", study)
+    assert (status, out) == (1, "")
+    assert "modefront: the model cannot be evaluated at any of the parameters tried" in err
+    assert not study.with_name("study-results").joinpath(FILE).exists()
+
+
+def test_all_starts_failing_are_said_and_leave_no_results(
+    modefront_: Run, study: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(edges, "explore", lambda *_, **__: [])
+    status, out, err = modefront_("run", study)
+    assert (status, out) == (1, "")
+    assert "modefront: no minimum of group 'frequencies' was found from any start" in err
+    assert not study.with_name("study-results").joinpath(FILE).exists()
 
 
 @pytest.mark.parametrize("pieces", [0, 5])

@@ -112,3 +112,49 @@ def bowls(theta: Floats) -> Derivatives:
     corners = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
     r = theta - corners
     return (r**2).sum(axis=1), 2 * r, np.array([2 * np.eye(2)] * 3)
+
+
+def sphere(theta: Floats) -> Derivatives:
+    """DTLZ2 (Deb et al. 2002) with one distance variable: its front is an octant of the sphere.
+
+    theta = (x, y, z): angles over pi / 2, and z, which is 1 / 2 on the front.
+    """
+    a, b = np.pi / 2 * theta[:2]
+    g = 1 + (theta[2] - 0.5) ** 2
+    dg, half = 2 * (theta[2] - 0.5), np.pi / 2
+    ca, sa, cb, sb = np.cos(a), np.sin(a), np.cos(b), np.sin(b)
+    f = np.array([ca * cb, ca * sb, sa])
+    fa, fb = half * np.array([-sa * cb, -sa * sb, ca]), half * np.array([-ca * sb, ca * cb, 0.0])
+    fab = half**2 * np.array([sa * sb, -sa * cb, 0.0])
+    fbb = half**2 * np.array([-ca * cb, -ca * sb, 0.0])
+    H = np.empty((3, 3, 3))
+    H[:, 0, 0], H[:, 1, 1], H[:, 2, 2] = -(half**2) * f * g, fbb * g, 2 * f
+    H[:, 0, 1] = H[:, 1, 0] = fab * g
+    H[:, 0, 2] = H[:, 2, 0] = fa * dg
+    H[:, 1, 2] = H[:, 2, 1] = fb * dg
+    return g * f, np.column_stack([fa * g, fb * g, dg * f]), H
+
+
+FLAT_CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.3, 0.25]])
+
+
+def flat_bowls(theta: Floats) -> Derivatives:
+    """Squared distances from the corners of a flat triangle: a convex front."""
+    r = theta - FLAT_CORNERS
+    return (r**2).sum(axis=1), 2 * r, np.array([2 * np.eye(2)] * 3)
+
+
+def patches(theta: Floats) -> Derivatives:
+    """DTLZ7 (Deb et al. 2002) with one distance variable, 0 on the front, which is four patches."""
+    x, z = theta[:2], theta[2]
+    w = 3 * np.pi
+    s, c = np.sin(w * x), np.cos(w * x)
+    g = 1 + z**2
+    # f3 = 3 (1 + g) - sum x (1 + sin w x), with 1 + g = 1 + 1 + z**2 in the place of 1 + g.
+    f3 = 3 * (1 + g) - (x * (1 + s)).sum()
+    J = np.array([x[0], x[1], f3])
+    slope = -(1 + s + x * w * c)
+    dJ = np.array([[1.0, 0, 0], [0, 1.0, 0], [slope[0], slope[1], 6 * z]])
+    H = np.zeros((3, 3, 3))
+    H[2] = np.diag([*(-(2 * w * c - x * w**2 * s)), 6.0])
+    return J, dJ, H

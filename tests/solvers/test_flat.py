@@ -5,11 +5,13 @@ import pytest
 from problems import Derivatives, Known, box, circles
 
 from modefront._typing import Floats
+from modefront.solvers.advance import simplex
 from modefront.solvers.checkpoint import compute_always
 from modefront.solvers.edges import edge
 from modefront.solvers.explore import Search
 from modefront.solvers.flat import flat_points, identifiable_part
-from modefront.solvers.nbi import nbi, payoff, simplex
+from modefront.solvers.nbi import nbi
+from modefront.solvers.payoff import payoff
 from modefront.solvers.sqp import Solution
 
 

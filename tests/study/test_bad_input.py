@@ -20,6 +20,8 @@ import scipy.io
 import scipy.sparse
 from refusals import Check, command, edited
 
+from modefront.study.tables import settings
+
 STUDY = """\
 [study]
 name = "two masses"
@@ -64,6 +66,8 @@ weights = { frequencies = 1.0, shapes = 2.0 }
 [pareto]
 method = "nbi"
 points = 5
+population = 20
+evaluations = 2000
 
 [pairing]
 method = "mac"
@@ -281,9 +285,21 @@ KEYS = [
         '1.0 [1.0,2.0] "equal" true nan',
     ),
     Key(
-        'method = "nbi"', "[pareto] method", "one of 'nbi'", False, '"nib" "" 1 true nan ["nbi"] {}'
+        'method = "nbi"',
+        "[pareto] method",
+        "one of 'nbi', 'weights', 'spea2', 'nsga2'",
+        False,
+        '"nib" "" 1 true nan ["nbi"] {}',
     ),
     Key("points = 5", "[pareto] points", "a whole number from 2", False, NO_WHOLE + " 0 1"),
+    Key("population = 20", "[pareto] population", "a whole number from 4", False, NO_WHOLE + " 3"),
+    Key(
+        "evaluations = 2000",
+        "[pareto] evaluations",
+        "a whole number from 4",
+        False,
+        NO_WHOLE + " 3",
+    ),
     Key(
         'method = "mac"',
         "[pairing] method",
@@ -574,7 +590,11 @@ CONTRADICTIONS = [
     ('"mobility"', '"absolute accelerance"', "quantity: ... where forces act, found 'absolute acc"),
     ("modes = 2", "modes = 1", "modes: ... reach the end of the band, 15 Hz: 2, found 1, up to 4."),
     ("modes = 2", "modes = 2\nmode = 2", "('peak'): ... found 'mode' (did you mean 'modes'?)"),
-    ('damping = "measured"', "damping = [0.01]", "damping: expected a list of 2, one a mode, found 1 of them"),
+    (
+        'damping = "measured"',
+        "damping = [0.01]",
+        "damping: expected a list of 2, one a mode, found 1 of them",
+    ),
     ('"measured"\nmodes = 2', "[0.1,0.1,0.1]", "damping: expected at most 2 ratios, as the model"),
     (
         "step = 0.02",
@@ -621,6 +641,50 @@ CONTRADICTIONS = [
     ("seed = 1", f"seed = {'9' * 5000}", "file: expected TOML in UTF-8, found "),
     ("seed = 1", f"seed = {'[' * 20000}", "file: expected TOML in UTF-8, found "),
 ]
+
+
+def more_groups(*lines: str) -> str:
+    """Return further groups, and a study without given weights, which would have to name them."""
+    groups = [f'[[group]]\nname = "more {i}"\n{line}\n\n' for i, line in enumerate(lines)]
+    return "".join(groups) + "[pareto]"
+
+
+GIVEN = STUDY[STUDY.index("[[weighted]]") : STUDY.index("[pareto]")]
+
+GROUPED = [
+    (
+        more_groups("frequency = [1]", "frequency = [2]", "shape = [1]"),
+        "[[group]]: expected at most 4 groups, as many as measured ... , found 5",
+    ),
+    (
+        more_groups("shape = [2, 1]"),
+        "[[group]]: expected other members than those of 'shapes', found 'more 0'",
+    ),
+    (
+        more_groups("frequency = [1]") + "\npoints = 500",
+        "[pareto] points: expected a number with at most 10000 points on ... 3 groups, found 500",
+    ),
+]
+
+
+@pytest.mark.parametrize(("more", "says"), GROUPED)
+def test_groups_that_cannot_make_a_front(
+    more: str, says: str, folder: Path, refused: Check
+) -> None:
+    study = folder / "wrong.toml"
+    text = edited(STUDY, (GIVEN, ""), ("points = 5\n", ""))
+    study.write_text(edited(text, ("[pareto]", more)))
+    refused(study, says)
+
+
+def test_a_method_whose_package_is_missing(
+    folder: Path, refused: Check, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(settings, "available", lambda: False)
+    for method in ("spea2", "nsga2"):
+        study = folder / "wrong.toml"
+        study.write_text(edited(STUDY, ('method = "nbi"', f'method = "{method}"')))
+        refused(study, f"[pareto] method: expected the package pymoo for '{method}': pip install")
 
 
 @pytest.mark.parametrize(("old", "new", "says"), CONTRADICTIONS)
@@ -1134,6 +1198,10 @@ COMMANDS = [
     (["show", "{}/absent"], "absent/results.nc: file: expected results of a finished run, found"),
     (["show", "{}"], "results.nc: file: expected results of a finished run, found no such file"),
     (["show", "{}/chain.toml"], "results.nc: file: expected results of a finished run, found no"),
+    (["run", "{}/chain.toml", "--refine", "2"], "2.0 is not in the range"),
+    (["run", "{}/three.toml", "--refine", "0.1"], "--refine: expected two groups and method 'nbi'"),
+    (["compare"], "Missing argument 'DIRECTORIES...'"),
+    (["compare", "{}", "{}/absent"], "absent/results.nc: file: expected results of a finished run"),
     (["init", "{}/new", "--example", "x"], "--example: expected one of three-story-c0, three-stor"),
     (["init", "{}/new", "--example", "three-story-c2"], "(did you mean 'three-story-c"),
     (["init", "{}/new", "--example", "../examples"], "--example: expected one of three-story-c0"),
@@ -1149,6 +1217,9 @@ COMMANDS = [
 def test_misuse_of_the_command_line(
     arguments: list[str], says: str, folder: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
+    third = ('[[group]]\nname = "mode 1"\nfrequency = [1]\n\n[[weighted]]', "[[weighted]]")
+    three = edited(STUDY, third[::-1], ("shapes = 2.0 }", 'shapes = 2.0, "mode 1" = 1.0 }'))
+    (folder / "three.toml").write_text(three)
     before = {path: path.read_bytes() for path in folder.iterdir() if path.is_file()}
     status = command(*(argument.format(folder) for argument in arguments))
     out, err = capsys.readouterr()

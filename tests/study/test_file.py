@@ -89,7 +89,7 @@ def study(tmp_path: Path) -> Callable[[str], Study]:
 def test_what_is_not_said_has_defaults(study: Callable[[str], Study]) -> None:
     read = study(HEAD + CHAIN)
     assert (read.name, read.seed) == ("two masses", 0)
-    assert read.pareto == Pareto("nbi", 20, 0.0)
+    assert read.pareto == Pareto("nbi", None, 0.0)
     assert read.weighted == ()
     assert read.search == Search()
     assert read.problem.pairing == Pairing()

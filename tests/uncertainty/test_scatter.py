@@ -10,7 +10,7 @@ from problems import Derivatives, Known, box
 
 from modefront._typing import Floats
 from modefront.solvers.curvature import SecondOrder, second_order
-from modefront.solvers.nbi import payoff
+from modefront.solvers.payoff import payoff
 from modefront.solvers.scalarisation import Linear, LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Options, Solution, begin, solve
 from modefront.uncertainty.noise import Noise

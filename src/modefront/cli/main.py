@@ -61,20 +61,29 @@ def check(study: Path) -> None:
     help="Folder of the results  [default: the study file's name with -results]",
 )
 @click.option("--fresh", is_flag=True, help="Start over; earlier work is set aside, not deleted.")
-def run(study: Path, directory: Path | None, fresh: bool) -> None:
+@click.option(
+    "--refine",
+    type=click.FloatRange(1e-3, 1),
+    metavar="SIZE",
+    help="More points where neighbours on the front are farther apart, in units of its ranges.",
+)
+def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) -> None:
     """Do the work of STUDY; continue where an interrupted run stopped."""
     from modefront.cli.progress import progress_bar
     from modefront.cli.show import print_summary
     from modefront.study.file import load
+    from modefront.study.results import not_converged
+    from modefront.study.session import check_refinable
     from modefront.study.session import run as run_study
 
     loaded = load(study)
+    check_refinable(loaded, refine)
     directory = directory or study.with_name(f"{study.stem}-results")
     with progress_bar(loaded.name) as progress:
-        data = run_study(loaded, directory, fresh=fresh, progress=progress)
+        data = run_study(loaded, directory, fresh=fresh, refined=refine, progress=progress)
     print_summary(data, directory)
-    if not bool(data["converged"].all()):
-        failed = data["label"].values[~data["converged"].values]
+    failed = not_converged(data)
+    if failed:
         raise UnfinishedError(f"not converged, kept and marked as such: {', '.join(failed)}")
 
 
@@ -100,6 +109,23 @@ def show(directory: Path, form: str, figures: bool) -> None:
         click.echo(as_json(data))
     else:
         print_results(data)
+
+
+@cli.command()
+@click.argument("directories", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
+)
+def compare(directories: tuple[Path, ...], form: str) -> None:
+    """Set the results in several DIRECTORIES side by side."""
+    from modefront.cli.compare import comparison_as_json, print_comparison
+    from modefront.study.compare import compare as compare_results
+
+    found = compare_results(directories)
+    if form == "json":
+        click.echo(comparison_as_json(found))
+    else:
+        print_comparison(found)
 
 
 def main() -> None:

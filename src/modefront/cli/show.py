@@ -12,37 +12,29 @@ from rich.console import Console
 
 from modefront.cli.predictions import prediction_tables
 from modefront.cli.show_knowledge import print_knowledge
-from modefront.cli.tables import safe as _safe
-from modefront.cli.tables import table as _table
+from modefront.cli.tables import console, safe, table
 from modefront.study.check import Findings
 from modefront.study.file import Study
-
-_WIDTH = 110
-
-
-def _console() -> Console:
-    """Return a console that does not cut tables where output is no terminal."""
-    console = Console(highlight=False)
-    return console if console.is_terminal else Console(highlight=False, width=10 * _WIDTH)
+from modefront.study.results import front_points, not_converged
 
 
-def _print(console: Console, text: str) -> None:
-    console.print(text, markup=False, soft_wrap=True)
+def _print(screen: Console, text: str) -> None:
+    screen.print(text, markup=False, soft_wrap=True)
 
 
 def print_findings(study: Study, findings: Findings) -> None:
     """Print what a check found."""
-    console = _console()
+    screen = console()
     problem = study.problem
-    _print(console, f"{study.file}: {study.name}")
+    _print(screen, f"{study.file}: {study.name}")
     _print(
-        console,
+        screen,
         f"  {problem.model.size} degrees of freedom, {len(study.parameters)} parameters, "
         f"{len(problem.data.modes)} measured modes at {len(problem.data.sensors)} sensors "
         f"in {len(problem.data.sets)} data set{'s' * (len(problem.data.sets) > 1)}",
     )
     at = problem.evaluate(problem.start)
-    modes = _table("nominal model", ["mode", "measured Hz", "model Hz", "MAC", "model mode"])
+    modes = table("nominal model", ["mode", "measured Hz", "model Hz", "MAC", "model mode"])
     for row in zip(
         problem.data.modes,
         problem.data.mean_frequency,
@@ -54,40 +46,41 @@ def print_findings(study: Study, findings: Findings) -> None:
         modes.add_row(
             str(row[0]), _number(row[1]), _number(row[2]), f"{row[3]:.4f}", f"{row[4]:.0f}"
         )
-    console.print(modes)
-    groups = _table("groups", ["group", "a", "J nominal", "error nominal"])
+    screen.print(modes)
+    groups = table("groups", ["group", "a", "J nominal", "error nominal"])
     for name, a, J in zip(problem.objectives, problem.properties, at.J, strict=True):
-        groups.add_row(_safe(name), f"{a:g}", f"{J:.5g}", f"{np.sqrt(J / a):.4g}")
-    console.print(groups)
+        groups.add_row(safe(name), f"{a:g}", f"{J:.5g}", f"{np.sqrt(J / a):.4g}")
+    screen.print(groups)
     verdict = "agree with" if findings.sound else "DIFFER FROM"
     _print(
-        console,
+        screen,
         f"derivatives {verdict} finite differences (relative {findings.derivative_error:.1e})",
     )
     for line in findings.determined:
-        _print(console, line)
+        _print(screen, line)
     for warning in findings.warnings:
-        _print(console, f"warning: {warning}")
+        _print(screen, f"warning: {warning}")
     if not findings.warnings:
-        _print(console, "no warnings")
+        _print(screen, "no warnings")
 
 
 def print_summary(data: xr.Dataset, folder: Path) -> None:
     """Print what a run has found, in a few lines."""
-    console = _console()
-    nbi = _front(data)
-    optimal = int(data["pareto"].values[nbi].sum())
-    _print(console, f"{data.attrs.get('study', '')}: results in {folder}")
-    if nbi.size:
-        cost = data.attrs["nbi_evaluations"] / nbi.size
+    screen = console()
+    front = front_points(data)
+    optimal = int(data["pareto"].values[front].sum())
+    _print(screen, f"{data.attrs.get('study', '')}: results in {folder}")
+    if front.size:
+        cost = data.attrs["front_evaluations"] / front.size
         _print(
-            console,
-            f"  {optimal} of {nbi.size} points of the front are Pareto optimal; "
+            screen,
+            f"  {optimal} of {front.size} points of the front are Pareto optimal; "
             f"{data.attrs['model_evaluations']} eigenproblems in all, {cost:.1f} a point",
         )
+        _print(screen, f"  {in_numbers(data)}")
     for line in remarks(data):
-        _print(console, f"  {line}")
-    _print(console, f"next: modefront show {folder}")
+        _print(screen, f"  {line}")
+    _print(screen, f"next: modefront show {folder}")
 
 
 def remarks(data: xr.Dataset) -> list[str]:
@@ -133,10 +126,28 @@ def remarks(data: xr.Dataset) -> list[str]:
     bounded = _at_bounds(data)
     if bounded:
         out.append(f"parameters at a bound: {bounded}")
-    failed = data["label"].values[~data["converged"].values]
-    if failed.size:
+    failed = not_converged(data)
+    if failed:
         out.append(f"not converged: {', '.join(failed)}")
+    if (data["status"].values == "sampled").any():
+        out.append(
+            f"{data.attrs['method']} has no test of convergence: it stopped when its "
+            f"{data.attrs['front_evaluations']} evaluations were spent, and its points do not "
+            "count as converged"
+        )
     return [*out, *data["finding"].values.tolist()]
+
+
+def in_numbers(data: xr.Dataset) -> str:
+    """Return how well the front is covered."""
+    attrs = data.attrs
+    text = (
+        f"hypervolume {attrs['hypervolume']:.5f} up to 1.1, IGD+ {attrs['igd_plus']:.2e} to all "
+        f"that was found, largest gap {attrs['largest_gap']:.3f}, in units of the ranges over the "
+        "edges"
+    )
+    missing = np.isnan(attrs["hypervolume"])
+    return text + (" (hypervolume: pip install modefront[metrics])" if missing else "")
 
 
 def _iteration(data: xr.Dataset) -> str:
@@ -161,7 +172,7 @@ def _poor_pairs(data: xr.Dataset) -> list[str]:
                 f"measured mode {r} resembles its model mode poorly (MAC below 0.5) at "
                 f"{', '.join(data['label'].values[column])}"
             )
-    front = _front(data)
+    front = front_points(data)
     pairs = data["paired_mode"].values[front]
     for r, column in zip(data["mode"].values, pairs.T, strict=True):
         for i in np.flatnonzero(np.diff(column)).tolist():
@@ -186,29 +197,29 @@ def _at_bounds(data: xr.Dataset) -> str:
 
 def print_results(data: xr.Dataset) -> None:
     """Print all results as tables."""
-    console = _console()
-    names = [_safe(name) for name in data["parameter"].values]
-    groups = [_safe(name) for name in data["group"].values]
+    screen = console()
+    names = [safe(name) for name in data["parameter"].values]
+    groups = [safe(name) for name in data["group"].values]
     attrs = data.attrs
     _print(
-        console, f"{attrs.get('study', '')}  (modefront {attrs['version']}, seed {attrs['seed']})"
+        screen, f"{attrs.get('study', '')}  (modefront {attrs['version']}, seed {attrs['seed']})"
     )
-    points = _table(
+    points = table(
         "models: * Pareto optimal among these, ! not converged",
         ["model", "", *(f"J {g}" for g in groups), *(f"error {g}" for g in groups), *names],
     )
     for i, label in enumerate(data["label"].values):
         marks = "*" * int(data["pareto"].values[i]) + "!" * int(not data["converged"].values[i])
         points.add_row(
-            _safe(label),
+            safe(label),
             marks,
             *(f"{x:.5g}" for x in data["objective"].values[i]),
             *(f"{x:.4g}" for x in data["error"].values[i]),
             *(f"{x:.5g}" for x in data["theta"].values[i]),
         )
-    console.print(points)
+    screen.print(points)
     modes = data["mode"].values
-    modal = _table(
+    modal = table(
         "frequencies in Hz and MAC",
         ["model", *(f"f{r}" for r in modes), *(f"error f{r} %" for r in modes)]
         + [f"MAC {r}" for r in modes],
@@ -218,71 +229,68 @@ def print_results(data: xr.Dataset) -> None:
     for i, label in enumerate(data["label"].values):
         f = data["frequency"].values[i]
         modal.add_row(
-            _safe(label),
+            safe(label),
             *map(_number, f),
             *(f"{x:+.2f}" for x in 100 * (f / measured - 1)),
             *(f"{x:.4f}" for x in data["mac"].values[i]),
         )
-    console.print(modal)
-    weights = _table("weights", ["model", *groups])
+    screen.print(modal)
+    weights = table("weights", ["model", *groups])
     for i in np.flatnonzero(~np.isnan(data["weight"].values).all(axis=1)).tolist():
         weights.add_row(
-            _safe(data["label"].values[i]), *(f"{x:.5g}" for x in data["weight"].values[i])
+            safe(data["label"].values[i]), *(f"{x:.5g}" for x in data["weight"].values[i])
         )
-    console.print(weights)
-    minima = _table("minima", ["of", *(f"J {g}" for g in groups), *names])
+    screen.print(weights)
+    minima = table("minima", ["of", *(f"J {g}" for g in groups), *names])
     for i, of in enumerate(data["minimum_of"].values):
         minima.add_row(
-            _safe(of),
+            safe(of),
             *(f"{x:.5g}" for x in data["minimum_objective"].values[i]),
             *(f"{x:.5g}" for x in data["minimum_theta"].values[i]),
         )
-    console.print(minima)
-    print_knowledge(console, data)
+    screen.print(minima)
+    print_knowledge(screen, data)
     for title, columns, rows, notes in prediction_tables(data):
-        _print(console, title)
-        predicted = _table("", [_safe(column) for column in columns])
+        _print(screen, title)
+        predicted = table("", [safe(column) for column in columns])
         for row in rows:
-            predicted.add_row(*map(_safe, row))
-        console.print(predicted)
+            predicted.add_row(*map(safe, row))
+        screen.print(predicted)
         for line in notes:
-            _print(console, line)
+            _print(screen, line)
     for line in remarks(data):
-        _print(console, line)
+        _print(screen, line)
+    if front_points(data).size:
+        _print(screen, in_numbers(data))
     _print(
-        console,
+        screen,
         f"{attrs['model_evaluations']} eigenproblems in all, "
-        f"{attrs['nbi_evaluations']} of them for the points of the front",
+        f"{attrs['front_evaluations']} of them for the points of the front",
     )
 
 
 def as_json(data: xr.Dataset) -> str:
     """Return the dataset as JSON: attributes, and each variable with dimensions and values."""
     variables: dict[str, Any] = {
-        str(name): {"dimensions": list(map(str, value.dims)), "values": _plain(value.values)}
+        str(name): {"dimensions": list(map(str, value.dims)), "values": as_plain(value.values)}
         for name, value in {**data.coords, **data.data_vars}.items()
     }
-    attributes = {str(key): _plain(np.asarray(value)) for key, value in data.attrs.items()}
+    attributes = {str(key): as_plain(np.asarray(value)) for key, value in data.attrs.items()}
     remarked = remarks(data)
     return json.dumps(
         {"attributes": attributes, "variables": variables, "remarks": remarked}, indent=1
     )
 
 
-def _plain(values: Any) -> Any:
+def as_plain(values: Any) -> Any:
     """Return arrays as lists; what is not a number becomes null, as JSON has no NaN."""
     if isinstance(values, np.ndarray):
         values = values.tolist()
     if isinstance(values, list):
-        return [_plain(value) for value in values]
+        return [as_plain(value) for value in values]
     if isinstance(values, float) and not np.isfinite(values):
         return None
     return values
-
-
-def _front(data: xr.Dataset) -> np.ndarray[Any, np.dtype[np.intp]]:
-    """Return the positions of the points of the front."""
-    return np.flatnonzero([label.startswith("nbi-") for label in data["label"].values])
 
 
 def _vector(values: np.ndarray[Any, Any]) -> str:

@@ -5,7 +5,16 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rich import box
+from rich.console import Console
 from rich.table import Table
+
+_WIDTH = 1100
+
+
+def console() -> Console:
+    """Return a console that does not cut tables where output is no terminal."""
+    screen = Console(highlight=False)
+    return screen if screen.is_terminal else Console(highlight=False, width=_WIDTH)
 
 
 def table(title: str, columns: Sequence[str]) -> Table:

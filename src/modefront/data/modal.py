@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -33,7 +34,7 @@ class ModalData:
     frequency_std: Floats
     shape_std: Floats
 
-    @property
+    @cached_property
     def mean_frequency(self) -> Floats:
         """Mean of the measured frequencies of each mode in Hz, shape (modes,); NaN where none."""
         measured = np.isfinite(self.frequency)

@@ -27,20 +27,41 @@ from numpy.typing import NDArray
 from modefront._typing import Bools, Floats, Ints
 
 
+def first_axis(A: Floats, B: Floats) -> Floats:
+    """Return sum_j A_ij B_j for a matrix A (m, k) and an array B (k, ...), shape (m, ...)."""
+    out: Floats = (A @ B.reshape(len(B), -1)).reshape(len(A), *B.shape[1:])
+    return out
+
+
 @dataclass(frozen=True)
 class Monomials:
     """Coefficients c_j(theta) = prod_i theta_i ** exponents[j, i]."""
 
     exponents: Floats
 
+    @cached_property
+    def _linear(self) -> bool:
+        """Whether every coefficient is constant or a parameter; most models are so."""
+        e = self.exponents
+        return bool(np.isin(e, (0, 1)).all() and (e.sum(axis=1) <= 1).all())
+
+    @cached_property
+    def _constant(self) -> Floats:
+        return np.asarray(1.0 - self.exponents.any(axis=1))
+
     def values(self, theta: Floats) -> Floats:
         """Return c(theta), shape (terms,)."""
+        if self._linear:
+            linear: Floats = self._constant + self.exponents @ theta
+            return linear
         out: Floats = np.prod(theta**self.exponents, axis=1)
         return out
 
     def jacobian(self, theta: Floats) -> Floats:
         """Return dc/dtheta, shape (terms, parameters)."""
         e = self.exponents
+        if self._linear:
+            return e
         out = np.zeros(e.shape)
         for i in np.flatnonzero(e.any(axis=0)):
             lowered = e.copy()
@@ -69,14 +90,12 @@ class DenseAffine:
 
     def at(self, theta: Floats) -> Floats:
         """Return A(theta), shape (N, N)."""
-        out: Floats = np.tensordot(self.coefficients.values(theta), self.terms, axes=1)
-        return out
+        return first_axis(self.coefficients.values(theta)[None], self.terms)[0]
 
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
         products = self.terms @ vectors
-        out: Floats = np.tensordot(products, self.coefficients.jacobian(theta), axes=(0, 0))
-        return out
+        return first_axis(self.coefficients.jacobian(theta).T, products).transpose(1, 2, 0)
 
 
 @dataclass(frozen=True, eq=False)

@@ -85,7 +85,7 @@ class MatrixModel:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         self.counts.eigenproblems += 1
         if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
-            selection = self.selection.toarray()
+            selection = self._dense_selection
             return dense.modes(self.stiffness, self.mass, selection, theta, count, derivatives)
         return sparse.modes(self._pencil, self.selection, theta, count, derivatives)
 
@@ -139,6 +139,10 @@ class MatrixModel:
                     row = self.outputs[name]
                 column += weight * row
         return out
+
+    @cached_property
+    def _dense_selection(self) -> Floats:
+        return self.selection.toarray()
 
     @cached_property
     def _pencil(self) -> Pencil:

@@ -33,7 +33,7 @@ import scipy.linalg
 
 from modefront._typing import Bools, Floats
 from modefront.errors import ModelError
-from modefront.models.affine import DenseAffine
+from modefront.models.affine import DenseAffine, first_axis
 from modefront.modes.result import Modes
 
 CLOSE = 1e-2
@@ -68,7 +68,7 @@ def modes(
         empty = np.zeros((count, 0)), np.zeros((phi.shape[0], count, 0))
         return Modes(lam[:count], phi, *empty, coincident=np.zeros(count, dtype=np.bool_))
     dlam, dPhi, coincident = nelson(K, M, theta, lam, Phi, count)
-    dphi = np.tensordot(sensors, dPhi[:, :count], axes=1)
+    dphi = first_axis(sensors, dPhi[:, :count])
     return Modes(lam[:count], phi, dlam[:count], dphi, coincident[:count])
 
 
@@ -133,7 +133,7 @@ def nelson(
     dK_phi = K.derivatives_times(theta, Phi[:, r])
     dM_phi = M.derivatives_times(theta, Phi[:, r])
     force = dK_phi - lam[r, None] * dM_phi
-    S = np.tensordot(Phi.T, force, axes=1)  # S[j, r] = phi_j^T (K' - lam_r M') phi_r
+    S = first_axis(Phi.T, force)  # S[j, r] = phi_j^T (K' - lam_r M') phi_r
     dlam = S[r, r]
     coincident = np.asarray(same.sum(axis=0) > 1)
     for group in {tuple(np.flatnonzero(same[r, k])) for k in np.flatnonzero(coincident)}:
@@ -150,6 +150,6 @@ def nelson(
     cluster = MPhi * close.T[:, None, :]
     regular = Kt - lam[r, None, None] * Mt
     regular += magnitude[r, None, None] * (cluster @ cluster.transpose(0, 2, 1))
-    rhs = np.tensordot(MPhi, S * close[:, :, None], axes=1) - force
+    rhs = first_axis(MPhi, S * close[:, :, None]) - force
     outside = np.linalg.solve(regular, rhs.transpose(1, 0, 2)).transpose(1, 0, 2)
-    return dlam, outside + np.tensordot(Phi, inside, axes=1), coincident
+    return dlam, outside + first_axis(Phi, inside), coincident

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
@@ -33,13 +34,13 @@ class Modes:
     dphi: Floats
     coincident: Bools
 
-    @property
+    @cached_property
     def frequency(self) -> Floats:
         """Natural frequencies in Hz, shape (modes,); zero for rigid-body modes."""
         out: Floats = np.sqrt(np.maximum(self.lam, 0.0)) / (2 * np.pi)
         return out
 
-    @property
+    @cached_property
     def dfrequency(self) -> Floats:
         """Derivatives of the natural frequencies in Hz, shape (modes, parameters)."""
         omega = np.sqrt(np.maximum(self.lam, 0.0))

@@ -16,7 +16,6 @@ from scipy.optimize import linear_sum_assignment
 
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
-from modefront.pairing.mac import mac
 
 OUTSIDE = 1e3
 """Cost of a candidate outside the window of frequencies."""
@@ -93,12 +92,12 @@ def mean_mac(data: ModalData, phi: Floats) -> Floats:
     """
     size = np.abs(phi).max(axis=0, initial=0.0)
     phi = np.where(size > UNSEEN * size.max(initial=0.0), phi, 0.0)
-    total = np.zeros((len(data.modes), phi.shape[1]))
-    count = np.zeros((len(data.modes), 1))
-    for k in range(len(data.sets)):
-        for r in range(len(data.modes)):
-            measured = np.isfinite(data.shape[k, r])
-            if measured.any():
-                total[r] += mac(data.shape[k, r, measured, None], phi[measured])[0]
-                count[r] += 1
+    measured = np.isfinite(data.shape)
+    psi = np.where(measured, data.shape, 0.0)
+    # The MAC of each pair at the sensors that measured its mode in its data set.
+    cross = (psi @ phi) ** 2
+    norm = (psi**2).sum(axis=2)[:, :, None] * (measured @ phi**2)
+    values = np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)
+    count = measured.any(axis=2).sum(axis=0)[:, None]
+    total = values.sum(axis=0)
     return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)

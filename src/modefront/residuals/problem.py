@@ -31,7 +31,7 @@ from functools import cached_property
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.base import Model
@@ -167,31 +167,55 @@ class UpdatingProblem:
         return (self._frequency if kind == "frequency" else self._shape)(modes, pairs, r, scale)
 
     def _frequency(self, modes: Modes, pairs: Pairs, r: int, scale: Scale) -> Residual:
-        at = np.isfinite(self.data.frequency[:, r])
-        measured = self.data.frequency[at, r]
-        unit = measured if scale == "measured" else self.data.frequency_std[at, r]
-        weight = 1 / (unit * np.sqrt(measured.size))
+        weight, measured = self._weighted_frequencies[r, scale]
         q = pairs.index[r]
         return Residual(
-            (modes.frequency[q] - measured) * weight, np.outer(weight, modes.dfrequency[q])
+            (modes.frequency[q] - measured) * weight, weight[:, None] * modes.dfrequency[q]
         )
 
     def _shape(self, modes: Modes, pairs: Pairs, r: int, scale: Scale) -> Residual:
-        measured = np.isfinite(self.data.shape[:, r])
-        sets = np.flatnonzero(measured.any(axis=1))
         q = pairs.index[r]
-        parts = []
-        for k in sets:
-            at = measured[k]
-            psi = self.data.shape[k, r, at]
-            if scale == "measured":
-                weight = np.full(psi.size, np.sqrt(psi.size / (psi @ psi)))
-            else:
-                weight = 1 / usable_std(self.data.shape_std[k, r, at])
-            weight = weight / np.sqrt(sets.size)
-            phi, dphi = weight * modes.phi[at, q], weight[:, None] * modes.dphi[at, q]
-            parts.append(_misfit(weight * psi, phi, dphi))
-        return _stack(parts)
+        phi, dphi = modes.phi[:, q], modes.dphi[:, q]
+        return _stack(
+            [
+                _misfit(psi, weight * phi[at], weight[:, None] * dphi[at])
+                for at, weight, psi in self._weighted_shapes[r, scale]
+            ]
+        )
+
+    @cached_property
+    def _weighted_frequencies(self) -> dict[tuple[int, Scale], tuple[Floats, Floats]]:
+        """Weights (sets,) of the residuals of each frequency, and the measured values."""
+        out = {}
+        for r, scale in self._chosen("frequency"):
+            at = np.isfinite(self.data.frequency[:, r])
+            measured = self.data.frequency[at, r]
+            unit = measured if scale == "measured" else self.data.frequency_std[at, r]
+            weight = 1 / (unit * np.sqrt(measured.size))
+            out[r, scale] = weight, measured
+        return out
+
+    @cached_property
+    def _weighted_shapes(self) -> dict[tuple[int, Scale], list[tuple[Ints, Floats, Floats]]]:
+        """Sensors, weights and weighted measured components of each shape, for each data set."""
+        out: dict[tuple[int, Scale], list[tuple[Ints, Floats, Floats]]] = {}
+        for r, scale in self._chosen("shape"):
+            measured = np.isfinite(self.data.shape[:, r])
+            sets = np.flatnonzero(measured.any(axis=1))
+            out[r, scale] = []
+            for k in sets:
+                at = np.flatnonzero(measured[k])
+                psi = self.data.shape[k, r, at]
+                if scale == "measured":
+                    weight = np.full(psi.size, np.sqrt(psi.size / (psi @ psi)))
+                else:
+                    weight = 1 / usable_std(self.data.shape_std[k, r, at])
+                weight = weight / np.sqrt(sets.size)
+                out[r, scale].append((at, weight, weight * psi))
+        return out
+
+    def _chosen(self, kind: str) -> set[tuple[int, Scale]]:
+        return {(r, scale) for row in self.members for one, r, scale in row if one == kind}
 
 
 def _misfit(psi: Floats, phi: Floats, dphi: Floats) -> Residual:
@@ -201,7 +225,7 @@ def _misfit(psi: Floats, phi: Floats, dphi: Floats) -> Residual:
         return Residual(-psi, np.zeros(dphi.shape))
     beta = psi @ phi / norm
     dbeta = (psi @ dphi - 2 * beta * (phi @ dphi)) / norm
-    return Residual(beta * phi - psi, np.outer(phi, dbeta) + beta * dphi)
+    return Residual(beta * phi - psi, phi[:, None] * dbeta + beta * dphi)
 
 
 def usable_std(std: Floats) -> Floats:
@@ -260,4 +284,6 @@ def updating_problem(
 
 
 def _stack(parts: Sequence[Residual]) -> Residual:
+    if len(parts) == 1:
+        return parts[0]
     return Residual(np.concatenate([x.r for x in parts]), np.concatenate([x.dr for x in parts]))

@@ -7,10 +7,10 @@ starts,
 
 .. math:: \frac{w (N - 1)}{N - w - 2} \le w + \tfrac12 .
 
-Where the objectives are too rugged for that, CMA-ES (Hansen, arXiv:1604.00772) finds basins that no
-start fell into: it is run from a random start until it has found a basin, the gradient method goes
-to the bottom, and as long as a run finds a new minimum another one follows. All distinct minima
-are kept.
+Where the objectives are too rugged for that within the limit of starts, CMA-ES (Hansen,
+arXiv:1604.00772) finds basins that no start fell into: it is run from a random start until it has
+found a basin, the gradient method goes to the bottom, and as long as a run finds a new minimum
+another one follows. All distinct minima are kept.
 """
 
 from __future__ import annotations
@@ -39,9 +39,9 @@ class Search:
 
     Attributes
     ----------
-    starts : local searches at least
+    starts : local searches at least, where no starts are known
     limit : local searches at most
-    evolutions : runs of the evolution strategy at most
+    evolutions : runs of the evolution strategy at most, where the limit did not suffice
     generations : generations of one run at most
     spread : standard deviation, over the range of the parameters, at which a run hands over
     """
@@ -64,8 +64,8 @@ def explore(
 ) -> list[Solution]:
     """Return the distinct minima of an unconstrained programme, best first.
 
-    ``starts`` are solved from first, then the problem's own start, then others. Empty where no
-    search ended in a minimum.
+    ``starts`` that are known to be good are solved from first, then the problem's own start, then
+    others until the rule is met. Empty where no search ended in a minimum.
     """
     options = options or Options()
     minima: list[Solution] = []
@@ -90,12 +90,15 @@ def explore(
 
     for start in [*starts, begin(problem.evaluate(problem.start))]:
         follow(start)
+    least = 0 if starts else search.starts
+    rugged = True
     for tried, theta in enumerate(latin_hypercube(problem, rng, search.limit)):
-        w = len(minima)
-        if tried >= search.starts and w * (tried - 1) <= (w + 0.5) * (tried - w - 2):
+        N, w = tried + len(starts), len(minima)
+        if tried >= least and w * (N - 1) <= (w + 0.5) * (N - w - 2):
+            rugged = False
             break
         follow(begin(problem.evaluate(theta)))
-    for _ in range(search.evolutions):
+    for _ in range(search.evolutions if rugged else 0):
         theta = evolve(problem, programme, rng, search)
         if not follow(begin(problem.evaluate(theta))):
             break

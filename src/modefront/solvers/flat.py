@@ -19,9 +19,11 @@ from functools import partial
 import numpy as np
 
 from modefront._typing import Floats, Ints
+from modefront.solvers.advance import simplex
 from modefront.solvers.checkpoint import Checkpoint
 from modefront.solvers.edges import EXACT, near_best
-from modefront.solvers.nbi import nbi, payoff, simplex
+from modefront.solvers.nbi import nbi
+from modefront.solvers.payoff import payoff
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
 

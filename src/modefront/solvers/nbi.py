@@ -5,10 +5,8 @@ With the edges :math:`\theta_i^*`, the utopia point :math:`J^*` and the pay-off 
 the edges is projected along the quasi-normal :math:`\hat n = -\Phi e` onto the boundary of what
 can be attained (doi:10.1137/S1052623496307510). Even steps of :math:`\beta` give even points.
 
-Subproblems are solved outwards from the edges, each from a neighbour that is solved. Where two
-such advances meet, each is checked against the other: the better solution stays, and its advance
-goes on. So a front whose parts belong to different minima gets the best of them everywhere, at
-the price of a few more subproblems.
+For two objectives these are the points of the front. For more, the simplex covers neither all of
+the front nor nothing but the front: `modefront.solvers.attainment` says what is done then.
 
 ========  ==========================================================
 symbol    meaning
@@ -21,86 +19,45 @@ scale     (n,) range of each objective over the edges
 
 from __future__ import annotations
 
-from collections import Counter, deque
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
-from itertools import combinations
 
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.solvers.advance import Simplex, advance
+from modefront.solvers.attainment import Attainment
 from modefront.solvers.checkpoint import Checkpoint, compute_always
+from modefront.solvers.dominance import nondominated
+from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
-from modefront.solvers.scalarisation import Linear, boundary
 from modefront.solvers.sqp import Solution, solve
 
-BETTER = 1e-7
-"""Gain along the normal, over its length, below which two solutions are the same."""
-
-POINT = 1e-10
-"""Range of an objective over the edges, over its typical size, below which it is no range."""
-
 
 @dataclass(frozen=True)
-class Simplex:
-    """The simplex between the edges: (points, n) coordinates, and neighbours of each point."""
+class Projection:
+    """The programmes of two objectives."""
 
-    beta: Floats
-    neighbours: tuple[tuple[int, ...], ...]
+    target: Payoff
+    label: str = "nbi"
+    beyond: bool = False
 
+    @property
+    def scale(self) -> Floats:
+        """Range of each objective over the edges, shape (n,)."""
+        return self.target.scale
 
-def simplex(objectives: int, divisions: int) -> Simplex:
-    """Return the lattice of Das and Dennis with ``divisions`` steps along each edge.
+    def place(self, _: int, J: Floats) -> Floats:
+        """Return the coordinates (n,) of the point that is projected onto J."""
+        return self.target.place(J)
 
-    The first point is the edge of the first objective, the last point that of the last one.
+    def solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
+        """Return the farthest point along the normal, from a start."""
+        return solve(problem, self.target.subproblem(beta), start)
 
-    >>> simplex(2, 2).beta.tolist()
-    [[1.0, 0.0], [0.5, 0.5], [0.0, 1.0]]
-    """
-    total = divisions + objectives - 1
-    bars = np.array(list(combinations(range(total), objectives - 1)), dtype=int)
-    ends = np.hstack([np.full((len(bars), 1), -1), bars, np.full((len(bars), 1), total)])
-    counts = np.diff(ends, axis=1)[::-1] - 1
-    position = {tuple(row): i for i, row in enumerate(counts.tolist())}
-    moves = np.eye(objectives, dtype=int)[:, None] - np.eye(objectives, dtype=int)
-    steps = [moves[i, j] for i in range(objectives) for j in range(objectives) if i != j]
-    neighbours = tuple(
-        tuple(
-            i
-            for i in (position.get(tuple((row + step).tolist())) for step in steps)
-            if i is not None
-        )
-        for row in counts
-    )
-    return Simplex(counts / divisions, neighbours)
-
-
-@dataclass(frozen=True)
-class Payoff:
-    """Utopia point, range of the objectives and the scaled pay-off matrix, one column an edge."""
-
-    utopia: Floats
-    scale: Floats
-    Phi: Floats
-
-    def subproblem(self, beta: Floats) -> Linear:
-        """Return the programme of one point of the simplex."""
-        return boundary(self.Phi @ beta, -self.Phi.sum(axis=1), self.utopia, self.scale)
-
-
-def payoff(edges: Sequence[Solution], sizes: Floats) -> Payoff | None:
-    """Return the pay-off of the edges; None where an objective does not vary over them.
-
-    ``sizes`` are typical sizes of the objectives. Where nothing varies, one model is the best in
-    everything and the front is one point.
-    """
-    J = np.array([edge.at.J for edge in edges]).T
-    utopia = np.diag(J).copy()
-    scale = np.asarray((J - utopia[:, None]).max(axis=1))
-    if (scale <= POINT * sizes).any():
-        return None
-    return Payoff(utopia, scale, (J - utopia[:, None]) / scale[:, None])
+    def value(self, beta: Floats, J: Floats) -> float:
+        """Return -t."""
+        return self.target.subproblem(beta).value(J)
 
 
 def nbi(
@@ -109,54 +66,18 @@ def nbi(
     target: Payoff,
     lattice: Simplex,
     checkpoint: Checkpoint = compute_always,
+    minima: Sequence[Solution] = (),
 ) -> list[Solution]:
-    """Return one solution a point of the lattice, in its order.
+    """Return one solution a point of the lattice, in its order, then those beyond the simplex.
 
-    Solutions may be dominated, and those that did not converge say so in their status.
+    Of three and more objectives, other ``minima`` of single objectives are started from as well:
+    each may lie on a part of the front of its own. Solutions may be dominated, and those that did
+    not converge say so in their status.
     """
-    solved: dict[int, Solution] = {}
-    advance: dict[int, int] = {}
-    renewed: Counter[int] = Counter()
-    queue: deque[tuple[int, int]] = deque()
-    tried: set[tuple[int, int, int]] = set()
-
-    def settle(i: int, solution: Solution, origin: int) -> None:
-        solved[i], advance[i] = solution, origin
-        renewed[i] += 1
-        queue.extend((j, i) for j in lattice.neighbours[i])
-
-    def worth_trying(i: int, source: int) -> bool:
-        if i not in solved:
-            return True
-        if lattice.beta[i].max() == 1 or (i, source, renewed[source]) in tried:
-            return False
-        other = advance[i] != advance[source]
-        return not solved[i].converged or (solved[source].converged and other)
-
-    for origin, edge in enumerate(edges):
-        settle(int(np.argmax(lattice.beta[:, origin])), edge, origin)
-    while queue:
-        i, source = queue.popleft()
-        if not worth_trying(i, source):
-            continue
-        tried.add((i, source, renewed[source]))
-        programme = target.subproblem(lattice.beta[i])
-        known = solved.get(i)
-        name = f"nbi-{i + 1}-from-{source + 1}-{renewed[source]}"
-        found = checkpoint(name, partial(_solve_one, problem, programme, solved[source]))[0]
-        if known is None or _better(programme, found, known):
-            settle(i, found, advance[source])
-        elif found.converged and not _better(programme, known, found):
-            tried.add((source, i, renewed[i]))
-    return [solved[i] for i in range(len(lattice.beta))]
-
-
-def _solve_one(problem: Problem, programme: Linear, start: Solution) -> list[Solution]:
-    return [solve(problem, programme, start)]
-
-
-def _better(programme: Linear, found: Solution, known: Solution) -> bool:
-    """Return whether a solution reaches farther along the normal than the known one."""
-    if found.converged != known.converged:
-        return found.converged
-    return programme.value(found.at.J) < programme.value(known.at.J) - BETTER
+    if len(edges) == 2:
+        return advance(problem, Projection(target), edges, lattice, checkpoint)
+    known = [*edges, *(one for one in minima if all(one is not edge for edge in edges))]
+    optimal = nondominated(np.array([one.at.J for one in known]))
+    others = [known[i] for i in np.flatnonzero(optimal) if i >= len(edges)]
+    programmes = Attainment(target, np.array([edge.at.theta for edge in edges]))
+    return advance(problem, programmes, [*edges, *others], lattice, checkpoint)

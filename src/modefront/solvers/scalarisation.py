@@ -23,7 +23,7 @@ from typing import Protocol
 import numpy as np
 import scipy.linalg
 
-from modefront._typing import Floats
+from modefront._typing import Bools, Floats
 
 
 class Scalarisation(Protocol):
@@ -106,17 +106,30 @@ def weighted(w: Floats) -> Linear:
     return Linear(w, np.zeros((0, w.size)), np.zeros(0))
 
 
-def boundary(point: Floats, normal: Floats, utopia: Floats, scale: Floats) -> Linear:
+def boundary(
+    point: Floats,
+    normal: Floats,
+    utopia: Floats,
+    scale: Floats,
+    active: Bools | None = None,
+    share: float = 0.0,
+) -> Linear:
     r"""Return the subproblem of normal-boundary intersection (Das & Dennis 1998).
 
     Maximise t subject to :math:`\Phi \beta + t \hat n = J - J^*`
     (doi:10.1137/S1052623496307510), with ``point`` for :math:`\Phi \beta` and ``normal`` for
     :math:`\hat n`, both in units of ``scale``; t is eliminated: it is the component of the
     equation along the normal, and what is across the normal remains as constraints.
+
+    Only the ``active`` objectives are constrained so; of each other one, over its component of
+    the normal, ``share`` is added to what is minimised.
     """
-    across = scipy.linalg.null_space(normal[None, :]).T
-    along = normal / (normal @ normal)
-    return Linear(-along / scale, across / scale, across @ (point + utopia / scale))
+    on = np.ones(normal.size, dtype=np.bool_) if active is None else active
+    n = np.where(on, normal, 0.0)
+    across = np.zeros((int(on.sum()) - 1, normal.size))
+    across[:, on] = scipy.linalg.null_space(normal[None, on]).T
+    w = np.where(on, -n / (n @ n), share / np.abs(normal))
+    return Linear(w / scale, across / scale, across @ (point + utopia / scale))
 
 
 def level(minimised: int, fixed: int, value: float, scale: Floats) -> Linear:

@@ -48,6 +48,8 @@ FUNNEL = 10.0
 
 SWITCH = 0.5
 """Share of the error of a prediction, below which the other model is the better one."""
+FREE = 1e-4
+"""Gradient, over the greatest curvature, below which a bound does not hold a variable."""
 
 NOISE = 1e-11
 """Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
@@ -59,6 +61,7 @@ class Status(Enum):
     CONVERGED = "converged"
     STALLED = "no step improves it further: the objectives are not smooth here, or bounds conflict"
     EXHAUSTED = "the limit of iterations was reached: more iterations, or another start"
+    SAMPLED = "the method has no tolerance: more evaluations, or normal-boundary intersection"
     INFEASIBLE = "the model cannot be evaluated at the start: narrower bounds, or another start"
 
 
@@ -125,7 +128,7 @@ def solve(
         return replace(start, status=Status.INFEASIBLE, evaluations=0)
     span = problem.upper - problem.lower
     learned = start.learned if options.learn else np.zeros_like(start.learned)
-    state = _State(start.at, learned)
+    state = State(start.at, learned)
     trusted = bool(learned.any())
     radius, penalty = options.radius, PENALTY
     multipliers: Floats | None = None
@@ -154,7 +157,7 @@ def solve(
         value = programme.value(at.J)
         still = _length(s) <= options.step or bool(abs(g @ s) <= options.reduction * abs(value))
         if still and violation <= options.constraint and not escaped:
-            escaped, s = True, _off_the_saddle(B, g, dc, lo, hi)
+            escaped, s = True, _off_the_saddle(B, g + multipliers @ dc, dc, lo, hi)
             still = not s.any()
         if still and violation <= options.constraint:
             return Solution(at, state.learned, w, violation, Status.CONVERGED, count)
@@ -204,29 +207,40 @@ def _length(s: Floats) -> float:
 
 
 def _off_the_saddle(B: Floats, g: Floats, dc: Floats, lo: Floats, hi: Floats) -> Floats:
-    """Return a step along clearly negative curvature within the constraints, or zeros."""
+    """Return a step along clearly negative curvature within the constraints, or zeros.
+
+    ``g`` is the gradient of the Lagrangian: a variable at a bound that it does not hold there is
+    as free as those within.
+    """
     s = np.zeros(g.size)
-    free = (lo < 0) & (hi > 0)
+    flat = np.abs(g) <= FREE * np.abs(B).max()
+    free = ((lo < 0) & (hi > 0)) | (flat & (lo < hi))
     Z = scipy.linalg.null_space(dc[:, free]) if dc.size else np.eye(int(free.sum()))
     if Z.shape[1] == 0:
         return s
     curvature, V = np.linalg.eigh(Z.T @ B[np.ix_(free, free)] @ Z)
     if curvature[0] < -SADDLE * np.abs(curvature).max():
         v = Z @ V[:, 0]
+        v[np.abs(v) < FREE] = 0.0
         v *= -1.0 if g[free] @ v > 0 else 1.0
-        room = np.where(v > 0, hi[free], lo[free])
-        s[free] = 0.5 * v * np.min(room[v != 0] / v[v != 0])
+        steps = [v * np.min(room[v != 0] / v[v != 0]) for v, room in _ways(v, lo[free], hi[free])]
+        s[free] = 0.5 * max(steps, key=_length) if not steps[0].any() else 0.5 * steps[0]
     return s
 
 
+def _ways(v: Floats, lo: Floats, hi: Floats) -> list[tuple[Floats, Floats]]:
+    """Return a direction and its opposite, each with the room that the box leaves it."""
+    return [(way, np.where(way > 0, hi, lo)) for way in (v, -v)]
+
+
 @dataclass(frozen=True)
-class _State:
-    """The point reached and what has been learned of the second derivatives."""
+class State:
+    """The point reached and what has been learned of the second derivatives (n, p, p)."""
 
     at: Evaluation
     learned: Floats
 
-    def learn(self, new: Evaluation) -> _State:
+    def learn(self, new: Evaluation) -> State:
         """Return the state with what an evaluation tells of the second derivatives.
 
         What was known is sized before it is corrected, by s^T y / s^T S s where that is below 1,
@@ -242,7 +256,7 @@ class _State:
         sure = np.abs(along) > 1e-6 * np.linalg.norm(v, axis=1) * np.linalg.norm(s)
         scale = np.where(sure, 1 / np.where(sure, along, 1.0), 0.0)
         learned = known + scale[:, None, None] * v[:, :, None] * v[:, None, :]
-        return _State(self.at, learned)
+        return State(self.at, learned)
 
 
 def _multipliers(dc: Floats, g: Floats, lo: Floats, hi: Floats) -> Floats:

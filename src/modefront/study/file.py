@@ -24,7 +24,13 @@ from modefront.study.tables.identifiability import Identifiability, read_identif
 from modefront.study.tables.model import read_model
 from modefront.study.tables.parameters import Parameter, read_parameters
 from modefront.study.tables.predict import complete, read_predictions
-from modefront.study.tables.settings import Pareto, read_pairing, read_pareto, read_search
+from modefront.study.tables.settings import (
+    Pareto,
+    check_size,
+    read_pairing,
+    read_pareto,
+    read_search,
+)
 from modefront.study.tables.uncertainty import Uncertainty, read_uncertainty
 from modefront.study.tables.weighted import Weighted, read_weights
 
@@ -83,6 +89,7 @@ def load(path: Path) -> Study:
     pareto, pairing, search = read_pareto(root), read_pairing(root), read_search(root)
     identifiability, uncertainty = read_identifiability(root), read_uncertainty(root, data)
     drafts = read_predictions(root, model, data)
+    check_size(root, pareto, len(groups))
     root.close()
     if faults or model is None or data is None:
         raise InputError(faults)

@@ -11,9 +11,11 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.residuals.problem import UpdatingProblem
+from modefront.solvers.advance import default_points
 from modefront.solvers.checkpoint import Checkpoint
 from modefront.solvers.curvature import SecondOrder, second_order
 from modefront.solvers.edges import EXACT, TIE
+from modefront.solvers.evolutionary import EVOLUTIONARY
 from modefront.solvers.flat import Identifiable, identifiable_part, same
 from modefront.solvers.manifold import Extent, Manifold, equally_good
 from modefront.solvers.problem import Evaluation
@@ -64,11 +66,15 @@ class Knowledge:
     replicates: Sequence[Mapping[str, Solution]]
 
 
+SOLVING_NONE = ("nbi-", *(f"{method}-" for method in EVOLUTIONARY))
+"""Beginnings of the labels of points of which the scatter is not known."""
+
+
 def learn(
     problem: UpdatingProblem,
     front: Front,
     *,
-    points: int,
+    points: int | None,
     tolerance: float,
     seed: int,
     identifiability: Identifiability,
@@ -90,10 +96,10 @@ def learn(
     bests = [labels[f"edge-{name}"] for name in problem.objectives]
     along = [one for label, one in front.points if label.startswith("nbi-")]
     part = None
-    if identifiability.flat > 0 and len(along) > 1:
+    if identifiability.flat > 0 and len(along) > 1 and a.size == 2:
         part = identifiable_part(
             *(problem, along, bests, [one for _, one in front.points]),
-            *(identifiability.flat, sizes, points - 1, checkpoint),
+            *(identifiability.flat, sizes, (points or default_points(2)) - 1, checkpoint),
         )
     extra = _labelled(problem, part, bests)
 
@@ -174,7 +180,11 @@ def _equal_minima(
 def _roles(
     problem: UpdatingProblem, front: Front, extra: Labelled, tolerance: float, flat: float
 ) -> list[Point]:
-    """Return the points of the front with what each of them solves."""
+    """Return the points with what each of them solves, as far as that is one smooth programme.
+
+    Points of weights follow from their weights, points of NBI of two groups from their edges; of
+    more groups, the programmes have bounds, and evolved points solve none.
+    """
     names = problem.objectives
     whole = tuple(f"edge-{name}" for name in names)
     cut = {label for label, _ in extra}
@@ -192,8 +202,10 @@ def _roles(
             continue
         if label == OPTIMAL:
             role = Role("optimal")
-        elif label.startswith("nbi-"):
+        elif label.startswith("nbi-") and len(names) == 2:
             role = Role("boundary", whole)
+        elif label.startswith(SOLVING_NONE):
+            continue
         elif label.startswith(f"{PART}edge-"):
             role = Role("level", (), names.index(label.removeprefix(f"{PART}edge-")), flat)
         elif label.startswith(PART):

@@ -20,6 +20,7 @@ from modefront.errors import Fault, InputError, ModelError, UnfinishedError
 from modefront.predict import Passage, PeakResponse, Prediction
 from modefront.reliability import StepError
 from modefront.residuals.problem import UpdatingProblem
+from modefront.solvers.advance import default_points
 from modefront.study.file import Study
 from modefront.study.run import sequence
 from modefront.study.store import Arrays, Store, hash_text
@@ -35,7 +36,8 @@ Variables = Mapping[str, tuple[tuple[str, ...], Any, str]]
 
 def pieces_of(study: Study) -> int:
     """Return how many pieces of work the predictions of a study are, at most."""
-    n, points = len(study.problem.objectives), study.pareto.points
+    n = len(study.problem.objectives)
+    points = study.pareto.points or default_points(n)
     front = math.comb(points + n - 2, n - 1) if n > 1 else 0
     models = front + n + len(study.weighted) + 2
     passages = sum(isinstance(one, Passage) for one in study.predictions)

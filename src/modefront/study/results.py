@@ -10,10 +10,11 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.errors import Fault, InputError
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.dominance import nondominated
+from modefront.solvers.evolutionary import EVOLUTIONARY
 from modefront.solvers.pieces import piece_numbers
 from modefront.solvers.sqp import Solution
 from modefront.study.knowledge import PART, Knowledge
@@ -24,11 +25,18 @@ FILE = "results.nc"
 
 VARIABLES = (
     *("label", "pareto", "theta", "objective", "error", "weight", "frequency", "mac", "converged"),
-    *("stationary_weight", "paired_mode", "measured_frequency", "exact", "bounds"),
+    *("status", "stationary_weight", "paired_mode", "measured_frequency", "exact", "bounds"),
     *("minimum_of", "minimum_theta", "minimum_objective", "parameter", "group", "mode", "finding"),
 )
-ATTRIBUTES = ("version", "seed", "model_evaluations", "nbi_evaluations", "front_is_a_point")
+ATTRIBUTES = (
+    *("version", "seed", "method", "model_evaluations", "front_evaluations", "front_is_a_point"),
+    *("hypervolume", "igd_plus", "largest_gap"),
+)
 """What every file of results holds."""
+
+
+UNWEIGHTED = ("nbi-", "edge-", *(f"{method}-" for method in EVOLUTIONARY))
+"""Beginnings of the labels of points that no weights were given for."""
 
 
 def dataset(
@@ -47,7 +55,7 @@ def dataset(
     a = problem.properties
     weights = np.full(J.shape, np.nan)
     for i, label in enumerate(labels):
-        if not label.startswith(("nbi-", "edge-", PART)):
+        if not label.startswith((*UNWEIGHTED, PART)):
             weights[i] = a / J[i] if label == "optimal-weights" else solutions[i].weights
     point, mode = ("point", "mode"), ("point", "group")
     variables: Variables = {
@@ -59,7 +67,10 @@ def dataset(
         "weight": (mode, weights, "weights that a weighted method used"),
         "stationary_weight": (
             mode,
-            _shares(_stack([one.weights for one in solutions], n), front.scale),
+            _shares(
+                _stack([one.weights for one in solutions], n),
+                front.scale,
+            ),
             "weights at which the point is stationary, over the range of each objective, sum 1; "
             "a negative one tells that the point is no local Pareto optimum",
         ),
@@ -137,7 +148,7 @@ def _minima(problem: UpdatingProblem, front: Front) -> Variables:
 
 def _ends(problem: UpdatingProblem, front: Front, J: Floats, optimal: np.ndarray) -> Variables:
     """Return where the pieces of a front of two objectives end, and on which one points lie."""
-    if J.shape[1] != 2:
+    if J.shape[1] != 2 or front.method != "nbi":
         return {}
     found = [one for gap in front.gaps for one in (gap.end, gap.start)]
     labels = [text for i in range(len(front.gaps)) for text in (f"end-{i + 1}", f"start-{i + 2}")]
@@ -171,6 +182,18 @@ def _shares(weights: Floats, scale: Floats | None) -> Floats:
     scaled = weights * (1.0 if scale is None else scale)
     total = scaled.sum(axis=1, keepdims=True)
     return np.divide(scaled, total, out=np.full(scaled.shape, np.nan), where=total != 0)
+
+
+def front_points(data: xr.Dataset) -> Ints:
+    """Return the positions of the points of the front, in their order along it."""
+    prefix = f"{data.attrs['method']}-"
+    return np.flatnonzero([str(label).startswith(prefix) for label in data["label"].values])
+
+
+def not_converged(data: xr.Dataset) -> list[str]:
+    """Return the labels of points that should have converged and did not."""
+    tried = data["status"].values != "sampled"
+    return data["label"].values[~data["converged"].values & tried].tolist()
 
 
 def write(data: xr.Dataset, path: Path) -> None:

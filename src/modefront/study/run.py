@@ -11,15 +11,20 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import UnfinishedError
-from modefront.solvers.checkpoint import Checkpoint, compute_always
+from modefront.solvers.advance import default_points, simplex
+from modefront.solvers.checkpoint import Checkpoint, Solutions, compute_always
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.edges import EXACT, Edge, edge, near_best, sample, typical_sizes
+from modefront.solvers.evolutionary import EVOLUTIONARY, evolve_front
 from modefront.solvers.explore import Search, explore
-from modefront.solvers.nbi import nbi, payoff, simplex
+from modefront.solvers.nbi import nbi
+from modefront.solvers.payoff import Payoff, payoff
 from modefront.solvers.pieces import Gap, gaps
 from modefront.solvers.problem import Problem
+from modefront.solvers.refine import refine
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Solution
+from modefront.solvers.sweep import weight_sweep
 from modefront.solvers.weights import iterate_weights, optimal_minima, regular
 
 
@@ -29,22 +34,29 @@ class Front:
 
     Attributes
     ----------
+    method : by which the front was found
     points : (label, solution) of the points along the front, then of the edges and weighted models
     edges : the edge of each objective with its other minima
     optimal : all regular minima of the optimally weighted residuals, best first
     iterated : where the iteration of the weights arrived; None where it ran into a singularity
     exact : (n,) which objectives some model fits exactly
-    scale : (n,) range of the objectives over the edges, or None where the front is one point
+    target : utopia point and ranges over the edges, or None where the front is one point
     gaps : gaps between the pieces of a front of two objectives
     """
 
+    method: str
     points: Sequence[tuple[str, Solution]]
     edges: Sequence[Edge]
     optimal: Sequence[Solution]
     iterated: Solution | None
     exact: tuple[bool, ...]
-    scale: Floats | None
+    target: Payoff | None
     gaps: Sequence[Gap]
+
+    @property
+    def scale(self) -> Floats | None:
+        """Range of each objective over the edges, shape (n,)."""
+        return self.target.scale if self.target else None
 
 
 def ignore(_: object) -> None:
@@ -65,7 +77,11 @@ def pareto_front(
     problem: Problem,
     a: Floats,
     *,
-    points: int = 20,
+    method: str = "nbi",
+    points: int | None = None,
+    refined: float | None = None,
+    population: int = 100,
+    evaluations: int = 10_000,
     seed: int = 0,
     search: Search | None = None,
     tolerance: float = 0.0,
@@ -73,17 +89,21 @@ def pareto_front(
     checkpoint: Checkpoint = compute_always,
     expect: Callable[[int], None] = ignore,
 ) -> Front:
-    """Find the edges, the weighted models, the front by NBI, and its gaps.
+    """Find the edges, the weighted models, the front by a method, and its gaps.
 
     ``a`` (n,) counts the measured properties of each objective; ``points`` lie along each edge of
-    the simplex of objectives; an edge may exceed the least value of its objective by the share
-    ``tolerance``; ``given`` are labelled weights (n,). ``expect`` is told how many
-    pieces of work there are. Raises UnfinishedError where no edge can be found.
+    the simplex of objectives (None: as `default_points` says); ``refined`` is the distance of
+    neighbours above which NBI puts more points between them, two objectives only;
+    ``population`` and ``evaluations`` are those of an evolutionary method; an edge may exceed the
+    least value of its objective by the share ``tolerance``; ``given`` are labelled weights (n,).
+    ``expect`` is told how many pieces of work there are. Raises UnfinishedError where no edge can
+    be found.
     """
     search = search or Search()
     n = len(problem.objectives)
-    lattice = simplex(n, points - 1) if n > 1 else None
-    expect(4 + 2 * n + len(given) + (len(lattice.beta) if lattice else 0))
+    lattice = simplex(n, (points or default_points(n)) - 1) if n > 1 else None
+    subproblems = len(lattice.counts) if lattice and method not in EVOLUTIONARY else 1
+    expect(4 + 2 * n + len(given) + subproblems)
 
     sizes = typical_sizes(checkpoint("sample", lambda: sample(problem, generator(seed, "sample"))))
     if sizes is None:
@@ -97,6 +117,7 @@ def pareto_front(
             raise UnfinishedError(f"no minimum of group '{name}' was found from any start")
         edges.append(found)
     bests = [one.best for one in edges]
+    minima_of_one = [one for each in edges for one in each.minima]
     least = np.array([one.best.at.J[i] for i, one in enumerate(edges)])
 
     models: list[tuple[str, Solution]] = []
@@ -125,22 +146,50 @@ def pareto_front(
             for i, (name, one) in enumerate(zip(problem.objectives, bests, strict=True))
         ]
         bests = [found[0] for found in ends]
-    target = payoff(bests, sizes) if n > 1 else None
+    target = payoff(bests, sizes, minima_of_one) if n > 1 else None
     along: Sequence[Solution] = []
     breaks: list[Gap] = []
     if target is not None and lattice is not None:
-        along = nbi(problem, bests, target, lattice, checkpoint)
-        if n == 2:
-            J = np.array([one.at.J for one in along])
-            breaks = gaps(problem, along, nondominated(J), target.scale, checkpoint)
-    labelled = [(f"nbi-{i + 1}", one) for i, one in enumerate(along)]
+        if method in EVOLUTIONARY:
+            rng = generator(seed, method)
+            evolved = partial(evolve_front, problem, method, population, evaluations, rng)
+            along = checkpoint(f"{method}-population", evolved)
+        elif method == "weights":
+            along = weight_sweep(problem, bests, target.scale, lattice, checkpoint)
+        else:
+            along = nbi(problem, bests, target, lattice, checkpoint, minima_of_one)
+            if n == 2:
+                along, breaks = _pieces(problem, target, along, refined, checkpoint)
+    labelled = [(f"{method}-{i + 1}", one) for i, one in enumerate(along)]
     labelled += [(f"edge-{name}", one) for name, one in zip(problem.objectives, bests, strict=True)]
     return Front(
+        method,
         labelled + models,
         edges,
         optimal,
         iterated[0] if iterated else None,
         tuple(bool(x) for x in least <= EXACT * sizes),
-        target.scale if target else None,
+        target,
         breaks,
     )
+
+
+def _pieces(
+    problem: Problem,
+    target: Payoff,
+    along: Sequence[Solution],
+    refined: float | None,
+    checkpoint: Checkpoint,
+) -> tuple[Sequence[Solution], list[Gap]]:
+    """Return the points of a front of two objectives, refined where wanted, and its gaps."""
+    optimal = nondominated(np.array([one.at.J for one in along]))
+    breaks = gaps(problem, along, optimal, target.scale, checkpoint)
+    if refined is None:
+        return along, breaks
+    along = refine(problem, target, along, optimal, breaks, refined, checkpoint)
+    optimal = nondominated(np.array([one.at.J for one in along]))
+
+    def again(name: str, compute: Callable[[], Solutions]) -> Solutions:
+        return checkpoint(f"{name}-of-{len(along)}", compute)
+
+    return along, gaps(problem, along, optimal, target.scale, again)

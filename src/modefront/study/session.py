@@ -16,6 +16,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.file import Study
 from modefront.study.knowledge import learn
+from modefront.study.quality import indicators
 from modefront.study.run import Front, ignore, pareto_front
 from modefront.study.store import PIECES, Store
 from modefront.study.tables.identifiability import Identifiability
@@ -37,7 +38,11 @@ class Progress:
 def solve(
     problem: UpdatingProblem,
     *,
-    points: int = Pareto.points,
+    method: str = Pareto.method,
+    points: int | None = None,
+    refined: float | None = None,
+    population: int = Pareto.population,
+    evaluations: int = Pareto.evaluations,
     tolerance: float = 0.0,
     seed: int = 0,
     search: Search | None = None,
@@ -47,10 +52,10 @@ def solve(
 ) -> xr.Dataset:
     """Return all Pareto-optimal models, edges and weighted models of a problem.
 
-    ``points`` lie along each edge of the simplex of objectives; an edge may exceed the least value
-    of its group by the share ``tolerance``; ``identifiability`` and ``uncertainty`` say what is
-    done about what the data do not determine and about their errors; ``predictions`` are made with
-    every model. Raises UnfinishedError where no minimum of a group can be found.
+    The arguments are those of the study file, and ``refined``, for two groups, the distance of
+    neighbours on the front above which there are to be more points between them, in units of the
+    ranges of the objectives; ``predictions`` are made with every model. Raises UnfinishedError
+    where no minimum of a group can be found.
     """
     from modefront.study.predictions import predicted
     from modefront.study.results import dataset
@@ -59,7 +64,11 @@ def solve(
     front = pareto_front(
         problem,
         problem.properties,
+        method=method,
         points=points,
+        refined=refined,
+        population=population,
+        evaluations=evaluations,
         tolerance=tolerance,
         seed=seed,
         search=search,
@@ -78,18 +87,23 @@ def solve(
     )
     data = dataset(problem, front, knowledge, {})
     data = predicted(data, problem, predictions, seed, store)
-    data.attrs |= _attributes(front, store, seed)
+    data.attrs |= _attributes(front, store, seed, refined)
     return data
 
 
 def run(
-    study: Study, folder: Path, *, fresh: bool = False, progress: Progress | None = None
+    study: Study,
+    folder: Path,
+    *,
+    fresh: bool = False,
+    refined: float | None = None,
+    progress: Progress | None = None,
 ) -> xr.Dataset:
     """Do the work of a study, write ``results.nc`` into a folder and return what it holds.
 
     Pieces of work that an earlier run of the same inputs has left there are not done again;
-    ``fresh`` sets them aside. Raises InputError where the folder cannot be written to and
-    UnfinishedError where the work cannot be done.
+    ``fresh`` sets them aside; ``refined`` is that of `solve`. Raises InputError where the folder
+    cannot be written to and UnfinishedError where the work cannot be done.
     """
     from modefront.study.predictions import pieces_of, predicted
     from modefront.study.results import FILE, dataset, write
@@ -109,7 +123,11 @@ def run(
     front = pareto_front(
         problem,
         problem.properties,
+        method=study.pareto.method,
         points=study.pareto.points,
+        refined=refined,
+        population=study.pareto.population,
+        evaluations=study.pareto.evaluations,
         tolerance=study.pareto.tolerance,
         seed=study.seed,
         search=study.search,
@@ -130,20 +148,34 @@ def run(
     )
     data = dataset(problem, front, knowledge, {"study": study.name, "inputs": study.digest})
     data = predicted(data, problem, study.predictions, study.seed, store, study.file)
-    data.attrs |= _attributes(front, store, study.seed)
+    data.attrs |= _attributes(front, store, study.seed, refined)
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)
     return data
 
 
-def _attributes(front: Front, store: Store, seed: int) -> dict[str, str | int | float]:
+def check_refinable(study: Study, refined: float | None) -> None:
+    """Raise InputError where a front is to be refined that is not one of two groups by NBI."""
+    groups = len(study.problem.objectives)
+    if refined is not None and (groups != 2 or study.pareto.method != "nbi"):
+        found = f"{groups} groups, method '{study.pareto.method}'"
+        raise InputError(Fault(str(study.file), "--refine", "two groups and method 'nbi'", found))
+
+
+def _attributes(
+    front: Front, store: Store, seed: int, refined: float | None
+) -> dict[str, str | int | float]:
     """Return what else is known: version, seed, cost, and remarks on what was found."""
     return {
         "version": modefront.__version__,
         "seed": seed,
         "model_evaluations": store.total()["eigenproblems"],
+        "method": front.method,
+        "front_evaluations": store.total(f"{front.method}-")["eigenproblems"],
         "nbi_evaluations": store.total("nbi-")["eigenproblems"],
-        "front_is_a_point": int(front.scale is None),
+        "front_is_a_point": int(front.target is None),
+        **({} if refined is None else {"refined": refined}),
+        **indicators(front),
     }
 
 

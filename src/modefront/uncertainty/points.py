@@ -10,7 +10,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.edges import near_best
-from modefront.solvers.nbi import payoff
+from modefront.solvers.payoff import payoff
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution, begin, solve

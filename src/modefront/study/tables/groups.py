@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import get_args
 
 from modefront.data.modal import ModalData
@@ -49,6 +50,12 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
         elif data is not None and scale == "std":
             _check_std(table, group, data)
         out.append(group)
+    if data is not None:
+        count = sum(measured_frequencies(data)) + sum(measured_shapes(data))
+        if len(tables) > count:
+            expected = f"at most {count} groups, as many as measured frequencies and shapes"
+            root.fault("[[group]]", expected, str(len(tables)))
+        _note_equal(root, out, data)
     for name in repeated(table.values.get("name") for table in tables if has_name(table)):
         root.fault("[[group]]", "each name once", f"'{name}' twice")
     return tuple(out)
@@ -66,6 +73,21 @@ def _check_std(table: Table, group: Group, data: ModalData) -> None:
             except ValueError as error:
                 found = f"others for the {kind} of mode {data.modes[r]}"
                 table.fault("scale", f"'std' with {error}", found)
+
+
+def _note_equal(root: Table, groups: Sequence[Group], data: ModalData) -> None:
+    """Note groups that hold the same: their objectives could not differ."""
+    seen: dict[tuple[frozenset[int], frozenset[int]], str] = {}
+    for group in groups:
+        held = (
+            frozenset(members(group.frequency, data.modes, measured_frequencies(data))),
+            frozenset(members(group.shape, data.modes, measured_shapes(data))),
+        )
+        if any(held) and held in seen:
+            root.fault(
+                "[[group]]", f"other members than those of '{seen[held]}'", f"'{group.name}'"
+            )
+        seen.setdefault(held, group.name)
 
 
 def _is_members(value: object) -> bool:

@@ -1,0 +1,229 @@
+"""Programmes on a lattice, solved outwards from the edges, each from a neighbour that is solved.
+
+Where two such advances meet, each is checked against the other: the better solution stays, and
+its advance goes on. So a front whose parts belong to different minima gets the best of them
+everywhere, at the price of a few more programmes.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import partial
+from itertools import combinations
+from math import comb
+from typing import Protocol
+
+import numpy as np
+
+from modefront._typing import Floats, Ints
+from modefront.solvers.checkpoint import Checkpoint, compute_always
+from modefront.solvers.problem import Problem
+from modefront.solvers.sqp import Solution
+
+Place = tuple[int, ...]
+"""A point of the lattice: whole coordinates, one an objective, whose sum is that of its corners."""
+
+
+@dataclass(frozen=True)
+class Simplex:
+    """The lattice of Das and Dennis: whole coordinates (points, n), each row of the same sum."""
+
+    counts: Ints
+
+    @property
+    def divisions(self) -> int:
+        """Steps along each edge."""
+        return int(self.counts[0].sum())
+
+    @property
+    def beta(self) -> Floats:
+        """Barycentric coordinates, shape (points, n)."""
+        return np.asarray(self.counts / self.divisions)
+
+
+def simplex(objectives: int, divisions: int) -> Simplex:
+    """Return the lattice of Das and Dennis with ``divisions`` steps along each edge.
+
+    The first point is the edge of the first objective, the last point that of the last one.
+
+    >>> simplex(2, 2).beta.tolist()
+    [[1.0, 0.0], [0.5, 0.5], [0.0, 1.0]]
+    """
+    total = divisions + objectives - 1
+    bars = np.array(list(combinations(range(total), objectives - 1)), dtype=int)
+    ends = np.hstack([np.full((len(bars), 1), -1), bars, np.full((len(bars), 1), total)])
+    return Simplex(np.diff(ends, axis=1)[::-1] - 1)
+
+
+def default_points(objectives: int) -> int:
+    """Return how many points lie along each edge if nothing else is wanted: 20, or fewer of many.
+
+    >>> [default_points(n) for n in (2, 3, 6)]
+    [20, 20, 6]
+    """
+    fitting = (points for points in range(20, 2, -1) if size(objectives, points) <= MANY)
+    return next(fitting, 2)
+
+
+def size(objectives: int, points: int) -> int:
+    """Return the number of points of the simplex with so many along each edge."""
+    return comb(points + objectives - 2, objectives - 1)
+
+
+def neighbours(place: Place) -> list[Place]:
+    """Return the points of the lattice one step from one, within the simplex or beyond it."""
+    n = len(place)
+    return [
+        tuple(x + (k == i) - (k == j) for k, x in enumerate(place))
+        for i in range(n)
+        for j in range(n)
+        if i != j
+    ]
+
+
+class Programmes(Protocol):
+    """One programme a point beta (n,) of the lattice."""
+
+    @property
+    def label(self) -> str:
+        """What the points are called."""
+
+    @property
+    def beyond(self) -> bool:
+        """Whether points beyond the simplex are wanted, as far as the front goes."""
+
+    @property
+    def scale(self) -> Floats:
+        """Range of each objective over the edges, shape (n,)."""
+
+    def place(self, edge: int, J: Floats, /) -> Floats:
+        """Return the coordinates (n,) to which an edge with these objectives belongs."""
+
+    def solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
+        """Return the solution at beta, from a start."""
+
+    def value(self, beta: Floats, J: Floats) -> float:
+        """Return what is least at the solution, in units of the range of the objectives."""
+
+
+BETTER = 1e-7
+"""Difference of two values below which the solutions are the same."""
+
+BEYOND = 300
+"""Points beyond the simplex that are tried at most; of three objectives, 10 times those within
+where these are more. With each further objective a point has more neighbours."""
+
+MANY = 300
+"""Points of the simplex that are not exceeded if nothing else is wanted."""
+
+SAME = 1e-6
+"""Distance of two points, over the ranges of the objectives, below which they are one."""
+
+
+def advance(
+    problem: Problem,
+    programmes: Programmes,
+    edges: Sequence[Solution],
+    lattice: Simplex,
+    checkpoint: Checkpoint = compute_always,
+) -> list[Solution]:
+    """Return one solution a point of the lattice, in its order, then those beyond the simplex.
+
+    Solutions may be dominated, and those that did not converge say so in their status; beyond the
+    simplex only those are returned that converged and are not there yet.
+    """
+    solved: dict[Place, Solution] = {}
+    origin: dict[Place, int] = {}
+    renewed: Counter[Place] = Counter()
+    queue: deque[tuple[Place, Place]] = deque()
+    tried: set[tuple[Place, Place, int]] = set()
+    divisions = lattice.divisions
+    fixed: set[Place] = set()
+    few = lattice.counts.shape[1] <= 3
+    room = max(BEYOND, 10 * len(lattice.counts)) if few else BEYOND
+
+    def beta(place: Place) -> Floats:
+        return np.array(place) / divisions
+
+    def settle(place: Place, solution: Solution, of: int) -> None:
+        solved[place], origin[place] = solution, of
+        renewed[place] += 1
+        here = programmes.beyond and place == _nearest(
+            divisions * programmes.place(of, solution.at.J), divisions
+        )
+        queue.extend((near, place) for near in neighbours(place) if here or min(near) >= 0)
+
+    def worth_trying(place: Place, source: Place) -> bool:
+        if place not in solved:
+            return True
+        if place in fixed or (place, source, renewed[source]) in tried:
+            return False
+        other = origin[place] != origin[source]
+        return not solved[place].converged or (solved[source].converged and other)
+
+    def better(place: Place, found: Solution, known: Solution) -> bool:
+        if found.converged != known.converged:
+            return found.converged
+        value = partial(programmes.value, beta(place))
+        return value(found.at.J) < value(known.at.J) - BETTER
+
+    for i, edge in enumerate(edges):
+        coordinates = divisions * programmes.place(i, edge.at.J)
+        place = _nearest(coordinates, divisions)
+        found = edge
+        if np.abs(coordinates - place).max() <= SAME * divisions:
+            fixed.add(place)
+        else:
+            name = f"{programmes.label}-{_text(place)}-from-edge-{i + 1}"
+            solve_one = partial(_solve_one, programmes, problem, beta(place), edge)
+            found = checkpoint(name, solve_one)[0]
+        if place not in solved or better(place, found, solved[place]):
+            settle(place, found, i)
+    while queue:
+        place, source = queue.popleft()
+        if not worth_trying(place, source):
+            continue
+        if place not in solved and min(place) < 0:
+            room -= 1
+            if room < 0:
+                continue
+        tried.add((place, source, renewed[source]))
+        known = solved.get(place)
+        name = f"{programmes.label}-{_text(place)}-from-{_text(source)}-{renewed[source]}"
+        found = checkpoint(
+            name, partial(_solve_one, programmes, problem, beta(place), solved[source])
+        )[0]
+        if known is None or better(place, found, known):
+            settle(place, found, origin[source])
+        elif found.converged and not better(place, known, found):
+            tried.add((source, place, renewed[place]))
+
+    within = [tuple(row) for row in lattice.counts.tolist()]
+    out = [solved[place] for place in within]
+    for place in sorted(set(solved) - set(within), reverse=True):
+        J = np.array([one.at.J for one in out])
+        away = (np.abs(J - solved[place].at.J) / programmes.scale).max(axis=1)
+        if solved[place].converged and away.min() > SAME:
+            out.append(solved[place])
+    return out
+
+
+def _solve_one(
+    programmes: Programmes, problem: Problem, beta: Floats, start: Solution
+) -> list[Solution]:
+    return [programmes.solve(problem, beta, start)]
+
+
+def _nearest(coordinates: Floats, total: int) -> Place:
+    """Return whole numbers with this sum close to coordinates that have it."""
+    floor = np.floor(coordinates + SAME).astype(int)
+    short = total - int(floor.sum())
+    first = np.argsort(floor - coordinates, kind="stable")[:short]
+    floor[first] += 1
+    return tuple(floor.tolist())
+
+
+def _text(place: Place) -> str:
+    return "_".join(map(str, place))

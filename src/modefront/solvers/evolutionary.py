@@ -1,0 +1,92 @@
+"""Evolutionary methods, from pymoo (the extra ``evolutionary``): SPEA2 and NSGA-II.
+
+They are here to be compared with. They use no derivatives and stop when their evaluations are
+spent, with no test of how far their points are from the front: none of them counts as converged.
+(Zitzler, Laumanns & Thiele 2001, doi:10.3929/ethz-a-004284029; Deb et al. 2002,
+doi:10.1109/4235.996017.)
+"""
+
+from __future__ import annotations
+
+import importlib.util
+from typing import Any
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.solvers.dominance import nondominated
+from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.sqp import Solution, Status
+
+EVOLUTIONARY = ("spea2", "nsga2")
+
+UNDEFINED = 1e20
+"""What an objective counts as where the model cannot be evaluated; pymoo takes no infinity."""
+
+
+def available() -> bool:
+    """Return whether pymoo is installed."""
+    return importlib.util.find_spec("pymoo") is not None
+
+
+def evolve_front(
+    problem: Problem, method: str, population: int, evaluations: int, rng: np.random.Generator
+) -> list[Solution]:
+    """Return the non-dominated models of the last population, ascending in the first objective.
+
+    ``evaluations`` is the budget; whole generations of size ``population`` are spent of it.
+    """
+    from pymoo.core.evaluator import Evaluator
+    from pymoo.core.problem import Problem as Described
+    from pymoo.problems.static import StaticProblem
+
+    n, p = len(problem.objectives), problem.lower.size
+    described = Described(n_var=p, n_obj=n, xl=problem.lower, xu=problem.upper)
+    algorithm = _algorithm(method, population)
+    algorithm.setup(
+        described,
+        termination=("n_gen", max(evaluations // population, 1)),
+        seed=int(rng.integers(2**31)),
+        verbose=False,
+    )
+    known: dict[bytes, Evaluation] = {}
+    spent = 0
+    while spent == 0 or spent + population <= evaluations:
+        asked = algorithm.ask()
+        found = {theta.tobytes(): _evaluate(problem, theta) for theta in asked.get("X")}
+        spent += len(asked)
+        known |= found
+        J = np.array([known[theta.tobytes()].J for theta in asked.get("X")])
+        F = np.nan_to_num(J, posinf=UNDEFINED)
+        Evaluator().eval(StaticProblem(described, F=F), asked)
+        algorithm.tell(infills=asked)
+        alive = {theta.tobytes() for theta in algorithm.pop.get("X")}
+        known = {key: at for key, at in known.items() if key in alive}
+    last = [at for at in known.values() if at.feasible]
+    optimal = nondominated(_objectives(last, n))
+    chosen = [at for at, kept in zip(last, optimal, strict=True) if kept]
+    return [_sampled(at) for at in sorted(chosen, key=lambda at: tuple(at.J))]
+
+
+def _algorithm(method: str, population: int) -> Any:
+    if method == "spea2":
+        from pymoo.algorithms.moo.spea2 import SPEA2, SPEA2Survival
+
+        # The default survival is one object for all runs and remembers the ranges of the last one.
+        return SPEA2(pop_size=population, survival=SPEA2Survival(normalize=True))
+    from pymoo.algorithms.moo.nsga2 import NSGA2
+
+    return NSGA2(pop_size=population)
+
+
+def _evaluate(problem: Problem, theta: Floats) -> Evaluation:
+    return problem.evaluate(np.clip(theta, problem.lower, problem.upper), derivatives=False)
+
+
+def _objectives(evaluations: list[Evaluation], n: int) -> Floats:
+    return np.array([at.J for at in evaluations]).reshape(-1, n)
+
+
+def _sampled(at: Evaluation) -> Solution:
+    n, p = at.dJ.shape
+    return Solution(at, np.zeros((n, p, p)), np.full(n, np.nan), 0.0, Status.SAMPLED, 0)

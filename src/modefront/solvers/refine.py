@@ -1,0 +1,91 @@
+r"""More points of a front of two objectives where it is sparse, and each piece followed to its end.
+
+Between neighbours a and b of one piece whose distance, in units of the ranges of the objectives,
+exceeds a wanted size, the subproblem of normal-boundary intersection half-way between their
+projections is solved from a, or else from b, and so on until no distance is greater. The ends of
+the pieces at a gap (`modefront.solvers.pieces`) count as neighbours: so each piece is followed to
+its end.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from functools import partial
+from itertools import pairwise
+
+import numpy as np
+
+from modefront._typing import Bools, Floats
+from modefront.solvers.checkpoint import Checkpoint, compute_always
+from modefront.solvers.payoff import Payoff
+from modefront.solvers.pieces import Gap, piece_numbers
+from modefront.solvers.problem import Problem
+from modefront.solvers.sqp import Solution, solve
+
+SMALLEST = 1e-4
+"""Distance of two projections below which a distance of points is a jump that is left as it is."""
+
+
+def refine(
+    problem: Problem,
+    target: Payoff,
+    points: Sequence[Solution],
+    optimal: Bools,
+    gaps: Sequence[Gap],
+    size: float,
+    checkpoint: Checkpoint = compute_always,
+) -> list[Solution]:
+    """Return the points of a front in their order, with new ones between them.
+
+    ``optimal`` says which of the points (in their order along the front) are Pareto optimal.
+    """
+    found: list[Solution] = []
+    for piece in pieces(points, optimal, gaps):
+        pairs = list(pairwise(piece))[::-1]
+        while pairs:
+            a, b = pairs.pop()
+            if distance(a, b, target.scale) <= size:
+                continue
+            middle = _between(problem, target, a, b, checkpoint)
+            if middle:
+                found.append(middle)
+                pairs += [(middle, b), (a, middle)]
+    return sorted([*points, *found], key=lambda one: -float(target.place(one.at.J)[0]))
+
+
+def pieces(points: Sequence[Solution], optimal: Bools, gaps: Sequence[Gap]) -> list[list[Solution]]:
+    """Return the optimal points of each piece of a front, with its ends at gaps."""
+    J = np.array([one.at.J for one in points])
+    number = piece_numbers(J, optimal, gaps)
+    out = []
+    for k in range(len(gaps) + 1):
+        first = [gaps[k - 1].start] if k else []
+        last = [gaps[k].end] if k < len(gaps) else []
+        out.append([*first, *(points[i] for i in np.flatnonzero(number == k + 1).tolist()), *last])
+    return out
+
+
+def distance(a: Solution, b: Solution, scale: Floats) -> float:
+    """Return the distance of two points in units of the ranges of the objectives."""
+    return float(np.linalg.norm((a.at.J - b.at.J) / scale))
+
+
+def _between(
+    problem: Problem, target: Payoff, a: Solution, b: Solution, checkpoint: Checkpoint
+) -> Solution | None:
+    """Return the point half-way, or None where there is none on this piece."""
+    at_a, at_b = target.place(a.at.J), target.place(b.at.J)
+    if np.abs(at_a - at_b).max() < SMALLEST:
+        return None
+    beta = (at_a + at_b) / 2
+    lower, upper = np.minimum(a.at.J, b.at.J), np.maximum(a.at.J, b.at.J)
+    for side, start in (("a", a), ("b", b)):
+        name = f"nbi-refine-{float(beta[1]).hex()}-{side}"
+        found = checkpoint(name, partial(_solve, problem, target, beta, start))[0]
+        if found.converged and (lower <= found.at.J).all() and (upper >= found.at.J).all():
+            return found
+    return None
+
+
+def _solve(problem: Problem, target: Payoff, beta: Floats, start: Solution) -> list[Solution]:
+    return [solve(problem, target.subproblem(beta), start)]

@@ -1,0 +1,68 @@
+r"""The weight sweep: weighted sums with weights in uniform steps.
+
+.. math:: \min_\theta \sum_i w_i J_i, \qquad w \text{ on the lattice of the simplex}
+
+It is here to be compared with. Every solution is Pareto optimal, but only points at which the
+front is convex are solutions, whatever the weights, and uniform steps of the weights give points
+that crowd where the front is curved (Das & Dennis 1997, doi:10.1007/BF01197559).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.solvers.advance import Simplex, advance
+from modefront.solvers.checkpoint import Checkpoint, compute_always
+from modefront.solvers.problem import Problem
+from modefront.solvers.scalarisation import weighted
+from modefront.solvers.sqp import Solution, solve
+
+LEAST = 1e-6
+"""Least weight: without any, the minimum of the others would not be unique."""
+
+
+@dataclass(frozen=True)
+class WeightedSums:
+    """The programmes of the sweep, whose weights are the points of the lattice.
+
+    ``scale`` (n,) is the range of each objective.
+    """
+
+    scale: Floats
+    label: str = "weights"
+    beyond: bool = False
+
+    def place(self, edge: int, _: Floats) -> Floats:
+        """Return the corner of the simplex at which an edge is the solution."""
+        return np.eye(self.scale.size)[edge]
+
+    def weights(self, beta: Floats) -> Floats:
+        """Return the weights of the objectives at a point of the simplex, shape (n,)."""
+        return np.maximum(beta, LEAST)
+
+    def solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
+        """Return the minimum of the weighted sum, from a start."""
+        return solve(problem, weighted(self.weights(beta)), start)
+
+    def value(self, beta: Floats, J: Floats) -> float:
+        """Return the weighted sum."""
+        w = self.weights(beta)
+        return float(w @ J / (w @ self.scale))
+
+
+def weight_sweep(
+    problem: Problem,
+    edges: Sequence[Solution],
+    scale: Floats,
+    lattice: Simplex,
+    checkpoint: Checkpoint = compute_always,
+) -> list[Solution]:
+    """Return the minimum of a weighted sum for each point of the lattice, in its order.
+
+    Each is sought from its neighbours on all sides; the best one is kept.
+    """
+    return advance(problem, WeightedSums(scale), edges, lattice, checkpoint)

@@ -1,0 +1,218 @@
+r"""Results of several model classes and configurations side by side.
+
+All is measured in the space of errors :math:`e_i = \sqrt{J_i / a_i}`, which has the same meaning
+for every model class and configuration (Christodoulou et al. 2008,
+doi:10.1016/j.cma.2008.04.010): a good class has a front close to the origin, and a front that is
+short makes the choice among its models matter little. Only the Pareto-optimal points of a front
+count. Its length is that of the shortest tree that joins them, gaps between its pieces left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from itertools import combinations
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+from scipy.sparse.csgraph import minimum_spanning_tree
+from scipy.spatial.distance import cdist, pdist, squareform
+
+from modefront._typing import Floats
+from modefront.errors import Fault, InputError
+from modefront.study.results import front_points, read
+
+PREDICTED = ("frequency", "mac")
+"""Predictions of the modes that every file of results holds."""
+
+FURTHER = ("frf_", "first_passage_")
+"""Beginnings of the names of further predictions, with the dimension point first."""
+
+
+@dataclass(frozen=True)
+class Spread:
+    """Least and greatest value of one prediction over the Pareto-optimal points of a front."""
+
+    name: str
+    least: float
+    greatest: float
+
+
+@dataclass(frozen=True)
+class Summary:
+    """One front, in the space of errors.
+
+    Attributes
+    ----------
+    name : folder of the results
+    study, method : what they are of
+    points : number of Pareto-optimal points
+    eigenproblems : solved in all
+    length : of the front
+    length_ratio : to that of the first front; NaN where that is a point
+    extent : (groups,) range of each error over the front
+    distance : of the point of the front that is closest to the origin
+    optimal_distance : of the optimally weighted model from the origin; NaN where there is none
+    parameters : least and greatest value of each parameter
+    predictions : likewise of each prediction
+    """
+
+    name: str
+    study: str
+    method: str
+    points: int
+    eigenproblems: int
+    length: float
+    length_ratio: float
+    extent: tuple[float, ...]
+    distance: float
+    optimal_distance: float
+    parameters: tuple[Spread, ...]
+    predictions: tuple[Spread, ...]
+
+
+@dataclass(frozen=True)
+class Apart:
+    """How far two fronts lie apart in their common parameters, over the bounds of the first one.
+
+    Attributes
+    ----------
+    first, second : folders of the results
+    common : names of the parameters of both
+    least, greatest : distance of a model of one front from the nearest of the other one: least of
+        all, and greatest from either side (Hausdorff); NaN without common parameters
+    optimal : distance of the optimally weighted models; NaN where there is none
+    """
+
+    first: str
+    second: str
+    common: tuple[str, ...]
+    least: float
+    greatest: float
+    optimal: float
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """Several results side by side."""
+
+    groups: tuple[str, ...]
+    fronts: tuple[Summary, ...]
+    pairs: tuple[Apart, ...]
+
+
+def compare(folders: Sequence[Path]) -> Comparison:
+    """Return the comparison of the results in folders.
+
+    Raises InputError where there are none, or where their groups are not the same.
+    """
+    faults: list[Fault] = []
+    found: list[tuple[str, xr.Dataset]] = []
+    for folder in folders:
+        try:
+            found.append((str(folder), read(folder)))
+        except InputError as error:
+            faults.extend(error.faults)
+    groups = [tuple(map(str, data["group"].values)) for _, data in found]
+    for (name, _), other in zip(found, groups, strict=True):
+        if other != groups[0]:
+            expected = f"those of {found[0][0]}: {', '.join(groups[0])}"
+            faults.append(Fault(name, "groups", expected, ", ".join(other)))
+    if faults:
+        raise InputError(faults)
+    fronts = [_summary(name, data, _length(found[0][1])) for name, data in found]
+    pairs = [_apart(one, other) for one, other in combinations(found, 2)]
+    return Comparison(groups[0], tuple(fronts), tuple(pairs))
+
+
+def _optimal(data: xr.Dataset) -> xr.Dataset:
+    """Return the Pareto-optimal points of the front; its one point where it is no more."""
+    front = front_points(data)
+    if front.size == 0:
+        labels = data["label"].values.tolist()
+        front = np.array([i for i, label in enumerate(labels) if label.startswith("edge-")][:1])
+    return data.isel(point=front[data["pareto"].values[front]] if front.size > 1 else front)
+
+
+def _length(data: xr.Dataset) -> float:
+    front = _optimal(data)
+    e = front["error"].values
+    if len(e) < 2:
+        return 0.0
+    lengths = squareform(pdist(e))
+    if "piece" in front:
+        piece = front["piece"].values
+        lengths[piece[:, None] != piece] = 0.0
+    return float(minimum_spanning_tree(lengths).sum())
+
+
+def _summary(name: str, data: xr.Dataset, first: float) -> Summary:
+    front = _optimal(data)
+    e, length = front["error"].values, _length(data)
+    best = _optimally_weighted(data)
+    return Summary(
+        name,
+        str(data.attrs.get("study", "")),
+        str(data.attrs["method"]),
+        len(e),
+        int(data.attrs["model_evaluations"]),
+        length,
+        length / first if first > 0 else float("nan"),
+        tuple(np.ptp(e, axis=0).tolist()),
+        float(np.linalg.norm(e, axis=1).min()),
+        float(np.linalg.norm(best["error"].values)) if best is not None else float("nan"),
+        tuple(_spreads("", data["parameter"].values, front["theta"].values)),
+        tuple(_predictions(front)),
+    )
+
+
+def _predictions(front: xr.Dataset) -> list[Spread]:
+    out = []
+    for name in PREDICTED:
+        out += _spreads(f"{name} ", front["mode"].values, front[name].values)
+    for key, variable in front.data_vars.items():
+        name = str(key)
+        if name.startswith(FURTHER) and variable.dims[:1] == ("point",):
+            values = variable.values.reshape(front.sizes["point"], -1)
+            indices = np.arange(values.shape[1]) if values.shape[1] > 1 else ("",)
+            out += _spreads(f"{name} ", indices, values)
+    return out
+
+
+def _spreads(prefix: str, names: Iterable[object], values: Floats) -> list[Spread]:
+    return [
+        Spread(f"{prefix}{name}".strip(), float(column.min()), float(column.max()))
+        for name, column in zip(names, values.T, strict=True)
+    ]
+
+
+def _optimally_weighted(data: xr.Dataset) -> xr.Dataset | None:
+    labels = data["label"].values.tolist()
+    return data.isel(point=labels.index("optimal-weights")) if "optimal-weights" in labels else None
+
+
+def _apart(one: tuple[str, xr.Dataset], other: tuple[str, xr.Dataset]) -> Apart:
+    (first, a), (second, b) = one, other
+    known = b["parameter"].values.tolist()
+    common = [name for name in a["parameter"].values.tolist() if name in known]
+    nan = float("nan")
+    if not common:
+        return Apart(first, second, (), nan, nan, nan)
+    span = np.diff(a["bounds"].sel(parameter=common).values, axis=1)[:, 0]
+
+    def scaled(data: xr.Dataset) -> Floats:
+        theta: Floats = data["theta"].sel(parameter=common).values / span
+        return theta
+
+    away = cdist(scaled(_optimal(a)), scaled(_optimal(b)))
+    best = [_optimally_weighted(a), _optimally_weighted(b)]
+    between = [scaled(data) for data in best if data is not None]
+    return Apart(
+        first,
+        second,
+        tuple(common),
+        float(away.min()),
+        float(max(away.min(axis=0).max(), away.min(axis=1).max())),
+        float(np.linalg.norm(between[0] - between[1])) if len(between) == 2 else nan,
+    )

@@ -1,0 +1,38 @@
+"""How well a front is covered: indicators of what was found, for its results."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from modefront.solvers.dominance import nondominated
+from modefront.solvers.indicators import REFERENCE, hypervolume, igd_plus, largest_gap
+from modefront.solvers.refine import pieces
+from modefront.study.run import Front
+
+
+def indicators(front: Front) -> dict[str, float]:
+    """Return hypervolume, IGD+ and largest gap of the Pareto-optimal points of a front.
+
+    In units of the ranges of the objectives over the edges, from the utopia point. The reference
+    set of IGD+ is all that is not dominated of everything that was found: what the front misses
+    of that, such as edges and weighted models. Gaps are those between points within 1.1 times the
+    ranges, as far as the hypervolume reaches. NaN where the front is one point or empty.
+    """
+    names = ("hypervolume", "igd_plus", "largest_gap")
+    along = [one for label, one in front.points if label.startswith(f"{front.method}-")]
+    if front.target is None or not along:
+        return dict.fromkeys(names, float("nan"))
+    utopia, scale = front.target.utopia, front.target.scale
+    found = [one for _, one in front.points] + [one for edge in front.edges for one in edge.minima]
+    found += [*front.optimal]
+    J = np.array([one.at.J for one in along])
+    everything = np.array([one.at.J for one in found])
+    optimal = nondominated(J)
+    Y = (J - utopia) / scale
+    R = (everything[nondominated(everything)] - utopia) / scale
+    parts = pieces(along, optimal, front.gaps) if front.gaps else []
+    branches = [np.array([(one.at.J - utopia) / scale for one in part]) for part in parts]
+    gap = max(
+        largest_gap(part[(part <= REFERENCE).all(axis=1)]) for part in branches or [Y[optimal]]
+    )
+    return dict(zip(names, (hypervolume(Y[optimal]), igd_plus(Y[optimal], R), gap), strict=True))

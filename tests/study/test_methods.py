@@ -1,0 +1,140 @@
+"""What each method finds on the three-story building, and what it misses."""
+
+from functools import cache
+from pathlib import Path
+from tempfile import TemporaryDirectory
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import modefront as mf
+from modefront._typing import Floats
+from modefront.solvers.dominance import nondominated
+from modefront.study.examples import write_example
+from modefront.study.results import front_points
+
+METHODS = ("nbi", "weights", "spea2", "nsga2")
+
+
+@cache
+def problem(configuration: str) -> mf.UpdatingProblem:
+    with TemporaryDirectory() as folder:
+        write_example(f"three-story-{configuration}", Path(folder))
+        return mf.load(Path(folder) / "study.toml").problem
+
+
+def grouped(configuration: str, *groups: mf.Group) -> mf.UpdatingProblem:
+    base = problem(configuration)
+    return mf.UpdatingProblem(base.model, base.data, groups, base.lower, base.upper, base.start)
+
+
+@cache
+def results(method: str) -> xr.Dataset:
+    return mf.solve(problem("c0"), method=method, population=40, evaluations=2000, seed=1)
+
+
+def front(data: xr.Dataset) -> Floats:
+    J: Floats = data["objective"].values[front_points(data)]
+    return J
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_all_methods_give_the_same_variables_and_count_alike(method: str) -> None:
+    data, nbi = results(method), results("nbi")
+    assert data.attrs["method"] == method
+    assert set(nbi.data_vars) - set(data.data_vars) <= {
+        *("piece", "end_label", "end_theta", "end_objective", "end_converged")
+    }
+    n = len(front(data))
+    assert data["label"].values[:n].tolist() == [f"{method}-{i + 1}" for i in range(n)]
+    evolutionary = method in ("spea2", "nsga2")
+    spent = data.attrs["front_evaluations"]
+    assert spent == 2000 if evolutionary else spent <= 6 * 20
+    converged = data["converged"].values[:n]
+    assert not converged.any() if evolutionary else converged.all()
+    assert bool(data["converged"].values[n:].all())
+    weights = np.isfinite(data["weight"].values[:n]).all(axis=1)
+    assert weights.all() if method == "weights" else not weights.any()
+    for name in ("hypervolume", "igd_plus", "largest_gap"):
+        assert data.attrs[name] > 0
+
+
+@pytest.mark.parametrize("method", ["spea2", "nsga2"])
+def test_evolution_repeats_with_the_same_seed_and_stays_behind(method: str) -> None:
+    again = mf.solve(problem("c0"), method=method, population=40, evaluations=2000, seed=1)
+    assert again.identical(results(method))
+    other = mf.solve(problem("c0"), method=method, population=40, evaluations=2000, seed=2)
+    assert not np.array_equal(front(other)[:5], front(again)[:5])
+    assert again.attrs["hypervolume"] < results("nbi").attrs["hypervolume"] * 1.01
+
+
+def test_the_weight_sweep_misses_the_branch_next_to_the_frequency_edge() -> None:
+    nbi, sweep = results("nbi"), results("weights")
+    branch = front(nbi)[(nbi["piece"].values == 1)[front_points(nbi)]]
+    assert len(branch) == 5
+    # Of the first piece the sweep finds its end, the edge, and nothing else.
+    found = front(sweep)
+    on_branch = found[found[:, 1] > branch[-1, 1] * (1 + 1e-9)]
+    assert len(np.unique(on_branch.round(9), axis=0)) == 1
+    assert sweep.attrs["largest_gap"] > 5 * nbi.attrs["largest_gap"]
+    assert nondominated(found).all(), "what it finds is optimal"
+
+
+@pytest.mark.parametrize("size", [0.06, 0.02])
+def test_refining_closes_the_gaps_of_each_piece_up_to_its_end(size: float) -> None:
+    coarse = results("nbi")
+    fine = mf.solve(problem("c0"), refined=size, seed=1)
+    assert fine.attrs["largest_gap"] <= size < coarse.attrs["largest_gap"]
+    assert bool(fine["converged"].all())
+    J, scale = front(fine), np.ptp(front(coarse), axis=0)
+    assert {tuple(row) for row in front(coarse).tolist()} <= {tuple(row) for row in J.tolist()}
+    piece = fine["piece"].values[front_points(fine)]
+    ends = fine["end_objective"].values
+    for k, end in ((1, ends[0]), (2, ends[1])):
+        assert np.linalg.norm((J[piece == k] - end) / scale, axis=1).min() <= size
+    # The cost is that of the new points, as few a point as of the first ones.
+    new = len(J) - len(front(coarse))
+    extra = fine.attrs["model_evaluations"] - coarse.attrs["model_evaluations"]
+    assert extra <= 6 * new + 40
+
+
+def test_three_groups_are_covered_within_and_beyond_the_simplex() -> None:
+    groups = (
+        mf.Group("frequencies", "all"),
+        mf.Group("shape 1", shape=[1]),
+        mf.Group("shapes 2 and 3", shape=[2, 3]),
+    )
+    data = mf.solve(grouped("c1", *groups), points=6, seed=1)
+    J = front(data)
+    assert len(J) > 21
+    assert bool(data["converged"].all())
+    weights = data["stationary_weight"].values[front_points(data)]
+    assert (weights > -1e-6).all(), "every point is a local Pareto optimum"
+    assert data.attrs["front_evaluations"] <= 25 * len(J)
+
+
+def test_each_property_a_group() -> None:
+    groups = [mf.Group(f"f{r}", [r]) for r in (1, 2, 3)]
+    groups += [mf.Group(f"s{r}", shape=[r]) for r in (1, 2, 3)]
+    data = mf.solve(grouped("c1", *groups), points=2, seed=1)
+    J = front(data)
+    assert len(J) >= 6
+    assert bool(data["converged"].all())
+    assert (data["stationary_weight"].values[front_points(data)] > -1e-6).all()
+    assert data.attrs["hypervolume"] > 0
+
+
+@pytest.mark.parametrize("method", METHODS)
+def test_perfect_data_are_one_model_for_every_method(method: str) -> None:
+    base = problem("c0")
+    modes = base.model.modes(np.array([1.2, 0.9, 1.1]), 3)
+    data = mf.modal_data(modes.frequency, modes.phi.T, base.model.sensors)
+    perfect = mf.UpdatingProblem(base.model, data, base.groups, base.lower, base.upper, base.start)
+    found = mf.solve(perfect, method=method, seed=1)
+    assert found.attrs["front_is_a_point"]
+    assert front_points(found).size == 0
+    assert found.attrs["front_evaluations"] == 0
+    assert np.isnan(found.attrs["hypervolume"])
+    (edge,) = found["theta"].values[found["label"].values == "edge-frequencies"]
+    assert edge == pytest.approx([1.2, 0.9, 1.1], abs=1e-5)
