@@ -47,13 +47,19 @@ def results(
         "minimum_of": (("minimum",), ["f"]),
         "minimum_theta": (("minimum", "parameter"), t[:1]),
         "minimum_objective": (("minimum", "group"), e[:1]),
-        "first_passage_top": (("point", "level"), np.column_stack([t[:, 0], 2 * t[:, 0]])),
+        "failure_probability": (("point", "failure"), np.column_stack([t[:, 0], 2 * t[:, 0]])),
+        "finding": (("finding_number",), np.array([], dtype=str)),
     }
     if piece:
         variables["piece"] = (("point",), [*piece, piece[-1]])
     data = xr.Dataset(
         variables,
-        coords={"parameter": list(parameters), "group": list(groups), "mode": [1]},
+        coords={
+            "parameter": list(parameters),
+            "group": list(groups),
+            "mode": [1],
+            "failure": ["drift: 0.1", "drift: 0.2"],
+        },
     )
     data.attrs |= dict.fromkeys(ATTRIBUTES, 0) | {"method": "nbi", "study": "a", "version": "1"}
     return data
@@ -105,7 +111,7 @@ def test_predictions_have_their_spread_and_further_ones_are_found(two: tuple[Pat
     spreads = {one.name: (one.least, one.greatest) for one in first.predictions}
     assert spreads["frequency 1"] == (10.0, 10.0)
     assert spreads["mac 1"] == pytest.approx((0.99, 0.99))
-    assert spreads["first_passage_top 1"] == (2.0, 2.0)
+    assert spreads["failure_probability drift: 0.2"] == (2.0, 2.0)
     assert {one.name: (one.least, one.greatest) for one in first.parameters} == {
         "k1": (1.0, 1.0),
         "k2": (1.0, 2.0),

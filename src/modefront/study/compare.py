@@ -26,8 +26,8 @@ from modefront.study.results import front_points, read
 PREDICTED = ("frequency", "mac")
 """Predictions of the modes that every file of results holds."""
 
-FURTHER = ("frf_", "first_passage_")
-"""Beginnings of the names of further predictions, with the dimension point first."""
+FURTHER = ("frf_peak", "frf_peak_frequency", "failure_probability")
+"""Further predictions, for each point and each load and response that are named."""
 
 
 @dataclass(frozen=True)
@@ -171,12 +171,10 @@ def _predictions(front: xr.Dataset) -> list[Spread]:
     out = []
     for name in PREDICTED:
         out += _spreads(f"{name} ", front["mode"].values, front[name].values)
-    for key, variable in front.data_vars.items():
-        name = str(key)
-        if name.startswith(FURTHER) and variable.dims[:1] == ("point",):
-            values = variable.values.reshape(front.sizes["point"], -1)
-            indices = np.arange(values.shape[1]) if values.shape[1] > 1 else ("",)
-            out += _spreads(f"{name} ", indices, values)
+    for name in FURTHER:
+        if name in front:
+            of = front[name].dims[1]
+            out += _spreads(f"{name} ", front[of].values, front[name].values)
     return out
 
 
