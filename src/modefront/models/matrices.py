@@ -2,6 +2,7 @@ r"""Models given by their matrices: :math:`K(\theta) = K_0 + \sum_j \theta_j K_j
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -76,13 +77,17 @@ class MatrixModel:
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         self.counts.eigenproblems += 1
-        if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
-            selection = self.selection.toarray()
-            return dense.modes(self.stiffness, self.mass, selection, theta, count, derivatives)
-        return sparse.modes(self._pencil, self.selection, theta, count, derivatives)
+        started = time.perf_counter()
+        try:
+            if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
+                selection = self.selection.toarray()
+                return dense.modes(self.stiffness, self.mass, selection, theta, count, derivatives)
+            return sparse.modes(self.pencil, self.selection, theta, count, derivatives)
+        finally:
+            self.counts.full_time += time.perf_counter() - started
 
     @cached_property
-    def _pencil(self) -> Pencil:
+    def pencil(self) -> Pencil:
         """The sparse pencil; its pattern is analysed at the first evaluation, and only then."""
         if isinstance(self.stiffness, DenseAffine) or isinstance(self.mass, DenseAffine):
             raise TypeError("stiffness and mass have to be both dense or both sparse")

@@ -70,15 +70,16 @@ def edge(
     rng: np.random.Generator,
     search: Search,
     checkpoint: Checkpoint = compute_always,
+    starts: Sequence[Solution] = (),
 ) -> Edge | None:
     """Return the edge of one objective, or None where no minimum was found.
 
-    ``sizes`` are typical sizes of the objectives, shape (n,).
+    ``sizes`` are typical sizes of the objectives, shape (n,); ``starts`` are solved from first.
     """
     name = problem.objectives[objective]
+    programme = _programme(objective, EXPLORE, sizes)
     found = checkpoint(
-        f"minima-{name}",
-        lambda: explore(problem, _programme(objective, EXPLORE, sizes), rng, search),
+        f"minima-{name}", lambda: explore(problem, programme, rng, search, starts=starts)
     )
     refined = checkpoint(
         f"edge-{name}", lambda: [_refine(problem, objective, sizes, one) for one in found]

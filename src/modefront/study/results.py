@@ -15,6 +15,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.pieces import piece_numbers
 from modefront.solvers.sqp import Solution
+from modefront.study.certified import certificate_variables
 from modefront.study.run import Front
 
 FILE = "results.nc"
@@ -73,6 +74,7 @@ def dataset(
     for name, meaning in meanings.items():
         rows = [one.at.quantities[name] for one in solutions]
         variables[name] = (point, _stack(rows, len(problem.data.modes)), meaning)
+    variables |= certificate_variables(problem, solutions)
     variables["measured_frequency"] = (
         ("mode",),
         problem.data.mean_frequency,
@@ -124,6 +126,7 @@ def _minima(
             [one.converged for one in found],
             "tolerances were met",
         ),
+        **certificate_variables(problem, found, "minimum"),
     }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -67,18 +67,27 @@ def pareto_front(
     given: Sequence[tuple[str, Floats]] = (),
     checkpoint: Checkpoint = compute_always,
     expect: Callable[[int], None] = ignore,
+    known: Front | None = None,
 ) -> Front:
     """Find the edges, the weighted models, the front by NBI, and its gaps.
 
     ``a`` (n,) counts the measured properties of each objective; ``points`` lie along each edge of
     the simplex of objectives; an edge may exceed the least value of its objective by the share
     ``tolerance``; ``given`` are labelled weights (n,). ``expect`` is told how many
-    pieces of work there are. Raises UnfinishedError where no edge can be found.
+    pieces of work there are. Minima are looked for near those of a front that is ``known``, of
+    nearly the same problem, and nowhere else. Raises UnfinishedError where no edge can be found.
     """
-    search = search or Search()
+    search = (search or Search()) if known is None else Search(0, 0, 0)
     n = len(problem.objectives)
     lattice = simplex(n, points - 1) if n > 1 else None
     expect(4 + 2 * n + len(given) + (len(lattice.beta) if lattice else 0))
+
+    def again(name: str, solutions: Sequence[Solution]) -> Sequence[Solution]:
+        """Return known solutions as starts, with the objectives that they have now."""
+        return checkpoint(
+            f"known-{name}",
+            lambda: [replace(one, at=problem.evaluate(one.at.theta)) for one in solutions],
+        )
 
     sizes = typical_sizes(checkpoint("sample", lambda: sample(problem, generator(seed, "sample"))))
     if sizes is None:
@@ -87,7 +96,9 @@ def pareto_front(
         )
     edges = []
     for i, name in enumerate(problem.objectives):
-        found = edge(problem, i, sizes, generator(seed, f"edge-{name}"), search, checkpoint)
+        rng = generator(seed, f"edge-{name}")
+        near = again(f"edge-{name}", known.edges[i].minima) if known else ()
+        found = edge(problem, i, sizes, rng, search, checkpoint, near)
         if found is None:
             raise UnfinishedError(f"no minimum of group '{name}' was found from any start")
         edges.append(found)
@@ -97,14 +108,15 @@ def pareto_front(
     models: list[tuple[str, Solution]] = []
     for label, w in [*given, ("equal-weights", np.ones(n))]:
         rng = generator(seed, label)
-        search_from = partial(explore, problem, weighted(w), rng, search, starts=bests)
+        before = [one for name, one in known.points if name == label] if known else []
+        near = again(label, before) if known else bests
+        search_from = partial(explore, problem, weighted(w), rng, search, starts=near)
         models += [(label, one) for one in checkpoint(label, search_from)[:1]]
     starts = [*(one for _, one in models), *bests]
+    near = again("optimal-weights", known.optimal) if known else starts
+    rng = generator(seed, "optimal-weights")
     minima = checkpoint(
-        "optimal-weights",
-        lambda: optimal_minima(
-            problem, a, sizes, generator(seed, "optimal-weights"), search, starts
-        ),
+        "optimal-weights", lambda: optimal_minima(problem, a, sizes, rng, search, near)
     )
     optimal = [one for one in minima if regular(one.at.J, sizes)]
     models += [("optimal-weights", one) for one in optimal[:1]]

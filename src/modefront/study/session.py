@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -13,6 +14,7 @@ import modefront
 from modefront.errors import Fault, InputError
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
+from modefront.study.certified import certificate_attributes, certified_front
 from modefront.study.file import Study
 from modefront.study.run import Front, ignore, pareto_front
 from modefront.study.store import PIECES, Store
@@ -47,16 +49,17 @@ def solve(
     from modefront.study.results import dataset
 
     store = Store(None, lambda: problem.counts, ignore, {})
-    front = pareto_front(
+    work = partial(
+        pareto_front,
         problem,
         problem.properties,
         points=points,
         tolerance=tolerance,
         seed=seed,
         search=search,
-        checkpoint=store,
     )
-    return dataset(problem, front, _attributes(front, store, seed))
+    front = certified_front(problem, work, store, ignore)
+    return dataset(problem, front, _attributes(problem, front, store, seed))
 
 
 def run(
@@ -82,7 +85,8 @@ def run(
         raise InputError(fault) from None
     problem = study.problem
     store = Store(pieces, lambda: problem.counts, progress.done, {})
-    front = pareto_front(
+    work = partial(
+        pareto_front,
         problem,
         problem.properties,
         points=study.pareto.points,
@@ -90,25 +94,30 @@ def run(
         seed=study.seed,
         search=study.search,
         given=[(one.name, np.array(one.weights)) for one in study.weighted],
-        checkpoint=store,
-        expect=progress.expect,
     )
+    front = certified_front(problem, work, store, progress.expect)
     data = dataset(problem, front, {"study": study.name, "inputs": study.digest})
-    data.attrs |= _attributes(front, store, study.seed)
+    data.attrs |= _attributes(problem, front, store, study.seed)
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)
     return data
 
 
-def _attributes(front: Front, store: Store, seed: int) -> dict[str, str | int | float]:
+def _attributes(
+    problem: UpdatingProblem, front: Front, store: Store, seed: int
+) -> dict[str, str | int | float]:
     """Return what else is known: version, seed, cost, and remarks on what was found."""
+    total, along = store.total(), store.total("nbi-")
     return {
         "version": modefront.__version__,
         "seed": seed,
-        "model_evaluations": store.total()["eigenproblems"],
-        "nbi_evaluations": store.total("nbi-")["eigenproblems"],
+        "model_evaluations": total["eigenproblems"] + total["reduced"],
+        "nbi_evaluations": along["eigenproblems"] + along["reduced"],
+        "full_eigensolutions": total["eigenproblems"],
+        "factorisations": total["factorisations"],
+        "reduced_solutions": total["reduced"],
         "front_is_a_point": int(front.scale is None),
-    }
+    } | certificate_attributes(problem)
 
 
 def _set_aside(path: Path) -> None:

@@ -10,7 +10,7 @@ from modefront.study.reader import Table, describe, has_name, is_number, repeate
 
 RESERVED = (
     *("nbi-", "edge-", "minima-", "gap-", "equal-weights", "optimal-weights"),
-    *("iterated-weights", "sample"),
+    *("iterated-weights", "sample", "known-", "snapshot", "certificates"),
 )
 """Beginnings of the labels of results and of the names of pieces of work."""
 
