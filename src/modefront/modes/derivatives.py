@@ -22,10 +22,11 @@ each right-hand side, :math:`B^{-1}b = \beta_1 q_1`,
 .. math:: T q_k = \beta_k q_{k-1} + \alpha_k q_k + \beta_{k+1} q_{k+1}
 
 gives :math:`c^T (K - \lambda_r M)^+ b = \sum_k (c^T q_k)\, y_k` with
-:math:`(I + \tau_r T_k) y = \beta_1 e_1`, for every r at once. With
-:math:`I + \tau_r T_k = L D L^T` this is :math:`\sum_k p_k u_k / d_k`, where :math:`L u = \beta_1 e_1`
-and :math:`L p = (c^T q_k)_k` are found on the way, so that no vector is kept: only what c sees is
-formed, and the identity for c gives the derivatives at every degree of freedom. The condition number is that of :math:`1 + \tau_r / (\lambda - \sigma)` for :math:`\lambda` beyond the
+:math:`(I + \tau_r T_k) y = \beta_1 e_1`, for every r at once. With :math:`I + \tau_r T_k = L D L^T`
+this is :math:`\sum_k p_k u_k / d_k`, where :math:`L u = \beta_1 e_1` and
+:math:`L p = (c^T q_k)_k` are found on the way: only what c sees is formed, and the identity for c
+gives the derivatives at every degree of freedom. The condition number is that of
+:math:`1 + \tau_r / (\lambda - \sigma)` for :math:`\lambda` beyond the
 known modes: each mode takes the factor that makes it smallest. The form is symmetric, so b may be
 the forces (direct, parameters x modes columns) or the sensors (adjoint, sensors columns for all
 modes together), whichever is expected to need fewer solutions.

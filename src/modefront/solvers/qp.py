@@ -48,7 +48,8 @@ def solve_qp(B: Floats, g: Floats, A: Floats, b: Floats, lo: Floats, hi: Floats)
     s = s_n - T @ h
     if (s >= lo).all() and (s <= hi).all():
         return s
-    return np.clip(s_n + T @ (_least_distance(T, s_n - T @ h, lo, hi) - h), lo, hi)
+    q = _least_distance(T, s, lo, hi)
+    return np.clip(s if q is None else s + T @ q, lo, hi)
 
 
 def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> tuple[Floats, Floats]:
@@ -67,8 +68,8 @@ def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> tuple[Floats, 
     return s_n, Vt[rank:].T
 
 
-def _least_distance(T: Floats, offset: Floats, lo: Floats, hi: Floats) -> Floats:
-    """Return the shortest q with lo <= offset + T q <= hi."""
+def _least_distance(T: Floats, offset: Floats, lo: Floats, hi: Floats) -> Floats | None:
+    """Return the shortest q with lo <= offset + T q <= hi; None where rounding leaves none."""
     G = np.vstack([T, -T])
     h = np.concatenate([lo - offset, offset - hi])
     scale = np.maximum(np.linalg.norm(G, axis=1), np.finfo(float).tiny)
@@ -77,4 +78,6 @@ def _least_distance(T: Floats, offset: Floats, lo: Floats, hi: Floats) -> Floats
     f[-1] = 1.0
     u, _ = scipy.optimize.nnls(E, f)
     residual = E @ u - f
+    if residual[-1] > -np.finfo(float).eps:
+        return None
     return -residual[:-1] / residual[-1]

@@ -71,13 +71,14 @@ def certified_front(
     model = problem.model
     if not isinstance(model, ReducedModel):
         return work(checkpoint=checkpoint, expect=expect, known=None)
-    model.resume([])
+    model.resume(())
     front: Front | None = None
     expected, theta = 0, problem.start
     for number in range(1, SNAPSHOTS + 1):
         here = _Round(checkpoint, number)
         before = model.snapshots
-        if not here("snapshot", partial(_take, problem, model, theta)):
+        taken = here("snapshot", partial(_take, problem, model, theta))
+        if not taken:
             break
         model.resume([*before, theta])
         base = expected + 2
@@ -90,7 +91,7 @@ def certified_front(
         known = front if front and _error(_worst(front)) <= POOR else None
         front = _with_errors(model, work(checkpoint=here, expect=more, known=known), here)
         worst = _worst(front)
-        if _error(worst) <= model.tolerance or model.is_full:
+        if _error(worst) <= model.tolerance or _columns(taken) >= model.capacity:
             break
         theta = worst.at.theta
         if any(np.array_equal(theta, one) for one in model.snapshots):
@@ -100,7 +101,7 @@ def certified_front(
     return front
 
 
-def certificate_attributes(problem: UpdatingProblem) -> dict[str, float]:
+def certificate_attributes(problem: UpdatingProblem) -> dict[str, str | int | float]:
     """Return the tolerance of the certificates, if there are any."""
     model = problem.model
     return {"eigenvalue_tolerance": model.tolerance} if isinstance(model, ReducedModel) else {}
@@ -134,12 +135,20 @@ def certificate_variables(
 
 
 def _take(problem: UpdatingProblem, model: ReducedModel, theta: Floats) -> list[Solution]:
-    """Take a snapshot; nothing is returned where the model cannot be solved there."""
+    """Take a snapshot and keep its theta and the columns that the basis then has.
+
+    Nothing is returned where the model cannot be solved there.
+    """
     try:
         model.take(theta)
     except ModelError:
         return []
-    return [begin(infeasible(theta, len(problem.objectives)))]
+    kept = {"columns": np.array([model.columns])}
+    return [begin(replace(infeasible(theta, len(problem.objectives)), quantities=kept))]
+
+
+def _columns(taken: Solutions) -> int:
+    return int(taken[0].at.quantities["columns"][0])
 
 
 def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> Front:

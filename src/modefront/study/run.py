@@ -126,9 +126,11 @@ def pareto_front(
     )
 
     if tolerance > 0:
-        known = [*optimal, *starts]
+        found_before = [*optimal, *starts]
         ends = [
-            checkpoint(f"near-{name}", partial(near_best, problem, one, i, tolerance, sizes, known))
+            checkpoint(
+                f"near-{name}", partial(near_best, problem, one, i, tolerance, sizes, found_before)
+            )
             for i, (name, one) in enumerate(zip(problem.objectives, bests, strict=True))
         ]
         bests = [found[0] for found in ends]

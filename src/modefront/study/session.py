@@ -108,7 +108,7 @@ def _attributes(
 ) -> dict[str, str | int | float]:
     """Return what else is known: version, seed, cost, and remarks on what was found."""
     total, along = store.total(), store.total("nbi-")
-    return {
+    out: dict[str, str | int | float] = {
         "version": modefront.__version__,
         "seed": seed,
         "model_evaluations": total["eigenproblems"] + total["reduced"],
@@ -117,7 +117,8 @@ def _attributes(
         "factorisations": total["factorisations"],
         "reduced_solutions": total["reduced"],
         "front_is_a_point": int(front.scale is None),
-    } | certificate_attributes(problem)
+    }
+    return out | certificate_attributes(problem)
 
 
 def _set_aside(path: Path) -> None:

@@ -91,13 +91,12 @@ def snapshot(pencil: Pencil, theta: Floats, count: int, spare: int, half_range: 
     return Snapshot(theta, above.sigma, vectors, below)
 
 
-def first(pencil: Pencil, one: Snapshot, shortest: float, capacity: int) -> Basis:
-    """Return the basis of the first snapshot; see `extended`."""
-    A = pencil.K.at(one.theta) - one.below.sigma * pencil.M.at(one.theta)
+def empty(pencil: Pencil, first: Snapshot) -> Basis:
+    """Return the basis without columns in the norm of the first snapshot."""
+    A = pencil.K.at(first.theta) - first.below.sigma * pencil.M.at(first.theta)
     K = DenseAffine(np.zeros((pencil.K.terms.shape[1], 0, 0)), pencil.K.coefficients)
     M = DenseAffine(np.zeros((pencil.M.terms.shape[1], 0, 0)), pencil.M.coefficients)
-    empty = Basis(A, np.zeros((pencil.size, 0)), K, M)
-    return extended(pencil, empty, one.vectors, shortest, capacity)
+    return Basis(A, np.zeros((pencil.size, 0)), K, M)
 
 
 def extended(

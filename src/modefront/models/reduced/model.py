@@ -1,4 +1,4 @@
-"""A model that solves a sparse one a few times, and a small one in their place after that."""
+"""A model that solves a sparse one a few times, and a small one in its place after that."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ from modefront.errors import ModelError
 from modefront.models.base import Counts
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced import window
-from modefront.models.reduced.basis import Basis, extended, first, snapshot
+from modefront.models.reduced.basis import Basis, empty, extended, snapshot
 from modefront.models.reduced.certificate import STEPS, Certificate, estimate
 from modefront.modes import dense
 from modefront.modes.factorisation import SingularMatrixError
@@ -27,14 +27,30 @@ SHORTEST = 0.1
 SPARE = 2
 """Modes in the basis beyond those that are used, without derivatives: they may enter later."""
 
+TOLERANCE = 1e-8
+"""Relative error of eigenvalues that is aimed at, if nothing else is said."""
+
+MEMORY = 4.0
+"""GiB that a basis may take, if nothing else is said."""
+
 
 @dataclass(frozen=True)
 class _Taken:
-    """A snapshot in the basis: where, up to which eigenvalue all modes are known, what it cost."""
+    """A snapshot: where, up to which eigenvalue all modes are known, factorisations it took."""
 
     theta: Floats
     beyond: float
-    cost: Counts
+    factorisations: int
+
+
+@dataclass(frozen=True)
+class _State:
+    """The basis of some snapshots, as the sensors see it, and the factor of the last one."""
+
+    taken: tuple[_Taken, ...]
+    basis: Basis
+    sensed: Floats
+    below: Shifted
 
 
 @dataclass(eq=False)
@@ -50,7 +66,8 @@ class ReducedModel:
     count : modes that are asked for; more than these are solved in full
     nominal, lower, upper : (p,) parameters
     tolerance : relative error of eigenvalues that is aimed at
-    memory : bytes that the basis may take
+    memory : GiB that the basis may take; one mode is always allowed
+    counts : what the evaluations and the snapshots in use have cost
     """
 
     full: MatrixModel
@@ -58,13 +75,11 @@ class ReducedModel:
     nominal: Floats
     lower: Floats
     upper: Floats
-    tolerance: float = 1e-8
-    memory: float = 4 * 2.0**30
+    tolerance: float = TOLERANCE
+    memory: float = MEMORY
     counts: Counts = field(default_factory=Counts)
-    _wanted: list[Floats] = field(default_factory=list)
-    _taken: list[_Taken] = field(default_factory=list)
-    _basis: Basis | None = None
-    _below: Shifted | None = None
+    _wanted: tuple[Floats, ...] = ()
+    _state: _State | None = None
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -88,43 +103,44 @@ class ReducedModel:
 
     @property
     def capacity(self) -> int:
-        """Columns that the basis may have."""
-        return int(self.memory // (8 * self.size))
+        """Columns that the basis may have: as many modes as are asked for, at least."""
+        return max(self.count, int(self.memory * 2**30 // (8 * self.size)))
 
     @property
-    def is_full(self) -> bool:
-        """Whether the memory leaves no room for another mode."""
-        return self._basis is not None and self._basis.columns >= self.capacity
+    def columns(self) -> int:
+        """Columns that the basis has."""
+        return self._ready().basis.columns
 
     @property
     def snapshots(self) -> tuple[Floats, ...]:
         """Parameters of the snapshots."""
-        return tuple(self._wanted)
+        return self._wanted
 
     def resume(self, snapshots: Sequence[Floats]) -> None:
-        """Use these snapshots, which were paid for before; they are computed when needed."""
-        self._wanted = list(snapshots)
+        """Use these snapshots, which were counted before; they are computed when needed."""
+        self._wanted = tuple(snapshots)
 
     def take(self, theta: Floats) -> None:
         """Add a snapshot. Raises ModelError where the model has no modes there."""
-        self._wanted.append(theta)
+        before = self._wanted
+        self._wanted = (*before, theta)
         try:
-            self._build()
+            last = self._ready().taken[-1]
         except ModelError:
-            self._wanted.pop()
+            self._wanted = before
             raise
-        cost = self._taken[-1].cost
-        self.counts.eigenproblems += cost.eigenproblems
-        self.counts.factorisations += cost.factorisations
+        self.counts.eigenproblems += 1
+        self.counts.factorisations += last.factorisations
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         if count > self.count:
             return self._in_full(theta, count, derivatives)
-        basis = self._ready()
+        state = self._ready()
         started = time.perf_counter()
+        K, M = state.basis.K, state.basis.M
+        found = dense.modes(K, M, state.sensed, theta, count, derivatives)
         self.counts.reduced += 1
-        found = dense.modes(basis.K, basis.M, self._sensed, theta, count, derivatives)
         self.counts.reduced_time += time.perf_counter() - started
         return found
 
@@ -135,74 +151,81 @@ class ReducedModel:
         factorisation where it is in doubt. A ``quick`` certificate does not look for missing
         modes, and takes only the first term of the estimate.
         """
-        basis = self._ready()
+        state = self._ready()
         started = time.perf_counter()
+        basis, pencil = state.basis, self.full.pencil
         ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        lam = ritz.lam
-        low = min(lam.size, self.count + SPARE)
-        K, M = self.full.pencil.K.at(theta), self.full.pencil.M.at(theta)
-        if not quick and self._misses(theta, lam, int(wanted.max())):
-            nothing = np.full(wanted.size, np.inf)
-            return Certificate(nothing, np.ones(wanted.size))
-        Phi = combine(basis.V, ritz.Phi[:, :low])
-        found = estimate(K, M, lam[:low], Phi, wanted, self._below, 1 if quick else STEPS)
+        if not quick and self._misses(state, theta, ritz.lam, int(wanted.max())):
+            found = Certificate(np.full(wanted.size, np.inf), np.ones(wanted.size))
+        else:
+            low = min(ritz.lam.size, self.count + SPARE)
+            found = estimate(
+                pencil.K.at(theta),
+                pencil.M.at(theta),
+                ritz.lam[:low],
+                combine(basis.V, ritz.Phi[:, :low]),
+                wanted,
+                state.below,
+                1 if quick else STEPS,
+            )
         self.counts.certificates += 1
         self.counts.certificate_time += time.perf_counter() - started
         return found
 
-    def _misses(self, theta: Floats, lam: Floats, last: int) -> bool:
+    def _misses(self, state: _State, theta: Floats, lam: Floats, last: int) -> bool:
         """Return whether modes below the Ritz value of the ``last`` one wanted are missing."""
-        K, M = self._ready().K, self._ready().M
+        K, M, pencil = state.basis.K, state.basis.M, self.full.pencil
         if window.semidefinite(K) and window.semidefinite(M):
-            for one in self._taken:
+            for one in state.taken:
                 if window.lower_bound(K, M, theta, one.theta) * one.beyond > lam[last]:
                     return False
         below, sigma = window.gap_above(lam, last)
-        pencil = self.full.pencil
-        before = self.full.counts.factorisations
+        self.counts.factorisations += 1
         try:
             factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
         except SingularMatrixError:
             return True
-        self.counts.factorisations += self.full.counts.factorisations - before
         return factor.negative != below
 
     def _in_full(self, theta: Floats, count: int, derivatives: bool) -> Modes:
         before = self.full.counts.factorisations
+        started = time.perf_counter()
         found = self.full.modes(theta, count, derivatives=derivatives)
         self.counts.eigenproblems += 1
         self.counts.factorisations += self.full.counts.factorisations - before
+        self.counts.full_time += time.perf_counter() - started
         return found
 
-    def _ready(self) -> Basis:
+    def _ready(self) -> _State:
+        """Return the basis of the snapshots wanted; only those not yet in it are computed."""
         if not self._wanted:
             self.take(self.nominal)
-        return self._build()
+        if self._state is not None and not _begins(self._wanted, self._state.taken):
+            self._state = None
+        while self._state is None or len(self._state.taken) < len(self._wanted):
+            self._add(self._wanted[len(self._state.taken) if self._state else 0])
+        return self._state
 
-    def _build(self) -> Basis:
-        """Return the basis of the snapshots wanted; only those not yet in it are computed."""
-        held = [one.theta for one in self._taken]
-        same = len(held) <= len(self._wanted)
-        same &= all(np.array_equal(a, b) for a, b in zip(held, self._wanted, strict=False))
-        if not same:
-            self._basis, self._below, self._taken = None, None, []
-        shortest = SHORTEST * np.sqrt(self.tolerance)
-        for theta in self._wanted[len(self._taken) :]:
-            self._below = None  # the factors of the new snapshot take its place
-            started, before = time.perf_counter(), self.full.counts.factorisations
-            half = (self.upper - self.lower) / 2
-            one = snapshot(self.full.pencil, theta, min(self.count, self.size), SPARE, half)
-            if self._basis is None:
-                self._basis = first(self.full.pencil, one, shortest, self.capacity)
-            else:
-                self._basis = extended(
-                    self.full.pencil, self._basis, one.vectors, shortest, self.capacity
-                )
-            self._below = one.below
-            self._sensed = np.asarray(self.full.selection @ self._basis.V)
-            cost = Counts(1, self.full.counts.factorisations - before)
-            self._taken.append(_Taken(theta, one.beyond, cost))
-            self.counts.full_time += time.perf_counter() - started
-        if self._basis is None:
-            raise RuntimeError("a reduced model has at least one snapshot")
-        return self._basis
+    def _add(self, theta: Floats) -> None:
+        """Compute another snapshot."""
+        started, before = time.perf_counter(), self.full.counts.factorisations
+        pencil, half = self.full.pencil, (self.upper - self.lower) / 2
+        basis, taken = (self._state.basis, self._state.taken) if self._state else (None, ())
+        self._state = None  # its factor makes room for those of the snapshot
+        one = snapshot(pencil, theta, self.count, SPARE, half)
+        if basis is None:
+            basis = empty(pencil, one)
+        shortest = SHORTEST * float(np.sqrt(self.tolerance))
+        basis = extended(pencil, basis, one.vectors, shortest, self.capacity)
+        cost = self.full.counts.factorisations - before
+        taken = (*taken, _Taken(theta, one.beyond, cost))
+        sensed = np.asarray(self.full.selection @ basis.V)
+        self._state = _State(taken, basis, sensed, one.below)
+        self.counts.full_time += time.perf_counter() - started
+
+
+def _begins(wanted: Sequence[Floats], taken: Sequence[_Taken]) -> bool:
+    """Return whether the snapshots wanted begin with those that were taken."""
+    return len(taken) <= len(wanted) and all(
+        np.array_equal(one.theta, theta) for one, theta in zip(taken, wanted, strict=False)
+    )
