@@ -63,6 +63,7 @@ def check(study: Path) -> None:
 @click.option("--fresh", is_flag=True, help="Start over; earlier work is set aside, not deleted.")
 def run(study: Path, directory: Path | None, fresh: bool) -> None:
     """Do the work of STUDY; continue where an interrupted run stopped."""
+    from modefront.cli.certificates import uncertified
     from modefront.cli.progress import progress_bar
     from modefront.cli.show import print_summary
     from modefront.study.file import load
@@ -72,10 +73,13 @@ def run(study: Path, directory: Path | None, fresh: bool) -> None:
     directory = directory or study.with_name(f"{study.stem}-results")
     with progress_bar(loaded.name) as progress:
         data = run_study(loaded, directory, fresh=fresh, progress=progress)
-    print_summary(data, directory)
+    print_summary(data, directory, loaded.problem.model.counts)
     if not bool(data["converged"].all()):
         failed = data["label"].values[~data["converged"].values]
         raise UnfinishedError(f"not converged, kept and marked as such: {', '.join(failed)}")
+    if uncertified(data).size:
+        failed = uncertified(data)
+        raise UnfinishedError(f"errors above the tolerance, kept and marked: {', '.join(failed)}")
 
 
 @cli.command()

@@ -13,6 +13,8 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from modefront.cli.certificates import certificate_remarks, cost_lines
+from modefront.models.base import Counts
 from modefront.study.check import Findings
 from modefront.study.file import Study
 
@@ -76,8 +78,8 @@ def print_findings(study: Study, findings: Findings) -> None:
         _print(console, "no warnings")
 
 
-def print_summary(data: xr.Dataset, folder: Path) -> None:
-    """Print what a run has found, in a few lines."""
+def print_summary(data: xr.Dataset, folder: Path, counts: Counts) -> None:
+    """Print what a run has found and what this run of it has cost, in a few lines."""
     console = _console()
     nbi = _front(data)
     optimal = int(data["pareto"].values[nbi].sum())
@@ -89,7 +91,7 @@ def print_summary(data: xr.Dataset, folder: Path) -> None:
             f"  {optimal} of {nbi.size} points of the front are Pareto optimal; "
             f"{data.attrs['model_evaluations']} eigenproblems in all, {cost:.1f} a point",
         )
-    for line in remarks(data):
+    for line in [*remarks(data), *cost_lines(counts)]:
         _print(console, f"  {line}")
     _print(console, f"next: modefront show {folder}")
 
@@ -133,6 +135,7 @@ def remarks(data: xr.Dataset) -> list[str]:
             f"{', '.join(data['label'].values[negative])}: no local Pareto optimum "
             "(a weight is negative)"
         )
+    out += certificate_remarks(data)
     out += _poor_pairs(data)
     bounded = _at_bounds(data)
     if bounded:
@@ -228,6 +231,8 @@ def print_results(data: xr.Dataset) -> None:
             *(f"{x:.4f}" for x in data["mac"].values[i]),
         )
     console.print(predicted)
+    if "certified" in data:
+        console.print(_errors(data))
     weights = _table("weights", ["model", *groups])
     for i in np.flatnonzero(~np.isnan(data["weight"].values).all(axis=1)).tolist():
         weights.add_row(
@@ -249,6 +254,17 @@ def print_results(data: xr.Dataset) -> None:
         f"{attrs['model_evaluations']} eigenproblems in all, "
         f"{attrs['nbi_evaluations']} of them for the points of the front",
     )
+
+
+def _errors(data: xr.Dataset) -> Table:
+    """Return the estimated errors of a reduced basis."""
+    columns = [f"{what} {r}" for what in ("eigenvalue", "shape") for r in data["mode"].values]
+    table = _table("estimated relative errors: ! above the tolerance", ["model", "", *columns])
+    for i, label in enumerate(data["label"].values):
+        errors = [*data["eigenvalue_error"].values[i], *data["shape_error"].values[i]]
+        mark = "!" * int(not data["certified"].values[i])
+        table.add_row(_safe(label), mark, *(f"{x:.1e}" for x in errors))
+    return table
 
 
 def as_json(data: xr.Dataset) -> str:

@@ -69,6 +69,11 @@ class MatrixModel:
         return self.stiffness.size
 
     @property
+    def is_sparse(self) -> bool:
+        """Whether the matrices are sparse; those of small models are dense."""
+        return isinstance(self.stiffness, SparseAffine) and isinstance(self.mass, SparseAffine)
+
+    @property
     def unused(self) -> tuple[str, ...]:
         """Names of parameters on which neither matrix depends."""
         used = self.stiffness.used | self.mass.used

@@ -12,6 +12,7 @@ from typing import Any
 import numpy as np
 
 from modefront.errors import Fault, InputError, ModelError
+from modefront.models.reduced.model import MEMORY
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.reader import Table
@@ -19,6 +20,7 @@ from modefront.study.tables.data import read_data
 from modefront.study.tables.groups import read_groups
 from modefront.study.tables.model import read_model
 from modefront.study.tables.parameters import Parameter, read_parameters
+from modefront.study.tables.reduction import fallback, read_memory, reduced
 from modefront.study.tables.settings import Pareto, read_pairing, read_pareto, read_search
 from modefront.study.tables.weighted import Weighted, read_weights
 
@@ -33,6 +35,7 @@ class Study:
     digest : hash of this file and of all files that it names
     pareto : how the front is found
     weighted : models wanted with given weights, besides equal and optimal ones
+    remark : why what was asked for is not done
     """
 
     file: Path
@@ -44,6 +47,7 @@ class Study:
     pareto: Pareto
     weighted: tuple[Weighted, ...]
     search: Search
+    remark: str = ""
 
 
 def load(path: Path) -> Study:
@@ -55,14 +59,15 @@ def load(path: Path) -> Study:
     faults: list[Fault] = []
     root = Table(str(path), "", values, faults)
     header = root.table("study", "a table [study]")
-    title, seed = "", 0
+    title, seed, memory = "", 0, MEMORY
     if header:
         title = header.text("name") or ""
         seed = header.integer("seed", 0, 2**63 - 1, default=0)
+        memory = read_memory(header)
         header.close()
     parameters = read_parameters(root)
     names = [one.name for one in parameters]
-    model = read_model(root, names, path.parent)
+    model, reduction = read_model(root, names, path.parent)
     data, data_file = read_data(root, model, path.parent)
     groups = read_groups(root, data)
     weights = read_weights(root, [group.name for group in groups if group.name])
@@ -71,7 +76,7 @@ def load(path: Path) -> Study:
     if faults or model is None or data is None:
         raise InputError(faults)
     problem = UpdatingProblem(
-        model,
+        reduced(model, reduction, memory, data, pairing, parameters),
         data,
         groups,
         np.array([one.lower for one in parameters]),
@@ -83,7 +88,8 @@ def load(path: Path) -> Study:
     if faults:
         raise InputError(faults)
     digest = _digest(content, path.parent, [data_file, *_model_files(values)])
-    return Study(path, title, seed, digest, parameters, problem, pareto, weights, search)
+    remark = fallback(problem.model, reduction)
+    return Study(path, title, seed, digest, parameters, problem, pareto, weights, search, remark)
 
 
 def _parse(path: Path) -> tuple[dict[str, Any], bytes]:

@@ -98,6 +98,7 @@ def run(
     front = certified_front(problem, work, store, progress.expect)
     data = dataset(problem, front, {"study": study.name, "inputs": study.digest})
     data.attrs |= _attributes(problem, front, store, study.seed)
+    data.attrs["remark"] = study.remark
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)
     return data
