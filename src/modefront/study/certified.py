@@ -71,7 +71,7 @@ def certified_front(
     model = problem.model
     if not isinstance(model, ReducedModel):
         return work(checkpoint=checkpoint, expect=expect, known=None)
-    model.resume(())
+    model.restart()
     front: Front | None = None
     expected, theta = 0, problem.start
     for number in range(1, SNAPSHOTS + 1):

@@ -78,6 +78,7 @@ class ReducedModel:
     tolerance: float = TOLERANCE
     memory: float = MEMORY
     counts: Counts = field(default_factory=Counts)
+    _charged: Counts = field(default_factory=Counts)
     _wanted: tuple[Floats, ...] = ()
     _state: _State | None = None
 
@@ -116,6 +117,13 @@ class ReducedModel:
         """Parameters of the snapshots."""
         return self._wanted
 
+    def restart(self) -> None:
+        """Use no snapshots. Those at hand are not computed again, but count when taken again."""
+        self._wanted = ()
+        self.counts.eigenproblems -= self._charged.eigenproblems
+        self.counts.factorisations -= self._charged.factorisations
+        self._charged = Counts()
+
     def resume(self, snapshots: Sequence[Floats]) -> None:
         """Use these snapshots, which were counted before; they are computed when needed."""
         self._wanted = tuple(snapshots)
@@ -129,8 +137,9 @@ class ReducedModel:
         except ModelError:
             self._wanted = before
             raise
-        self.counts.eigenproblems += 1
-        self.counts.factorisations += last.factorisations
+        for counts in (self.counts, self._charged):
+            counts.eigenproblems += 1
+            counts.factorisations += last.factorisations
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
