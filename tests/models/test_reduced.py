@@ -19,7 +19,7 @@ from modefront.models.matrices import MatrixModel, affine_model
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced import window
 from modefront.models.reduced.basis import DERIVATIVES, snapshot
-from modefront.models.reduced.model import ReducedModel
+from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.modes import derivatives as exact
 from modefront.modes.sparse import lowest
 
@@ -171,7 +171,7 @@ def test_costs_are_counted_once() -> None:
     assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (2, 4, 3)
     model.modes(np.ones(3), 11)
     assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (3, 6, 3)
-    model.resume([np.ones(3)])
+    model.resume([Snap(np.ones(3), 10)])
     model.modes(np.ones(3), 8)
     assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (3, 6, 4)
 
@@ -181,7 +181,7 @@ def test_the_order_of_computing_snapshots_changes_no_digit() -> None:
     one, other = reduced(full), reduced(plate())
     for theta in thetas:
         one.take(theta)
-    other.resume(thetas)
+    other.resume([Snap(theta, 10) for theta in thetas])
     at = np.array([0.9, 0.6, 1.4])
     assert one.modes(at, 8).lam.tolist() == other.modes(at, 8).lam.tolist()
     assert other.counts.eigenproblems == 0, "what was counted before is not counted again"
@@ -242,7 +242,7 @@ def test_a_mode_that_the_basis_misses_is_found_by_inertia() -> None:
 def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
     full, rng = plate(), np.random.default_rng(0)
     pencil = full.pencil
-    one = snapshot(pencil, np.ones(3), 8, 2, np.ones(3))
+    one = snapshot(pencil, np.ones(3), 10, 8, np.ones(3))
     model = reduced(full)
     model.take(np.ones(3))
     basis = model._ready().basis

@@ -1,9 +1,10 @@
 r"""The work of a study on a reduced model, until every reported model holds in the full one.
 
-A round does all of the work in the basis at hand and estimates the errors of every mode of every
-model that is reported. Where the worst estimate exceeds the tolerance, a snapshot is taken there,
-and the next round starts from what is known. The global search is repeated as long as an estimate
-anywhere is poor: a basis that bad may have led it astray.
+A round does all of the work in the basis at hand and estimates the errors of the modes of those
+models that seem to be the worst. Where an estimate exceeds the tolerance, a snapshot is taken
+there, and the next round starts from what is known; otherwise every model that is reported gets
+its certificate. The global search is repeated as long as an estimate is poor: a basis that bad may
+have led it astray.
 
 Every round's pieces of work have names of their own, and its snapshot is one of them, so that an
 interrupted run goes on with the same digits.
@@ -18,9 +19,9 @@ from typing import Protocol
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Ints
 from modefront.errors import ModelError, UnfinishedError
-from modefront.models.reduced.model import ReducedModel
+from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.checkpoint import Checkpoint, Solutions
 from modefront.solvers.edges import Edge
@@ -34,6 +35,9 @@ POOR = 1e-3
 
 SNAPSHOTS = 12
 """Snapshots, after which the tolerance is given up."""
+
+PROBED = 4
+"""Models of which the errors are estimated on the way, those with the worst residuals."""
 
 ERRORS = ("eigenvalue_error", "shape_error")
 """Names under which the estimates are kept with a solution."""
@@ -73,14 +77,14 @@ def certified_front(
         return work(checkpoint=checkpoint, expect=expect, known=None)
     model.restart()
     front: Front | None = None
-    expected, theta = 0, problem.start
+    expected, at, error = 0, Snap(problem.start, model.count), np.inf
     for number in range(1, SNAPSHOTS + 1):
         here = _Round(checkpoint, number)
         before = model.snapshots
-        taken = here("snapshot", partial(_take, problem, model, theta))
+        taken = here("snapshot", partial(_take, problem, model, at))
         if not taken:
             break
-        model.resume([*before, theta])
+        model.resume([*before, at])
         base = expected + 2
 
         def more(pieces: int, base: int = base) -> None:
@@ -88,17 +92,21 @@ def certified_front(
             expected = base + pieces
             expect(expected)
 
-        known = front if front and _error(_worst(front)) <= POOR else None
-        front = _with_errors(model, work(checkpoint=here, expect=more, known=known), here)
-        worst = _worst(front)
-        if _error(worst) <= model.tolerance or _columns(taken) >= model.capacity:
-            break
-        theta = worst.at.theta
-        if any(np.array_equal(theta, one) for one in model.snapshots):
+        known = front if error <= POOR else None
+        front = work(checkpoint=here, expect=more, known=known)
+        (worst,) = here("probe", partial(_probe, model, front))
+        if _error(worst) <= model.tolerance:
+            front = _with_errors(model, front, here)
+            worst = max(_reported(front), key=_error)
+            if _error(worst) <= model.tolerance:
+                return front
+        error, at = _error(worst), Snap(worst.at.theta, int(_paired(worst).max()) + 1)
+        full = int(taken[0].at.quantities["columns"][0]) >= model.capacity
+        if full or any(np.array_equal(at.theta, one.theta) for one in model.snapshots):
             break
     if front is None:
         raise UnfinishedError("the model cannot be solved at the nominal parameters")
-    return front
+    return _with_errors(model, front, checkpoint)
 
 
 def certificate_attributes(problem: UpdatingProblem) -> dict[str, str | int | float]:
@@ -134,34 +142,33 @@ def certificate_variables(
     }
 
 
-def _take(problem: UpdatingProblem, model: ReducedModel, theta: Floats) -> list[Solution]:
+def _take(problem: UpdatingProblem, model: ReducedModel, at: Snap) -> list[Solution]:
     """Take a snapshot and keep its theta and the columns that the basis then has.
 
     Nothing is returned where the model cannot be solved there.
     """
     try:
-        model.take(theta)
+        model.take(at.theta, at.derived)
     except ModelError:
         return []
     kept = {"columns": np.array([model.columns])}
-    return [begin(replace(infeasible(theta, len(problem.objectives)), quantities=kept))]
+    return [begin(replace(infeasible(at.theta, len(problem.objectives)), quantities=kept))]
 
 
-def _columns(taken: Solutions) -> int:
-    return int(taken[0].at.quantities["columns"][0])
+def _probe(model: ReducedModel, front: Front) -> list[Solution]:
+    """Return the worst of the models that seem to be the worst."""
+    ranked = sorted(
+        _distinct(front), key=lambda one: model.indicate(one.at.theta, _paired(one)), reverse=True
+    )
+    tried = [_certified(model, one, quick=True) for one in ranked[:PROBED]]
+    return [max(tried, key=_error)]
 
 
 def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> Front:
     """Return the front with the estimated errors of all its models."""
-    distinct = list({_key(one): one for one in _reported(front)}.values())
-
-    def certify() -> list[Solution]:
-        quick = [_certified(model, one, quick=True) for one in distinct]
-        if max(map(_error, quick)) > model.tolerance:
-            return quick
-        return [_certified(model, one, quick=False) for one in distinct]
-
-    kept = checkpoint("certificates", certify)
+    kept = checkpoint(
+        "certificates", lambda: [_certified(model, one, quick=False) for one in _distinct(front)]
+    )
     errors = {_key(one): {name: one.at.quantities[name] for name in ERRORS} for one in kept}
 
     def known(one: Solution) -> Solution:
@@ -180,8 +187,7 @@ def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> F
 
 def _certified(model: ReducedModel, one: Solution, *, quick: bool) -> Solution:
     """Return a solution with the errors of the modes that are paired with measured ones."""
-    index = one.at.quantities["paired_mode"].astype(int) - 1
-    wanted, place = np.unique(index, return_inverse=True)
+    wanted, place = np.unique(_paired(one), return_inverse=True)
     found = model.certify(one.at.theta, wanted, quick=quick)
     errors = dict(zip(ERRORS, (found.eigenvalue[place], found.shape[place]), strict=True))
     return replace(one, at=replace(one.at, quantities={**one.at.quantities, **errors}))
@@ -198,6 +204,16 @@ def _reported(front: Front) -> Iterator[Solution]:
         yield from (gap.end, gap.start)
 
 
+def _distinct(front: Front) -> list[Solution]:
+    """Return the reported models, each once."""
+    return list({_key(one): one for one in _reported(front)}.values())
+
+
+def _paired(one: Solution) -> Ints:
+    """Return the modes that are paired with measured ones, counted from 0."""
+    return one.at.quantities["paired_mode"].astype(int) - 1
+
+
 def _key(one: Solution) -> bytes:
     return one.at.theta.tobytes()
 
@@ -205,7 +221,3 @@ def _key(one: Solution) -> bytes:
 def _error(one: Solution) -> float:
     """Return the greatest error of an eigenvalue."""
     return float(one.at.quantities[ERRORS[0]].max())
-
-
-def _worst(front: Front) -> Solution:
-    return max(_reported(front), key=_error)

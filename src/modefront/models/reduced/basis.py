@@ -37,7 +37,7 @@ from modefront.modes.products import combine, gram
 from modefront.modes.sparse import lowest
 from modefront.modes.spectrum import Shifted
 
-DERIVATIVES = 1e-4
+DERIVATIVES = 1e-2
 """Residual of the derivatives in the basis, which need not be exact to be of use there."""
 
 
@@ -74,19 +74,21 @@ class Basis:
         return self.V.shape[1]
 
 
-def snapshot(pencil: Pencil, theta: Floats, count: int, spare: int, half_range: Floats) -> Snapshot:
-    """Solve the full model for ``count`` modes with derivatives and ``spare`` ones or more without.
+def snapshot(
+    pencil: Pencil, theta: Floats, count: int, derived: int, half_range: Floats
+) -> Snapshot:
+    """Solve the full model for ``count`` modes or more, the first ``derived`` with derivatives.
 
     ``half_range`` (p,) is how far the parameters go from a middle.
 
     Raises ModelError where the model has no such modes.
     """
-    found = lowest(pencil, theta, min(count + spare, pencil.size))
+    found = lowest(pencil, theta, count)
     everywhere = scipy.sparse.eye_array(pencil.size, format="csr")
-    _, dphi, _ = exact.at_sensors(pencil, everywhere, theta, found, count, DERIVATIVES)
+    _, dphi, _ = exact.at_sensors(pencil, everywhere, theta, found, derived, DERIVATIVES)
     below, above = found.factors
     energy = np.sqrt(found.lam - below.sigma)
-    dphi *= half_range / energy[:count, None]
+    dphi *= half_range / energy[:derived, None]
     vectors = np.hstack([found.Phi / energy, dphi.reshape(pencil.size, -1)])
     return Snapshot(theta, above.sigma, vectors, below)
 

@@ -15,8 +15,7 @@ Conjugate gradients with the factor of an earlier :math:`A = K + s M` give both:
 .. math:: \epsilon = \sum_k \alpha_k \, r_k^T z_k, \qquad z_k = A^{-1} r_k .
 
 The first term alone is at least :math:`4 \kappa / (1 + \kappa)^2` of the whole (Kantorovich), with
-:math:`\kappa` the condition of :math:`A^{-1} C`; for terms that are positive semidefinite, K
-lies between the least and the greatest ratio of coefficients times A.
+:math:`\kappa` the condition of :math:`A^{-1} C`; others follow until they are small.
 
 Sources: Sleijpen & Van der Vorst 1996, doi:10.1137/S0895479894270427 (correction); Golub & Meurant
 2010, doi:10.1515/9781400833887 (quadratic forms by conjugate gradients).
@@ -36,6 +35,9 @@ from modefront.modes.spectrum import Shifted
 SETTLED = 0.2
 """Share of the sum in the last term, below which no other one is added."""
 
+NEAR = 3.0
+"""Condition of K over that of the factor up to which the first term is enough: 3/4 of the whole."""
+
 STEPS = 8
 """Terms at most."""
 
@@ -52,6 +54,14 @@ class Certificate:
 
     eigenvalue: Floats
     shape: Floats
+
+
+def indicate(
+    K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, lam: Floats, Phi: Floats
+) -> float:
+    """Return a number that is the greater, the worse Ritz pairs are, without any solution."""
+    r = K @ Phi - (M @ Phi) * lam
+    return float((np.einsum("nc,nc->c", r, r / K.diagonal()[:, None]) / lam).max())
 
 
 def estimate(

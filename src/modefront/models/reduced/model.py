@@ -14,7 +14,13 @@ from modefront.models.base import Counts
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced import window
 from modefront.models.reduced.basis import Basis, empty, extended, snapshot
-from modefront.models.reduced.certificate import STEPS, Certificate, estimate
+from modefront.models.reduced.certificate import (
+    NEAR,
+    STEPS,
+    Certificate,
+    estimate,
+    indicate,
+)
 from modefront.modes import dense
 from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.products import combine
@@ -35,10 +41,22 @@ MEMORY = 4.0
 
 
 @dataclass(frozen=True)
-class _Taken:
-    """A snapshot: where, up to which eigenvalue all modes are known, factorisations it took."""
+class Snap:
+    """Where a snapshot is to be taken, and of how many modes with derivatives."""
 
     theta: Floats
+    derived: int
+
+    def same(self, other: Snap) -> bool:
+        """Return whether it is the same snapshot."""
+        return self.derived == other.derived and np.array_equal(self.theta, other.theta)
+
+
+@dataclass(frozen=True)
+class _Taken:
+    """A snapshot: which, up to which eigenvalue all modes are known, factorisations it took."""
+
+    what: Snap
     beyond: float
     factorisations: int
 
@@ -79,7 +97,7 @@ class ReducedModel:
     memory: float = MEMORY
     counts: Counts = field(default_factory=Counts)
     _charged: Counts = field(default_factory=Counts)
-    _wanted: tuple[Floats, ...] = ()
+    _wanted: tuple[Snap, ...] = ()
     _state: _State | None = None
 
     @property
@@ -113,8 +131,8 @@ class ReducedModel:
         return self._ready().basis.columns
 
     @property
-    def snapshots(self) -> tuple[Floats, ...]:
-        """Parameters of the snapshots."""
+    def snapshots(self) -> tuple[Snap, ...]:
+        """The snapshots in use."""
         return self._wanted
 
     def restart(self) -> None:
@@ -124,14 +142,17 @@ class ReducedModel:
         self.counts.factorisations -= self._charged.factorisations
         self._charged = Counts()
 
-    def resume(self, snapshots: Sequence[Floats]) -> None:
+    def resume(self, snapshots: Sequence[Snap]) -> None:
         """Use these snapshots, which were counted before; they are computed when needed."""
         self._wanted = tuple(snapshots)
 
-    def take(self, theta: Floats) -> None:
-        """Add a snapshot. Raises ModelError where the model has no modes there."""
+    def take(self, theta: Floats, derived: int | None = None) -> None:
+        """Add a snapshot, with derivatives of all modes that are asked for or of fewer.
+
+        Raises ModelError where the model has no modes there.
+        """
         before = self._wanted
-        self._wanted = (*before, theta)
+        self._wanted = (*before, Snap(theta, self.count if derived is None else derived))
         try:
             last = self._ready().taken[-1]
         except ModelError:
@@ -153,6 +174,16 @@ class ReducedModel:
         self.counts.reduced_time += time.perf_counter() - started
         return found
 
+    def indicate(self, theta: Floats, wanted: Ints) -> float:
+        """Return a number that is the greater, the worse the ``wanted`` modes are."""
+        started = time.perf_counter()
+        basis, pencil = self._ready().basis, self.full.pencil
+        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        Phi = combine(basis.V, ritz.Phi[:, wanted])
+        found = indicate(pencil.K.at(theta), pencil.M.at(theta), ritz.lam[wanted], Phi)
+        self.counts.certificate_time += time.perf_counter() - started
+        return found
+
     def certify(self, theta: Floats, wanted: Ints, *, quick: bool = False) -> Certificate:
         """Return how wrong the ``wanted`` modes are, counted from 0; see `Certificate`.
 
@@ -167,6 +198,7 @@ class ReducedModel:
         if not quick and self._misses(state, theta, ritz.lam, int(wanted.max())):
             found = Certificate(np.full(wanted.size, np.inf), np.ones(wanted.size))
         else:
+            near = window.condition(basis.K, theta, state.taken[-1].what.theta) <= NEAR
             low = min(ritz.lam.size, self.count + SPARE)
             found = estimate(
                 pencil.K.at(theta),
@@ -175,7 +207,7 @@ class ReducedModel:
                 combine(basis.V, ritz.Phi[:, :low]),
                 wanted,
                 state.below,
-                1 if quick else STEPS,
+                1 if quick or near else STEPS,
             )
         self.counts.certificates += 1
         self.counts.certificate_time += time.perf_counter() - started
@@ -186,7 +218,7 @@ class ReducedModel:
         K, M, pencil = state.basis.K, state.basis.M, self.full.pencil
         if window.semidefinite(K) and window.semidefinite(M):
             for one in state.taken:
-                if window.lower_bound(K, M, theta, one.theta) * one.beyond > lam[last]:
+                if window.lower_bound(K, M, theta, one.what.theta) * one.beyond > lam[last]:
                     return False
         below, sigma = window.gap_above(lam, last)
         self.counts.factorisations += 1
@@ -215,26 +247,27 @@ class ReducedModel:
             self._add(self._wanted[len(self._state.taken) if self._state else 0])
         return self._state
 
-    def _add(self, theta: Floats) -> None:
+    def _add(self, what: Snap) -> None:
         """Compute another snapshot."""
         started, before = time.perf_counter(), self.full.counts.factorisations
         pencil, half = self.full.pencil, (self.upper - self.lower) / 2
         basis, taken = (self._state.basis, self._state.taken) if self._state else (None, ())
         self._state = None  # its factor makes room for those of the snapshot
-        one = snapshot(pencil, theta, self.count, SPARE, half)
+        count = min(self.count + SPARE, self.size)
+        one = snapshot(pencil, what.theta, count, what.derived, half)
         if basis is None:
             basis = empty(pencil, one)
         shortest = SHORTEST * float(np.sqrt(self.tolerance))
         basis = extended(pencil, basis, one.vectors, shortest, self.capacity)
         cost = self.full.counts.factorisations - before
-        taken = (*taken, _Taken(theta, one.beyond, cost))
+        taken = (*taken, _Taken(what, one.beyond, cost))
         sensed = np.asarray(self.full.selection @ basis.V)
         self._state = _State(taken, basis, sensed, one.below)
         self.counts.full_time += time.perf_counter() - started
 
 
-def _begins(wanted: Sequence[Floats], taken: Sequence[_Taken]) -> bool:
+def _begins(wanted: Sequence[Snap], taken: Sequence[_Taken]) -> bool:
     """Return whether the snapshots wanted begin with those that were taken."""
     return len(taken) <= len(wanted) and all(
-        np.array_equal(one.theta, theta) for one, theta in zip(taken, wanted, strict=False)
+        one.what.same(other) for one, other in zip(taken, wanted, strict=False)
     )

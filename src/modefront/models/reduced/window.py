@@ -40,6 +40,13 @@ def lower_bound(K: DenseAffine, M: DenseAffine, at: Floats, snapshot: Floats) ->
     return float(max(c.min(), 0.0) / d.max()) if positive else 0.0
 
 
+def condition(K: DenseAffine, at: Floats, snapshot: Floats) -> float:
+    """Return the greatest ratio of coefficients over the least; infinite where one is negative."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        c = K.coefficients.values(at) / K.coefficients.values(snapshot)
+        return float(c.max() / c.min()) if (c > 0).all() else np.inf
+
+
 def gap_above(lam: Floats, last: int) -> tuple[int, float]:
     """Return how many Ritz values are below a sigma in the first gap above the last one wanted."""
     gap = np.diff(lam[last:]) / np.maximum(np.abs(lam[last + 1 :]), np.finfo(float).tiny)
