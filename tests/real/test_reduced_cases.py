@@ -22,9 +22,7 @@ EXACT = 1e-5
 
 SMU = Path(__file__).parents[3] / "shared" / "data" / "smu"
 
-pytestmark = pytest.mark.skipif(
-    not SMU.is_dir(), reason=f"the published models are not at {SMU}"
-)
+pytestmark = pytest.mark.skipif(not SMU.is_dir(), reason=f"the published models are not at {SMU}")
 
 
 def model_of(name: str) -> tuple[MatrixModel, dict[str, Floats]]:

@@ -67,7 +67,7 @@ STEPS = 1000
 COLUMNS = 64
 """Right-hand sides that are solved together: more would only take more memory."""
 
-ENTRIES = 2**24
+ENTRIES = 2**22
 """Entries that a block of right-hand sides holds at most, unless it has `FEWEST` columns."""
 
 FEWEST = 8

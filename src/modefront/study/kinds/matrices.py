@@ -5,9 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import numpy as np
+import scipy.sparse
 
-from modefront._typing import Floats
 from modefront.errors import Fault, InputError, suggestion
 from modefront.models.base import Model
 from modefront.models.files import read_matrix
@@ -28,11 +27,13 @@ def read_matrices(table: Table, parameters: Sequence[str], folder: Path) -> Mode
     return matrices(parameters, stiffness, mass, sensors)
 
 
-def _terms(model: Table, key: str, parameters: Sequence[str], folder: Path) -> dict[str, Floats]:
+def _terms(
+    model: Table, key: str, parameters: Sequence[str], folder: Path
+) -> dict[str, scipy.sparse.csr_array]:
     """Return the matrices of one table of terms, each read from its file."""
     expected = f"a table of files, {BASE} = ... and one a parameter"
     table = model.table(key, expected)
-    out: dict[str, Floats] = {}
+    out: dict[str, scipy.sparse.csr_array] = {}
     if table is None:
         return out
     if not table.values:
@@ -53,10 +54,12 @@ def _terms(model: Table, key: str, parameters: Sequence[str], folder: Path) -> d
     return out
 
 
-def _common_size(model: Table, matrices: dict[str, dict[str, Floats]]) -> int | None:
+def _common_size(
+    model: Table, matrices: dict[str, dict[str, scipy.sparse.csr_array]]
+) -> int | None:
     """Return N if all matrices are N x N; a fault names the ones that differ from most."""
     sizes = {
-        f"{key} {name}": len(A) for key, terms in matrices.items() for name, A in terms.items()
+        f"{key} {name}": A.shape[0] for key, terms in matrices.items() for name, A in terms.items()
     }
     if not sizes:
         return None
@@ -67,6 +70,6 @@ def _common_size(model: Table, matrices: dict[str, dict[str, Floats]]) -> int | 
             others = f"{common} x {common}, as the other matrices"
             model.fault(place, others, f"{size} x {size}")
     mass = matrices["mass"]
-    if mass and all(not np.any(A) for A in mass.values()):
+    if mass and all(A.count_nonzero() == 0 for A in mass.values()):
         model.fault("mass", "a mass matrix that is not zero", "only zeros")
     return common
