@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 from pathlib import Path
 
@@ -39,5 +40,25 @@ def fronts(path: Path) -> None:
     figure.savefig(path, metadata={"Date": None})
 
 
+def reduced(source: Path, path: Path) -> None:
+    """Draw what a whole study costs over one full eigensolution, from lines of the benchmark."""
+    rows = [json.loads(line) for line in source.read_text().splitlines()]
+    plt.rcParams["svg.hashsalt"] = "modefront"
+    figure, axes = plt.subplots(figsize=(6.4, 3.8))
+    for kind, colour in (("shell", "tab:blue"), ("solid", "tab:orange")):
+        chosen = sorted((row for row in rows if row["kind"] == kind), key=lambda row: row["size"])
+        size = [row["size"] for row in chosen]
+        ratio = [row["work"] / row["modes"] for row in chosen]
+        count = [row["full_eigensolutions"] for row in chosen]
+        axes.loglog(size, ratio, "o-", color=colour, label=f"{kind}: time of the whole study")
+        axes.loglog(size, count, "s:", color=colour, mfc="none", label=f"{kind}: full solutions")
+    axes.set(xlabel="degrees of freedom", ylabel="over one full eigensolution")
+    axes.legend(frameon=False)
+    axes.spines[["top", "right"]].set_visible(False)
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
+
+
 if __name__ == "__main__":
     fronts(HERE / "fronts.svg")
+    reduced(HERE.parent / "benchmarks" / "reduced.jsonl", HERE / "reduced.svg")
