@@ -1,10 +1,10 @@
 r"""The work of a study on a reduced model, until every reported model holds in the full one.
 
 A round does all of the work in the basis at hand and estimates the errors of the modes of those
-models that seem to be the worst. Where an estimate exceeds the tolerance, a snapshot is taken
-there, and the next round starts from what is known; otherwise every model that is reported gets
-its certificate. The global search is repeated as long as an estimate is poor: a basis that bad may
-have led it astray.
+models that are the farthest from all snapshots. Where an estimate exceeds the tolerance, a snapshot
+is taken there, and the next round starts from what is known; otherwise every model that is reported
+gets its certificate. The global search is repeated as long as an estimate is poor: a basis that bad
+may have led it astray.
 
 Every round's pieces of work have names of their own, and its snapshot is one of them, so that an
 interrupted run goes on with the same digits.
@@ -37,7 +37,7 @@ SNAPSHOTS = 12
 """Snapshots, after which the tolerance is given up."""
 
 PROBED = 4
-"""Models of which the errors are estimated on the way, those with the worst residuals."""
+"""Models of which the errors are estimated on the way, those farthest from all snapshots."""
 
 ERRORS = ("eigenvalue_error", "shape_error")
 """Names under which the estimates are kept with a solution."""
@@ -156,10 +156,8 @@ def _take(problem: UpdatingProblem, model: ReducedModel, at: Snap) -> list[Solut
 
 
 def _probe(model: ReducedModel, front: Front) -> list[Solution]:
-    """Return the worst of the models that seem to be the worst."""
-    ranked = sorted(
-        _distinct(front), key=lambda one: model.indicate(one.at.theta, _paired(one)), reverse=True
-    )
+    """Return the worst of the models that are the farthest from all snapshots."""
+    ranked = sorted(_distinct(front), key=lambda one: model.distance(one.at.theta), reverse=True)
     tried = [_certified(model, one, quick=True) for one in ranked[:PROBED]]
     return [max(tried, key=_error)]
 

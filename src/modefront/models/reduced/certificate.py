@@ -56,14 +56,6 @@ class Certificate:
     shape: Floats
 
 
-def indicate(
-    K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, lam: Floats, Phi: Floats
-) -> float:
-    """Return a number that is the greater, the worse Ritz pairs are, without any solution."""
-    r = K @ Phi - (M @ Phi) * lam
-    return float((np.einsum("nc,nc->c", r, r / K.diagonal()[:, None]) / lam).max())
-
-
 def estimate(
     K: scipy.sparse.csr_array,
     M: scipy.sparse.csr_array,

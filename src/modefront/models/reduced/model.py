@@ -19,7 +19,6 @@ from modefront.models.reduced.certificate import (
     STEPS,
     Certificate,
     estimate,
-    indicate,
 )
 from modefront.modes import dense
 from modefront.modes.factorisation import SingularMatrixError
@@ -174,15 +173,10 @@ class ReducedModel:
         self.counts.reduced_time += time.perf_counter() - started
         return found
 
-    def indicate(self, theta: Floats, wanted: Ints) -> float:
-        """Return a number that is the greater, the worse the ``wanted`` modes are."""
-        started = time.perf_counter()
-        basis, pencil = self._ready().basis, self.full.pencil
-        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        Phi = combine(basis.V, ritz.Phi[:, wanted])
-        found = indicate(pencil.K.at(theta), pencil.M.at(theta), ritz.lam[wanted], Phi)
-        self.counts.certificate_time += time.perf_counter() - started
-        return found
+    def distance(self, theta: Floats) -> float:
+        """Return how far the nearest snapshot is, over the ranges of the parameters."""
+        span = self.upper - self.lower
+        return float(min(np.linalg.norm((theta - one.theta) / span) for one in self._wanted))
 
     def certify(self, theta: Floats, wanted: Ints, *, quick: bool = False) -> Certificate:
         """Return how wrong the ``wanted`` modes are, counted from 0; see `Certificate`.
