@@ -459,7 +459,7 @@ CONTRADICTIONS = [
     ("[study]", "[study", "file: expected TOML in UTF-8, found ... line 1"),
     ("seed = 1", "seed =", "file: expected TOML in UTF-8, found ... line 3"),
     ("seed = 1", "seed = 1\nseed = 2", "file: expected TOML in UTF-8, found ... line 4"),
-    ("[pareto]", "[study]", "file: expected TOML in UTF-8, found ... line 39"),
+    ("[pareto]", "[study]", "file: expected TOML in UTF-8, found ... line 40"),
     ("seed = 1", f"seed = {'9' * 5000}", "file: expected TOML in UTF-8, found "),
     ("seed = 1", f"seed = {'[' * 20000}", "file: expected TOML in UTF-8, found "),
 ]
