@@ -45,7 +45,8 @@ def reduced(source: Path, path: Path) -> None:
     rows = [json.loads(line) for line in source.read_text().splitlines()]
     plt.rcParams["svg.hashsalt"] = "modefront"
     figure, axes = plt.subplots(figsize=(6.4, 3.8))
-    for kind, colour in (("shell", "tab:blue"), ("solid", "tab:orange")):
+    kinds = sorted({row["kind"] for row in rows})
+    for kind, colour in zip(kinds, ("tab:blue", "tab:orange"), strict=False):
         chosen = sorted((row for row in rows if row["kind"] == kind), key=lambda row: row["size"])
         size = [row["size"] for row in chosen]
         ratio = [row["work"] / row["modes"] for row in chosen]
