@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import tempfile
 from pathlib import Path
 
@@ -191,6 +192,26 @@ def weights(path: Path, dense: xr.Dataset) -> None:
     finish(figure, axes, path)
 
 
+def reduced(source: Path, path: Path) -> None:
+    """Draw what a whole study costs over one full eigensolution, from lines of the benchmark."""
+    rows = [json.loads(line) for line in source.read_text().splitlines()]
+    plt.rcParams["svg.hashsalt"] = "modefront"
+    figure, axes = plt.subplots(figsize=(6.4, 3.8))
+    kinds = sorted({row["kind"] for row in rows})
+    for kind, colour in zip(kinds, ("tab:blue", "tab:orange"), strict=False):
+        chosen = sorted((row for row in rows if row["kind"] == kind), key=lambda row: row["size"])
+        size = [row["size"] for row in chosen]
+        ratio = [row["work"] / row["modes"] for row in chosen]
+        count = [row["full_eigensolutions"] for row in chosen]
+        axes.loglog(size, ratio, "o-", color=colour, label=f"{kind}: time of the whole study")
+        axes.loglog(size, count, "s:", color=colour, mfc="none", label=f"{kind}: full solutions")
+    axes.set(xlabel="degrees of freedom", ylabel="over one full eigensolution")
+    axes.legend(frameon=False)
+    axes.spines[["top", "right"]].set_visible(False)
+    figure.tight_layout()
+    figure.savefig(path, metadata={"Date": None})
+
+
 if __name__ == "__main__":
     plt.rcParams["svg.hashsalt"] = "modefront"
     fronts(HERE / "fronts.svg")
@@ -204,3 +225,4 @@ if __name__ == "__main__":
     weights(pages / "weighted.svg", refined)
     beside(pages / "weight-sweep.svg", refined, "weights", "weight sweep, 20 points")
     beside(pages / "evolutionary.svg", refined, "spea2", "SPEA2, 2,000 evaluations")
+    reduced(HERE.parent / "benchmarks" / "reduced.jsonl", HERE / "reduced.svg")

@@ -24,3 +24,9 @@ def test_part_of_a_wider_array() -> None:
     X, Y = V[:, :17], V[:, 20:24]
     assert products.gram(X, Y) == pytest.approx(X.T @ Y, abs=1e-10)
     assert products.combine(X, Y[:17]) == pytest.approx(X @ Y[:17], abs=1e-10)
+
+
+def test_nothing_with_more_rows_than_a_block() -> None:
+    tall = np.ones((3 * products.WORK, 1))
+    assert products.gram(tall[:, :0], tall).shape == (0, 1)
+    assert products.combine(tall[:, :0], np.zeros((0, 2))).tolist() == [[0, 0]] * len(tall)

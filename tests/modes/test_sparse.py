@@ -295,7 +295,7 @@ def test_six_rigid_body_modes(count: int) -> None:
     K, M = lattice(6, 3, 3, clamped=False)
     theta = np.array([1.0, 1.3, 0.8])
     found = sparse.modes(pencil(K, M), np.eye(K.size), theta, count, True)
-    expected = dense.eigensolve(K.at(theta).toarray(), M.at(theta).toarray())[0][:count]
+    expected = dense.decompose(K.at(theta).toarray(), M.at(theta).toarray()).lam[:count]
     assert found.lam == pytest.approx(expected, rel=1e-10, abs=1e-12)
     assert found.dlam[:6] == pytest.approx(np.zeros((min(count, 6), 3)), abs=1e-12)
 

@@ -98,11 +98,16 @@ name = "shapes"
 shape = "all"
 scale = "std"
 [pareto]
-points = 6
+points = 5
 [search]
 starts = 1
 limit = 1
 evolutions = 0
+[identifiability]
+flat = 0
+models = 0
+[uncertainty]
+source = "none"
 """)
     return study
 

@@ -26,6 +26,7 @@ STUDY = """\
 [study]
 name = "two masses"
 seed = 1
+memory = 2.0
 
 [data]
 file = "modes.csv"
@@ -199,6 +200,13 @@ FRF, PASSAGE = "[[predict.frf]] 1", "[[predict.first_passage]] 1"
 KEYS = [
     Key('name = "two masses"', "[study] name", "a text", True, NO_TEXT),
     Key("seed = 1", "[study] seed", "a whole number from 0", False, NO_WHOLE),
+    Key(
+        "memory = 2.0",
+        "[study] memory",
+        "GiB for a reduced basis, above 0",
+        False,
+        NO_NUMBER + " 0.0 -1.0",
+    ),
     Key('file = "modes.csv"', "[data] file", "a file of modal data", True, NO_TEXT),
     Key(
         'kind = "chain"',
@@ -428,6 +436,17 @@ def test_every_key_of_the_study_refuses_what_it_cannot_be(
         study = folder / "wrong.toml"
         study.write_text(edited(STUDY, (key.line, f"{key.name} = {value}")))
         refused(study, found(key.place, key.expected, ""))
+
+
+def test_the_reduction_of_matrices_refuses_what_it_cannot_be(folder: Path, refused: Check) -> None:
+    study = (folder / "matrices.toml").read_text()
+    kind = 'kind = "matrices"'
+    for value in [*NO_NUMBER.split(), "0.0", "-1e-8", "1e-13", "0.1", '"on"', '"AUTO"']:
+        wrong = folder / "wrong.toml"
+        wrong.write_text(edited(study, (kind, f"{kind}\nreduction = {value}")))
+        refused(wrong, "[model] reduction: expected 'auto', 'off' or a relative error ... , found ")
+    wrong.write_text(edited(study, (kind, f'{kind}\nreductoin = "off"')))
+    refused(wrong, "expected a known key, found 'reductoin' (did you mean 'reduction'?)")
 
 
 @pytest.mark.parametrize("key", KEYS, ids=lambda key: key.place)

@@ -69,6 +69,7 @@ def check(study: Path) -> None:
 )
 def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) -> None:
     """Do the work of STUDY; continue where an interrupted run stopped."""
+    from modefront.cli.certificates import uncertified
     from modefront.cli.progress import progress_bar
     from modefront.cli.show import print_summary
     from modefront.study.file import load
@@ -81,10 +82,13 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     directory = directory or study.with_name(f"{study.stem}-results")
     with progress_bar(loaded.name) as progress:
         data = run_study(loaded, directory, fresh=fresh, refined=refine, progress=progress)
-    print_summary(data, directory)
+    print_summary(data, directory, loaded.problem.model.counts)
     failed = not_converged(data)
     if failed:
         raise UnfinishedError(f"not converged, kept and marked as such: {', '.join(failed)}")
+    unsure = uncertified(data)
+    if unsure.size:
+        raise UnfinishedError(f"errors above the tolerance, kept and marked: {', '.join(unsure)}")
 
 
 @cli.command()

@@ -9,10 +9,13 @@ from typing import Any
 import numpy as np
 import xarray as xr
 from rich.console import Console
+from rich.table import Table
 
+from modefront.cli.certificates import certificate_remarks, cost_lines
 from modefront.cli.predictions import prediction_tables
 from modefront.cli.show_knowledge import print_knowledge
 from modefront.cli.tables import console, safe, table
+from modefront.models.base import Counts
 from modefront.study.check import Findings
 from modefront.study.file import Study
 from modefront.study.results import front_points, not_converged
@@ -64,8 +67,8 @@ def print_findings(study: Study, findings: Findings) -> None:
         _print(screen, "no warnings")
 
 
-def print_summary(data: xr.Dataset, folder: Path) -> None:
-    """Print what a run has found, in a few lines."""
+def print_summary(data: xr.Dataset, folder: Path, counts: Counts) -> None:
+    """Print what a run has found and what this run of it has cost, in a few lines."""
     screen = console()
     front = front_points(data)
     optimal = int(data["pareto"].values[front].sum())
@@ -78,7 +81,7 @@ def print_summary(data: xr.Dataset, folder: Path) -> None:
             f"{data.attrs['model_evaluations']} eigenproblems in all, {cost:.1f} a point",
         )
         _print(screen, f"  {in_numbers(data)}")
-    for line in remarks(data):
+    for line in [*remarks(data), *cost_lines(counts)]:
         _print(screen, f"  {line}")
     _print(screen, f"next: modefront show {folder}")
 
@@ -122,6 +125,7 @@ def remarks(data: xr.Dataset) -> list[str]:
             f"{', '.join(data['label'].values[negative])}: no local Pareto optimum "
             "(a weight is negative)"
         )
+    out += certificate_remarks(data)
     out += _poor_pairs(data)
     bounded = _at_bounds(data)
     if bounded:
@@ -235,6 +239,8 @@ def print_results(data: xr.Dataset) -> None:
             *(f"{x:.4f}" for x in data["mac"].values[i]),
         )
     screen.print(modal)
+    if "certified" in data:
+        screen.print(_errors(data))
     weights = table("weights", ["model", *groups])
     for i in np.flatnonzero(~np.isnan(data["weight"].values).all(axis=1)).tolist():
         weights.add_row(
@@ -267,6 +273,17 @@ def print_results(data: xr.Dataset) -> None:
         f"{attrs['model_evaluations']} eigenproblems in all, "
         f"{attrs['front_evaluations']} of them for the points of the front",
     )
+
+
+def _errors(data: xr.Dataset) -> Table:
+    """Return the estimated errors of a reduced basis."""
+    columns = [f"{what} {r}" for what in ("eigenvalue", "shape") for r in data["mode"].values]
+    out = table("estimated relative errors: ! above the tolerance", ["model", "", *columns])
+    for i, label in enumerate(data["label"].values):
+        errors = [*data["eigenvalue_error"].values[i], *data["shape_error"].values[i]]
+        mark = "!" * int(not data["certified"].values[i])
+        out.add_row(safe(label), mark, *(f"{x:.1e}" for x in errors))
+    return out
 
 
 def as_json(data: xr.Dataset) -> str:

@@ -19,12 +19,17 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 import scipy.sparse
 from numpy.typing import NDArray
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.modes.products import gram
+
+ROWS = 2**15
+"""Rows of a term that are projected at once, to bound the memory."""
 
 
 def first_axis(A: Floats, B: Floats) -> Floats:
@@ -162,6 +167,17 @@ class SparseAffine:
             values.append((dc[j, i] * products[part]).T.ravel())
         entries = np.concatenate(rows), np.concatenate(columns)
         return scipy.sparse.csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
+
+    def project(self, left: Floats, right: Floats) -> Floats:
+        """Return left^T A_j right for every term, shape (terms, columns of left, of right)."""
+        stack, dof, starts = self._stack
+        products = stack @ right
+        out = np.zeros((starts.size - 1, left.shape[1], right.shape[1]))
+        for j, (start, stop) in enumerate(pairwise(starts.tolist())):
+            for k in range(start, stop, ROWS):
+                rows = slice(k, min(k + ROWS, stop))
+                out[j] += gram(left[dof[rows]], products[rows])
+        return out
 
     @cached_property
     def _stack(self) -> tuple[scipy.sparse.csr_array, Ints, Ints]:

@@ -2,6 +2,7 @@ r"""Models given by their matrices: :math:`K(\theta) = K_0 + \sum_j \theta_j K_j
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
@@ -76,6 +77,11 @@ class MatrixModel:
         return self.stiffness.size
 
     @property
+    def is_sparse(self) -> bool:
+        """Whether the matrices are sparse; those of small models are dense."""
+        return isinstance(self.stiffness, SparseAffine) and isinstance(self.mass, SparseAffine)
+
+    @property
     def unused(self) -> tuple[str, ...]:
         """Names of parameters on which neither matrix depends."""
         used = self.stiffness.used | self.mass.used
@@ -84,16 +90,20 @@ class MatrixModel:
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         self.counts.eigenproblems += 1
-        if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
-            selection = self._dense_selection
-            return dense.modes(self.stiffness, self.mass, selection, theta, count, derivatives)
-        return sparse.modes(self._pencil, self.selection, theta, count, derivatives)
+        started = time.perf_counter()
+        try:
+            if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
+                selection = self._dense_selection
+                return dense.modes(self.stiffness, self.mass, selection, theta, count, derivatives)
+            return sparse.modes(self.pencil, self.selection, theta, count, derivatives)
+        finally:
+            self.counts.full_time += time.perf_counter() - started
 
     def is_singular(self, theta: Floats) -> bool:
         """Return whether K(theta) is singular to working precision."""
         if isinstance(self.stiffness, DenseAffine):
             return dense.is_singular(self.stiffness.at(theta))
-        return sparse.is_singular(self._pencil, theta)
+        return sparse.is_singular(self.pencil, theta)
 
     @property
     def places(self) -> tuple[str, ...]:
@@ -117,7 +127,7 @@ class MatrixModel:
         if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
             found = full.dense_modes(self.stiffness, self.mass, theta, count, loads)
         else:
-            found = full.sparse_modes(self._pencil, theta, count, loads)
+            found = full.sparse_modes(self.pencil, theta, count, loads)
         phi = self.selection @ found.Phi
         empty = np.zeros((count, 0)), np.zeros((*phi.shape, 0))
         return Transfer(
@@ -145,7 +155,7 @@ class MatrixModel:
         return self.selection.toarray()
 
     @cached_property
-    def _pencil(self) -> Pencil:
+    def pencil(self) -> Pencil:
         """The sparse pencil; its pattern is analysed at the first evaluation, and only then."""
         if isinstance(self.stiffness, DenseAffine) or isinstance(self.mass, DenseAffine):
             raise TypeError("stiffness and mass have to be both dense or both sparse")

@@ -9,24 +9,25 @@ lowest modes to the highest relative accuracy.
 Derivatives follow Nelson (1976, doi:10.2514/3.7211). With respect to a parameter,
 
 .. math::
-    \lambda_r' &= \varphi_r^T (K' - \lambda_r M') \varphi_r \\
-    (K - \lambda_r M) \varphi_r' &= -(K' - \lambda_r' M - \lambda_r M') \varphi_r
+    \lambda_r' &= \varphi_r^T f_r, \qquad f_r = (K' - \lambda_r M') \varphi_r \\
+    (K - \lambda_r M) \varphi_r' &= \lambda_r' M \varphi_r - f_r
 
-The singular system is made regular by adding :math:`s\, M \Phi_c \Phi_c^T M`, where the columns of
-:math:`\Phi_c` are the mode and all modes close to it (c); the solution is then the part of
-:math:`\varphi_r'` outside their subspace, well conditioned however close they are. Inside it,
+All eigenvectors x are at hand, those of the null space of M too, orthonormal in
+:math:`K + \sigma M`, and they solve the singular system:
 
 .. math::
-    \varphi_j^T M \varphi_r' =
-        \frac{\varphi_j^T (K' - \lambda_r M') \varphi_r}{\lambda_r - \lambda_j},
-    \qquad \varphi_r^T M \varphi_r' = -\tfrac12 \varphi_r^T M' \varphi_r
+    \varphi_r' = - \sum_{j \ne r} x_j \frac{x_j^T f_r}{1 - (\lambda_r + \sigma) \mu_j}
+        - \tfrac12 \varphi_r\, \varphi_r^T M' \varphi_r .
 
-where the quotient is the only place that a small gap can spoil. Where it does, the modes are
-called coincident: the eigenvalues along one parameter then are those of
-:math:`\Phi_c^T (K' - \lambda M') \Phi_c`, and the quotient is left out.
+Errors of the x and mu of high modes, which are close in mu, do no harm in this sum. Of modes close
+to r, the denominator is :math:`\mu_j (\lambda_j - \lambda_r)`, the only place that a small gap can
+spoil. Where it does, the modes are called coincident: the eigenvalues along one parameter then are
+those of :math:`\Phi_c^T (K' - \lambda M') \Phi_c`, and the quotient is left out.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.linalg
@@ -37,7 +38,7 @@ from modefront.models.affine import DenseAffine, first_axis
 from modefront.modes.result import Modes
 
 CLOSE = 1e-2
-"""Relative gap of eigenvalues below which modes are treated as one cluster."""
+"""Relative gap of eigenvalues below which a quotient is formed with the gap itself."""
 
 COINCIDENT = 1e-8
 """Relative error of a quotient, as caused by rounding in its gap, above which it is left out."""
@@ -60,20 +61,46 @@ def modes(
     frequency than asked for.
     """
     Kt, Mt = K.at(theta), M.at(theta)
-    lam, Phi = eigensolve(Kt, Mt)
+    found = decompose(Kt, Mt)
+    lam = found.lam
     if lam.size < count:
         raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")
-    phi = sensors @ Phi[:, :count]
+    phi = sensors @ found.Phi[:, :count]
     if not derivatives:
         empty = np.zeros((count, 0)), np.zeros((phi.shape[0], count, 0))
         return Modes(lam[:count], phi, *empty, coincident=np.zeros(count, dtype=np.bool_))
-    dlam, dPhi, coincident = nelson(K, M, theta, lam, Phi, count)
+    dlam, dPhi, coincident = nelson(K, M, theta, found, count)
     dphi = first_axis(sensors, dPhi[:, :count])
     return Modes(lam[:count], phi, dlam[:count], dphi, coincident[:count])
 
 
-def eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
-    """Return all finite eigenvalues in ascending order and the mass-normalised modes (N, modes)."""
+@dataclass(frozen=True)
+class Decomposition:
+    """All solutions of M x = mu (K + sigma M) x.
+
+    Attributes
+    ----------
+    mu : (N,) eigenvalues, descending
+    X : (N, N) eigenvectors, orthonormal in K + sigma M
+    sigma : the shift
+    lam : (modes,) the finite eigenvalues of K and M, ascending; of the leading ones of mu
+    """
+
+    mu: Floats
+    X: Floats
+    sigma: float
+    lam: Floats
+
+    @property
+    def Phi(self) -> Floats:
+        """Mass-normalised modes, shape (N, modes)."""
+        finite = self.lam.size
+        out: Floats = self.X[:, :finite] / np.sqrt(self.mu[:finite])
+        return out
+
+
+def decompose(K: Floats, M: Floats) -> Decomposition:
+    """Return all modes. Raises ModelError where K or M is indefinite."""
     if not np.diag(M).any():
         raise ModelError("the mass matrix has no mass on its diagonal")
     scale = np.abs(np.diag(K)).sum() / np.abs(np.diag(M)).sum()
@@ -91,11 +118,11 @@ def eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
             mu, X = _inverse_eigensolve(K + shift * M, M)
     if mu[0] < -1e-10 * mu[-1]:
         raise ModelError("the mass matrix is indefinite")
-    finite = np.flatnonzero(mu > 1e-13 * mu[-1])[::-1]
-    lam = 1 / mu[finite] - shift
+    mu, X = mu[::-1], X[:, ::-1]
+    lam = 1 / mu[mu > 1e-13 * mu[0]] - shift
     if lam[0] < -1e-2 * shift:
         raise ModelError("the stiffness matrix is indefinite")
-    return lam, X[:, finite] / np.sqrt(mu[finite])
+    return Decomposition(mu, X, shift, lam)
 
 
 def is_singular(K: Floats) -> bool:
@@ -115,12 +142,10 @@ def _inverse_eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
 
 
 def nelson(
-    K: DenseAffine, M: DenseAffine, theta: Floats, lam: Floats, Phi: Floats, count: int
+    K: DenseAffine, M: DenseAffine, theta: Floats, found: Decomposition, count: int
 ) -> tuple[Floats, Floats, Bools]:
-    """Return dlam (count, p), dPhi (N, count, p) and which modes coincide with another one.
-
-    ``lam`` and ``Phi`` hold all finite modes, so that the neighbours of the last one are known.
-    """
+    """Return dlam (count, p), dPhi (N, count, p) and which modes coincide with another one."""
+    lam, Phi = found.lam, found.Phi
     magnitude = np.abs(lam) + SHIFT * lam[-1]
     rounding = _ROUNDING * magnitude**2 / magnitude[0]
     distance = np.abs(lam[:, None] - lam)
@@ -130,26 +155,18 @@ def nelson(
     r = np.arange(count)
     same, close = same[:, r], distance[:, r] <= CLOSE * magnitude[r]
 
-    dK_phi = K.derivatives_times(theta, Phi[:, r])
     dM_phi = M.derivatives_times(theta, Phi[:, r])
-    force = dK_phi - lam[r, None] * dM_phi
-    S = first_axis(Phi.T, force)  # S[j, r] = phi_j^T (K' - lam_r M') phi_r
-    dlam = S[r, r]
+    force = K.derivatives_times(theta, Phi[:, r]) - lam[r, None] * dM_phi
+    S = first_axis(found.X.T, force)  # S[j, r] = x_j^T (K' - lam_r M') phi_r
+    dlam = S[r, r] / np.sqrt(found.mu[r, None])
     coincident = np.asarray(same.sum(axis=0) > 1)
     for group in {tuple(np.flatnonzero(same[r, k])) for k in np.flatnonzero(coincident)}:
-        block = S[np.ix_(group, group)]
+        block = np.tensordot(Phi[:, group].T, force[:, group], axes=1)
         dlam[list(group)] = np.linalg.eigvalsh(np.moveaxis(block, 2, 0)).T
 
-    gap = lam[r] - lam[:, None]
-    quotient = np.where(close & ~same, 1 / np.where(same, 1.0, gap), 0.0)
-    inside = S * quotient[:, :, None]
-    inside[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi)
-
-    Kt, Mt = K.at(theta), M.at(theta)
-    MPhi = Mt @ Phi
-    cluster = MPhi * close.T[:, None, :]
-    regular = Kt - lam[r, None, None] * Mt
-    regular += magnitude[r, None, None] * (cluster @ cluster.transpose(0, 2, 1))
-    rhs = first_axis(MPhi, S * close[:, :, None]) - force
-    outside = np.linalg.solve(regular, rhs.transpose(1, 0, 2)).transpose(1, 0, 2)
-    return dlam, outside + first_axis(Phi, inside), coincident
+    denominator = 1 - (lam[r] + found.sigma) * found.mu[:, None]
+    denominator[: lam.size][close] = (found.mu[: lam.size, None] * (lam[:, None] - lam[r]))[close]
+    denominator[: lam.size][same] = np.inf
+    S /= -denominator[:, :, None]
+    S[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi) / np.sqrt(found.mu[r, None])
+    return dlam, first_axis(found.X, S), coincident

@@ -1,4 +1,4 @@
-r"""Exact derivatives of modes at the sensors, from the modes below a gap and two factors.
+r"""Exact derivatives of modes, seen by sensors, from the modes below a gap and two factors.
 
 With the forces :math:`f_{ri} = (K_i' - \lambda_r M_i') \varphi_r` and known modes
 :math:`\varphi_j`,
@@ -22,8 +22,11 @@ each right-hand side, :math:`B^{-1}b = \beta_1 q_1`,
 .. math:: T q_k = \beta_k q_{k-1} + \alpha_k q_k + \beta_{k+1} q_{k+1}
 
 gives :math:`c^T (K - \lambda_r M)^+ b = \sum_k (c^T q_k)\, y_k` with
-:math:`(I + \tau_r T_k) y = \beta_1 e_1`, for every r at once; no solution is ever formed. The
-condition number is that of :math:`1 + \tau_r / (\lambda - \sigma)` for :math:`\lambda` beyond the
+:math:`(I + \tau_r T_k) y = \beta_1 e_1`, for every r at once. With :math:`I + \tau_r T_k = L D L^T`
+this is :math:`\sum_k p_k u_k / d_k`, where :math:`L u = \beta_1 e_1` and
+:math:`L p = (c^T q_k)_k` are found on the way: only what c sees is formed, and the identity for c
+gives the derivatives at every degree of freedom. The condition number is that of
+:math:`1 + \tau_r / (\lambda - \sigma)` for :math:`\lambda` beyond the
 known modes: each mode takes the factor that makes it smallest. The form is symmetric, so b may be
 the forces (direct, parameters x modes columns) or the sensors (adjoint, sensors columns for all
 modes together), whichever is expected to need fewer solutions.
@@ -64,15 +67,28 @@ STEPS = 1000
 COLUMNS = 64
 """Right-hand sides that are solved together: more would only take more memory."""
 
+ENTRIES = 2**22
+"""Entries that a block of right-hand sides holds at most, unless it has `FEWEST` columns."""
+
+FEWEST = 8
+"""Right-hand sides that are solved together however large the model is."""
+
 Sensors: TypeAlias = Floats | scipy.sparse.csr_array
 
 
 def at_sensors(
-    pencil: Pencil, sensors: Sensors, theta: Floats, found: Spectrum, count: int
+    pencil: Pencil,
+    sensors: Sensors,
+    theta: Floats,
+    found: Spectrum,
+    count: int,
+    tolerance: float = TOLERANCE,
 ) -> tuple[Floats, Floats, Bools]:
     """Return dlam (count, p), dphi (sensors, count, p) and which modes coincide with another one.
 
-    ``sensors`` has the shape (sensors, N). Raises ModelError where the iteration fails.
+    ``sensors`` has the shape (sensors, N); the identity gives the derivatives everywhere.
+    ``tolerance`` is the residual of the part of dphi outside the known modes over that of zero.
+    Raises ModelError where the iteration fails.
     """
     lam, noise = found.lam, found.noise + np.finfo(float).eps * np.abs(found.lam)
     distance = np.abs(lam[:, None] - lam)
@@ -96,12 +112,19 @@ def at_sensors(
     inside[r[:count], :, r[:count]] = -0.5 * (dM @ found.Phi).reshape(c, p, -1)[r, :, r][:count]
     dphi = np.tensordot(sensors @ found.Phi, inside, axes=(1, 2))
     force = force[: count * p].tocsr()
-    return dlam[:count], dphi - outside(sensors, force, found, count), coincident[:count]
+    dphi -= outside(sensors, force, found, count, tolerance)
+    return dlam[:count], dphi, coincident[:count]
 
 
-def outside(sensors: Sensors, force: scipy.sparse.csr_array, found: Spectrum, count: int) -> Floats:
+def outside(
+    sensors: Sensors,
+    force: scipy.sparse.csr_array,
+    found: Spectrum,
+    count: int,
+    tolerance: float = TOLERANCE,
+) -> Floats:
     """Return sensors (K - lam_r M)^+ f_ri, shape (sensors, count, p); f has rows (r, i)."""
-    nearest, steps = _nearest(found, count)
+    nearest, steps = _nearest(found, count, tolerance)
     p = force.shape[0] // count
     out = np.zeros((sensors.shape[0], count, p))
     groups = [np.flatnonzero(nearest == which) for which in (0, 1)]
@@ -114,19 +137,20 @@ def outside(sensors: Sensors, force: scipy.sparse.csr_array, found: Spectrum, co
         if not rows.nnz:
             continue
         if adjoint < direct:
-            for some in _chunks(sensors.shape[0]):
-                product = _forms(shifted, found, _columns(sensors, some), tau[:, None], rows)
+            for some in _chunks(sensors):
+                right = _columns(sensors, some)
+                product = _forms(shifted, found, right, tau[:, None], rows, tolerance)
                 terms = np.diagonal(product.reshape(group.size, p, *product.shape[1:]), 0, 0, 2)
                 out[some[:, None], group] = terms.transpose(1, 2, 0)
         else:
-            for some in _chunks(rows.shape[0]):
+            for some in _chunks(rows):
                 right = _columns(rows, some)
-                product = _forms(shifted, found, right, tau[some // p][None], sensors)
+                product = _forms(shifted, found, right, tau[some // p][None], sensors, tolerance)
                 out[:, group[some // p], some % p] = product[:, 0]
     return out
 
 
-def _nearest(found: Spectrum, count: int) -> tuple[Ints, Floats]:
+def _nearest(found: Spectrum, count: int, tolerance: float) -> tuple[Ints, Floats]:
     """Return the better factor for each mode, and how many steps it is expected to take."""
     sigma = np.array([shifted.sigma for shifted in found.factors])
     tau = sigma[:, None] - found.lam[:count]
@@ -135,11 +159,13 @@ def _nearest(found: Spectrum, count: int) -> tuple[Ints, Floats]:
     root = np.sqrt(condition)
     nearest = np.argmin(condition, axis=0)
     rate = ((root - 1) / (root + 1))[nearest, np.arange(count)]
-    return nearest, 1 + np.log(TOLERANCE) / np.log(np.clip(rate, 1e-12, 0.999))
+    return nearest, 1 + np.log(tolerance) / np.log(np.clip(rate, 1e-12, 0.999))
 
 
-def _chunks(columns: int) -> list[Ints]:
-    return [np.arange(k, min(k + COLUMNS, columns)) for k in range(0, columns, COLUMNS)]
+def _chunks(rows: Sensors) -> list[Ints]:
+    count, size = rows.shape
+    width = min(COLUMNS, max(FEWEST, ENTRIES // size))
+    return [np.arange(k, min(k + width, count)) for k in range(0, count, width)]
 
 
 def _columns(rows: Sensors, some: Ints) -> Floats:
@@ -149,12 +175,18 @@ def _columns(rows: Sensors, some: Ints) -> Floats:
     return np.ascontiguousarray(np.asarray(dense, dtype=float).T)
 
 
-def _forms(shifted: Shifted, found: Spectrum, right: Floats, tau: Floats, left: Sensors) -> Floats:
+def _forms(
+    shifted: Shifted,
+    found: Spectrum,
+    right: Floats,
+    tau: Floats,
+    left: Sensors,
+    tolerance: float,
+) -> Floats:
     """Return left (K - lam_r M)^+ right, shape (rows of left, shifts, columns of right).
 
-    ``tau`` holds sigma - lam_r: (shifts, 1), or one for each column, (1, columns). With
-    I + tau T_k = L diag(d) L^T, what is kept of each step is c^T q, d, the entry of L left of d
-    (``lower``) and u of L u = beta_1 e_1.
+    ``tau`` holds sigma - lam_r: (shifts, 1), or one for each column, (1, columns). ``d``,
+    ``lower`` (left of d in L), ``u`` and ``P`` belong to the last step.
     """
     dual = right - combine(found.MPhi, gram(found.Phi, right))
     W = _projected(found, shifted.factor.solve(dual))
@@ -162,7 +194,8 @@ def _forms(shifted: Shifted, found: Spectrum, right: Floats, tau: Floats, left: 
     Q_old, dual_old = np.zeros_like(W), np.zeros_like(W)
     lower = np.zeros((tau.shape[0], beta.size))
     d, u = np.ones_like(lower), lower + beta
-    kept: list[tuple[Floats, Floats, Floats, Floats]] = []
+    P = np.zeros((left.shape[0], *lower.shape))
+    out = np.zeros_like(P)
     for step in range(STEPS):
         scale = np.divide(1.0, beta, out=np.zeros_like(beta), where=beta > 0)
         W *= scale
@@ -173,7 +206,9 @@ def _forms(shifted: Shifted, found: Spectrum, right: Floats, tau: Floats, left: 
             lower = tau * beta / d
             u = -lower * u
         d = 1 + tau * (alpha - lower * beta)
-        kept.append((left @ W, d, lower, u))
+        P *= -lower
+        P += (left @ W)[:, None]
+        out += P * (u / d)
         Q_old *= -beta
         dual_old *= -beta
         Q_old += shifted.factor.solve(MQ)
@@ -183,19 +218,9 @@ def _forms(shifted: Shifted, found: Spectrum, right: Floats, tau: Floats, left: 
         Q_old, W = W, _projected(found, Q_old)
         dual_old, dual = dual, dual_old
         beta = _norm(W, dual)
-        if (np.abs(tau * beta * u / d) <= TOLERANCE * first).all():
-            break
-    else:
-        raise ModelError("the derivatives do not converge: the matrices are too ill-conditioned")
-    moment, d, lower, u = kept.pop()
-    y = u / d
-    out = moment[:, None] * y
-    while kept:
-        right_of = lower
-        moment, d, lower, u = kept.pop()
-        y = u / d - right_of * y
-        out += moment[:, None] * y
-    return out
+        if (np.abs(tau * beta * u / d) <= tolerance * first).all():
+            return out
+    raise ModelError("the derivatives do not converge: the matrices are too ill-conditioned")
 
 
 def _projected(found: Spectrum, W: Floats) -> Floats:

@@ -50,7 +50,8 @@ def dense_modes(
     Raises ModelError where K or M is indefinite, or there are fewer modes with a finite frequency.
     """
     Kt = K.at(theta)
-    lam, Phi = dense.eigensolve(Kt, M.at(theta))
+    found = dense.decompose(Kt, M.at(theta))
+    lam, Phi = found.lam, found.Phi
     if lam.size < count:
         raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")
     lam = _without_rounding(lam, Phi, np.diag(Kt))

@@ -20,8 +20,8 @@ def gram(X: Floats, Y: Floats) -> Floats:
     whole, rows = _blocks(X, Y.shape[1])
     out: Floats = X[whole:].T @ Y[whole:]
     if whole:
-        left = X[:whole].reshape(-1, rows, X.shape[1])
-        right = Y[:whole].reshape(-1, rows, Y.shape[1])
+        left = X[:whole].reshape(whole // rows, rows, X.shape[1])
+        right = Y[:whole].reshape(whole // rows, rows, Y.shape[1])
         out += np.matmul(left.transpose(0, 2, 1), right).sum(axis=0)
     return out
 
@@ -32,8 +32,8 @@ def combine(X: Floats, C: Floats) -> Floats:
     out = np.empty((X.shape[0], C.shape[1]))
     np.matmul(X[whole:], C, out=out[whole:])
     if whole:
-        blocks = X[:whole].reshape(-1, rows, X.shape[1])
-        np.matmul(blocks, C, out=out[:whole].reshape(-1, rows, C.shape[1]))
+        blocks = X[:whole].reshape(whole // rows, rows, X.shape[1])
+        np.matmul(blocks, C, out=out[:whole].reshape(whole // rows, rows, C.shape[1]))
     return out
 
 

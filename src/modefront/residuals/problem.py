@@ -92,8 +92,13 @@ class UpdatingProblem:
 
     @property
     def counts(self) -> Mapping[str, int]:
-        """Eigenproblems solved so far."""
-        return {"eigenproblems": self.model.counts.eigenproblems}
+        """What was solved so far."""
+        counts = self.model.counts
+        return {
+            "eigenproblems": counts.eigenproblems,
+            "factorisations": counts.factorisations,
+            "reduced": counts.reduced,
+        }
 
     @cached_property
     def properties(self) -> Floats:

@@ -56,16 +56,18 @@ def second_order(problem: Problem, at: Evaluation) -> SecondOrder | None:
         if not all(one.feasible for one in around):
             return None
         points = [at, *around]
+        # Errors of a reduced basis, say, are known at the point alone.
+        names = [name for name in at.quantities if name in around[0].quantities]
         columns.append(sum(w * one.dJ for w, one in zip(weights, points, strict=True)) / span[k])
         slopes.append(
             {
                 name: sum(w * one.quantities[name] for w, one in zip(weights, points, strict=True))
                 / span[k]
-                for name in at.quantities
+                for name in names
             }
         )
     H = np.stack(columns, axis=2)
-    named = {name: np.stack([one[name] for one in slopes], axis=-1) for name in at.quantities}
+    named = {name: np.stack([one[name] for one in slopes], axis=-1) for name in names}
     return SecondOrder(at, (H + H.transpose(0, 2, 1)) / 2, named)
 
 

@@ -76,15 +76,16 @@ def edge(
     rng: np.random.Generator,
     search: Search,
     checkpoint: Checkpoint = compute_always,
+    starts: Sequence[Solution] = (),
 ) -> Edge | None:
     """Return the edge of one objective, or None where no minimum was found.
 
-    ``sizes`` are typical sizes of the objectives, shape (n,).
+    ``sizes`` are typical sizes of the objectives, shape (n,); ``starts`` are solved from first.
     """
     name = problem.objectives[objective]
+    programme = _programme(objective, EXPLORE, sizes)
     found = checkpoint(
-        f"minima-{name}",
-        lambda: explore(problem, _programme(objective, EXPLORE, sizes), rng, search),
+        f"minima-{name}", lambda: explore(problem, programme, rng, search, starts=starts)
     )
     limit = min((one.at.J[objective] for one in found), default=0.0) + CANDIDATE * sizes[objective]
     refined = checkpoint(

@@ -109,9 +109,10 @@ def latin_hypercube(problem: Problem, rng: np.random.Generator, limit: int) -> I
     """Yield parameters within the bounds, block by block spread evenly over each range."""
     span = problem.upper - problem.lower
     block = 10
-    for _ in range(0, limit, block):
+    for done in range(0, limit, block):
         cells = rng.permuted(np.tile(np.arange(block), (span.size, 1)), axis=1).T
-        yield from problem.lower + span * (cells + rng.uniform(size=cells.shape)) / block
+        thetas = problem.lower + span * (cells + rng.uniform(size=cells.shape)) / block
+        yield from thetas[: limit - done]
 
 
 def evolve(

@@ -14,6 +14,7 @@ import numpy as np
 
 from modefront.errors import Fault, InputError, ModelError
 from modefront.models.matrices import MatrixModel
+from modefront.models.reduced.model import MEMORY, ReducedModel
 from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
@@ -24,6 +25,7 @@ from modefront.study.tables.identifiability import Identifiability, read_identif
 from modefront.study.tables.model import read_model
 from modefront.study.tables.parameters import Parameter, read_parameters
 from modefront.study.tables.predict import complete, read_predictions
+from modefront.study.tables.reduction import fallback, read_memory, reduced
 from modefront.study.tables.settings import (
     Pareto,
     check_size,
@@ -49,6 +51,7 @@ class Study:
     identifiability : what is done about what the data do not determine
     uncertainty : what is done about errors of the data
     predictions : what all models that are found are to predict
+    remark : why what was asked for is not done
     """
 
     file: Path
@@ -64,6 +67,7 @@ class Study:
     identifiability: Identifiability
     uncertainty: Uncertainty
     predictions: tuple[Prediction, ...]
+    remark: str = ""
 
 
 def load(path: Path) -> Study:
@@ -75,14 +79,15 @@ def load(path: Path) -> Study:
     faults: list[Fault] = []
     root = Table(str(path), "", values, faults)
     header = root.table("study", "a table [study]")
-    title, seed = "", 0
+    title, seed, memory = "", 0, MEMORY
     if header:
         title = header.text("name") or ""
         seed = header.integer("seed", 0, 2**63 - 1, default=0)
+        memory = read_memory(header)
         header.close()
     parameters = read_parameters(root)
     names = [one.name for one in parameters]
-    model = read_model(root, names, path.parent)
+    model, reduction = read_model(root, names, path.parent)
     data, data_file = read_data(root, model, path.parent)
     groups = read_groups(root, data)
     weights = read_weights(root, [group.name for group in groups if group.name])
@@ -94,7 +99,7 @@ def load(path: Path) -> Study:
     if faults or model is None or data is None:
         raise InputError(faults)
     problem = UpdatingProblem(
-        model,
+        reduced(model, reduction, memory, data, pairing, parameters),
         data,
         groups,
         np.array([one.lower for one in parameters]),
@@ -110,9 +115,10 @@ def load(path: Path) -> Study:
     digest = _digest(content, path.parent, files)
     rest = {key: value for key, value in values.items() if key != "predict"}
     work = _digest(json.dumps(rest, sort_keys=True).encode(), path.parent, files)
+    remark = fallback(problem.model, reduction)
     return Study(
         *(path, title, seed, digest, work, parameters, problem, pareto, weights, search),
-        *(identifiability, uncertainty, predictions),
+        *(identifiability, uncertainty, predictions, remark),
     )
 
 
@@ -137,7 +143,7 @@ def _try_model(root: Table, problem: UpdatingProblem) -> None:
     except ModelError as error:
         root.fault("[model]", "modes at the nominal parameters", str(error))
         return
-    model = problem.model
+    model = problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
     if isinstance(model, MatrixModel) and not model.floating and model.is_singular(problem.start):
         expected = "a structure that is held, or floating = true for rigid-body modes"
         root.fault("[model]", expected, "a singular stiffness matrix at the nominal parameters")

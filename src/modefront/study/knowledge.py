@@ -21,7 +21,7 @@ from modefront.solvers.manifold import Extent, Manifold, equally_good
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution, begin, solve
-from modefront.study.run import Front, generator
+from modefront.study.run import Front, Labelled, generator
 from modefront.study.tables.identifiability import Identifiability
 from modefront.study.tables.uncertainty import Uncertainty
 from modefront.uncertainty.bootstrap import redraw
@@ -34,8 +34,6 @@ from modefront.uncertainty.scatter import Scatter
 OPTIMAL = "optimal-weights"
 PART = "identifiable-"
 """Beginning of the labels of points of the identifiable part of the front."""
-
-Labelled = Sequence[tuple[str, Solution]]
 
 
 @dataclass(frozen=True)

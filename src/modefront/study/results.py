@@ -17,6 +17,7 @@ from modefront.solvers.dominance import nondominated
 from modefront.solvers.evolutionary import EVOLUTIONARY
 from modefront.solvers.pieces import piece_numbers
 from modefront.solvers.sqp import Solution
+from modefront.study.certified import certificate_variables
 from modefront.study.knowledge import PART, Knowledge
 from modefront.study.knowledge_variables import Variables, known_variables
 from modefront.study.run import Front
@@ -91,6 +92,7 @@ def dataset(
     for name, meaning in meanings.items():
         rows = [one.at.quantities[name] for one in solutions]
         variables[name] = (point, _stack(rows, len(problem.data.modes)), meaning)
+    variables |= certificate_variables(problem, solutions)
     variables["measured_frequency"] = (
         ("mode",),
         problem.data.mean_frequency,
@@ -143,6 +145,7 @@ def _minima(problem: UpdatingProblem, front: Front) -> Variables:
             [one.converged for one in found],
             "tolerances were met",
         ),
+        **certificate_variables(problem, found, "minimum"),
     }
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 
 import numpy as np
@@ -27,6 +27,9 @@ from modefront.solvers.sqp import Solution
 from modefront.solvers.sweep import weight_sweep
 from modefront.solvers.weights import iterate_weights, optimal_minima, regular
 
+Labelled = Sequence[tuple[str, Solution]]
+"""Solutions with what they are called."""
+
 
 @dataclass(frozen=True)
 class Front:
@@ -45,7 +48,7 @@ class Front:
     """
 
     method: str
-    points: Sequence[tuple[str, Solution]]
+    points: Labelled
     edges: Sequence[Edge]
     optimal: Sequence[Solution]
     iterated: Solution | None
@@ -88,6 +91,7 @@ def pareto_front(
     given: Sequence[tuple[str, Floats]] = (),
     checkpoint: Checkpoint = compute_always,
     expect: Callable[[int], None] = ignore,
+    known: Front | None = None,
 ) -> Front:
     """Find the edges, the weighted models, the front by a method, and its gaps.
 
@@ -96,14 +100,22 @@ def pareto_front(
     neighbours above which NBI puts more points between them, two objectives only;
     ``population`` and ``evaluations`` are those of an evolutionary method; an edge may exceed the
     least value of its objective by the share ``tolerance``; ``given`` are labelled weights (n,).
-    ``expect`` is told how many pieces of work there are. Raises UnfinishedError where no edge can
-    be found.
+    ``expect`` is told how many pieces of work there are. Minima are looked for near those of a
+    front that is ``known``, of nearly the same problem, and nowhere else. Raises UnfinishedError
+    where no edge can be found.
     """
-    search = search or Search()
+    search = (search or Search()) if known is None else Search(0, 0, 0)
     n = len(problem.objectives)
     lattice = simplex(n, (points or default_points(n)) - 1) if n > 1 else None
     subproblems = len(lattice.counts) if lattice and method not in EVOLUTIONARY else 1
     expect(4 + 2 * n + len(given) + subproblems)
+
+    def again(name: str, solutions: Sequence[Solution]) -> Sequence[Solution]:
+        """Return known solutions as starts, with the objectives that they have now."""
+        return checkpoint(
+            f"known-{name}",
+            lambda: [replace(one, at=problem.evaluate(one.at.theta)) for one in solutions],
+        )
 
     sizes = typical_sizes(checkpoint("sample", lambda: sample(problem, generator(seed, "sample"))))
     if sizes is None:
@@ -112,7 +124,9 @@ def pareto_front(
         )
     edges = []
     for i, name in enumerate(problem.objectives):
-        found = edge(problem, i, sizes, generator(seed, f"edge-{name}"), search, checkpoint)
+        rng = generator(seed, f"edge-{name}")
+        near = again(f"edge-{name}", known.edges[i].minima) if known else ()
+        found = edge(problem, i, sizes, rng, search, checkpoint, near)
         if found is None:
             raise UnfinishedError(f"no minimum of group '{name}' was found from any start")
         edges.append(found)
@@ -123,14 +137,15 @@ def pareto_front(
     models: list[tuple[str, Solution]] = []
     for label, w in [*given, ("equal-weights", np.ones(n))]:
         rng = generator(seed, label)
-        search_from = partial(explore, problem, weighted(w), rng, search, starts=bests)
+        before = [one for name, one in known.points if name == label] if known else []
+        near = again(label, before) if known else bests
+        search_from = partial(explore, problem, weighted(w), rng, search, starts=near)
         models += [(label, one) for one in checkpoint(label, search_from)[:1]]
     starts = [*(one for _, one in models), *bests]
+    near = again("optimal-weights", known.optimal) if known else starts
+    rng = generator(seed, "optimal-weights")
     minima = checkpoint(
-        "optimal-weights",
-        lambda: optimal_minima(
-            problem, a, sizes, generator(seed, "optimal-weights"), search, starts
-        ),
+        "optimal-weights", lambda: optimal_minima(problem, a, sizes, rng, search, near)
     )
     optimal = [one for one in minima if regular(one.at.J, sizes)]
     models += [("optimal-weights", one) for one in optimal[:1]]
@@ -140,9 +155,11 @@ def pareto_front(
     )
 
     if tolerance > 0:
-        known = [*optimal, *starts]
+        found_before = [*optimal, *starts]
         ends = [
-            checkpoint(f"near-{name}", partial(near_best, problem, one, i, tolerance, sizes, known))
+            checkpoint(
+                f"near-{name}", partial(near_best, problem, one, i, tolerance, sizes, found_before)
+            )
             for i, (name, one) in enumerate(zip(problem.objectives, bests, strict=True))
         ]
         bests = [found[0] for found in ends]

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -14,6 +15,7 @@ from modefront.errors import Fault, InputError
 from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
+from modefront.study.certified import certificate_attributes, certified_front, certified_points
 from modefront.study.file import Study
 from modefront.study.knowledge import learn
 from modefront.study.quality import indicators
@@ -61,7 +63,8 @@ def solve(
     from modefront.study.results import dataset
 
     store = Store(None, lambda: problem.counts, ignore, {})
-    front = pareto_front(
+    work = partial(
+        pareto_front,
         problem,
         problem.properties,
         method=method,
@@ -72,8 +75,8 @@ def solve(
         tolerance=tolerance,
         seed=seed,
         search=search,
-        checkpoint=store,
     )
+    front = certified_front(problem, work, store, ignore)
     knowledge = learn(
         problem,
         front,
@@ -85,9 +88,10 @@ def solve(
         checkpoint=store,
         expect=ignore,
     )
-    data = dataset(problem, front, knowledge, {})
+    extra = certified_points(problem, knowledge.points, store)
+    data = dataset(problem, front, replace(knowledge, points=extra), {})
     data = predicted(data, problem, predictions, seed, store)
-    data.attrs |= _attributes(front, store, seed, refined)
+    data.attrs |= _attributes(problem, front, store, seed, refined)
     return data
 
 
@@ -120,7 +124,8 @@ def run(
         raise InputError(fault) from None
     problem = study.problem
     store = Store(pieces, lambda: problem.counts, progress.done, {})
-    front = pareto_front(
+    work = partial(
+        pareto_front,
         problem,
         problem.properties,
         method=study.pareto.method,
@@ -132,8 +137,9 @@ def run(
         seed=study.seed,
         search=study.search,
         given=[(one.name, np.array(one.weights)) for one in study.weighted],
-        checkpoint=store,
-        expect=lambda pieces: progress.expect(pieces + pieces_of(study)),
+    )
+    front = certified_front(
+        problem, work, store, lambda pieces: progress.expect(pieces + pieces_of(study))
     )
     knowledge = learn(
         problem,
@@ -146,9 +152,16 @@ def run(
         checkpoint=store,
         expect=lambda more: progress.expect(len(store.costs) + more),
     )
-    data = dataset(problem, front, knowledge, {"study": study.name, "inputs": study.digest})
+    extra = certified_points(problem, knowledge.points, store)
+    data = dataset(
+        problem,
+        front,
+        replace(knowledge, points=extra),
+        {"study": study.name, "inputs": study.digest},
+    )
     data = predicted(data, problem, study.predictions, study.seed, store, study.file)
-    data.attrs |= _attributes(front, store, study.seed, refined)
+    data.attrs |= _attributes(problem, front, store, study.seed, refined)
+    data.attrs["remark"] = study.remark
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)
     return data
@@ -163,20 +176,26 @@ def check_refinable(study: Study, refined: float | None) -> None:
 
 
 def _attributes(
-    front: Front, store: Store, seed: int, refined: float | None
+    problem: UpdatingProblem, front: Front, store: Store, seed: int, refined: float | None
 ) -> dict[str, str | int | float]:
     """Return what else is known: version, seed, cost, and remarks on what was found."""
-    return {
+    total, along = store.total(), store.total(f"{front.method}-")
+    by_nbi = store.total("nbi-")
+    out: dict[str, str | int | float] = {
         "version": modefront.__version__,
         "seed": seed,
-        "model_evaluations": store.total()["eigenproblems"],
+        "model_evaluations": total["eigenproblems"] + total["reduced"],
         "method": front.method,
-        "front_evaluations": store.total(f"{front.method}-")["eigenproblems"],
-        "nbi_evaluations": store.total("nbi-")["eigenproblems"],
+        "front_evaluations": along["eigenproblems"] + along["reduced"],
+        "nbi_evaluations": by_nbi["eigenproblems"] + by_nbi["reduced"],
+        "full_eigensolutions": total["eigenproblems"],
+        "factorisations": total["factorisations"],
+        "reduced_solutions": total["reduced"],
         "front_is_a_point": int(front.target is None),
         **({} if refined is None else {"refined": refined}),
         **indicators(front),
     }
+    return out | certificate_attributes(problem)
 
 
 def _set_aside(path: Path) -> None:

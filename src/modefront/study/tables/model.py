@@ -8,16 +8,20 @@ from pathlib import Path
 from modefront.models.base import Model
 from modefront.study.kinds import KINDS
 from modefront.study.reader import Table
+from modefront.study.tables.reduction import read_reduction
 
 
-def read_model(root: Table, parameters: Sequence[str], folder: Path) -> Model | None:
-    """Return the model that a study describes, or None where it has faults."""
+def read_model(
+    root: Table, parameters: Sequence[str], folder: Path
+) -> tuple[Model | None, float | str]:
+    """Return the model that a study describes, None where it has faults, and its reduction."""
     table = root.table("model", "a table [model]")
     if table is None:
-        return None
+        return None, ""
     kind = table.choice("kind", tuple(KINDS))
     if kind is None:
-        return None
+        return None, ""
+    reduction = read_reduction(table, kind)
     model = KINDS[kind](table, parameters, folder)
     table.close()
-    return model
+    return model, reduction

@@ -1,0 +1,184 @@
+"""What a front costs with a reduced basis, over one full eigensolution, in one run.
+
+    python benchmarks/reduced.py [--kind shell] [--sizes 1000 10000 ...] [--full-up-to 5000]
+
+A plate of shells, or a block of tetrahedra, has six regions whose stiffness is a parameter within
+0.4 and 2.5. The "measured" six modes at twenty sensors are those of a model with other stiffnesses
+in twelve parts and with noise, so that frequencies and shapes disagree. Printed are, for the whole
+work of a study (edges by global search, weighted models, 20 points of the front):
+
+- the time and the memory of one full eigensolution, without and with derivatives;
+- full eigensolutions, factorisations and reduced ones, the greatest estimated error and the time
+  of the work, over that of one full eigensolution without derivatives;
+- the greatest estimated error, at the models that were found, of the basis from the nominal model
+  alone, with derivatives;
+- for the sizes up to ``--full-up-to``: the same work with full solutions, its time and the greatest
+  difference of the parameters, over their ranges.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import resource
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+import modefront as mf
+from modefront import fem
+from modefront._typing import Floats
+from modefront.models.matrices import MatrixModel
+from modefront.models.mesh import mesh_model
+from modefront.models.reduced.model import ReducedModel
+
+MODES, REGIONS, PARTS, SENSORS, POINTS = 6, 6, 12, 20, 20
+BOUNDS = 0.4, 2.5
+NAMES = [f"k{j + 1}" for j in range(REGIONS)]
+STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
+
+Model = Callable[[int, int], MatrixModel]
+
+
+def shell(size: int, regions: int) -> MatrixModel:
+    """Return a plate of 3 m x 2 m, clamped at one edge, with about ``size`` degrees of freedom."""
+    n = round(np.sqrt(size / 6 / 1.5))
+    X, cells = fem.grids.plate(3.0, 2.0, round(1.5 * n), n)
+    X[:, 2] = 0.1 * X[:, 0] * X[:, 1]
+    return _model(X, cells, regions, lambda name, part: fem.Shells(name, part, STEEL, 0.02))
+
+
+def solid(size: int, regions: int) -> MatrixModel:
+    """Return a block of 3 m x 0.7 m x 0.4 m, clamped at one end, of tetrahedra with 10 nodes."""
+    n = (size / 3 / 8 / (3 * 0.7 * 0.4)) ** (1 / 3)
+    X, bricks = fem.grids.box((3.0, 0.7, 0.4), (round(3 * n), round(0.7 * n), round(0.4 * n)))
+    X, cells = fem.grids.tetrahedra(X, bricks)
+    return _model(X, cells, regions, lambda name, part: fem.Solids(name, part, STEEL))
+
+
+def _model(
+    X: Floats,
+    cells: np.ndarray,
+    regions: int,
+    group: Callable[[str, np.ndarray], fem.Shells | fem.Solids],
+) -> MatrixModel:
+    """Return the model with regions along x, each with a parameter, clamped at x = 0."""
+    middle = X[cells].mean(axis=1)[:, 0] / X[:, 0].max()
+    region = np.minimum((middle * regions).astype(int), regions - 1)
+    names = [f"k{j + 1}" for j in range(regions)]
+    grid = np.linspace(0.1, 1.0, SENSORS // 2)
+    along = [(x, y) for x in grid for y in (0.0, 1.0)]
+    low, high = X.min(axis=0), X.max(axis=0)
+    flat = X[:, :2]
+    nodes = [
+        int(np.argmin(((flat - low[:2] - np.array(at) * (high - low)[:2]) ** 2).sum(axis=1)))
+        for at in along
+    ]
+    structure = fem.Structure(
+        X,
+        [group(name, cells[region == j]) for j, name in enumerate(names)],
+        [fem.Support(np.flatnonzero(X[:, 0] == 0))],
+        sensors=[fem.Sensor(f"s{i + 1}", node, "z") for i, node in enumerate(nodes)],
+        parameters=[fem.Parameter(name, "E", (name,)) for name in names],
+    )
+    return mesh_model(structure, names)
+
+
+KINDS: dict[str, Model] = {"shell": shell, "solid": solid}
+
+
+def measured(kind: Model, seed: int = 0) -> mf.ModalData:
+    """Return the modes of a coarse model with noise, the same for every size."""
+    rng = np.random.default_rng(seed)
+    truth = kind(5000, PARTS)
+    modes = truth.modes(rng.uniform(0.7, 1.5, PARTS), MODES, derivatives=False)
+    frequency = modes.frequency * (1 + 0.005 * rng.standard_normal(MODES))
+    phi = modes.phi.T * (1 + 0.03 * rng.standard_normal(modes.phi.T.shape))
+    return mf.modal_data(frequency, phi, truth.sensors)
+
+
+def problem_of(model: MatrixModel | ReducedModel, data: mf.ModalData) -> mf.UpdatingProblem:
+    """Return the problem of fitting the measured frequencies and shapes."""
+    groups = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+    return mf.updating_problem(
+        model, data, groups, dict.fromkeys(NAMES, BOUNDS), dict.fromkeys(NAMES, 1.0)
+    )
+
+
+def timed(work: Callable[[], object]) -> float:
+    """Return the processor time that some work takes, in seconds."""
+    started = time.process_time()
+    work()
+    return time.process_time() - started
+
+
+def memory() -> float:
+    """Return the greatest memory of this process so far, in GiB."""
+    return resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
+
+
+def reduced_model(full: MatrixModel, count: int) -> ReducedModel:
+    """Return the full model in a basis."""
+    lower, upper = (np.full(REGIONS, bound) for bound in BOUNDS)
+    return ReducedModel(full, count, np.ones(REGIONS), lower, upper)
+
+
+def line(kind: Model, size: int, data: mf.ModalData, compare: bool) -> dict[str, float]:
+    """Return what is measured of one size."""
+    full = kind(size, REGIONS)
+    out: dict[str, float] = {"size": full.size, "memory_model": memory()}
+    count = MODES + mf.Pairing().spare
+    full.pencil.factor(full.pencil.K.at(np.ones(REGIONS)).data, np.zeros(0), 0.0)
+    out["memory_factor"] = memory()
+    out["modes"] = timed(lambda: full.modes(np.ones(REGIONS), count, derivatives=False))
+    out["memory_modes"] = memory()
+    out["derivatives"] = timed(lambda: full.modes(np.ones(REGIONS), count))
+    model = reduced_model(full, count)
+    found: list[xr.Dataset] = []
+    out["work"] = timed(lambda: found.append(mf.solve(problem_of(model, data), points=POINTS)))
+    out["memory_work"] = memory()
+    data_of = found[0]
+    out["ratio"] = out["work"] / out["modes"]
+    for name in ("full_eigensolutions", "factorisations", "reduced_solutions"):
+        out[name] = data_of.attrs[name]
+    out["error"] = float(data_of["eigenvalue_error"].max())
+    out["converged"] = float(data_of["converged"].mean())
+    alone = reduced_model(full, count)
+    pairs = zip(data_of["theta"].values, data_of["paired_mode"].values.astype(int) - 1, strict=True)
+    out["error_nominal"] = max(
+        float(alone.certify(theta, np.unique(index), quick=True).eigenvalue.max())
+        for theta, index in pairs
+    )
+    out |= {name: value for name, value in vars(model.counts).items() if name.endswith("_time")}
+    if compare:
+        out["work_full"] = timed(
+            lambda: found.append(mf.solve(problem_of(full, data), points=POINTS))
+        )
+        difference = found[1]["theta"].values - found[0]["theta"].values
+        out["difference"] = float(np.abs(difference).max() / (BOUNDS[1] - BOUNDS[0]))
+    return out
+
+
+def main() -> None:
+    """Print a line a size."""
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--kind", choices=KINDS, default="shell")
+    options.add_argument("--sizes", type=int, nargs="+", default=[1000, 5000, 20000])
+    options.add_argument("--full-up-to", type=int, default=5000)
+    options.add_argument("--save", type=Path, help="append the lines to a file, for the figure")
+    given = options.parse_args()
+    kind = KINDS[given.kind]
+    data = measured(kind)
+    for size in given.sizes:
+        row = line(kind, size, data, size <= given.full_up_to)
+        print("\n".join(f"{name:22s} {value:.5g}" for name, value in row.items()), flush=True)
+        if given.save:
+            with given.save.open("a") as stream:
+                stream.write(json.dumps({"kind": given.kind, **row}) + "\n")
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,49 @@
+"""What is said of reduced bases: errors, and what the solutions have cost."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from modefront.models.base import Counts
+
+
+def certificate_remarks(data: xr.Dataset) -> list[str]:
+    """Return in words how exact the modes are, and which models do not meet the tolerance."""
+    out = [data.attrs["remark"]] if data.attrs.get("remark") else []
+    if "certified" not in data:
+        return out
+    tolerance = data.attrs["eigenvalue_tolerance"]
+    worst = float(data["eigenvalue_error"].max())
+    out.append(
+        f"reduced basis from {data.attrs['full_eigensolutions']} full eigensolutions: relative "
+        f"errors of eigenvalues up to {worst:.1e} (estimated; tolerance {tolerance:.0e}), of "
+        f"shapes up to {float(data['shape_error'].max()):.1e}"
+    )
+    failed = uncertified(data)
+    if failed.size:
+        out.append(f"above the tolerance: {', '.join(failed)}")
+        held = data["label"].values[data["certified"].values]
+        out.append(f"within the tolerance: {', '.join(held) if held.size else 'none'}")
+    return out
+
+
+def uncertified(data: xr.Dataset) -> np.ndarray:
+    """Return the labels of models whose eigenvalues do not meet the tolerance."""
+    if "certified" not in data:
+        return np.zeros(0, dtype=str)
+    return np.asarray(data["label"].values[~data["certified"].values])
+
+
+def cost_lines(counts: Counts) -> list[str]:
+    """Return what this run has solved, and how long that took."""
+    out = [
+        f"{counts.eigenproblems} full eigensolutions in {counts.full_time:.3g} s, "
+        f"{counts.factorisations} factorisations"
+    ]
+    if counts.reduced:
+        out.append(
+            f"{counts.reduced} reduced solutions in {counts.reduced_time:.3g} s, "
+            f"{counts.certificates} certificates in {counts.certificate_time:.3g} s"
+        )
+    return out

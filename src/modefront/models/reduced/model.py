@@ -1,0 +1,287 @@
+"""A model that solves a sparse one a few times, and a small one in its place after that."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from modefront._typing import Floats, Ints
+from modefront.errors import ModelError
+from modefront.models.base import Counts
+from modefront.models.matrices import MatrixModel
+from modefront.models.ports import Ports, Transfer
+from modefront.models.reduced import window
+from modefront.models.reduced.basis import Basis, empty, extended, snapshot
+from modefront.models.reduced.certificate import (
+    NEAR,
+    STEPS,
+    Certificate,
+    estimate,
+)
+from modefront.modes import dense
+from modefront.modes.factorisation import SingularMatrixError
+from modefront.modes.products import combine
+from modefront.modes.result import Modes
+from modefront.modes.spectrum import Shifted
+
+SHORTEST = 0.1
+"""Length of the shortest direction of the basis, over the square root of the tolerance."""
+
+SPARE = 2
+"""Modes in the basis beyond those that are used, without derivatives: they may enter later."""
+
+TOLERANCE = 1e-8
+"""Relative error of eigenvalues that is aimed at, if nothing else is said."""
+
+MEMORY = 4.0
+"""GiB that a basis may take, if nothing else is said."""
+
+
+@dataclass(frozen=True)
+class Snap:
+    """Where a snapshot is to be taken, and of how many modes with derivatives."""
+
+    theta: Floats
+    derived: int
+
+    def same(self, other: Snap) -> bool:
+        """Return whether it is the same snapshot."""
+        return self.derived == other.derived and np.array_equal(self.theta, other.theta)
+
+
+@dataclass(frozen=True)
+class _Taken:
+    """A snapshot: which, up to which eigenvalue all modes are known, factorisations it took."""
+
+    what: Snap
+    beyond: float
+    factorisations: int
+
+
+@dataclass(frozen=True)
+class _State:
+    """The basis of some snapshots, as the sensors see it, and the factor of the last one."""
+
+    taken: tuple[_Taken, ...]
+    basis: Basis
+    sensed: Floats
+    below: Shifted
+
+
+@dataclass(eq=False)
+class ReducedModel:
+    """A sparse model in the basis of its modes and their derivatives at some parameters.
+
+    It is a model like any other (`modefront.models.base.Model`). The first snapshot is taken at
+    the nominal parameters when it is first needed, others by `take`.
+
+    Attributes
+    ----------
+    full : the model with sparse matrices
+    count : modes that are asked for; more than these are solved in full
+    nominal, lower, upper : (p,) parameters
+    tolerance : relative error of eigenvalues that is aimed at
+    memory : GiB that the basis may take; one mode is always allowed
+    counts : what the evaluations and the snapshots in use have cost
+    """
+
+    full: MatrixModel
+    count: int
+    nominal: Floats
+    lower: Floats
+    upper: Floats
+    tolerance: float = TOLERANCE
+    memory: float = MEMORY
+    counts: Counts = field(default_factory=Counts)
+    _charged: Counts = field(default_factory=Counts)
+    _wanted: tuple[Snap, ...] = ()
+    _state: _State | None = None
+
+    @property
+    def parameters(self) -> tuple[str, ...]:
+        """Names of the parameters."""
+        return self.full.parameters
+
+    @property
+    def sensors(self) -> tuple[str, ...]:
+        """Names of the sensors."""
+        return self.full.sensors
+
+    @property
+    def size(self) -> int:
+        """Number of degrees of freedom of the full model."""
+        return self.full.size
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Names of the sensors and of the other outputs."""
+        return self.full.places
+
+    @property
+    def directions(self) -> tuple[str, ...]:
+        """Names of the directions in which the base can move."""
+        return self.full.directions
+
+    def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
+        """Return the full model between ``ports``; see `modefront.models.base.Model`."""
+        before = self.full.counts.eigenproblems, self.full.counts.factorisations
+        try:
+            return self.full.transfer(theta, count, ports)
+        finally:
+            self.counts.eigenproblems += self.full.counts.eigenproblems - before[0]
+            self.counts.factorisations += self.full.counts.factorisations - before[1]
+
+    @property
+    def unused(self) -> tuple[str, ...]:
+        """Names of parameters on which neither matrix depends."""
+        return self.full.unused
+
+    @property
+    def capacity(self) -> int:
+        """Columns that the basis may have: as many modes as are asked for, at least."""
+        return max(self.count, int(self.memory * 2**30 // (8 * self.size)))
+
+    @property
+    def columns(self) -> int:
+        """Columns that the basis has."""
+        return self._ready().basis.columns
+
+    @property
+    def snapshots(self) -> tuple[Snap, ...]:
+        """The snapshots in use."""
+        return self._wanted
+
+    def restart(self) -> None:
+        """Use no snapshots. Those at hand are not computed again, but count when taken again."""
+        self._wanted = ()
+        self.counts.eigenproblems -= self._charged.eigenproblems
+        self.counts.factorisations -= self._charged.factorisations
+        self._charged = Counts()
+
+    def resume(self, snapshots: Sequence[Snap]) -> None:
+        """Use these snapshots, which were counted before; they are computed when needed."""
+        self._wanted = tuple(snapshots)
+
+    def take(self, theta: Floats, derived: int | None = None) -> None:
+        """Add a snapshot, with derivatives of all modes that are asked for or of fewer.
+
+        Raises ModelError where the model has no modes there.
+        """
+        before = self._wanted
+        self._wanted = (*before, Snap(theta, self.count if derived is None else derived))
+        try:
+            last = self._ready().taken[-1]
+        except ModelError:
+            self._wanted = before
+            raise
+        for counts in (self.counts, self._charged):
+            counts.eigenproblems += 1
+            counts.factorisations += last.factorisations
+
+    def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
+        """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
+        if count > self.count:
+            return self._in_full(theta, count, derivatives)
+        state = self._ready()
+        started = time.perf_counter()
+        K, M = state.basis.K, state.basis.M
+        found = dense.modes(K, M, state.sensed, theta, count, derivatives)
+        self.counts.reduced += 1
+        self.counts.reduced_time += time.perf_counter() - started
+        return found
+
+    def distance(self, theta: Floats) -> float:
+        """Return how far the nearest snapshot is, over the ranges of the parameters."""
+        span = self.upper - self.lower
+        return float(min(np.linalg.norm((theta - one.theta) / span) for one in self._wanted))
+
+    def certify(self, theta: Floats, wanted: Ints, *, quick: bool = False) -> Certificate:
+        """Return how wrong the ``wanted`` modes are, counted from 0; see `Certificate`.
+
+        Their errors are infinite where a mode below them is missing. That is looked for by a
+        factorisation where it is in doubt. A ``quick`` certificate does not look for missing
+        modes, and takes only the first term of the estimate.
+        """
+        state = self._ready()
+        started = time.perf_counter()
+        basis, pencil = state.basis, self.full.pencil
+        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        if not quick and self._misses(state, theta, ritz.lam, int(wanted.max())):
+            found = Certificate(np.full(wanted.size, np.inf), np.ones(wanted.size))
+        else:
+            near = window.condition(basis.K, theta, state.taken[-1].what.theta) <= NEAR
+            low = min(ritz.lam.size, self.count + SPARE)
+            found = estimate(
+                pencil.K.at(theta),
+                pencil.M.at(theta),
+                ritz.lam[:low],
+                combine(basis.V, ritz.Phi[:, :low]),
+                wanted,
+                state.below,
+                1 if quick or near else STEPS,
+            )
+        self.counts.certificates += 1
+        self.counts.certificate_time += time.perf_counter() - started
+        return found
+
+    def _misses(self, state: _State, theta: Floats, lam: Floats, last: int) -> bool:
+        """Return whether modes below the Ritz value of the ``last`` one wanted are missing."""
+        K, M, pencil = state.basis.K, state.basis.M, self.full.pencil
+        if window.semidefinite(K) and window.semidefinite(M):
+            for one in state.taken:
+                if window.lower_bound(K, M, theta, one.what.theta) * one.beyond > lam[last]:
+                    return False
+        below, sigma = window.gap_above(lam, last)
+        self.counts.factorisations += 1
+        try:
+            factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
+        except SingularMatrixError:
+            return True
+        return factor.negative != below
+
+    def _in_full(self, theta: Floats, count: int, derivatives: bool) -> Modes:
+        before = self.full.counts.factorisations
+        started = time.perf_counter()
+        found = self.full.modes(theta, count, derivatives=derivatives)
+        self.counts.eigenproblems += 1
+        self.counts.factorisations += self.full.counts.factorisations - before
+        self.counts.full_time += time.perf_counter() - started
+        return found
+
+    def _ready(self) -> _State:
+        """Return the basis of the snapshots wanted; only those not yet in it are computed."""
+        if not self._wanted:
+            self.take(self.nominal)
+        if self._state is not None and not _begins(self._wanted, self._state.taken):
+            self._state = None
+        while self._state is None or len(self._state.taken) < len(self._wanted):
+            self._add(self._wanted[len(self._state.taken) if self._state else 0])
+        return self._state
+
+    def _add(self, what: Snap) -> None:
+        """Compute another snapshot."""
+        started, before = time.perf_counter(), self.full.counts.factorisations
+        pencil, half = self.full.pencil, (self.upper - self.lower) / 2
+        basis, taken = (self._state.basis, self._state.taken) if self._state else (None, ())
+        self._state = None  # its factor makes room for those of the snapshot
+        count = min(self.count + SPARE, self.size)
+        one = snapshot(pencil, what.theta, count, what.derived, half)
+        if basis is None:
+            basis = empty(pencil, one)
+        shortest = SHORTEST * float(np.sqrt(self.tolerance))
+        basis = extended(pencil, basis, one.vectors, shortest, self.capacity)
+        cost = self.full.counts.factorisations - before
+        taken = (*taken, _Taken(what, one.beyond, cost))
+        sensed = np.asarray(self.full.selection @ basis.V)
+        self._state = _State(taken, basis, sensed, one.below)
+        self.counts.full_time += time.perf_counter() - started
+
+
+def _begins(wanted: Sequence[Snap], taken: Sequence[_Taken]) -> bool:
+    """Return whether the snapshots wanted begin with those that were taken."""
+    return len(taken) <= len(wanted) and all(
+        one.what.same(other) for one, other in zip(taken, wanted, strict=False)
+    )

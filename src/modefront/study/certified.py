@@ -1,0 +1,235 @@
+r"""The work of a study on a reduced model, until every reported model holds in the full one.
+
+A round does all of the work in the basis at hand and estimates the errors of the modes of those
+models that are the farthest from all snapshots. Where an estimate exceeds the tolerance, a snapshot
+is taken there, and the next round starts from what is known; otherwise every model that is reported
+gets its certificate. The global search is repeated as long as an estimate is poor: a basis that bad
+may have led it astray.
+
+Every round's pieces of work have names of their own, and its snapshot is one of them, so that an
+interrupted run goes on with the same digits.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+from typing import Protocol
+
+import numpy as np
+
+from modefront._typing import Ints
+from modefront.errors import ModelError, UnfinishedError
+from modefront.models.reduced.model import ReducedModel, Snap
+from modefront.residuals.problem import UpdatingProblem
+from modefront.solvers.checkpoint import Checkpoint, Solutions
+from modefront.solvers.edges import Edge
+from modefront.solvers.pieces import Gap
+from modefront.solvers.problem import infeasible
+from modefront.solvers.sqp import Solution, begin
+from modefront.study.run import Front, Labelled
+
+POOR = 1e-3
+"""Relative error of an eigenvalue at a reported model above which the search is not trusted."""
+
+SNAPSHOTS = 12
+"""Snapshots, after which the tolerance is given up."""
+
+PROBED = 4
+"""Models of which the errors are estimated on the way, those farthest from all snapshots."""
+
+ERRORS = ("eigenvalue_error", "shape_error")
+"""Names under which the estimates are kept with a solution."""
+
+
+class Work(Protocol):
+    """All the work of a study but for the certificates, see `modefront.study.run.pareto_front`."""
+
+    def __call__(
+        self, *, checkpoint: Checkpoint, expect: Callable[[int], None], known: Front | None
+    ) -> Front:
+        """Return everything that was found."""
+
+
+@dataclass(frozen=True)
+class _Round:
+    """Names the pieces of work of one round."""
+
+    checkpoint: Checkpoint
+    number: int
+
+    def __call__(self, name: str, compute: Callable[[], Solutions]) -> Solutions:
+        return self.checkpoint(f"{name}.round-{self.number}", compute)
+
+
+def certified_front(
+    problem: UpdatingProblem, work: Work, checkpoint: Checkpoint, expect: Callable[[int], None]
+) -> Front:
+    """Return what the work finds.
+
+    On a reduced model, the estimated errors are among the quantities of the solutions. They are
+    above the tolerance where it could not be met: for want of memory, or because the model has no
+    modes where a snapshot is to be taken. Any other model needs no certificate.
+    """
+    model = problem.model
+    if not isinstance(model, ReducedModel):
+        return work(checkpoint=checkpoint, expect=expect, known=None)
+    model.restart()
+    front: Front | None = None
+    expected, at, error = 0, Snap(problem.start, model.count), np.inf
+    for number in range(1, SNAPSHOTS + 1):
+        here = _Round(checkpoint, number)
+        before = model.snapshots
+        taken = here("snapshot", partial(_take, problem, model, at))
+        if not taken:
+            break
+        model.resume([*before, at])
+        base = expected + 2
+
+        def more(pieces: int, base: int = base) -> None:
+            nonlocal expected
+            expected = base + pieces
+            expect(expected)
+
+        known = front if error <= POOR else None
+        front = work(checkpoint=here, expect=more, known=known)
+        (worst,) = here("probe", partial(_probe, model, front))
+        if _error(worst) <= model.tolerance:
+            front = _with_errors(model, front, here)
+            worst = max(_reported(front), key=_error)
+            if _error(worst) <= model.tolerance:
+                return front
+        error, at = _error(worst), Snap(worst.at.theta, int(_paired(worst).max()) + 1)
+        full = int(taken[0].at.quantities["columns"][0]) >= model.capacity
+        if full or any(np.array_equal(at.theta, one.theta) for one in model.snapshots):
+            break
+    if front is None:
+        raise UnfinishedError("the model cannot be solved at the nominal parameters")
+    return _with_errors(model, front, checkpoint)
+
+
+def certified_points(
+    problem: UpdatingProblem, points: Labelled, checkpoint: Checkpoint
+) -> Labelled:
+    """Return labelled solutions with the estimated errors of a reduced model, if it is one."""
+    model = problem.model
+    if not isinstance(model, ReducedModel) or not points:
+        return points
+    kept = checkpoint(
+        "certificates-of-others",
+        lambda: [_certified(model, one, quick=False) for _, one in points],
+    )
+    return [(label, one) for (label, _), one in zip(points, kept, strict=True)]
+
+
+def certificate_attributes(problem: UpdatingProblem) -> dict[str, str | int | float]:
+    """Return the tolerance of the certificates, if there are any."""
+    model = problem.model
+    return {"eigenvalue_tolerance": model.tolerance} if isinstance(model, ReducedModel) else {}
+
+
+def certificate_variables(
+    problem: UpdatingProblem, solutions: Sequence[Solution], dimension: str = "point"
+) -> dict[str, tuple[tuple[str, ...], object, str]]:
+    """Return the errors of solutions as variables of the results, if the model is a reduced one.
+
+    Their names begin with the dimension unless that is ``point``.
+    """
+    model = problem.model
+    if not isinstance(model, ReducedModel):
+        return {}
+    eigenvalue, shape = (
+        np.array([one.at.quantities[name] for one in solutions]).reshape(len(solutions), -1)
+        for name in ERRORS
+    )
+    held = (eigenvalue <= model.tolerance).all(axis=1)
+    prefix = "" if dimension == "point" else f"{dimension}_"
+    meanings = (
+        "estimated relative error of the eigenvalue; infinite where a mode is missing",
+        "estimated error of the mode shape over its length, in the norm of the mass matrix",
+    )
+    return {
+        prefix + ERRORS[0]: ((dimension, "mode"), eigenvalue, meanings[0]),
+        prefix + ERRORS[1]: ((dimension, "mode"), shape, meanings[1]),
+        f"{prefix}certified": ((dimension,), held, "all eigenvalues are within the tolerance"),
+    }
+
+
+def _take(problem: UpdatingProblem, model: ReducedModel, at: Snap) -> list[Solution]:
+    """Take a snapshot and keep its theta and the columns that the basis then has.
+
+    Nothing is returned where the model cannot be solved there.
+    """
+    try:
+        model.take(at.theta, at.derived)
+    except ModelError:
+        return []
+    kept = {"columns": np.array([model.columns])}
+    return [begin(replace(infeasible(at.theta, len(problem.objectives)), quantities=kept))]
+
+
+def _probe(model: ReducedModel, front: Front) -> list[Solution]:
+    """Return the worst of the models that are the farthest from all snapshots."""
+    ranked = sorted(_distinct(front), key=lambda one: model.distance(one.at.theta), reverse=True)
+    tried = [_certified(model, one, quick=True) for one in ranked[:PROBED]]
+    return [max(tried, key=_error)]
+
+
+def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> Front:
+    """Return the front with the estimated errors of all its models."""
+    kept = checkpoint(
+        "certificates", lambda: [_certified(model, one, quick=False) for one in _distinct(front)]
+    )
+    errors = {_key(one): {name: one.at.quantities[name] for name in ERRORS} for one in kept}
+
+    def known(one: Solution) -> Solution:
+        quantities = {**one.at.quantities, **errors[_key(one)]}
+        return replace(one, at=replace(one.at, quantities=quantities))
+
+    return replace(
+        front,
+        points=[(label, known(one)) for label, one in front.points],
+        edges=[Edge(known(edge.best), list(map(known, edge.minima))) for edge in front.edges],
+        optimal=list(map(known, front.optimal)),
+        iterated=known(front.iterated) if front.iterated else None,
+        gaps=[Gap(known(gap.end), known(gap.start)) for gap in front.gaps],
+    )
+
+
+def _certified(model: ReducedModel, one: Solution, *, quick: bool) -> Solution:
+    """Return a solution with the errors of the modes that are paired with measured ones."""
+    wanted, place = np.unique(_paired(one), return_inverse=True)
+    found = model.certify(one.at.theta, wanted, quick=quick)
+    errors = dict(zip(ERRORS, (found.eigenvalue[place], found.shape[place]), strict=True))
+    return replace(one, at=replace(one.at, quantities={**one.at.quantities, **errors}))
+
+
+def _reported(front: Front) -> Iterator[Solution]:
+    yield from (one for _, one in front.points)
+    for edge in front.edges:
+        yield from edge.minima
+    yield from front.optimal
+    if front.iterated:
+        yield front.iterated
+    for gap in front.gaps:
+        yield from (gap.end, gap.start)
+
+
+def _distinct(front: Front) -> list[Solution]:
+    """Return the reported models, each once."""
+    return list({_key(one): one for one in _reported(front)}.values())
+
+
+def _paired(one: Solution) -> Ints:
+    """Return the modes that are paired with measured ones, counted from 0."""
+    return one.at.quantities["paired_mode"].astype(int) - 1
+
+
+def _key(one: Solution) -> bytes:
+    return one.at.theta.tobytes()
+
+
+def _error(one: Solution) -> float:
+    """Return the greatest error of an eigenvalue."""
+    return float(one.at.quantities[ERRORS[0]].max())

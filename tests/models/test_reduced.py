@@ -1,0 +1,255 @@
+"""Reduced models: exact in their basis, and as wrong in the full one as they say."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.linalg
+import scipy.sparse
+
+from modefront import fem
+from modefront._typing import Floats, Ints
+from modefront.errors import ModelError
+from modefront.models.affine import Monomials, sparse_affine
+from modefront.models.base import Counts
+from modefront.models.matrices import MatrixModel, affine_model
+from modefront.models.mesh import mesh_model
+from modefront.models.reduced import window
+from modefront.models.reduced.basis import DERIVATIVES, snapshot
+from modefront.models.reduced.model import ReducedModel, Snap
+from modefront.modes import derivatives as exact
+from modefront.modes.sparse import lowest
+
+STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
+NAMES = ("k1", "k2", "k3")
+COUNT = 4
+LOWER, UPPER = np.full(3, 0.4), np.full(3, 2.5)
+
+
+def plate(*, floating: bool = False, n: int = 6) -> MatrixModel:
+    """Return a plate with three stiffnesses, clamped at an edge or free, without double modes."""
+    X, cells = fem.grids.plate(3.0, 1.7, 2 * n, n)
+    region = np.minimum((X[cells].mean(axis=1)[:, 0]).astype(int), 2)
+    sensors = [fem.Sensor(f"s{i}", int(node), "z") for i, node in enumerate((9, 40, 63, 90))]
+    structure = fem.Structure(
+        X,
+        [fem.Shells(name, cells[region == j], STEEL, 0.03) for j, name in enumerate(NAMES)],
+        [] if floating else [fem.Support(np.flatnonzero(X[:, 0] == 0))],
+        sensors=sensors,
+        parameters=[fem.Parameter(name, "E", (name,)) for name in NAMES],
+    )
+    return mesh_model(structure, NAMES, floating=floating)
+
+
+def massless(full: MatrixModel) -> MatrixModel:
+    """Return the model without the inertia of every second degree of freedom."""
+    keep = scipy.sparse.dia_array(
+        ((np.arange(full.size) % 2 == 0).astype(float)[None], 0), shape=(full.size, full.size)
+    )
+    mass = (keep @ full.pencil.M.at(np.ones(3)) @ keep).tocoo()
+    constant = Monomials(np.zeros((1, 3)))
+    return replace(full, mass=sparse_affine([mass], constant, full.size), counts=Counts())
+
+
+MODELS: dict[str, Callable[[], MatrixModel]] = {
+    "clamped": plate,
+    "rigid-body modes": lambda: plate(floating=True),
+    "massless": lambda: massless(plate()),
+}
+
+
+@pytest.fixture(scope="module", params=MODELS)
+def full(request: pytest.FixtureRequest) -> MatrixModel:
+    return MODELS[str(request.param)]()
+
+
+def reduced(full: MatrixModel, *, tolerance: float = 1e-8, memory: float = 1.0) -> ReducedModel:
+    return ReducedModel(full, 10, np.ones(3), LOWER, UPPER, tolerance, memory)
+
+
+def elastic(lam: Floats) -> Ints:
+    """Return the positions of some modes that are no rigid-body modes."""
+    return np.flatnonzero(lam > 1e-6 * lam[-1])[:COUNT]
+
+
+def test_derivatives_everywhere_are_those_at_the_sensors(full: MatrixModel) -> None:
+    theta = np.array([1.1, 0.9, 1.3])
+    found = lowest(full.pencil, theta, 8)
+    everywhere = scipy.sparse.eye_array(full.size, format="csr")
+    _, dPhi, _ = exact.at_sensors(full.pencil, everywhere, theta, found, 8)
+    expected = full.modes(theta, 8)
+    at_sensors = np.tensordot(full.selection.toarray(), dPhi, axes=1)
+    assert at_sensors == pytest.approx(expected.dphi, abs=1e-8 * np.abs(expected.dphi).max())
+
+
+def test_the_basis_is_orthonormal_in_energy_and_grows_without_change(full: MatrixModel) -> None:
+    model = reduced(full)
+    model.modes(np.ones(3), 8)
+    before = model._ready().basis
+    model.take(np.array([0.6, 1.5, 2.0]))
+    basis = model._ready().basis
+    n = before.columns
+    assert basis.columns > n
+    assert np.array_equal(basis.V[:, :n], before.V)
+    assert np.array_equal(basis.K.terms[:, :n, :n], before.K.terms)
+    assert basis.V.T @ (basis.A @ basis.V) == pytest.approx(np.eye(basis.columns), abs=1e-8)
+    theta = np.array([0.8, 0.7, 2.2])
+    for matrix, projected in ((full.pencil.K, basis.K), (full.pencil.M, basis.M)):
+        expected = basis.V.T @ (matrix.at(theta) @ basis.V)
+        assert projected.at(theta) == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
+
+
+def test_a_snapshot_is_exact_with_its_derivatives(full: MatrixModel) -> None:
+    model, theta = reduced(full), np.array([0.7, 1.4, 2.1])
+    model.take(theta)
+    found, expected = model.modes(theta, 8), full.modes(theta, 8)
+    r = elastic(expected.lam)
+    assert found.lam[r] == pytest.approx(expected.lam[r], rel=1e-9)
+    assert found.dlam[r] == pytest.approx(
+        expected.dlam[r], rel=1e-6, abs=1e-8 * expected.lam[r[-1]]
+    )
+    sign = np.sign((found.phi * expected.phi).sum(axis=0))[r]
+    scale = np.abs(expected.phi[:, r]).max()
+    assert found.phi[:, r] * sign == pytest.approx(expected.phi[:, r], abs=1e-6 * scale)
+    error = np.abs(found.dphi[:, r] * sign[:, None] - expected.dphi[:, r]).max()
+    assert error <= 50 * DERIVATIVES * np.abs(expected.dphi[:, r]).max()
+
+
+def test_derivatives_are_those_of_the_reduced_problem(full: MatrixModel) -> None:
+    model, theta, h = reduced(full), np.array([0.7, 1.4, 2.1]), 1e-3
+    found = model.modes(theta, 8)
+    r = elastic(found.lam)
+    for i, step in enumerate(h * np.eye(3)):
+        near = {k: model.modes(theta + k * step, 8, derivatives=False).lam for k in (-2, -1, 1, 2)}
+        slope = (8 * (near[1] - near[-1]) - near[2] + near[-2]) / (12 * h)
+        assert found.dlam[r, i] == pytest.approx(slope[r], rel=1e-7, abs=1e-9 * found.lam[r[-1]])
+
+
+@pytest.mark.parametrize("snapshots", [1, 2, 3])
+def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int) -> None:
+    rng = np.random.default_rng(5)
+    model = reduced(full)
+    model.modes(np.ones(3), 8)
+    for _ in range(snapshots - 1):
+        model.take(rng.uniform(0.5, 2.3, 3))
+    for theta in rng.uniform(0.5, 2.3, (3, 3)):
+        exact_modes, found = lowest(full.pencil, theta, 8), model.modes(theta, 8)
+        r = elastic(found.lam)
+        certificate = model.certify(theta, r)
+        shift = model._ready().below.sigma
+        noise = 1e2 * exact_modes.noise[r] / exact_modes.lam[r]
+        truth = (found.lam[r] - exact_modes.lam[r]) / (found.lam[r] - shift)
+        sure = truth > 10 * noise
+        assert (certificate.eigenvalue[sure] <= 2 * truth[sure]).all()
+        assert (certificate.eigenvalue[sure] >= truth[sure] / 2).all()
+        quick = model.certify(theta, r, quick=True).eigenvalue
+        assert (quick <= certificate.eigenvalue * (1 + 1e-12)).all()
+        assert (quick >= certificate.eigenvalue / 3).all()
+
+        basis = model._ready().basis
+        K, M = basis.K.at(theta), basis.M.at(theta)
+        vectors = basis.V @ scipy.linalg.eigh(M, K + 1e-3 * M)[1][:, ::-1][:, r]
+        MPhi = exact_modes.MPhi[:, r]
+        size = np.einsum("nr,nr->r", vectors, full.pencil.M.at(theta) @ vectors)
+        cosine = np.einsum("nr,nr->r", vectors, MPhi) ** 2 / size
+        shape = np.sqrt(np.maximum(1 / cosine - 1, 0))
+        sure = shape > 1e-6
+        assert (certificate.shape[sure] <= 2 * shape[sure]).all()
+        assert (certificate.shape[sure] >= shape[sure] / 2).all()
+
+
+def test_costs_are_counted_once() -> None:
+    model = reduced(plate())
+    for _ in range(3):
+        model.modes(np.ones(3), 8)
+    counts = model.counts
+    assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (1, 2, 3)
+    model.take(np.array([0.5, 1.0, 2.0]))
+    assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (2, 4, 3)
+    model.modes(np.ones(3), 11)
+    assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (3, 6, 3)
+    model.resume([Snap(np.ones(3), 10)])
+    model.modes(np.ones(3), 8)
+    assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (3, 6, 4)
+
+
+def test_the_order_of_computing_snapshots_changes_no_digit() -> None:
+    full, thetas = plate(), [np.ones(3), np.array([0.5, 1.0, 2.0])]
+    one, other = reduced(full), reduced(plate())
+    for theta in thetas:
+        one.take(theta)
+    other.resume([Snap(theta, 10) for theta in thetas])
+    at = np.array([0.9, 0.6, 1.4])
+    assert one.modes(at, 8).lam.tolist() == other.modes(at, 8).lam.tolist()
+    assert other.counts.eigenproblems == 0, "what was counted before is not counted again"
+
+
+def test_the_basis_keeps_within_its_memory() -> None:
+    full = plate()
+    model = reduced(full, memory=20 * 8 * full.size / 2**30)
+    assert model.capacity == 20
+    model.modes(np.ones(3), 8)
+    assert model.columns == 20
+    model.take(np.array([0.5, 1.0, 2.0]))
+    assert model.columns == 20
+
+
+def test_a_snapshot_that_fails_leaves_the_model_as_it_was() -> None:
+    model = reduced(plate())
+    before = model.modes(np.ones(3), 8).lam
+    with pytest.raises(ModelError):
+        model.take(np.array([1.0, 1.0, -1.0]))
+    assert model.modes(np.ones(3), 8).lam.tolist() == before.tolist()
+    assert model.counts.eigenproblems == 1
+
+
+def two_structures() -> MatrixModel:
+    """Return two chains that nothing joins: as k1 falls, modes of the first enter from above."""
+    size = 400
+    half = size // 2
+    chain = 2 * np.eye(half) - np.eye(half, k=1) - np.eye(half, k=-1)
+    K = [np.zeros((size, size)) for _ in range(2)]
+    K[0][:half, :half] = 400 * chain
+    K[1][half:, half:] = chain + 0.01 * np.diag(np.linspace(0, 1, half))
+    selection = scipy.sparse.csr_array(np.eye(size)[[20, 250]])
+    return affine_model(
+        ["k1", "k2"],
+        ["a", "b"],
+        selection,
+        sparse_affine(list(map(scipy.sparse.coo_array, K)), Monomials(np.eye(2)), size),
+        sparse_affine([scipy.sparse.eye_array(size)], Monomials(np.zeros((1, 2))), size),
+    )
+
+
+def test_a_mode_that_the_basis_misses_is_found_by_inertia() -> None:
+    full = two_structures()
+    bounds = np.full(2, 1e-4), np.full(2, 2.0)
+    model = ReducedModel(full, 4, np.ones(2), *bounds)
+    near = model.certify(np.array([0.99, 1.0]), np.arange(3))
+    assert near.eigenvalue.max() < 1e-3
+    assert model.counts.factorisations == 2, "there is no doubt near a snapshot"
+    theta = np.array([1e-4, 1.0])
+    assert model.modes(theta, 4).lam[0] > 1.5 * full.modes(theta, 4).lam[0]
+    assert np.isinf(model.certify(theta, np.arange(3)).eigenvalue).all()
+    assert model.counts.factorisations == 3
+    model.take(theta)
+    assert model.certify(theta, np.arange(3)).eigenvalue.max() < 1e-8
+
+
+def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
+    full, rng = plate(), np.random.default_rng(0)
+    pencil = full.pencil
+    one = snapshot(pencil, np.ones(3), 10, 8, np.ones(3))
+    model = reduced(full)
+    model.take(np.ones(3))
+    basis = model._ready().basis
+    assert window.semidefinite(basis.K)
+    for theta in rng.uniform(0.4, 2.5, (5, 3)):
+        ratio = window.lower_bound(basis.K, basis.M, theta, one.theta)
+        assert ratio == pytest.approx(theta.min())
+        now, then = (full.modes(at, 8, derivatives=False).lam for at in (theta, one.theta))
+        assert (now >= ratio * then * (1 - 1e-9)).all()
+    assert window.lower_bound(basis.K, basis.M, np.array([1.0, -1.0, 1.0]), one.theta) == 0

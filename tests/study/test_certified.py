@@ -1,0 +1,247 @@
+"""Studies on reduced models: the same results as in full, for a few full solutions."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+import scipy.sparse
+import xarray as xr
+
+import modefront as mf
+from modefront.cli.main import main
+from modefront.fem import grids
+from modefront.models.reduced.model import ReducedModel
+from modefront.study import store
+from modefront.study.results import read
+
+N = 14
+STUDY = """
+[study]
+name = "membrane"
+seed = 2
+
+[data]
+file = "modes.csv"
+
+[model]
+kind = "matrices"
+stiffness = { base = "K0.npz", k1 = "K1.npz", k2 = "K2.npz" }
+mass = { base = "M.npz" }
+sensors = { a = 25, b = 62, c = 107, d = 150, e = 172 }
+reduction = 1e-8
+
+[[parameter]]
+name = "k1"
+nominal = 1.0
+bounds = [0.4, 2.5]
+
+[[parameter]]
+name = "k2"
+nominal = 1.0
+bounds = [0.4, 2.5]
+
+[[group]]
+name = "frequencies"
+frequency = "all"
+
+[[group]]
+name = "shapes"
+shape = "all"
+
+[pareto]
+points = 3
+
+[search]
+starts = 2
+limit = 2
+evolutions = 0
+"""
+
+
+def write_study(folder: Path) -> Path:
+    """Write the study of a membrane with a stiff and a soft half, and of noisy modes of it."""
+    X, cells = grids.plate(1.3, 1.0, N, N)
+    number = np.full(len(X), -1)
+    inside = (X[:, 0] > 0) & (X[:, 1] > 0) & (X[:, 1] < 1)
+    number[inside] = np.arange(inside.sum())
+    edges = np.concatenate([cells[:, [k, (k + 1) % 4]] for k in range(4)])
+    middle = X[edges].mean(axis=1)[:, 0]
+    terms = {}
+    for name, part in (
+        ("K0", middle > 1),
+        ("K1", middle < 0.5),
+        ("K2", (middle - 0.75) ** 2 < 0.0625),
+    ):
+        A = np.zeros((len(X), len(X)))
+        for i, j in edges[part]:
+            A[[i, j], [i, j]] += 1
+            A[i, j] -= 1
+            A[j, i] -= 1
+        terms[name] = 1e4 * A[np.ix_(inside, inside)]
+    size = int(inside.sum())
+    terms["M"] = np.diag(np.where(np.arange(size) % 7 == 0, 0.0, 1.0))
+    for name, A in terms.items():
+        scipy.sparse.save_npz(folder / f"{name}.npz", scipy.sparse.csr_array(A))
+    sensors = (25, 62, 107, 150, 172)
+    model = mf.matrices(
+        ["k1", "k2"],
+        {"base": terms["K0"], "k1": terms["K1"], "k2": terms["K2"]},
+        {"base": terms["M"]},
+        dict(zip("abcde", sensors, strict=True)),
+    )
+    modes = model.modes(np.array([0.8, 1.6]), 3, derivatives=False)
+    rng = np.random.default_rng(1)
+    frequency = modes.frequency * (1 + 0.01 * rng.standard_normal(3))
+    phi = modes.phi / np.abs(modes.phi).max(axis=0) + 0.03 * rng.standard_normal(modes.phi.shape)
+    lines = ["set,mode,frequency,damping,a,b,c,d,e"]
+    for r in range(3):
+        lines.append(",".join(["x", str(r + 1), str(frequency[r]), "", *map(str, phi[:, r])]))
+    (folder / "modes.csv").write_text("\n".join(lines))
+    file = folder / "study.toml"
+    file.write_text(STUDY)
+    return file
+
+
+@pytest.fixture(scope="module")
+def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return write_study(tmp_path_factory.mktemp("membrane"))
+
+
+@pytest.fixture(scope="module")
+def whole(file: Path) -> xr.Dataset:
+    return mf.run(mf.load(file), file.with_name("whole"))
+
+
+def variant(file: Path, name: str, old: str, new: str) -> Path:
+    assert old in file.read_text()
+    out = file.with_name(f"{name}.toml")
+    out.write_text(file.read_text().replace(old, new))
+    return out
+
+
+def test_the_front_is_that_of_full_solutions(file: Path, whole: xr.Dataset) -> None:
+    study = mf.load(variant(file, "off", "reduction = 1e-8", 'reduction = "off"'))
+    full = mf.run(study, file.with_name("off"))
+    assert "certified" not in full
+    assert full.attrs["reduced_solutions"] == 0
+    assert full.attrs["full_eigensolutions"] == full.attrs["model_evaluations"]
+    assert whole["label"].values.tolist() == full["label"].values.tolist()
+    span = np.diff(whole["bounds"].values, axis=1)[:, 0]
+    assert (np.abs(whole["theta"].values - full["theta"].values) / span).max() < 1e-5
+    assert whole["converged"].values.all()
+
+    model = study.problem.model
+    for i in range(whole.sizes["point"]):
+        theta = whole["theta"].values[i]
+        r = whole["paired_mode"].values[i].astype(int) - 1
+        lam = model.modes(theta, 6, derivatives=False).lam[r]
+        found = (2 * np.pi * whole["frequency"].values[i]) ** 2
+        truth = np.abs(found / lam - 1)
+        estimate = whole["eigenvalue_error"].values[i]
+        assert (truth <= 3 * estimate + 1e-12).all()
+        assert (estimate <= 2 * truth + 1e-12).all()
+
+
+def test_a_few_full_solutions_are_enough_and_all_models_hold(whole: xr.Dataset) -> None:
+    assert whole["certified"].values.all()
+    assert whole["minimum_certified"].values.all()
+    assert float(whole["eigenvalue_error"].max()) <= whole.attrs["eigenvalue_tolerance"] == 1e-8
+    assert whole.attrs["full_eigensolutions"] <= 4
+    assert whole.attrs["factorisations"] >= 2 * whole.attrs["full_eigensolutions"]
+    assert whole.attrs["reduced_solutions"] > 100
+    total = whole.attrs["full_eigensolutions"] + whole.attrs["reduced_solutions"]
+    assert whole.attrs["model_evaluations"] == total
+
+
+@pytest.mark.parametrize("pieces", [1, 30])
+def test_an_interrupted_run_goes_on_to_the_same_digits(
+    pieces: int, file: Path, whole: xr.Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    left = pieces
+    write = store.write_piece
+
+    def interrupted(*arguments: object) -> None:
+        nonlocal left
+        if left == 0:
+            raise KeyboardInterrupt
+        left -= 1
+        write(*arguments)  # type: ignore[arg-type]
+
+    with monkeypatch.context() as patch:
+        patch.setattr(store, "write_piece", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            mf.run(mf.load(file), tmp_path)
+    xr.testing.assert_identical(mf.run(mf.load(file), tmp_path), whole)
+
+
+def test_a_run_that_is_done_solves_nothing_again(file: Path, whole: xr.Dataset) -> None:
+    study = mf.load(file)
+    model = study.problem.model
+    assert isinstance(model, ReducedModel)
+    before = model.counts.reduced
+    xr.testing.assert_identical(mf.run(study, file.with_name("whole")), whole)
+    assert model.counts.reduced == before
+
+
+def command(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int | str | None:
+    monkeypatch.setattr(sys, "argv", ["modefront", *map(str, arguments)])
+    with pytest.raises(SystemExit) as left:
+        main()
+    return left.value.code
+
+
+def test_run_shows_the_cost_and_show_the_errors(
+    file: Path,
+    whole: xr.Dataset,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    folder = file.with_name("shown")
+    assert command(monkeypatch, "run", file, "-o", folder) == 0
+    out = capfd.readouterr().out
+    n = whole.attrs["full_eigensolutions"]
+    assert f"reduced basis from {n} full eigensolutions" in out
+    assert f"{n} full eigensolutions in" in out
+    assert "reduced solutions in" in out
+    assert command(monkeypatch, "show", folder) == 0
+    out = capfd.readouterr().out
+    assert "estimated relative errors" in out
+    assert "eigenvalue 3" in out
+
+
+def test_what_cannot_be_met_in_the_memory_is_said_and_is_an_exit_of_1(
+    file: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    bytes_of_basis = 8 * 8 * N * (N - 1)
+    small = variant(file, "small", "seed = 2", f"seed = 2\nmemory = {bytes_of_basis / 2**30}")
+    folder = file.with_name("small")
+    assert command(monkeypatch, "run", small, "-o", folder) == 1
+    out, err = capfd.readouterr()
+    data = read(folder)
+    failed = data["label"].values[~data["certified"].values]
+    assert failed.size
+    assert data.attrs["full_eigensolutions"] == 1
+    assert f"above the tolerance: {', '.join(failed)}" in out
+    assert "within the tolerance" in out
+    assert f"errors above the tolerance, kept and marked: {', '.join(failed)}" in err
+
+
+def test_a_model_without_a_basis_says_so(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capfd: pytest.CaptureFixture[str]
+) -> None:
+    file = write_study(tmp_path)
+    for name in ("K0", "K1", "K2", "M"):
+        A = scipy.sparse.load_npz(tmp_path / f"{name}.npz").toarray()[50:150, 50:150]
+        scipy.sparse.save_npz(tmp_path / f"{name}.npz", scipy.sparse.csr_array(A))
+    text = file.read_text().replace("a = 25", "a = 5").replace("b = 62", "b = 32")
+    text = (
+        text.replace("c = 107", "c = 57").replace("d = 150", "d = 70").replace("e = 172", "e = 89")
+    )
+    file.write_text(text.replace("points = 3", "points = 2"))
+    status = command(monkeypatch, "run", file)
+    out = capfd.readouterr().out
+    assert status in (0, 1)
+    assert "no reduced basis: the model has only 100 degrees of freedom" in out
