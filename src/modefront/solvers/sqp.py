@@ -46,6 +46,9 @@ PENALTY = 10.0
 FUNNEL = 10.0
 """Growth of the constraints, where they are above 1, up to which a step is judged at all."""
 
+STEEP = 1e3
+"""Greatest multiplier of a constraint, with objective and constraints in their own units."""
+
 SWITCH = 0.5
 """Share of the error of a prediction, below which the other model is the better one."""
 FREE = 1e-4
@@ -76,7 +79,7 @@ class Options:
     step: float = 1e-7
     constraint: float = 1e-7
     reduction: float = 1e-14
-    iterations: int = 60
+    iterations: int = 100
     radius: float = 0.15
     learn: bool = True
 
@@ -141,14 +144,15 @@ def solve(
         g, dc = df @ dJ, A @ dJ
         lo = np.maximum((problem.lower - at.theta) / span, -radius)
         hi = np.minimum((problem.upper - at.theta) / span, radius)
+        most = STEEP * float(np.abs(df).max()) / float(np.abs(A).max(initial=np.finfo(float).tiny))
         if multipliers is None:
-            multipliers = _multipliers(dc, g, lo, hi)
+            multipliers = _multipliers(dc, g, lo, hi, most)
         w = df + A.T @ multipliers
         H = at.H + state.learned if trusted else at.H
         B = np.tensordot(w, H, axes=1) * np.outer(span, span)
         B += dJ.T @ programme.hessian(at.J) @ dJ
         s = solve_qp(B, g, dc, -c, lo, hi)
-        multipliers = _multipliers(dc, g + B @ s, lo - s, hi - s)
+        multipliers = _multipliers(dc, g + B @ s, lo - s, hi - s, most)
         w = df + A.T @ multipliers
 
         if _length(s) < 0.99 * radius:
@@ -259,7 +263,11 @@ class State:
         return State(self.at, learned)
 
 
-def _multipliers(dc: Floats, g: Floats, lo: Floats, hi: Floats) -> Floats:
-    """Return the multipliers for which g + dc^T lambda is least on the variables within bounds."""
+def _multipliers(dc: Floats, g: Floats, lo: Floats, hi: Floats, most: float) -> Floats:
+    """Return the multipliers for which g + dc^T lambda is least on the variables within bounds.
+
+    Where the constraints hardly depend on those, they say nothing, and ``most`` bounds them.
+    """
     free = (lo < 0) & (hi > 0)
-    return np.asarray(np.linalg.lstsq(dc[:, free].T, -g[free], rcond=None)[0])
+    found = np.linalg.lstsq(dc[:, free].T, -g[free], rcond=None)[0]
+    return np.asarray(np.clip(found, -most, most))
