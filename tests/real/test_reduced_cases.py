@@ -110,7 +110,7 @@ def weighted_model(problem: mf.UpdatingProblem, w: Floats) -> Floats:
     model = problem.model
     found = begin(problem.evaluate(problem.start))
     while True:
-        found = solve(problem, weighted(w), found, Options(iterations=200, learn=False))
+        found = solve(problem, weighted(w), found, Options(iterations=200))
         assert found.converged
         if not isinstance(model, ReducedModel):
             return found.at.theta

@@ -14,7 +14,7 @@ from modefront.cli.show import remarks
 
 NAMES = ("k1", "k2", "k3")
 MODEL = mf.chain(NAMES, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=NAMES)
-SEARCH = mf.Search(starts=3, limit=3, evolutions=0)
+SEARCH = mf.Search(starts=3, limit=10, evolutions=0)
 
 
 def problem_of(*, sets: int = 1, std: float = 0.0, seed: int = 0) -> mf.UpdatingProblem:

@@ -34,15 +34,12 @@ EXACT = 1e-10
 TIE = 1e-6
 """Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal."""
 
-CANDIDATE = 1e-4
-"""Difference from the least minimum while exploring, over the typical size, of a possible edge."""
-
 ATTEMPTS = 4
 """Starts from which the end of a flat valley is looked for, at most."""
 
 _LEARNING = Options(step=1e-8, reduction=1e-24)
 
-_KNOWN = Options(step=1e-8, reduction=1e-24, learn=False)
+_KNOWN = Options(step=1e-8, reduction=1e-24, learn=False, iterations=30)
 """What is learned is not exact enough where an objective does not change at all."""
 
 
@@ -87,13 +84,8 @@ def edge(
     found = checkpoint(
         f"minima-{name}", lambda: explore(problem, programme, rng, search, starts=starts)
     )
-    limit = min((one.at.J[objective] for one in found), default=0.0) + CANDIDATE * sizes[objective]
     refined = checkpoint(
-        f"edge-{name}",
-        lambda: [
-            refine(problem, objective, sizes, one) if one.at.J[objective] <= limit else one
-            for one in found
-        ],
+        f"edge-{name}", lambda: [refine(problem, objective, sizes, one) for one in found]
     )
     minima: list[Solution] = []
     for one in refined:
@@ -146,9 +138,8 @@ def _programme(objective: int, epsilon: float, sizes: Floats) -> Linear:
 
 def refine(problem: Problem, objective: int, sizes: Floats, start: Solution) -> Solution:
     """Return the limit of the minimisers for epsilon to 0, by Richardson's extrapolation."""
-    options = _KNOWN if start.at.H[objective].any() else _LEARNING
-    coarse = solve(problem, _programme(objective, COARSE, sizes), start, options)
-    fine = solve(problem, _programme(objective, FINE, sizes), coarse, options)
+    coarse = _descend(problem, _programme(objective, COARSE, sizes), start)
+    fine = _descend(problem, _programme(objective, FINE, sizes), coarse)
     theta = fine.at.theta + (fine.at.theta - coarse.at.theta) * FINE / (COARSE - FINE)
     limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper))
     better = limit.feasible and limit.J[objective] <= fine.at.J[objective]
@@ -158,3 +149,12 @@ def refine(problem: Problem, objective: int, sizes: Floats, start: Solution) -> 
         learned=start.learned,
         evaluations=start.evaluations + coarse.evaluations + fine.evaluations + 1,
     )
+
+
+def _descend(problem: Problem, programme: Linear, start: Solution) -> Solution:
+    """Return the minimum with the known second derivatives if these suffice, else with learned."""
+    if start.at.H.any():
+        found = solve(problem, programme, start, _KNOWN)
+        if found.converged:
+            return found
+    return solve(problem, programme, start, _LEARNING)

@@ -46,7 +46,7 @@ PENALTY = 10.0
 FUNNEL = 10.0
 """Growth of the constraints, where they are above 1, up to which a step is judged at all."""
 
-STEEP = 1e3
+STEEP = 1e6
 """Greatest multiplier of a constraint, with objective and constraints in their own units."""
 
 SWITCH = 0.5

@@ -17,7 +17,7 @@ from modefront.study.tables.parameters import Parameter
 AUTO, OFF = "auto", "off"
 
 PAYS = 5000
-"""Degrees of freedom from which a study is done sooner with a reduced basis."""
+"""Degrees of freedom from which ``auto`` takes a basis; smaller models are solved in full."""
 
 UNREDUCED = ("chain",)
 """Kinds of models that are too small for it, and have no such key."""
