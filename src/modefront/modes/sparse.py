@@ -135,7 +135,7 @@ def is_singular(pencil: Pencil, theta: Floats) -> bool:
     X = factor.solve(right)
     energy = np.einsum("nb,nb->b", X, right)
     rounding = np.finfo(float).eps * (K.diagonal() @ X**2)
-    return bool(factor.negative) or bool((energy < rounding).any())
+    return factor.negative != 0 or bool((energy < rounding).any())
 
 
 def _gap(lam: Floats, known: int, count: int, s: float, complete: bool) -> tuple[int, float] | None:
