@@ -14,12 +14,13 @@ from typing import Any
 
 import pytest
 import xarray as xr
+from interruptions import interrupt_after
 
 import modefront
 from modefront.cli.main import main
 from modefront.errors import UnfinishedError
 from modefront.solvers import edges
-from modefront.study import session, store
+from modefront.study import session
 from modefront.study.results import FILE, read
 
 STUDY = """
@@ -132,21 +133,6 @@ def assert_same(one: xr.Dataset, other: xr.Dataset) -> None:
 
 def contents(folder: Path) -> list[bytes]:
     return [path.read_bytes() for path in folder.rglob("*") if path.is_file()]
-
-
-def interrupt_after(pieces: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Interrupt the next run when so many pieces have been written, before the next one is."""
-    written: list[Path] = []
-    write = store.write_piece
-
-    def stop(path: Path, *rest: Any) -> None:
-        if len(written) == pieces:
-            monkeypatch.setattr(store, "write_piece", write)
-            raise KeyboardInterrupt
-        written.append(path)
-        write(path, *rest)
-
-    monkeypatch.setattr(store, "write_piece", stop)
 
 
 def test_help_and_version(modefront_: Run) -> None:

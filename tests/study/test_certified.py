@@ -9,12 +9,12 @@ import numpy as np
 import pytest
 import scipy.sparse
 import xarray as xr
+from interruptions import interrupt_after
 
 import modefront as mf
 from modefront.cli.main import main
 from modefront.fem import grids
 from modefront.models.reduced.model import ReducedModel
-from modefront.study import store
 from modefront.study.results import read
 
 N = 14
@@ -160,20 +160,9 @@ def test_a_few_full_solutions_are_enough_and_all_models_hold(whole: xr.Dataset) 
 def test_an_interrupted_run_goes_on_to_the_same_digits(
     pieces: int, file: Path, whole: xr.Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    left = pieces
-    write = store.write_piece
-
-    def interrupted(*arguments: object) -> None:
-        nonlocal left
-        if left == 0:
-            raise KeyboardInterrupt
-        left -= 1
-        write(*arguments)  # type: ignore[arg-type]
-
-    with monkeypatch.context() as patch:
-        patch.setattr(store, "write_piece", interrupted)
-        with pytest.raises(KeyboardInterrupt):
-            mf.run(mf.load(file), tmp_path)
+    interrupt_after(pieces, monkeypatch)
+    with pytest.raises(KeyboardInterrupt):
+        mf.run(mf.load(file), tmp_path)
     xr.testing.assert_identical(mf.run(mf.load(file), tmp_path), whole)
 
 

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import scipy.linalg
 import xarray as xr
+from interruptions import interrupt_at
 from numpy.typing import NDArray
 from scipy.signal import lsim
 
@@ -302,19 +303,6 @@ def test_what_a_probability_depends_on_is_told_with_it(results: xr.Dataset) -> N
 def assert_same(one: xr.Dataset, other: xr.Dataset) -> None:
     xr.testing.assert_identical(one.drop_attrs(), other.drop_attrs())
     assert one.attrs == other.attrs
-
-
-def interrupt_at(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Interrupt the next run when it comes to write a piece with this in its name."""
-    write = store.write_piece
-
-    def stop(path: Path, *rest: Any) -> None:
-        if name in path.name:
-            monkeypatch.setattr(store, "write_piece", write)
-            raise KeyboardInterrupt
-        write(path, *rest)
-
-    monkeypatch.setattr(store, "write_piece", stop)
 
 
 def test_an_interrupted_run_predicts_the_same_digits(

@@ -12,13 +12,19 @@ of the objectives, the Hessian of the Lagrangian is
 where :math:`H_i` is the known part (Gauss-Newton's) and :math:`S_i` the rest, learned from
 differences of gradients (symmetric rank one, Conn, Gould & Toint 1991). Because S belongs to
 the objectives and not to the programme, it carries over from one programme to its neighbour: that
-is what makes the second point of a front cheaper than the first. Steps solve a quadratic programme
-within a box, the trust region; they are judged by the augmented Lagrangian
+is what makes the second point of a front cheaper than the first. Where residuals vanish, S is a
+burden: it is sized down as they do, and B is taken with it or without it, whichever predicted the
+last step better (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965).
+
+Steps solve a quadratic programme within a box, the trust region; they are judged by the augmented
+Lagrangian
 
 .. math:: f + \lambda^T c + \tfrac\nu2 \|c\|^2, \qquad c = A J - b,
 
-which, unlike an exact penalty, does not reject good steps near the solution. A stationary point
-with clearly negative curvature is tried to be left once.
+which, unlike an exact penalty, does not reject good steps near the solution. Far from it,
+multipliers may be absurd: they are bounded, and a step that leaves the constraints by much more
+than the start did is shortened. A stationary point with clearly negative curvature is tried to be
+left once.
 
 Variables are :math:`u = (\theta - lower) / (upper - lower)`.
 """
@@ -39,18 +45,18 @@ from modefront.solvers.scalarisation import Scalarisation
 SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again."""
 
-
 PENALTY = 10.0
 """Weight of the constraints in the augmented Lagrangian, at least."""
 
 FUNNEL = 10.0
-"""Growth of the constraints, where they are above 1, up to which a step is judged at all."""
+"""Growth of the violation of the start, up to which a step is judged; 1 is always allowed."""
 
 STEEP = 1e6
 """Greatest multiplier of a constraint, with objective and constraints in their own units."""
 
 SWITCH = 0.5
 """Share of the error of a prediction, below which the other model is the better one."""
+
 FREE = 1e-4
 """Gradient, over the greatest curvature, below which a bound does not hold a variable."""
 
@@ -135,7 +141,8 @@ def solve(
     trusted = bool(learned.any())
     radius, penalty = options.radius, PENALTY
     multipliers: Floats | None = None
-    escaped, proposed, farthest = False, np.inf, 1.0
+    escaped, proposed = False, np.inf
+    farthest = max(1.0, FUNNEL * _length(programme.A @ start.at.J - programme.b))
     for count in range(options.iterations + 1):
         at = state.at
         df, A = programme.gradient(at.J), programme.A
@@ -184,7 +191,6 @@ def solve(
             radius = _length(s) / 4
             continue
         c_new = programme.A @ new.J - programme.b
-        farthest = max(farthest, FUNNEL * violation) if count == 0 else farthest
         if _length(c_new) > farthest:
             radius = _length(s) / 4
             continue
@@ -227,8 +233,11 @@ def _off_the_saddle(B: Floats, g: Floats, dc: Floats, lo: Floats, hi: Floats) ->
         v = Z @ V[:, 0]
         v[np.abs(v) < FREE] = 0.0
         v *= -1.0 if g[free] @ v > 0 else 1.0
-        steps = [v * np.min(room[v != 0] / v[v != 0]) for v, room in _ways(v, lo[free], hi[free])]
-        s[free] = 0.5 * max(steps, key=_length) if not steps[0].any() else 0.5 * steps[0]
+        there, back = (
+            way * np.min(room[way != 0] / way[way != 0])
+            for way, room in _ways(v, lo[free], hi[free])
+        )
+        s[free] = 0.5 * (there if there.any() else back)
     return s
 
 

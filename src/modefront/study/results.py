@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -40,12 +40,7 @@ UNWEIGHTED = ("nbi-", "edge-", *(f"{method}-" for method in EVOLUTIONARY))
 """Beginnings of the labels of points that no weights were given for."""
 
 
-def dataset(
-    problem: UpdatingProblem,
-    front: Front,
-    knowledge: Knowledge,
-    attributes: Mapping[str, str | int | float],
-) -> xr.Dataset:
+def dataset(problem: UpdatingProblem, front: Front, knowledge: Knowledge) -> xr.Dataset:
     """Return everything that was found with names and units; see the page on results."""
     front = replace(front, points=[*front.points, *knowledge.points])
     labels = [label for label, _ in front.points]
@@ -118,7 +113,6 @@ def dataset(
             "parameter_other": list(problem.model.parameters),
             "group_other": groups,
         },
-        attrs=dict(attributes),
     )
 
 

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 import modefront
+from modefront._typing import Floats
 from modefront.errors import Fault, InputError
 from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
@@ -59,40 +60,18 @@ def solve(
     ranges of the objectives; ``predictions`` are made with every model. Raises UnfinishedError
     where no minimum of a group can be found.
     """
-    from modefront.study.predictions import predicted
-    from modefront.study.results import dataset
-
-    store = Store(None, lambda: problem.counts, ignore, {})
-    work = partial(
-        pareto_front,
+    session = _Session(
         problem,
-        problem.properties,
-        method=method,
-        points=points,
-        refined=refined,
-        population=population,
-        evaluations=evaluations,
-        tolerance=tolerance,
-        seed=seed,
+        Store(None, lambda: problem.counts, ignore, {}),
+        Pareto(method, points, tolerance, population, evaluations),
+        seed,
         search=search,
-    )
-    front = certified_front(problem, work, store, ignore)
-    knowledge = learn(
-        problem,
-        front,
-        points=points,
-        tolerance=tolerance,
-        seed=seed,
+        refined=refined,
         identifiability=identifiability or Identifiability(),
         uncertainty=uncertainty or Uncertainty(),
-        checkpoint=store,
-        expect=ignore,
+        predictions=predictions,
     )
-    extra = certified_points(problem, knowledge.points, store)
-    data = dataset(problem, front, replace(knowledge, points=extra), {})
-    data = predicted(data, problem, predictions, seed, store)
-    data.attrs |= _attributes(problem, front, store, seed, refined)
-    return data
+    return session.results()
 
 
 def run(
@@ -109,8 +88,8 @@ def run(
     ``fresh`` sets them aside; ``refined`` is that of `solve`. Raises InputError where the folder
     cannot be written to and UnfinishedError where the work cannot be done.
     """
-    from modefront.study.predictions import pieces_of, predicted
-    from modefront.study.results import FILE, dataset, write
+    from modefront.study.predictions import pieces_of
+    from modefront.study.results import FILE, write
 
     progress = progress or Progress()
     pieces = folder / PIECES / f"{study.work[:12]}-{modefront.__version__}"
@@ -124,44 +103,23 @@ def run(
         raise InputError(fault) from None
     problem = study.problem
     store = Store(pieces, lambda: problem.counts, progress.done, {})
-    work = partial(
-        pareto_front,
+    session = _Session(
         problem,
-        problem.properties,
-        method=study.pareto.method,
-        points=study.pareto.points,
-        refined=refined,
-        population=study.pareto.population,
-        evaluations=study.pareto.evaluations,
-        tolerance=study.pareto.tolerance,
-        seed=study.seed,
+        store,
+        study.pareto,
+        study.seed,
         search=study.search,
         given=[(one.name, np.array(one.weights)) for one in study.weighted],
-    )
-    front = certified_front(
-        problem, work, store, lambda pieces: progress.expect(pieces + pieces_of(study))
-    )
-    knowledge = learn(
-        problem,
-        front,
-        points=study.pareto.points,
-        tolerance=study.pareto.tolerance,
-        seed=study.seed,
+        refined=refined,
         identifiability=study.identifiability,
         uncertainty=study.uncertainty,
-        checkpoint=store,
-        expect=lambda more: progress.expect(len(store.costs) + more),
+        predictions=study.predictions,
+        file=study.file,
+        expect=progress.expect,
+        later=pieces_of(study),
     )
-    extra = certified_points(problem, knowledge.points, store)
-    data = dataset(
-        problem,
-        front,
-        replace(knowledge, points=extra),
-        {"study": study.name, "inputs": study.digest},
-    )
-    data = predicted(data, problem, study.predictions, study.seed, store, study.file)
-    data.attrs |= _attributes(problem, front, store, study.seed, refined)
-    data.attrs["remark"] = study.remark
+    data = session.results()
+    data.attrs |= {"study": study.name, "inputs": study.digest, "remark": study.remark}
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)
     return data
@@ -175,27 +133,86 @@ def check_refinable(study: Study, refined: float | None) -> None:
         raise InputError(Fault(str(study.file), "--refine", "two groups and method 'nbi'", found))
 
 
-def _attributes(
-    problem: UpdatingProblem, front: Front, store: Store, seed: int, refined: float | None
-) -> dict[str, str | int | float]:
-    """Return what else is known: version, seed, cost, and remarks on what was found."""
-    total, along = store.total(), store.total(f"{front.method}-")
-    by_nbi = store.total("nbi-")
-    out: dict[str, str | int | float] = {
-        "version": modefront.__version__,
-        "seed": seed,
-        "model_evaluations": total["eigenproblems"] + total["reduced"],
-        "method": front.method,
-        "front_evaluations": along["eigenproblems"] + along["reduced"],
-        "nbi_evaluations": by_nbi["eigenproblems"] + by_nbi["reduced"],
-        "full_eigensolutions": total["eigenproblems"],
-        "factorisations": total["factorisations"],
-        "reduced_solutions": total["reduced"],
-        "front_is_a_point": int(front.target is None),
-        **({} if refined is None else {"refined": refined}),
-        **indicators(front),
-    }
-    return out | certificate_attributes(problem)
+@dataclass(frozen=True)
+class _Session:
+    """All the work on a problem, kept in a store, of which ``expect`` is told the extent.
+
+    ``later`` is how many pieces of work follow what is asked for first.
+    """
+
+    problem: UpdatingProblem
+    store: Store
+    pareto: Pareto
+    seed: int
+    search: Search | None
+    refined: float | None
+    identifiability: Identifiability
+    uncertainty: Uncertainty
+    predictions: Sequence[Prediction]
+    given: Sequence[tuple[str, Floats]] = ()
+    file: Path = Path("study")
+    expect: Callable[[int], None] = ignore
+    later: int = 0
+
+    def results(self) -> xr.Dataset:
+        """Do the work and return all that it finds."""
+        from modefront.study.predictions import predicted
+        from modefront.study.results import dataset
+
+        problem, store, pareto = self.problem, self.store, self.pareto
+        work = partial(
+            pareto_front,
+            problem,
+            problem.properties,
+            method=pareto.method,
+            points=pareto.points,
+            refined=self.refined,
+            population=pareto.population,
+            evaluations=pareto.evaluations,
+            tolerance=pareto.tolerance,
+            seed=self.seed,
+            search=self.search,
+            given=self.given,
+        )
+        front = certified_front(
+            problem, work, store, lambda pieces: self.expect(pieces + self.later)
+        )
+        knowledge = learn(
+            problem,
+            front,
+            points=pareto.points,
+            tolerance=pareto.tolerance,
+            seed=self.seed,
+            identifiability=self.identifiability,
+            uncertainty=self.uncertainty,
+            checkpoint=store,
+            expect=lambda more: self.expect(len(store.costs) + more),
+        )
+        extra = certified_points(problem, knowledge.points, store)
+        data = dataset(problem, front, replace(knowledge, points=extra))
+        data = predicted(data, problem, self.predictions, self.seed, store, self.file)
+        data.attrs |= self._attributes(front)
+        return data
+
+    def _attributes(self, front: Front) -> dict[str, str | int | float]:
+        """Return what else is known: version, seed, cost, and remarks on what was found."""
+        total, along = self.store.total(), self.store.total(f"{front.method}-")
+        by_nbi = self.store.total("nbi-")
+        out: dict[str, str | int | float] = {
+            "version": modefront.__version__,
+            "seed": self.seed,
+            "model_evaluations": total["eigenproblems"] + total["reduced"],
+            "method": front.method,
+            "front_evaluations": along["eigenproblems"] + along["reduced"],
+            "nbi_evaluations": by_nbi["eigenproblems"] + by_nbi["reduced"],
+            "full_eigensolutions": total["eigenproblems"],
+            "factorisations": total["factorisations"],
+            "reduced_solutions": total["reduced"],
+            "front_is_a_point": int(front.target is None),
+            **({} if self.refined is None else {"refined": self.refined}),
+            **indicators(front),
+        }
+        return out | certificate_attributes(self.problem)
 
 
 def _set_aside(path: Path) -> None:
