@@ -34,6 +34,7 @@ from modefront._typing import Floats
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel
+from modefront.study.tables.identifiability import Identifiability
 
 MODES, REGIONS, PARTS, SENSORS, POINTS = 6, 6, 12, 20, 20
 BOUNDS = 0.4, 2.5
@@ -108,6 +109,15 @@ def problem_of(model: MatrixModel | ReducedModel, data: mf.ModalData) -> mf.Upda
     )
 
 
+def work(model: MatrixModel | ReducedModel, data: mf.ModalData) -> xr.Dataset:
+    """Return edges by global search, weighted models and the front, and not what is known of it."""
+    return mf.solve(
+        problem_of(model, data),
+        points=POINTS,
+        identifiability=Identifiability(flat=0, models=0),
+    )
+
+
 def timed(work: Callable[[], object]) -> float:
     """Return the processor time that some work takes, in seconds."""
     started = time.process_time()
@@ -138,7 +148,7 @@ def line(kind: Model, size: int, data: mf.ModalData, compare: bool) -> dict[str,
     out["derivatives"] = timed(lambda: full.modes(np.ones(REGIONS), count))
     model = reduced_model(full, count)
     found: list[xr.Dataset] = []
-    out["work"] = timed(lambda: found.append(mf.solve(problem_of(model, data), points=POINTS)))
+    out["work"] = timed(lambda: found.append(work(model, data)))
     out["memory_work"] = memory()
     data_of = found[0]
     out["ratio"] = out["work"] / out["modes"]
@@ -154,9 +164,7 @@ def line(kind: Model, size: int, data: mf.ModalData, compare: bool) -> dict[str,
     )
     out |= {name: value for name, value in vars(model.counts).items() if name.endswith("_time")}
     if compare:
-        out["work_full"] = timed(
-            lambda: found.append(mf.solve(problem_of(full, data), points=POINTS))
-        )
+        out["work_full"] = timed(lambda: found.append(work(full, data)))
         difference = found[1]["theta"].values - found[0]["theta"].values
         out["difference"] = float(np.abs(difference).max() / (BOUNDS[1] - BOUNDS[0]))
     return out

@@ -169,11 +169,15 @@ def test_costs_are_counted_once() -> None:
     assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (1, 2, 3)
     model.take(np.array([0.5, 1.0, 2.0]))
     assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (2, 4, 3)
+    model.take(np.array([0.95, 1.0, 1.05]), 6)
+    assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (3, 5, 3), (
+        "near snapshots that prove that no mode is missing, one factor is enough"
+    )
     model.modes(np.ones(3), 11)
-    assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (3, 6, 3)
+    assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (4, 7, 3)
     model.resume([Snap(np.ones(3), 10)])
     model.modes(np.ones(3), 8)
-    assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (3, 6, 4)
+    assert (counts.eigenproblems, counts.factorisations, counts.reduced) == (4, 7, 4)
 
 
 def test_the_order_of_computing_snapshots_changes_no_digit() -> None:

@@ -124,6 +124,27 @@ def test_shapes_do_not_change_when_all_stiffnesses_are_scaled() -> None:
     assert residual.dr @ direction == pytest.approx(0, abs=1e-12)
 
 
+@given(st.lists(st.floats(-0.02, 0.02), min_size=4, max_size=4))
+@settings(max_examples=20, deadline=None)
+def test_errors_of_modes_bound_those_of_objectives(step: list[float]) -> None:
+    std = np.linspace(0.01, 0.05, 9).reshape(3, 3)
+    data = modal_data(FREQUENCY, SHAPE, FLOORS, frequency_std=0.02 * FREQUENCY, shape_std=std)
+    groups = (*ALL, Group("weighted", "all", shape=(2,), scale="std"))
+    problem = problem_of(data, groups)
+    theta = np.array([1.1, 0.9, 1.2, 1.0])
+    other = theta + np.array(step)
+    (one, pairs), (two, _) = problem.modes(theta), problem.modes(other)
+    assert pairs.index.tolist() == [0, 1, 2]
+    away = two.phi * (np.einsum("sr,sr->r", two.phi, one.phi) / (two.phi**2).sum(axis=0))
+    shape = np.sqrt(((away - one.phi) ** 2).sum(axis=0) / (one.phi**2).sum(axis=0))
+    margins = problem.margins(
+        2 * np.abs(two.frequency / FREQUENCY - one.frequency / FREQUENCY), shape
+    )
+    moved = np.abs(np.sqrt(problem.evaluate(other).J) - np.sqrt(problem.evaluate(theta).J))
+    assert (moved[:1] <= margins[:1] * (1 + 1e-9) + 1e-12).all()
+    assert (moved <= 1.2 * margins + 1e-12).all()
+
+
 def test_each_evaluation_is_counted_once() -> None:
     problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
     for derivatives in (True, False):

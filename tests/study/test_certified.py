@@ -147,10 +147,15 @@ def test_the_front_is_that_of_full_solutions(file: Path, whole: xr.Dataset) -> N
 
 def test_a_few_full_solutions_are_enough_and_all_models_hold(whole: xr.Dataset) -> None:
     assert whole["certified"].values.all()
-    assert whole["minimum_certified"].values.all()
+    for i in np.flatnonzero(~whole["minimum_certified"].values):
+        of = str(whole["minimum_of"].values[i])
+        J = whole["minimum_objective"].sel(group=of).values
+        least = J[whole["minimum_of"].values == of].min()
+        assert J[i] > 1.5 * least, "only what is clearly no best model may not hold"
+        assert whole["minimum_eigenvalue_error"].values[i].max() < 1e-3
     assert float(whole["eigenvalue_error"].max()) <= whole.attrs["eigenvalue_tolerance"] == 1e-8
-    assert whole.attrs["full_eigensolutions"] <= 4
-    assert whole.attrs["factorisations"] >= 2 * whole.attrs["full_eigensolutions"]
+    assert whole.attrs["full_eigensolutions"] <= 3
+    assert whole.attrs["factorisations"] > whole.attrs["full_eigensolutions"]
     assert whole.attrs["reduced_solutions"] > 100
     total = whole.attrs["full_eigensolutions"] + whole.attrs["reduced_solutions"]
     assert whole.attrs["model_evaluations"] == total

@@ -169,7 +169,10 @@ class SparseAffine:
         return scipy.sparse.csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
 
     def project(self, left: Floats, right: Floats) -> Floats:
-        """Return left^T A_j right for every term, shape (terms, columns of left, of right)."""
+        """Return left^T A_j right for every term, shape (terms, columns of left, of right).
+
+        Columns of ``right`` should be the fewer ones.
+        """
         stack, dof, starts = self._stack
         products = stack @ right
         out = np.zeros((starts.size - 1, left.shape[1], right.shape[1]))
@@ -186,14 +189,15 @@ class SparseAffine:
         Returns the rows (rows, N), their degrees of freedom (rows,) and where each term starts
         (terms + 1,).
         """
-        row = _expand(self.indptr)
-        entry, term = self.terms.indices, _expand(self.terms.indptr)
-        ranked = np.lexsort((entry, term))
-        entry, term, values = entry[ranked], term[ranked], self.terms.data[ranked]
-        keys, position = np.unique(term * self.size + row[entry], return_inverse=True)
-        starts = np.searchsorted(keys, np.arange(self.terms.shape[1] + 1) * self.size)
-        shape = keys.size, self.size
-        stack = scipy.sparse.csr_array((values, (position, self.indices[entry])), shape=shape)
+        terms = self.terms if self.terms.has_sorted_indices else self.terms.sorted_indices()
+        entry, row = terms.indices, _expand(self.indptr)
+        keys = _expand(terms.indptr) * self.size + row[entry]  # ascending
+        first = np.flatnonzero(np.append(True, keys[1:] != keys[:-1])[: keys.size])
+        indptr = np.append(first, keys.size)
+        keys = keys[first]
+        starts = np.searchsorted(keys, np.arange(terms.shape[1] + 1) * self.size)
+        parts = terms.data, self.indices[entry], indptr
+        stack = scipy.sparse.csr_array(parts, shape=(keys.size, self.size))
         return stack, keys % self.size, starts
 
 

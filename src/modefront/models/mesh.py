@@ -36,8 +36,10 @@ def mesh_model(
     def affine(data: Floats, exponents: Ints) -> SparseAffine:
         placed = np.zeros((len(exponents), len(parameters)))
         placed[:, columns] = exponents
-        terms = scipy.sparse.csc_array(data.T)
-        return SparseAffine(built.indptr, built.indices, terms, Monomials(placed))
+        there = data.any(axis=0)  # masses couple far fewer degrees of freedom than stiffnesses
+        indptr = np.append(0, np.cumsum(there, dtype=np.int32))[built.indptr].astype(np.int32)
+        terms = scipy.sparse.csc_array(data[:, there].T)
+        return SparseAffine(indptr, built.indices[there], terms, Monomials(placed))
 
     return affine_model(
         parameters,

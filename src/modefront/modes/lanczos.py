@@ -40,7 +40,7 @@ from modefront.errors import ModelError
 from modefront.modes.products import combine, gram
 
 TOLERANCE = 1e-7
-"""Residual of a Ritz pair over its mu; the modes are refined once more with another shift."""
+"""Residual of a Ritz pair over its mu; modes are usually refined once more with another shift."""
 
 LOST = 1e-13
 """Share of the greatest mu below which a residual or an eigenvalue is taken for zero."""
@@ -79,11 +79,13 @@ def greatest(
     start: Floats,
     wanted: int,
     steps: int = STEPS,
+    tolerance: float = TOLERANCE,
 ) -> Ritz:
     """Return Ritz pairs of T with the ``wanted`` greatest mu, or as many as ``steps`` allow.
 
     ``start`` (N, b) is the first block; of an eigenvalue repeated more often than b times, some
-    may be missed. Raises ModelError where M is indefinite.
+    may be missed. ``tolerance`` is the residual of a pair over its mu. Raises ModelError where M
+    is indefinite.
     """
     n, b = start.shape
     capacity = min(n, max(3 * wanted, 40) + 4 * b)
@@ -111,7 +113,7 @@ def greatest(
         mu, Y = mu[::-1], Y[:, ::-1]
         if mu[-1] < -1e-10 * mu[0]:
             raise ModelError("the mass matrix is indefinite")
-        good = np.linalg.norm(R @ Y[new], axis=0) <= np.maximum(TOLERANCE * mu, LOST * mu[0])
+        good = np.linalg.norm(R @ Y[new], axis=0) <= np.maximum(tolerance * mu, LOST * mu[0])
         leading = d if good.all() else int(np.argmin(good))
         if leading >= wanted and mu[wanted - 1] > LOST * mu[0]:
             break

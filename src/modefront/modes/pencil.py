@@ -67,7 +67,10 @@ def pencil(K: SparseAffine, M: SparseAffine) -> Pencil:
 
 
 def _lower(A: SparseAffine) -> tuple[Ints, Ints]:
-    """Return the entries of the lower triangle and their keys, column * N + row."""
+    """Return the entries of the lower triangle and their keys, column * N + row, ascending.
+
+    A is symmetric, and its rows are columns of the lower triangle from their diagonals on.
+    """
     row = np.repeat(np.arange(A.size), np.diff(A.indptr))
-    take = np.flatnonzero(row >= A.indices)
-    return take, A.indices[take].astype(np.intp) * A.size + row[take]
+    take = np.flatnonzero(A.indices >= row)
+    return take, row[take] * A.size + A.indices[take]

@@ -92,7 +92,8 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
     wanted, block = count + max(2, count // 2), BLOCK
     for attempt in range(ATTEMPTS):
         wanted, block = min(wanted, pencil.size), min(block, pencil.size)
-        below, A, start = _positive_definite(pencil, K, M, wanted, block, attempt)
+        right = np.random.default_rng(attempt).standard_normal((pencil.size, block))
+        below, A, start = _positive_definite(pencil, K, M, wanted, right)
         ritz = greatest(below.factor.solve, A, M, start, wanted)
         finite = int(np.sum(ritz.mu > SINGULAR * ritz.mu[0]))
         known = min(ritz.converged, finite)
@@ -112,12 +113,39 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
                 refined = _refined(above, M, lam[:known], X, lower)
                 if refined is not None:
                     beyond = lam[refined[0].size] if finite > refined[0].size else np.inf
-                    noise = np.finfo(float).eps * (K.diagonal() @ refined[1] ** 2)
+                    noise = _noise(K, refined[1])
                     return Spectrum(*refined, M, noise, beyond, lower, (below, above))
         wanted, block = 2 * wanted, 2 * block
     raise ModelError(
         f"the lowest {count} modes could not be told from the next ones, or some were missed"
     )
+
+
+def lowest_near(
+    pencil: Pencil, theta: Floats, count: int, space: Floats, tolerance: float
+) -> Spectrum:
+    """Return at least the ``count`` lowest modes that can be got to from a space near them.
+
+    ``space`` (N, columns) are approximations of these and of a few more modes, ``tolerance`` is
+    the residual of a mode over its eigenvalue. It takes a single factor, since that no mode is
+    missing is not proved: that is as certain as of the space. Where its modes do not converge the
+    result is that of `lowest`.
+    """
+    K, M = pencil.K.at(theta), pencil.M.at(theta)
+    below, A, start = _positive_definite(pencil, K, M, count, M @ space)
+    ritz = greatest(below.factor.solve, A, M, start, count, tolerance=tolerance)
+    known = min(ritz.converged, int(np.sum(ritz.mu > SINGULAR * ritz.mu[0])))
+    if known < count:
+        return lowest(pencil, theta, count)
+    lam, Phi = 1 / ritz.mu + below.sigma, ritz.X[:, :known] / np.sqrt(ritz.mu[:known])
+    beyond = lam[known] if lam.size > known else np.inf
+    noise = _noise(K, Phi)
+    return Spectrum(lam[:known], Phi, M @ Phi, M, noise, beyond, known, (below, below))
+
+
+def _noise(K: scipy.sparse.csr_array, Phi: Floats) -> Floats:
+    """Return the rounding to be expected in the eigenvalues of modes (N, modes)."""
+    return np.asarray(np.finfo(float).eps * (K.diagonal() @ Phi**2))
 
 
 def is_singular(pencil: Pencil, theta: Floats) -> bool:
@@ -159,11 +187,9 @@ def _positive_definite(
     K: scipy.sparse.csr_array,
     M: scipy.sparse.csr_array,
     wanted: int,
-    block: int,
-    seed: int,
+    right: Floats,
 ) -> tuple[Shifted, scipy.sparse.csr_array, Floats]:
-    """Return the factor of A = K + s M, A, and a first block for the Lanczos iteration."""
-    right = np.random.default_rng(seed).standard_normal((pencil.size, block))
+    """Return the factor of A = K + s M, A, and A^-1 right to begin the Lanczos iteration with."""
     factor, start = _regular(pencil, K, M, 0.0, right)
     if factor is not None:
         return Shifted(0.0, factor), K, start

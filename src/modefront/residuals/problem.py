@@ -171,6 +171,25 @@ class UpdatingProblem:
         kind, r, scale = member
         return (self._frequency if kind == "frequency" else self._shape)(modes, pairs, r, scale)
 
+    def margins(self, eigenvalue: Floats, shape: Floats) -> Floats:
+        """Return how far the root of each objective may be off, (groups,).
+
+        ``eigenvalue`` and ``shape`` (measured modes,) are relative errors of the paired modes.
+        """
+        out = []
+        for row in self.members:
+            square = 0.0
+            for kind, r, scale in row:
+                if kind == "frequency":
+                    weight, measured = self._weighted_frequencies[r, scale]
+                    parts, error = [weight * measured], eigenvalue[r] / 2
+                else:
+                    parts = [psi for _, _, psi in self._weighted_shapes[r, scale]]
+                    error = shape[r]
+                square += error**2 * sum(part @ part for part in parts)
+            out.append(np.sqrt(square))
+        return np.array(out)
+
     def _frequency(self, modes: Modes, pairs: Pairs, r: int, scale: Scale) -> Residual:
         weight, measured = self._weighted_frequencies[r, scale]
         q = pairs.index[r]

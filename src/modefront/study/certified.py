@@ -2,11 +2,12 @@ r"""The work of a study on a reduced model, until every reported model holds in 
 
 A round does all of the work in the basis at hand and estimates the errors of the modes of those
 models that are the farthest from all snapshots. Where an estimate exceeds the tolerance, a snapshot
-is taken there, and the next round starts from what is known; otherwise every model that is reported
-gets its certificate. The global search is repeated as long as an estimate is poor: a basis that bad
-may have led it astray.
+is taken there, and another one where the known models would need it next, before the next round
+starts from what is known; otherwise every model that is reported gets its certificate. Minima that
+cannot be the best ones, whatever their errors are, need not hold. The global search is repeated
+as long as an estimate is poor: a basis that bad may have led it astray.
 
-Every round's pieces of work have names of their own, and its snapshot is one of them, so that an
+Every round's pieces of work have names of their own, and its snapshots are among them, so that an
 interrupted run goes on with the same digits.
 """
 
@@ -19,7 +20,7 @@ from typing import Protocol
 
 import numpy as np
 
-from modefront._typing import Ints
+from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
 from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.residuals.problem import UpdatingProblem
@@ -27,14 +28,18 @@ from modefront.solvers.checkpoint import Checkpoint, Solutions
 from modefront.solvers.edges import Edge
 from modefront.solvers.pieces import Gap
 from modefront.solvers.problem import infeasible
+from modefront.solvers.scalarisation import LogSum
 from modefront.solvers.sqp import Solution, begin
 from modefront.study.run import Front, Labelled
 
 POOR = 1e-3
 """Relative error of an eigenvalue at a reported model above which the search is not trusted."""
 
-SNAPSHOTS = 12
-"""Snapshots, after which the tolerance is given up."""
+ROUNDS = 8
+"""Rounds, after which the tolerance is given up."""
+
+AHEAD = 2
+"""Snapshots between two rounds, at most."""
 
 PROBED = 4
 """Models of which the errors are estimated on the way, those farthest from all snapshots."""
@@ -78,14 +83,12 @@ def certified_front(
     model.restart()
     front: Front | None = None
     expected, at, error = 0, Snap(problem.start, model.count), np.inf
-    for number in range(1, SNAPSHOTS + 1):
+    for number in range(1, ROUNDS + 1):
         here = _Round(checkpoint, number)
-        before = model.snapshots
-        taken = here("snapshot", partial(_take, problem, model, at))
-        if not taken:
+        snapshots = _take_some(problem, model, at, front, here)
+        if not snapshots.count:
             break
-        model.resume([*before, at])
-        base = expected + 2
+        base = expected + 2 * AHEAD
 
         def more(pieces: int, base: int = base) -> None:
             nonlocal expected
@@ -94,15 +97,16 @@ def certified_front(
 
         known = front if error <= POOR else None
         front = work(checkpoint=here, expect=more, known=known)
-        (worst,) = here("probe", partial(_probe, model, front))
-        if _error(worst) <= model.tolerance:
+        probed = None if snapshots.enough else here("probe", partial(_probe, model, front))
+        if probed is None or _error(probed[0]) <= model.tolerance:
             front = _with_errors(model, front, here)
-            worst = max(_reported(front), key=_error)
-            if _error(worst) <= model.tolerance:
+            needed = [*_of_the_front(front), *_rivals(problem, front)]
+            probed = [max(needed, key=_error)]
+            if _error(probed[0]) <= model.tolerance:
                 return front
-        error, at = _error(worst), Snap(worst.at.theta, int(_paired(worst).max()) + 1)
-        full = int(taken[0].at.quantities["columns"][0]) >= model.capacity
-        if full or any(np.array_equal(at.theta, one.theta) for one in model.snapshots):
+        (worst,) = probed
+        error, at = _error(worst), _snap(worst)
+        if snapshots.full or _there(model, at):
             break
     if front is None:
         raise UnfinishedError("the model cannot be solved at the nominal parameters")
@@ -156,6 +160,41 @@ def certificate_variables(
     }
 
 
+@dataclass(frozen=True)
+class _Taken:
+    """What taking snapshots has led to.
+
+    ``count`` of them were taken; ``full`` says that there is no room for more, ``enough`` that the
+    known models do not need more.
+    """
+
+    count: int
+    full: bool = False
+    enough: bool = False
+
+
+def _take_some(
+    problem: UpdatingProblem, model: ReducedModel, at: Snap, front: Front | None, here: Checkpoint
+) -> _Taken:
+    """Take a snapshot, and others where a front that is known would need them next."""
+    for count in range(AHEAD):
+        before = model.snapshots
+        taken = here(f"snapshot-{count + 1}", partial(_take, problem, model, at))
+        if not taken:
+            return _Taken(count)
+        model.resume([*before, at])
+        full = int(taken[0].at.quantities["columns"][0]) >= model.capacity
+        if front is None or full:
+            return _Taken(count + 1, full)
+        (worst,) = here(f"ahead-{count + 1}", partial(_probe, model, front))
+        at = _snap(worst)
+        if _error(worst) <= model.tolerance:
+            return _Taken(count + 1, enough=True)
+        if _there(model, at):
+            return _Taken(count + 1)
+    return _Taken(AHEAD)
+
+
 def _take(problem: UpdatingProblem, model: ReducedModel, at: Snap) -> list[Solution]:
     """Take a snapshot and keep its theta and the columns that the basis then has.
 
@@ -169,9 +208,19 @@ def _take(problem: UpdatingProblem, model: ReducedModel, at: Snap) -> list[Solut
     return [begin(replace(infeasible(at.theta, len(problem.objectives)), quantities=kept))]
 
 
+def _snap(worst: Solution) -> Snap:
+    """Return the snapshot that a model wants, with derivatives up to the last paired mode."""
+    return Snap(worst.at.theta, int(_paired(worst).max()) + 1)
+
+
+def _there(model: ReducedModel, at: Snap) -> bool:
+    return any(np.array_equal(at.theta, one.theta) for one in model.snapshots)
+
+
 def _probe(model: ReducedModel, front: Front) -> list[Solution]:
     """Return the worst of the models that are the farthest from all snapshots."""
-    ranked = sorted(_distinct(front), key=lambda one: model.distance(one.at.theta), reverse=True)
+    distinct = list({_key(one): one for one in _of_the_front(front)}.values())
+    ranked = sorted(distinct, key=lambda one: model.distance(one.at.theta), reverse=True)
     tried = [_certified(model, one, quick=True) for one in ranked[:PROBED]]
     return [max(tried, key=_error)]
 
@@ -205,15 +254,39 @@ def _certified(model: ReducedModel, one: Solution, *, quick: bool) -> Solution:
     return replace(one, at=replace(one.at, quantities={**one.at.quantities, **errors}))
 
 
-def _reported(front: Front) -> Iterator[Solution]:
+def _of_the_front(front: Front) -> Iterator[Solution]:
+    """Return the models that are reported, but for minima that are not the best ones."""
     yield from (one for _, one in front.points)
-    for edge in front.edges:
-        yield from edge.minima
-    yield from front.optimal
+    yield from (edge.best for edge in front.edges)
+    yield from front.optimal[:1]
     if front.iterated:
         yield front.iterated
     for gap in front.gaps:
         yield from (gap.end, gap.start)
+
+
+def _rivals(problem: UpdatingProblem, front: Front) -> Iterator[Solution]:
+    """Return the minima that might be the best ones, for all that is known of their errors."""
+
+    def roots(one: Solution) -> tuple[Floats, Floats]:
+        margin = problem.margins(*(one.at.quantities[name] for name in ERRORS))
+        return np.maximum(np.sqrt(one.at.J) - margin, 0.0), np.sqrt(one.at.J) + margin
+
+    for i, edge in enumerate(front.edges):
+        most = roots(edge.best)[1][i]
+        yield from (one for one in edge.minima if roots(one)[0][i] <= most)
+    programme = LogSum(problem.properties)
+    for one in front.optimal[1:]:
+        least, most = roots(one)[0], roots(front.optimal[0])[1]
+        if not least.all() or programme.value(least**2) <= programme.value(most**2):
+            yield one
+
+
+def _reported(front: Front) -> Iterator[Solution]:
+    yield from _of_the_front(front)
+    for edge in front.edges:
+        yield from edge.minima
+    yield from front.optimal
 
 
 def _distinct(front: Front) -> list[Solution]:

@@ -149,9 +149,13 @@ def pareto_front(
     )
     optimal = [one for one in minima if regular(one.at.J, sizes)]
     models += [("optimal-weights", one) for one in optimal[:1]]
+    if known and known.iterated:
+        (first,) = again("iterated-weights", [known.iterated])
+    else:
+        first = starts[0]
     iterated = checkpoint(
         "iterated-weights",
-        lambda: [one for one in [iterate_weights(problem, a, sizes, starts[0])] if one],
+        lambda: [one for one in [iterate_weights(problem, a, sizes, first)] if one],
     )
 
     if tolerance > 0:

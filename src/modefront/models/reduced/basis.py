@@ -34,11 +34,14 @@ from modefront.models.affine import DenseAffine, SparseAffine
 from modefront.modes import derivatives as exact
 from modefront.modes.pencil import Pencil
 from modefront.modes.products import combine, gram
-from modefront.modes.sparse import lowest
+from modefront.modes.sparse import lowest, lowest_near
 from modefront.modes.spectrum import Shifted
 
 DERIVATIVES = 1e-2
 """Residual of the derivatives in the basis, which need not be exact to be of use there."""
+
+NEARLY = 1e-4
+"""Residual of the modes of a snapshot near to which a space is known, over their eigenvalues."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,7 +51,7 @@ class Snapshot:
     Attributes
     ----------
     theta : where it was taken
-    beyond : eigenvalues below it were proved to be all among the modes
+    beyond : eigenvalues below it were proved to be all among the modes; below all of them if none
     vectors : (N, columns) modes of unit energy and their derivatives
     below : the factor of K + s M, which is positive definite
     """
@@ -75,22 +78,32 @@ class Basis:
 
 
 def snapshot(
-    pencil: Pencil, theta: Floats, count: int, derived: int, half_range: Floats
+    pencil: Pencil,
+    theta: Floats,
+    count: int,
+    derived: int,
+    half_range: Floats,
+    space: Floats | None = None,
 ) -> Snapshot:
     """Solve the full model for ``count`` modes or more, the first ``derived`` with derivatives.
 
-    ``half_range`` (p,) is how far the parameters go from a middle.
+    ``half_range`` (p,) is how far the parameters go from a middle; ``space`` (N, columns) is near
+    the modes, if such a space is known.
 
     Raises ModelError where the model has no such modes.
     """
-    found = lowest(pencil, theta, count)
+    if space is None:
+        found = lowest(pencil, theta, count)
+    else:
+        found = lowest_near(pencil, theta, count, space, NEARLY)
     everywhere = scipy.sparse.eye_array(pencil.size, format="csr")
     _, dphi, _ = exact.at_sensors(pencil, everywhere, theta, found, derived, DERIVATIVES)
     below, above = found.factors
     energy = np.sqrt(found.lam - below.sigma)
     dphi *= half_range / energy[:derived, None]
     vectors = np.hstack([found.Phi / energy, dphi.reshape(pencil.size, -1)])
-    return Snapshot(theta, above.sigma, vectors, below)
+    beyond = above.sigma if above is not below else below.sigma
+    return Snapshot(theta, beyond, vectors, below)
 
 
 def empty(pencil: Pencil, first: Snapshot) -> Basis:
@@ -116,13 +129,15 @@ def extended(
         squares, U = np.linalg.eigh(gram(W, A @ W))
         there = np.flatnonzero(squares > least**2)[::-1][: capacity - V.shape[1]]
         W = combine(W, U[:, there] / np.sqrt(squares[there]))
-    K, M = _grown(pencil.K, basis.K, V, W), _grown(pencil.M, basis.M, V, W)
-    return Basis(A, np.hstack([V, W]), K, M)
+    V = np.hstack([V, W])
+    return Basis(A, V, _grown(pencil.K, basis.K, V, W), _grown(pencil.M, basis.M, V, W))
 
 
 def _grown(full: SparseAffine, reduced: DenseAffine, V: Floats, W: Floats) -> DenseAffine:
-    """Return the projection on V and W, given that on V."""
-    across, inner = full.project(V, W), full.project(W, W)
+    """Return the projection on V, of which W are the last columns, given that on the first ones."""
+    new = full.project(V, W)
+    n = V.shape[1] - W.shape[1]
+    across, inner = new[:, :n], new[:, n:]
     inner = (inner + inner.transpose(0, 2, 1)) / 2
     top = np.concatenate([reduced.terms, across], axis=2)
     bottom = np.concatenate([across.transpose(0, 2, 1), inner], axis=2)

@@ -73,9 +73,10 @@ def estimate(
     """
     MPhi = M @ Phi
     rest = K @ Phi - MPhi * lam
-    r, shift = rest[:, wanted], lam[wanted]
-    r = r - combine(MPhi, gram(Phi, r))
+    r, shift = np.ascontiguousarray(rest[:, wanted]), lam[wanted]
+    r -= combine(MPhi, gram(Phi, r))
     delta, P = np.zeros_like(r), np.zeros_like(r)
+    square = np.zeros(wanted.size)  # delta^T M delta
     total, energy = np.zeros(wanted.size), np.ones(wanted.size)
     active, lost = np.ones(wanted.size, dtype=bool), np.zeros(wanted.size, dtype=bool)
     for step in range(steps):
@@ -83,12 +84,14 @@ def estimate(
         z -= combine(Phi, gram(MPhi, z))
         before, now = energy[active], np.einsum("nc,nc->c", r[:, active], z)
         p = z + P[:, active] * (now / np.maximum(before, np.finfo(float).tiny) if step else 0.0)
-        Cp = K @ p - (M @ p) * shift[active]
+        Mp = M @ p
+        Cp = K @ p - Mp * shift[active]
         curvature = np.einsum("nc,nc->c", p, Cp)
         lost[active] |= curvature <= 0
         alpha = np.divide(now, curvature, out=np.zeros_like(now), where=curvature > 0)
         term = alpha * now
         total[active] += term
+        square[active] += alpha * np.einsum("nc,nc->c", alpha * p - 2 * delta[:, active], Mp)
         delta[:, active] -= alpha * p
         r[:, active] -= alpha * (Cp - combine(MPhi, gram(Phi, Cp)))
         P[:, active], energy[active] = p, now
@@ -97,6 +100,6 @@ def estimate(
             break
     gap = lam[:, None] - shift
     mixed = np.divide(gram(rest, delta), gap, out=np.zeros_like(gap), where=gap != 0)
-    shape = np.sqrt(np.einsum("nc,nc->c", delta, M @ delta) + (mixed**2).sum(axis=0))
+    shape = np.sqrt(np.maximum(square, 0.0) + (mixed**2).sum(axis=0))
     relative = total / (shift - below.sigma)
     return Certificate(np.where(lost, np.inf, relative), np.where(lost, 1.0, np.minimum(shape, 1)))

@@ -213,7 +213,7 @@ class ReducedModel:
             found = Certificate(np.full(wanted.size, np.inf), np.ones(wanted.size))
         else:
             near = window.condition(basis.K, theta, state.taken[-1].what.theta) <= NEAR
-            low = min(ritz.lam.size, self.count + SPARE)
+            low = min(ritz.lam.size, int(wanted.max()) + 1 + SPARE)
             found = estimate(
                 pencil.K.at(theta),
                 pencil.M.at(theta),
@@ -229,11 +229,9 @@ class ReducedModel:
 
     def _misses(self, state: _State, theta: Floats, lam: Floats, last: int) -> bool:
         """Return whether modes below the Ritz value of the ``last`` one wanted are missing."""
-        K, M, pencil = state.basis.K, state.basis.M, self.full.pencil
-        if window.semidefinite(K) and window.semidefinite(M):
-            for one in state.taken:
-                if window.lower_bound(K, M, theta, one.what.theta) * one.beyond > lam[last]:
-                    return False
+        if _knows(state.basis, state.taken, theta, lam[last]):
+            return False
+        pencil = self.full.pencil
         below, sigma = window.gap_above(lam, last)
         self.counts.factorisations += 1
         try:
@@ -267,8 +265,9 @@ class ReducedModel:
         pencil, half = self.full.pencil, (self.upper - self.lower) / 2
         basis, taken = (self._state.basis, self._state.taken) if self._state else (None, ())
         self._state = None  # its factor makes room for those of the snapshot
-        count = min(self.count + SPARE, self.size)
-        one = snapshot(pencil, what.theta, count, what.derived, half)
+        count = min((what.derived if taken else self.count) + SPARE, self.size)
+        space = None if basis is None else self._near(basis, taken, what, count)
+        one = snapshot(pencil, what.theta, count, what.derived, half, space)
         if basis is None:
             basis = empty(pencil, one)
         shortest = SHORTEST * float(np.sqrt(self.tolerance))
@@ -278,6 +277,27 @@ class ReducedModel:
         sensed = np.asarray(self.full.selection @ basis.V)
         self._state = _State(taken, basis, sensed, one.below)
         self.counts.full_time += time.perf_counter() - started
+
+    @staticmethod
+    def _near(basis: Basis, taken: Sequence[_Taken], what: Snap, count: int) -> Floats | None:
+        """Return the lowest Ritz vectors, a few more than ``count``; None where some may miss."""
+        ritz = dense.decompose(basis.K.at(what.theta), basis.M.at(what.theta))
+        enough = count + max(2, count // 2)
+        if ritz.lam.size < enough or not _knows(
+            basis, taken, what.theta, float(ritz.lam[max(what.derived, 1) - 1])
+        ):
+            return None
+        return combine(basis.V, ritz.Phi[:, :enough])
+
+
+def _knows(basis: Basis, taken: Sequence[_Taken], theta: Floats, lam: float) -> bool:
+    """Return whether snapshots rule out that modes below ``lam`` are missing in the basis."""
+    K, M = basis.K, basis.M
+    return (
+        window.semidefinite(K)
+        and window.semidefinite(M)
+        and any(window.lower_bound(K, M, theta, one.what.theta) * one.beyond > lam for one in taken)
+    )
 
 
 def _begins(wanted: Sequence[Snap], taken: Sequence[_Taken]) -> bool:

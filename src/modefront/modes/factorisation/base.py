@@ -41,8 +41,12 @@ class LowerPattern:
 
 
 def lower_pattern(keys: Ints, size: int) -> LowerPattern:
-    """Return the pattern with the given keys, column * N + row, in any order, and the diagonal."""
-    unique = np.unique(np.concatenate([keys, np.arange(size) * (size + 1)]))
+    """Return the pattern with the given keys, column * N + row, in any order, and the diagonal.
+
+    Ascending runs of keys are merged, which is far quicker than sorting them.
+    """
+    ranked = np.sort(np.concatenate([keys, np.arange(size) * (size + 1)]), kind="stable")
+    unique = ranked[np.append(True, ranked[1:] != ranked[:-1])]
     starts = np.searchsorted(unique, np.arange(size + 1) * size)
     return LowerPattern(starts.astype(np.intp), (unique % size).astype(np.intp))
 
