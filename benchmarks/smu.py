@@ -13,8 +13,13 @@ import scipy.sparse
 
 from modefront import Group, ModalData, Pairing, UpdatingProblem, matrices, modal_data
 from modefront._typing import Floats
+from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
+from modefront.models.reduced.model import ReducedModel
+from modefront.pairing.match import modes_needed
 from modefront.residuals.groups import Scale
+from modefront.solvers.scalarisation import weighted
+from modefront.solvers.sqp import Options, Solution, begin, solve
 
 FOLDER = Path(__file__).resolve().parents[1].parent / "shared" / "data" / "smu"
 
@@ -69,20 +74,52 @@ def read(name: str) -> Structure:
 
 
 def frequencies_and_shapes(
-    structure: Structure, pairing: Pairing | None = None, scale: Scale = "measured"
+    structure: Structure,
+    pairing: Pairing | None = None,
+    scale: Scale = "measured",
+    *,
+    reduced: bool = False,
 ) -> UpdatingProblem:
-    """Return the problem with all frequencies in a group and all shapes in another one."""
+    """Return the problem with all frequencies in a group and all shapes in another one.
+
+    The model is in a basis of its own where it is to be ``reduced``.
+    """
+    pairing = pairing or Pairing()
+    model: Model = structure.model
     groups = (
         Group("frequencies", frequency="all", scale=scale),
         Group("shapes", shape="all", scale=scale),
     )
     start = np.zeros(structure.lower.size)
+    if reduced:
+        count = modes_needed(pairing, structure.data, model.size)
+        model = ReducedModel(structure.model, count, start, structure.lower, structure.upper)
     return UpdatingProblem(
-        structure.model,
+        model,
         structure.data,
         groups,
         structure.lower,
         structure.upper,
         start,
-        pairing or Pairing(),
+        pairing,
     )
+
+
+def weighted_minimum(
+    problem: UpdatingProblem, w: Floats, theta: Floats, iterations: int = 200
+) -> Solution:
+    """Return the minimum of sum w J below a start.
+
+    Where the model is a reduced one, snapshots are taken until its modes hold there.
+    """
+    model = problem.model
+    found = begin(problem.evaluate(theta))
+    while True:
+        found = solve(problem, weighted(w), found, Options(iterations=iterations))
+        if not isinstance(model, ReducedModel) or not found.converged:
+            return found
+        wanted = np.unique(found.at.quantities["paired_mode"].astype(int) - 1)
+        if model.certify(found.at.theta, wanted).eigenvalue.max() <= model.tolerance:
+            return found
+        model.take(found.at.theta)
+        found = begin(problem.evaluate(found.at.theta))
