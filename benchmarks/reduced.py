@@ -10,10 +10,12 @@ work of a study (edges by global search, weighted models, 20 points of the front
 - the time and the memory of one full eigensolution, without and with derivatives;
 - full eigensolutions, factorisations and reduced ones, the greatest estimated error and the time
   of the work, over that of one full eigensolution without derivatives;
+- the greatest memory of the process, over that after one factorisation;
 - the greatest estimated error, at the models that were found, of the basis from the nominal model
   alone, with derivatives;
 - for the sizes up to ``--full-up-to``: the same work with full solutions, its time and the greatest
-  difference of the parameters, over their ranges.
+  difference of the parameters, over their ranges; and the greatest error, at the models that were
+  found, of as many modes of the nominal model as the basis has columns (a plain modal basis).
 """
 
 from __future__ import annotations
@@ -31,9 +33,12 @@ import xarray as xr
 import modefront as mf
 from modefront import fem
 from modefront._typing import Floats
+from modefront.models.affine import DenseAffine
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel
+from modefront.modes import dense
+from modefront.modes.sparse import lowest
 from modefront.study.tables.identifiability import Identifiability
 
 MODES, REGIONS, PARTS, SENSORS, POINTS = 6, 6, 12, 20, 20
@@ -136,6 +141,20 @@ def reduced_model(full: MatrixModel, count: int) -> ReducedModel:
     return ReducedModel(full, count, np.ones(REGIONS), lower, upper)
 
 
+def modal_error(full: MatrixModel, columns: int, found: xr.Dataset) -> float:
+    """Return the greatest error of eigenvalues from so many modes of the nominal model."""
+    pencil = full.pencil
+    Phi = lowest(pencil, np.ones(REGIONS), columns).Phi[:, :columns]
+    K, M = (DenseAffine(A.project(Phi, Phi), A.coefficients) for A in (pencil.K, pencil.M))
+    errors = []
+    for i in range(found.sizes["point"]):
+        theta = found["theta"].values[i]
+        lam = dense.decompose(K.at(theta), M.at(theta)).lam
+        exact = (2 * np.pi * found["frequency"].values[i]) ** 2
+        errors.append(lam[found["paired_mode"].values[i].astype(int) - 1] / exact - 1)
+    return float(np.max(errors))
+
+
 def line(kind: Model, size: int, data: mf.ModalData, compare: bool) -> dict[str, float]:
     """Return what is measured of one size."""
     full = kind(size, REGIONS)
@@ -152,6 +171,8 @@ def line(kind: Model, size: int, data: mf.ModalData, compare: bool) -> dict[str,
     out["memory_work"] = memory()
     data_of = found[0]
     out["ratio"] = out["work"] / out["modes"]
+    out["ratio_memory"] = out["memory_work"] / out["memory_factor"]
+    out["columns"] = model.columns
     for name in ("full_eigensolutions", "factorisations", "reduced_solutions"):
         out[name] = data_of.attrs[name]
     out["error"] = float(data_of["eigenvalue_error"].max())
@@ -167,6 +188,7 @@ def line(kind: Model, size: int, data: mf.ModalData, compare: bool) -> dict[str,
         out["work_full"] = timed(lambda: found.append(work(full, data)))
         difference = found[1]["theta"].values - found[0]["theta"].values
         out["difference"] = float(np.abs(difference).max() / (BOUNDS[1] - BOUNDS[0]))
+        out["error_modal"] = modal_error(full, model.columns, data_of)
     return out
 
 
