@@ -30,6 +30,9 @@ MASSES = np.array([2.0, 1.0])
 STIFFNESS = np.array([3000.0, 2000.0])
 ZETA = np.array([0.02, 0.03])
 
+AXES = 4
+"""Models along the two axes of the posterior that each prediction is made with besides."""
+
 STUDY = """
 [study]
 name = "two masses"
@@ -329,18 +332,20 @@ def test_other_predictions_do_no_old_work_again(
 
     monkeypatch.setattr(store, "write_piece", note)
     again = run(tmp_path, FRF.replace("damping = [0.02, 0.03]", "damping = 0.05"))
-    assert len(written) == again.sizes["point"]
+    asked = again.sizes["point"] + AXES
+    assert len(written) == asked
     assert all(name.startswith("predict-pushed-") for name in written)
     assert (tmp_path / "results" / "results.1.nc").exists(), "other results are kept"
     run(tmp_path, "")
-    assert len(written) == again.sizes["point"]
+    assert len(written) == asked
 
 
 def test_eigenproblems_of_predictions_are_counted(results: xr.Dataset, tmp_path: Path) -> None:
     plain = run(tmp_path, "")
     predictions = 5 + 1
     more = results.attrs["model_evaluations"] - plain.attrs["model_evaluations"]
-    assert more == predictions * plain.sizes["point"] + 1
+    assert more == predictions * (plain.sizes["point"] + AXES) + 1
+    assert results.attrs["prediction_eigensolutions"] == more
     for name in plain.variables:
         np.testing.assert_array_equal(plain[name], results[name])
 
