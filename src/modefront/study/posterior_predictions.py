@@ -16,7 +16,7 @@ from modefront.identifiability.words import enumeration
 from modefront.predict import Passage, PeakResponse, Prediction
 from modefront.study.asking import FAILED, Asking
 from modefront.study.knowledge import OPTIMAL
-from modefront.study.knowledge_variables import Variables
+from modefront.study.knowledge_variables import Variables, left_open
 from modefront.study.run import generator
 from modefront.uncertainty.differences import Stencil, stencil
 from modefront.uncertainty.laplace import Posterior
@@ -70,11 +70,11 @@ def around(data: xr.Dataset, asking: Asking, posterior: Posterior | None, draws:
         return Around(None, none, [missing] if draws else [])
     said = []
     theta = data["theta"].values[_optimal(data)]
-    open_ = np.abs(posterior.free).max(axis=1, initial=0.0) > 0
-    if open_.any():
-        names = [x for x, one in zip(problem.model.parameters, open_, strict=True) if one]
+    parted = zip(problem.model.parameters, left_open(posterior.free), strict=True)
+    names = [name for name, is_open in parted if is_open]
+    if names:
         said.append(
-            f"the posterior of predictions is that of what the data determine: where they leave "
+            "the posterior of predictions is that of what the data determine: where they leave "
             f"{enumeration(names)} open, the models are those of {OPTIMAL}"
         )
     differences = stencil(theta, posterior.axes, problem.lower, problem.upper)
