@@ -10,7 +10,7 @@ Axes R (p, m) have the covariance :math:`R R^T = C`: the parameters are
 along :math:`R e_k`; the second one is taken where the first would leave the bounds.
 
 A step of one half balances two errors. Peaks are smooth: with it, their standard deviations for the
-chain of three stories are 0.07 % off the limit of small steps. Failure probabilities are estimated
+chain of three stories are 0.06 % off the limit of small steps. Failure probabilities are estimated
 with the same random numbers for all models, but the sample changes with the model, so that
 :math:`\ln P` is rough: with 2,000 samples, its derivatives there (1.3 and 2.3 at two barriers) vary
 by some 0.02 between steps of one and a quarter, by 0.1 at a tenth, and below a hundredth they are
