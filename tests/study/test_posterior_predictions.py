@@ -20,6 +20,7 @@ from modefront.models.ports import Ports
 from modefront.predict import Passage, PeakResponse, Prediction, Structure
 from modefront.reliability import Sided, WhiteNoise
 from modefront.response import Quantity
+from modefront.study.examples import write_example
 from modefront.study.predictions import pieces_of
 from modefront.study.session import Progress
 from modefront.uncertainty.differences import STEP
@@ -115,6 +116,25 @@ def test_predictions_of_two_masses_against_own_gradients(drawn: xr.Dataset) -> N
     assert found == pytest.approx(expected, rel=0.01)
     std = data["posterior_frf_peak_std"].sel(frf=names).values
     assert std == pytest.approx(np.sqrt(np.diag(found)), rel=1e-12)
+
+
+def test_peaks_of_the_three_stories_by_small_differences(tmp_path: Path) -> None:
+    """Steps of 1e-6 along each of the parameters, not of half a deviation along the axes."""
+    write_example("three-story-c0", tmp_path)
+    problem = mf.load(tmp_path / "study.toml").problem
+    ports = Ports(outputs=({"floor1": 1.0},), forces=({"floor3": 1.0},))
+    one = PeakResponse("peak", Structure(ports, 3, 0.02), ("x",), Quantity.RECEPTANCE, (0.5, 25.0))
+    data = solved(problem, [one])
+    theta, C = optimal(data)["theta"].values, data["posterior_covariance"].values
+    steps = 1e-6 * np.eye(theta.size)
+    for quantity, name in (("peak", "frf_peak"), ("frequency", "frf_peak_frequency")):
+        slope = [
+            (one.at(problem, theta + d)[quantity][0] - one.at(problem, theta - d)[quantity][0])
+            / 2e-6
+            for d in steps
+        ]
+        expected = np.sqrt(np.array(slope) @ C @ slope)
+        assert data[f"posterior_{name}_std"].values[0] == pytest.approx(expected, rel=2e-3)
 
 
 def test_failure_probabilities_by_their_logarithms() -> None:
