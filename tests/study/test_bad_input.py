@@ -88,6 +88,7 @@ step = 0.05
 [uncertainty]
 source = "sets"
 bootstrap = 2
+draws = 3
 [[predict.frf]]
 name = "peak"
 force = "top"
@@ -349,6 +350,7 @@ KEYS = [
         '"set" "STD" "" 1 true nan ["std"] {}',
     ),
     Key("bootstrap = 2", "[uncertainty] bootstrap", "a whole number from 0", False, NO_WHOLE),
+    Key("draws = 3", "[uncertainty] draws", "a whole number from 0", False, NO_WHOLE),
     Key('name = "peak"', f"{FRF} name", "what the prediction is called", True, NO_TEXT),
     Key('force = "top"', f"{FRF} force", "the name of a sensor or output", False, NO_FORCE),
     Key('response = ["low", "middle"]', f"{FRF} response", "a list of sensors", True, NO_RESPONSE),
@@ -474,6 +476,7 @@ def test_a_missing_key_is_asked_for(key: Key, folder: Path, refused: Check) -> N
 GROUPS = STUDY[STUDY.index("[[group]]") : STUDY.index("[[weighted]]")]
 WEIGHTED = STUDY[STUDY.index("[[weighted]]") : STUDY.index("[pareto]")]
 PARAMETERS = STUDY[STUDY.index("[[parameter]]") : STUDY.index("[[group]]")]
+PREDICTIONS = STUDY[STUDY.index("[[predict.frf]]") :]
 SENSOR = "expected a degree of freedom from 0, or a list [[degree of freedom, weight], ...], found "
 WEIGHT = "[[weighted]] 1 ('mine') weights shapes: expected a weight above 0, found "
 
@@ -652,6 +655,7 @@ CONTRADICTIONS = [
         'source = "none"',
         "[uncertainty] bootstrap: expected 0 with source = 'none', found 2",
     ),
+    (PREDICTIONS, "", "[uncertainty] draws: expected 0 without predictions, found 3"),
     # what is no TOML
     ("[study]", "[study", "file: expected TOML in UTF-8, found ... line "),
     ("seed = 1", "seed =", "file: expected TOML in UTF-8, found ... line "),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import shutil
 import sys
 from pathlib import Path
 
@@ -204,6 +205,38 @@ def test_run_shows_the_cost_and_show_the_errors(
     out = capfd.readouterr().out
     assert "estimated relative errors" in out
     assert "eigenvalue 3" in out
+
+
+PREDICTION = """
+[[predict.frf]]
+name = "pushed"
+force = "a"
+response = ["b"]
+damping = 0.02
+
+"""
+
+
+def test_predictions_are_made_in_full_and_that_is_said(
+    file: Path,
+    whole: xr.Dataset,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capfd: pytest.CaptureFixture[str],
+) -> None:
+    folder = shutil.copytree(file.with_name("whole"), tmp_path / "results")
+    study = variant(file, "predicted", "[pareto]", f"{PREDICTION}[pareto]")
+    assert command(monkeypatch, "run", study, "-o", folder) == 0
+    out = capfd.readouterr().out
+    data = read(folder)
+    basis = whole.attrs["full_eigensolutions"]
+    n = data.sizes["point"] + 4  # two models along each of two axes of the posterior
+    assert data.attrs["prediction_eigensolutions"] == n
+    assert data.attrs["full_eigensolutions"] == basis + n
+    assert whole.attrs["prediction_eigensolutions"] == 0
+    assert f"reduced basis from {basis} full eigensolutions" in out
+    assert f"predictions are not reduced: they took {n} full eigensolutions" in out
+    assert np.isfinite(data["posterior_frf_peak_std"].values).all()
 
 
 def test_what_cannot_be_met_in_the_memory_is_said_and_is_an_exit_of_1(

@@ -6,11 +6,10 @@ from typing import Any
 
 import numpy as np
 import pytest
-import scipy.linalg
 import xarray as xr
 from interruptions import interrupt_at
-from numpy.typing import NDArray
 from scipy.signal import lsim
+from two_masses import FRF, MASSES, PASSAGE, ZETA, direct, matrices, run, write_study
 
 import modefront as mf
 from modefront._typing import Floats
@@ -24,148 +23,13 @@ from modefront.study import store
 from modefront.study.examples import write_example
 from modefront.study.results import read
 
-Complex = NDArray[np.complex128]
-
-MASSES = np.array([2.0, 1.0])
-STIFFNESS = np.array([3000.0, 2000.0])
-ZETA = np.array([0.02, 0.03])
-
-STUDY = """
-[study]
-name = "two masses"
-seed = 3
-
-[data]
-file = "modes.csv"
-
-[model]
-kind = "chain"
-masses = [2.0, 1.0]
-stiffnesses = [3000.0, 2000.0]
-stiffness_parameters = ["k1", "k2"]
-sensors = { low = 0, high = 1 }
-outputs = { middle = [[0, 0.5], [1, 0.5]] }
-
-[[parameter]]
-name = "k1"
-nominal = 1.0
-bounds = [0.2, 5.0]
-
-[[parameter]]
-name = "k2"
-nominal = 1.0
-bounds = [0.2, 5.0]
-
-[[group]]
-name = "frequencies"
-frequency = "all"
-
-[[group]]
-name = "shapes"
-shape = "all"
-
-[pareto]
-points = 3
-
-[pairing]
-method = "order"
-
-[search]
-starts = 1
-limit = 1
-evolutions = 0
-"""
-
-FRF = """
-[[predict.frf]]
-name = "pushed"
-force = { high = 2.0 }
-response = { low = "low", drift = { high = 1, low = -1 } }
-band = [0.0, 20.0]
-damping = [0.02, 0.03]
-quantity = "mobility"
-
-[[predict.frf]]
-name = "shaken"
-base = "x"
-response = ["low", "middle"]
-quantity = "accelerance"
-
-[[predict.frf]]
-name = "as if shaken"
-force = { low = -2.0, high = -1.0 }
-response = ["low", "middle"]
-quantity = "accelerance"
-
-[[predict.frf]]
-name = "ridden"
-base = "x"
-response = ["high"]
-damping = 0.02
-quantity = "absolute accelerance"
-
-[[predict.frf]]
-name = "between"
-force = "low"
-response = ["low"]
-band = [0.1, 0.2]
-modes = 2
-"""
-
-PASSAGE = """
-[[predict.first_passage]]
-name = "drifts"
-base = "x"
-response = { lower = "low", upper = { high = 1, low = -1 } }
-density = 0.05
-sided = "one"
-filter = { frequency = 4.0, damping = 0.6 }
-modulation = [[0.0, 0.0], [2.0, 1.0], [4.0, 0.5]]
-levels = [0.02, 0.025]
-duration = 6.0
-step = 0.01
-samples = 1500
-damping = 0.02
-"""
-
-DATA = """set,mode,frequency,damping,low,high
-a,1,4.2,0.02,0.6,1.0
-a,2,10.5,,1.0,-0.7
-b,1,4.1,0.04,,1.0
-"""
-
-
-def write_study(folder: Path, predictions: str) -> Path:
-    (folder / "modes.csv").write_text(DATA)
-    (folder / "study.toml").write_text(STUDY + predictions)
-    return folder / "study.toml"
-
-
-def run(folder: Path, predictions: str) -> xr.Dataset:
-    return mf.run(mf.load(write_study(folder, predictions)), folder / "results")
+AXES = 4
+"""Models along the two axes of the posterior that each prediction is made with besides."""
 
 
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
     return run(tmp_path_factory.mktemp("all"), FRF + PASSAGE)
-
-
-def matrices(theta: Floats) -> tuple[Floats, Floats, Floats, Floats]:
-    """Return K, M, the circular frequencies and the modes of the chain."""
-    k1, k2 = STIFFNESS * theta
-    K = np.array([[k1 + k2, -k2], [-k2, k2]])
-    M = np.diag(MASSES)
-    lam, phi = scipy.linalg.eigh(K, M)
-    return K, M, np.sqrt(lam), phi
-
-
-def direct(theta: Floats, zeta: Floats, load: Floats, output: Floats, f: Floats) -> Complex:
-    """Return output (K - w^2 M + i w C)^-1 load at frequencies in Hz."""
-    K, M, omega, phi = matrices(theta)
-    C = M @ phi @ np.diag(2 * zeta * omega) @ phi.T @ M
-    w = 2 * np.pi * f[:, None, None]
-    u = np.linalg.solve(K - w**2 * M + 1j * w * C, np.broadcast_to(load[:, None], (f.size, 2, 1)))
-    return np.asarray(output @ u, dtype=np.complex128)[:, 0]
 
 
 def assert_peaks(
@@ -329,18 +193,20 @@ def test_other_predictions_do_no_old_work_again(
 
     monkeypatch.setattr(store, "write_piece", note)
     again = run(tmp_path, FRF.replace("damping = [0.02, 0.03]", "damping = 0.05"))
-    assert len(written) == again.sizes["point"]
+    asked = again.sizes["point"] + AXES
+    assert len(written) == asked
     assert all(name.startswith("predict-pushed-") for name in written)
     assert (tmp_path / "results" / "results.1.nc").exists(), "other results are kept"
     run(tmp_path, "")
-    assert len(written) == again.sizes["point"]
+    assert len(written) == asked
 
 
 def test_eigenproblems_of_predictions_are_counted(results: xr.Dataset, tmp_path: Path) -> None:
     plain = run(tmp_path, "")
     predictions = 5 + 1
     more = results.attrs["model_evaluations"] - plain.attrs["model_evaluations"]
-    assert more == predictions * plain.sizes["point"] + 1
+    assert more == predictions * (plain.sizes["point"] + AXES) + 1
+    assert results.attrs["prediction_eigensolutions"] == more
     for name in plain.variables:
         np.testing.assert_array_equal(plain[name], results[name])
 

@@ -15,11 +15,15 @@ def certificate_remarks(data: xr.Dataset) -> list[str]:
         return out
     tolerance = data.attrs["eigenvalue_tolerance"]
     worst = float(data["eigenvalue_error"].max())
+    predicted = data.attrs.get("prediction_eigensolutions", 0)
     out.append(
-        f"reduced basis from {data.attrs['full_eigensolutions']} full eigensolutions: relative "
+        f"reduced basis from {data.attrs['full_eigensolutions'] - predicted} full eigensolutions: "
+        "relative "
         f"errors of eigenvalues up to {worst:.1e} (estimated; tolerance {tolerance:.0e}), of "
         f"shapes up to {float(data['shape_error'].max()):.1e}"
     )
+    if predicted:
+        out.append(f"predictions are not reduced: they took {predicted} full eigensolutions")
     failed = uncertified(data)
     if failed.size:
         out.append(f"above the tolerance: {', '.join(failed)}")

@@ -2,7 +2,8 @@
 
 One picture a quantity (frequencies and MAC have a panel a mode, peaks a panel a response, failure
 probabilities a line a level), after figures 5 to 7 of Christodoulou et al. (2008,
-doi:10.1016/j.cma.2008.04.010). Models with weights of their own stand beside the front.
+doi:10.1016/j.cma.2008.04.010). Models with weights of their own stand beside the front, the
+optimally weighted one with a bar of one standard deviation of its posterior to either side.
 """
 
 from __future__ import annotations
@@ -63,14 +64,21 @@ def write_figures(data: xr.Dataset, folder: Path) -> list[Path]:
     modes = [f"mode {r}" for r in data["mode"].values]
     measured = data["measured_frequency"].values
     pictures = {
-        "frequencies": _Picture("", modes, "frequency, Hz", data["frequency"].values, measured),
-        "mac": _Picture("", modes, "MAC", data["mac"].values),
+        "frequencies": _Picture(
+            *("", modes, "frequency, Hz", data["frequency"].values, measured),
+            std=_posterior_std(data, "frequency"),
+        ),
+        "mac": _Picture("", modes, "MAC", data["mac"].values, std=_posterior_std(data, "mac")),
     }
     for name, at in _parts(data, "frf").items():
         titles = [str(data["frf"].values[i]).removeprefix(f"{name}: ") for i in at]
         title = f"{name} ({data['frf_load'].values[at[0]]})"
         quantity = f"peak {data['frf_quantity'].values[at[0]]}"
-        pictures[f"frf {name}"] = _Picture(title, titles, quantity, data["frf_peak"].values[:, at])
+        std = _posterior_std(data, "frf_peak")
+        pictures[f"frf {name}"] = _Picture(
+            *(title, titles, quantity, data["frf_peak"].values[:, at]),
+            std=None if std is None else std[at],
+        )
     written: list[Path] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
@@ -91,13 +99,14 @@ def write_figures(data: xr.Dataset, folder: Path) -> list[Path]:
 
 @dataclass(frozen=True)
 class _Picture:
-    """Values (points, panels) with the panels' titles, and measured ones where there are some."""
+    """Values (points, panels) with the panels' titles, measured ones and posterior deviations."""
 
     title: str
     titles: Sequence[str]
     ylabel: str
     values: Floats
     measured: Floats | None = None
+    std: Floats | None = None
 
     @property
     def columns(self) -> int:
@@ -115,8 +124,10 @@ class _Picture:
 class _Along:
     """The abscissa: front points by number, then models with weights of their own."""
 
-    def __init__(self, front: list[int], others: list[int], names: list[str], optimal: Bools):
-        self.front, self.others, self.names, self.optimal = front, others, names, optimal
+    def __init__(self, front: list[int], others: list[int], labels: list[str], optimal: Bools):
+        self.front, self.others, self.optimal = front, others, optimal
+        self.names = [_plain(labels[i]).removesuffix("-weights") for i in others]
+        self.best = labels.index("optimal-weights") if "optimal-weights" in labels else None
         self.beside = len(front) + 1.6 + 1.6 * np.arange(len(others))
 
     @classmethod
@@ -125,8 +136,7 @@ class _Along:
         front = [i for i, x in enumerate(labels) if x.startswith("nbi-")]
         ends = ("nbi-", "edge-") if front else ()
         others = [i for i, x in enumerate(labels) if not x.startswith(ends)]
-        names = [_plain(labels[i]).removesuffix("-weights") for i in others]
-        return cls(front, others, names, np.asarray(data["pareto"].values, dtype=np.bool_))
+        return cls(front, others, labels, np.asarray(data["pareto"].values, dtype=np.bool_))
 
     def panels(self, figure: Figure, picture: _Picture) -> None:
         """Draw a panel for each column of values."""
@@ -136,6 +146,9 @@ class _Along:
         grid = grid[: len(picture.titles)]
         for i, (axes, title) in enumerate(zip(grid, picture.titles, strict=True)):
             self.draw(axes, picture.values[:, i], COLOURS[0], "model")
+            if picture.std is not None:
+                std = picture.std[i]
+                self.bar(axes, picture.values[:, i] + np.array([[-std], [std]]), COLOURS[0])
             if picture.measured is not None and np.isfinite(picture.measured[i]):
                 axes.axhline(picture.measured[i], color="k", ls="--", lw=1, label="measured")
             axes.set_title(_plain(title), loc="left")
@@ -155,6 +168,10 @@ class _Along:
             label = f"b = {data['failure_level'].values[i]:g}"
             positive = np.where(values > 0, values, np.nan)
             self.draw(axes, positive, COLOURS[k % len(COLOURS)], label)
+            std = _posterior_std(data, "failure_log")
+            if std is not None:
+                factors = np.exp([[-std[i]], [std[i]]])
+                self.bar(axes, positive * factors, COLOURS[k % len(COLOURS)])
         axes.set_yscale("log")
         axes.set_ylabel("probability of failure")
         title = f"{name} ({data['failure_load'].values[at[0]]})"
@@ -169,6 +186,12 @@ class _Along:
         axes.plot(x[best], y[best], "o", color=colour, ms=4, label=label)
         axes.plot(x[~best], y[~best], "o", mfc="w", mec=colour, ms=4)
         axes.plot(self.beside, values[self.others], "D", color=colour, mec="k", mew=0.6, ms=5)
+
+    def bar(self, axes: Axes, ends: Floats, colour: str) -> None:
+        """Draw a bar at the optimally weighted model; ends are (2, points)."""
+        if self.best is not None:
+            x = self.beside[self.others.index(self.best)]
+            axes.plot([x, x], ends[:, self.best], "-_", color=colour, lw=1.2, ms=6)
 
     def finish(self, figure: Figure, grid: Sequence[Axes], columns: int) -> None:
         """Put ticks and labels on the abscissae, and one legend below the panels."""
@@ -206,6 +229,12 @@ def _parts(data: xr.Dataset, dimension: str) -> dict[str, list[int]]:
     for i, name in enumerate(data[f"{dimension}_name"].values if dimension in data.sizes else ()):
         out.setdefault(str(name), []).append(i)
     return out
+
+
+def _posterior_std(data: xr.Dataset, name: str) -> Floats | None:
+    """Return standard deviations of the posterior; None where there are none."""
+    found = data.get(f"posterior_{name}_std")
+    return None if found is None else np.asarray(found.values)
 
 
 def _plain(text: object) -> str:

@@ -1,4 +1,4 @@
-"""Predictions as tables: range over the Pareto-optimal models, and values at labelled ones."""
+"""Predictions as tables: range over the Pareto-optimal models, posterior, and labelled models."""
 
 from __future__ import annotations
 
@@ -9,26 +9,35 @@ import xarray as xr
 
 Row = tuple[str, ...]
 
+DRAWN = ("mean", "5 %", "95 %")
+"""What is shown of models drawn from the posterior."""
+
 
 def prediction_tables(data: xr.Dataset) -> Iterator[tuple[str, list[str], list[Row], list[str]]]:
     """Yield title, columns, rows and remarks of each prediction; nothing where there are none."""
     if "range" not in data.sizes:
         return
     named = [i for i, x in enumerate(data["label"].values) if not str(x).startswith("nbi-")]
-    columns = ["minimum", "maximum", "spread", *map(str, data["label"].values[named])]
+    posterior = _Posterior(data)
+    labels = list(map(str, data["label"].values[named]))
+    columns = ["minimum", "maximum", "spread", *posterior.columns, *labels]
 
     def row(head: Sequence[str], name: str, i: int, form: str) -> Row:
         least, greatest, spread = data[f"{name}_range"].values[:, i]
-        values = data[name].values[named, i]
-        shown = (_number(x, form) for x in (least, greatest, *values))
-        first, second, *others = shown
-        return (*head, first, second, _number(spread, ".4g"), *others)
+        return (
+            *head,
+            _number(least, form),
+            _number(greatest, form),
+            _number(spread, ".4g"),
+            *posterior.row(name, i, form),
+            *(_number(x, form) for x in data[name].values[named, i]),
+        )
 
     frequencies = [
         row([f"f{r}, Hz"], "frequency", i, ".5g") for i, r in enumerate(data["mode"].values)
     ]
     title = "range over the Pareto-optimal models; spread is greatest over least"
-    yield f"frequencies: {title}", ["", *columns], frequencies, []
+    yield f"frequencies: {title}", ["", *columns], frequencies, posterior.explained
     for name, at in _groups(data, "frf"):
         rows = []
         for i in at:
@@ -51,8 +60,56 @@ def prediction_tables(data: xr.Dataset) -> Iterator[tuple[str, list[str], list[R
             rows.append(row([level, "P"], "failure_probability", i, ".3e"))
             variation = data["failure_variation"].values[:, i]
             shown = (_number(x, ".2g") for x in variation[named])
-            rows.append(("", "c.o.v.", "", _number(variation.max(), ".2g"), "", *shown))
+            blank = [""] * len(posterior.columns)
+            rows.append(("", "c.o.v.", "", _number(variation.max(), ".2g"), "", *blank, *shown))
         yield _passage(data, name, at[0]), ["level", "", *columns], rows, _step_effect(data, at)
+
+
+class _Posterior:
+    """What the posterior says of predictions, as columns: its scatter, and models drawn from it."""
+
+    def __init__(self, data: xr.Dataset) -> None:
+        self.data = data
+        self.known = "posterior_frequency_std" in data
+        there = data["statistic"].values.tolist() if "statistic" in data.sizes else []
+        self.drawn = [there.index(x) for x in DRAWN if x in there]
+
+    @property
+    def columns(self) -> list[str]:
+        """Titles."""
+        return ["posterior"] * self.known + [f"drawn {x}" for x in DRAWN[: len(self.drawn)]]
+
+    @property
+    def explained(self) -> list[str]:
+        """What these columns are."""
+        out = []
+        if self.known:
+            out.append(
+                "posterior: standard deviation around optimal-weights; of P as a factor, e to that "
+                "of ln P"
+            )
+        if self.drawn:
+            out.append(
+                f"drawn: over {self.data.sizes['draw']} models drawn from the posterior; the mean "
+                "of P is the robust failure probability"
+            )
+        return out
+
+    def row(self, name: str, i: int, form: str) -> list[str]:
+        """Return the entries of one prediction."""
+        of_p = name == "failure_probability"
+        out = [""] * len(self.columns)
+        std = self.data.get(f"posterior_{'failure_log' if of_p else name}_std")
+        if std is not None:
+            x = std.values[i]
+            shown = np.exp(x) if of_p else x
+            out[0] = (
+                _number(shown, ".3g") if np.isnan(x) else f"{'×÷' if of_p else '±'} {shown:.3g}"
+            )
+        drawn = self.data.get(f"posterior_{name}")
+        if drawn is not None:
+            out[self.known :] = [_number(x, form) for x in drawn.values[self.drawn, i]]
+        return out
 
 
 def _passage(data: xr.Dataset, name: str, i: int) -> str:

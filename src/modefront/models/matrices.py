@@ -124,10 +124,14 @@ class MatrixModel:
         else:
             motion = self.base[ports.base][:, None]
             loads, rigid = -(self.mass.at(theta) @ motion), gram(outputs, motion)
-        if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
-            found = full.dense_modes(self.stiffness, self.mass, theta, count, loads)
-        else:
-            found = full.sparse_modes(self.pencil, theta, count, loads)
+        started = time.perf_counter()
+        try:
+            if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
+                found = full.dense_modes(self.stiffness, self.mass, theta, count, loads)
+            else:
+                found = full.sparse_modes(self.pencil, theta, count, loads)
+        finally:
+            self.counts.full_time += time.perf_counter() - started
         phi = self.selection @ found.Phi
         empty = np.zeros((count, 0)), np.zeros((*phi.shape, 0))
         return Transfer(

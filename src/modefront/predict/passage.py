@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -46,6 +47,13 @@ class Passage:
     step: float
     samples: int
     method: str
+
+    quantities: ClassVar = ("probability", "variation")
+
+    @property
+    def size(self) -> int:
+        """How many values each of the quantities has."""
+        return len(self.levels)
 
     def problem(self, problem: UpdatingProblem, theta: Floats) -> FirstPassage:
         """Return what the probability is asked of, at ``theta``.

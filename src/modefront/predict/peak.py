@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import ClassVar
 
 import numpy as np
 
@@ -31,6 +32,13 @@ class PeakResponse:
     responses: tuple[str, ...]
     quantity: Quantity
     band: tuple[float, float]
+
+    quantities: ClassVar = ("peak", "frequency")
+
+    @property
+    def size(self) -> int:
+        """How many values each of the quantities has."""
+        return len(self.responses)
 
     def at(self, problem: UpdatingProblem, theta: Floats) -> Mapping[str, Floats]:
         """Return |T| at the greatest peak and its frequency in Hz, each (responses,).

@@ -45,7 +45,7 @@ class Study:
     ----------
     file : where it was read
     digest : hash of this file and of all files that it names
-    work : the same for what the front depends on: all that it says but for predictions
+    work : the same for what the front depends on: all that it says but for predictions and draws
     pareto : how the front is found
     weighted : models wanted with given weights, besides equal and optimal ones
     identifiability : what is done about what the data do not determine
@@ -113,8 +113,8 @@ def load(path: Path) -> Study:
         raise InputError(faults)
     files = [data_file, *_model_files(values)]
     digest = _digest(content, path.parent, files)
-    rest = {key: value for key, value in values.items() if key != "predict"}
-    work = _digest(json.dumps(rest, sort_keys=True).encode(), path.parent, files)
+    rest = json.dumps(_without_predictions(values), sort_keys=True)
+    work = _digest(rest.encode(), path.parent, files)
     remark = fallback(problem.model, reduction)
     return Study(
         *(path, title, seed, digest, work, parameters, problem, pareto, weights, search),
@@ -155,6 +155,14 @@ def _model_files(values: dict[str, Any]) -> list[str]:
     terms = [term for table in tables if isinstance(table, dict) for term in table.values()]
     files = [term["file"] if isinstance(term, dict) else term for term in terms]
     return [*files, model["file"]] if "file" in model else files
+
+
+def _without_predictions(values: dict[str, Any]) -> dict[str, Any]:
+    """Return what a study file says but for what is predicted, and with how many draws."""
+    rest = {key: value for key, value in values.items() if key != "predict"}
+    uncertainty = dict(rest.pop("uncertainty", {}))
+    uncertainty.pop("draws", None)
+    return rest | ({"uncertainty": uncertainty} if uncertainty else {})
 
 
 def _digest(content: bytes, folder: Path, files: Sequence[str]) -> str:

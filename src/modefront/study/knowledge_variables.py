@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Bools, Floats
 from modefront.identifiability.collinearity import cosines, index, pairs
 from modefront.identifiability.combinations import (
     Combination,
@@ -285,8 +285,13 @@ def _without_std(problem: UpdatingProblem) -> int:
 
 def _std(covariance: Floats, free: Floats) -> Floats:
     """Return standard deviations, infinite for parameters that have a part in what is free."""
-    open_ = (np.abs(free) > 1e-9 * np.abs(free).max(initial=1e-300)).any(axis=1)
-    return np.where(open_, np.inf, np.sqrt(np.diag(covariance)))
+    return np.where(left_open(free), np.inf, np.sqrt(np.diag(covariance)))
+
+
+def left_open(free: Floats) -> Bools:
+    """Return the parameters that have a part in directions (p, d)."""
+    out: Bools = (np.abs(free) > 1e-9 * np.abs(free).max(initial=1e-300)).any(axis=1)
+    return out
 
 
 def _posterior(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variables, list[str]]:

@@ -1,29 +1,20 @@
-"""Predictions of all models that a study has found, piece by piece, and as results.
-
-Every model is shaken by the same random numbers, so that what differs is the models' doing.
-"""
+"""Predictions of all models that a study has found, as results."""
 
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
-from functools import partial
-from pathlib import Path
+from collections.abc import Mapping, Sequence
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Floats
-from modefront.errors import Fault, InputError, ModelError, UnfinishedError
 from modefront.predict import Passage, PeakResponse, Prediction
-from modefront.reliability import StepError
-from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.advance import default_points
+from modefront.study.asking import Asking
 from modefront.study.file import Study
-from modefront.study.run import sequence
-from modefront.study.store import Arrays, Store, hash_text
+from modefront.study.store import Arrays
 
 RANGE = ("minimum", "maximum", "spread")
 """Over the Pareto-optimal models; the spread is the ratio of greatest to least."""
@@ -36,34 +27,40 @@ Variables = Mapping[str, tuple[tuple[str, ...], Any, str]]
 
 def pieces_of(study: Study) -> int:
     """Return how many pieces of work the predictions of a study are, at most."""
-    n = len(study.problem.objectives)
+    n, p = len(study.problem.objectives), len(study.parameters)
     points = study.pareto.points or default_points(n)
     front = math.comb(points + n - 2, n - 1) if n > 1 else 0
-    models = front + n + len(study.weighted) + 2
-    passages = sum(isinstance(one, Passage) for one in study.predictions)
-    return len(study.predictions) * models + passages
+    points = front + n + len(study.weighted) + 2
+    return pieces(study.predictions, points + 2 * p + study.uncertainty.draws)
 
 
-def predicted(
-    data: xr.Dataset,
-    problem: UpdatingProblem,
-    predictions: Sequence[Prediction],
-    seed: int,
-    store: Store,
-    file: Path = Path("study"),
-) -> xr.Dataset:
+def pieces(predictions: Sequence[Prediction], models: int) -> int:
+    """Return how many pieces of work the predictions of so many models are."""
+    return len(predictions) * models + sum(isinstance(one, Passage) for one in predictions)
+
+
+def predicted(data: xr.Dataset, asking: Asking) -> xr.Dataset:
     """Return results with the predictions of every point; see the page on results.
 
-    Raises InputError, in the name of the study's ``file``, where a time step is too long for a
-    model that was found, and UnfinishedError where one has not the modes that are wanted.
+    What is raised is what `Asking.point` raises.
     """
+    predictions = asking.predictions
     if not predictions:
         return data
-    labels = [str(label) for label in data["label"].values]
-    work = _Work(problem, labels, data["theta"].values, seed, store, file)
+    models = list(zip(map(str, data["label"].values), data["theta"].values, strict=True))
+    labels = [label for label, _ in models]
+    halved = next((labels.index(x) for x in REPRESENTATIVES if x in labels), 0)
     optimal = data["pareto"].values
-    peaks = [(one, work.peak(one)) for one in predictions if isinstance(one, PeakResponse)]
-    passages = [(one, *work.passage(one)) for one in predictions if isinstance(one, Passage)]
+
+    def found(one: Prediction) -> list[Arrays]:
+        return [asking.point(one, *model) for model in models]
+
+    peaks = [(one, found(one)) for one in predictions if isinstance(one, PeakResponse)]
+    passages = [
+        (one, found(one), asking.halved(one, *models[halved]))
+        for one in predictions
+        if isinstance(one, Passage)
+    ]
     variables = {
         "frequency_range": (
             ("range", "mode"),
@@ -71,7 +68,7 @@ def predicted(
             "of the frequencies in Hz over the Pareto-optimal models",
         ),
         **(_peak_variables(peaks, optimal) if peaks else {}),
-        **(_passage_variables(passages, optimal, labels[work.representative]) if passages else {}),
+        **(_passage_variables(passages, optimal, labels[halved]) if passages else {}),
     }
     coordinates: dict[str, list[str]] = {"range": list(RANGE)}
     if peaks:
@@ -86,54 +83,6 @@ def predicted(
             for name, (dims, values, meaning) in variables.items()
         }
     ).assign_coords(coordinates)
-
-
-@dataclass(frozen=True)
-class _Work:
-    """Asks every model for predictions, a piece of work for each."""
-
-    problem: UpdatingProblem
-    labels: Sequence[str]
-    theta: Floats
-    seed: int
-    store: Store
-    file: Path
-
-    @property
-    def representative(self) -> int:
-        """The model at which the time step is halved."""
-        return next((self.labels.index(x) for x in REPRESENTATIVES if x in self.labels), 0)
-
-    def peak(self, one: PeakResponse) -> list[Arrays]:
-        """Return the peaks of every model."""
-        return [self._piece(one, i, one.at) for i in range(len(self.labels))]
-
-    def passage(self, one: Passage) -> tuple[list[Arrays], Arrays]:
-        """Return the probabilities of every model, and what half the time step does to one's."""
-        numbers = sequence(self.seed, f"predict-{one.name}")
-        at = partial(one.at, seed=numbers)
-        found = [self._piece(one, i, at) for i in range(len(self.labels))]
-        halved = partial(one.halved, seed=numbers)
-        return found, self._piece(one, self.representative, halved, "-half-step")
-
-    def _piece(self, one: Prediction, i: int, at: Callable[..., Arrays], what: str = "") -> Arrays:
-        """Keep what ``at`` gives of model i; the name tells apart all that it depends on."""
-        mark = hash_text(f"{one!r} {self.seed}")[:8]
-        name = f"predict-{one.name}{what}-{self.labels[i]}-{mark}"
-        return self.store.arrays(name, partial(self._asked, one, i, at))
-
-    def _asked(self, one: Prediction, i: int, at: Callable[..., Arrays]) -> Arrays:
-        """Return the prediction of model i, or say that it cannot be had."""
-        label = self.labels[i]
-        try:
-            return at(self.problem, self.theta[i])
-        except StepError as error:
-            place = f"[[predict.first_passage]] ({one.name!r}) step"
-            expected = f"at most {error.limit:.4g} s, a quarter of the shortest period of '{label}'"
-            fault = Fault(str(self.file), place, expected, f"{error.found:g}")
-            raise InputError(fault) from None
-        except ModelError as error:
-            raise UnfinishedError(f"no prediction '{one.name}' of '{label}': {error}") from None
 
 
 def _range(values: Floats, optimal: Bools) -> Floats:

@@ -16,6 +16,7 @@ from modefront.errors import Fault, InputError
 from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
+from modefront.study.asking import Asking
 from modefront.study.certified import certificate_attributes, certified_front, certified_points
 from modefront.study.file import Study
 from modefront.study.knowledge import learn
@@ -156,7 +157,8 @@ class _Session:
 
     def results(self) -> xr.Dataset:
         """Do the work and return all that it finds."""
-        from modefront.study.predictions import predicted
+        from modefront.study.posterior_predictions import around, predicted_around
+        from modefront.study.predictions import pieces, predicted
         from modefront.study.results import dataset
 
         problem, store, pareto = self.problem, self.store, self.pareto
@@ -186,11 +188,15 @@ class _Session:
             identifiability=self.identifiability,
             uncertainty=self.uncertainty,
             checkpoint=store,
-            expect=lambda more: self.expect(len(store.costs) + more),
+            expect=lambda more: self.expect(len(store.costs) + more + self.later),
         )
         extra = certified_points(problem, knowledge.points, store)
         data = dataset(problem, front, replace(knowledge, points=extra))
-        data = predicted(data, problem, self.predictions, self.seed, store, self.file)
+        asking = Asking(problem, self.predictions, self.seed, store, self.file)
+        near = around(data, asking, knowledge.posterior, self.uncertainty.draws)
+        more = pieces(self.predictions, data.sizes["point"] + near.models)
+        self.expect(len(store.costs) + more)
+        data = predicted_around(predicted(data, asking), asking, near)
         data.attrs |= self._attributes(front)
         return data
 
@@ -206,6 +212,7 @@ class _Session:
             "front_evaluations": along["eigenproblems"] + along["reduced"],
             "nbi_evaluations": by_nbi["eigenproblems"] + by_nbi["reduced"],
             "full_eigensolutions": total["eigenproblems"],
+            "prediction_eigensolutions": self.store.total("predict-")["eigenproblems"],
             "factorisations": total["factorisations"],
             "reduced_solutions": total["reduced"],
             "front_is_a_point": int(front.target is None),

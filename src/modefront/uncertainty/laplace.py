@@ -43,14 +43,19 @@ class Posterior:
 
     Attributes
     ----------
-    covariance : (p, p) of the parameters; 0 for those that are held
+    axes : (p, m) principal axes over the ranges of the parameters, one standard deviation long
     held : (p,) parameters that a bound holds
     free : (p, d) directions that keep their prior, orthonormal over the ranges of the parameters
     """
 
-    covariance: Floats
+    axes: Floats
     held: Bools
     free: Floats
+
+    @property
+    def covariance(self) -> Floats:
+        """Covariance (p, p) of the parameters; 0 for those that are held."""
+        return self.axes @ self.axes.T
 
 
 def laplace(problem: Problem, point: SecondOrder, a: Floats) -> Posterior | None:
@@ -72,5 +77,4 @@ def laplace(problem: Problem, point: SecondOrder, a: Floats) -> Posterior | None
     lam, V = np.linalg.eigh(half)
     if lam.size and lam[0] <= 0:
         return None
-    root = B @ V / np.sqrt(lam)
-    return Posterior(root @ root.T, held, span[:, None] * free)
+    return Posterior(B @ V / np.sqrt(lam), held, span[:, None] * free)

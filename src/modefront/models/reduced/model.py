@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -127,12 +127,13 @@ class ReducedModel:
 
     def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
         """Return the full model between ``ports``; see `modefront.models.base.Model`."""
-        before = self.full.counts.eigenproblems, self.full.counts.factorisations
+        before, own = replace(self.full.counts), self.full.counts
         try:
             return self.full.transfer(theta, count, ports)
         finally:
-            self.counts.eigenproblems += self.full.counts.eigenproblems - before[0]
-            self.counts.factorisations += self.full.counts.factorisations - before[1]
+            self.counts.eigenproblems += own.eigenproblems - before.eigenproblems
+            self.counts.factorisations += own.factorisations - before.factorisations
+            self.counts.full_time += own.full_time - before.full_time
 
     @property
     def unused(self) -> tuple[str, ...]:

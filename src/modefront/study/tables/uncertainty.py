@@ -22,10 +22,12 @@ class Uncertainty:
     source : standard deviations, the scatter of several data sets, neither, or, with ``"auto"``,
         the first of these that the data have
     bootstrap : how often the data are drawn again and all points solved with them
+    draws : models drawn from the posterior that predictions are made with
     """
 
     source: Literal["auto", "std", "sets", "none"] = "auto"
     bootstrap: int = 0
+    draws: int = 0
 
     def of(self, data: ModalData) -> Source | None:
         """Return the source that is used with these data.
@@ -49,8 +51,11 @@ def read_uncertainty(root: Table, data: ModalData | None) -> Uncertainty:
         return Uncertainty()
     source = table.choice("source", SOURCES, default=Uncertainty.source)
     bootstrap = table.integer("bootstrap", 0, 10**6, default=Uncertainty.bootstrap)
+    draws = table.integer("draws", 0, 10**6, default=Uncertainty.draws)
     table.close()
-    found = Uncertainty(source, bootstrap)
+    if draws and not root.values.get("predict"):
+        table.fault("draws", "0 without predictions", str(draws))
+    found = Uncertainty(source, bootstrap, draws)
     if data is None:
         return found
     there = available(data)

@@ -1,0 +1,89 @@
+"""Asks models for predictions, a piece of work for each answer.
+
+Every model is shaken by the same random numbers, so that what differs is the models' doing.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.errors import Fault, InputError, ModelError, UnfinishedError
+from modefront.predict import Passage, Prediction
+from modefront.reliability import StepError
+from modefront.residuals.problem import UpdatingProblem
+from modefront.study.run import sequence
+from modefront.study.store import Arrays, Store, hash_text
+
+FAILED = "failed"
+"""Name of the array that is there where a model could not be solved."""
+
+
+@dataclass(frozen=True)
+class Asking:
+    """What is asked of models, and where the answers are kept.
+
+    Attributes
+    ----------
+    file : the study's, for what is said of it
+    """
+
+    problem: UpdatingProblem
+    predictions: Sequence[Prediction]
+    seed: int
+    store: Store
+    file: Path
+
+    def point(self, one: Prediction, label: str, theta: Floats) -> Arrays:
+        """Return the prediction of a model that was found.
+
+        Raises InputError where the time step is too long for it, and UnfinishedError where it has
+        not the modes that are wanted.
+        """
+        return self._piece(one, label, partial(self._found, one, label, self._ask(one), theta))
+
+    def halved(self, one: Passage, label: str, theta: Floats) -> Arrays:
+        """Return what half the time step does to the probabilities of such a model."""
+        ask = partial(one.halved, seed=self._numbers(one))
+        return self._piece(one, label, partial(self._found, one, label, ask, theta), "-half-step")
+
+    def other(self, one: Prediction, label: str, theta: Floats) -> Arrays:
+        """Return the prediction of any other model; `FAILED` and NaN where it cannot be had."""
+        return self._piece(one, label, partial(self._tried, one, theta), what="-posterior")
+
+    def _ask(self, one: Prediction) -> Callable[..., Arrays]:
+        return partial(one.at, seed=self._numbers(one)) if isinstance(one, Passage) else one.at
+
+    def _numbers(self, one: Passage) -> np.random.SeedSequence:
+        return sequence(self.seed, f"predict-{one.name}")
+
+    def _piece(
+        self, one: Prediction, label: str, answer: Callable[[], Arrays], what: str = ""
+    ) -> Arrays:
+        """Keep an answer; the name tells apart all that it depends on."""
+        mark = hash_text(f"{one!r} {self.seed}")[:8]
+        return self.store.arrays(f"predict-{one.name}{what}-{label}-{mark}", answer)
+
+    def _found(
+        self, one: Prediction, label: str, ask: Callable[..., Arrays], theta: Floats
+    ) -> Arrays:
+        try:
+            return ask(self.problem, theta)
+        except StepError as error:
+            place = f"[[predict.first_passage]] ({one.name!r}) step"
+            expected = f"at most {error.limit:.4g} s, a quarter of the shortest period of '{label}'"
+            fault = Fault(str(self.file), place, expected, f"{error.found:g}")
+            raise InputError(fault) from None
+        except ModelError as error:
+            raise UnfinishedError(f"no prediction '{one.name}' of '{label}': {error}") from None
+
+    def _tried(self, one: Prediction, theta: Floats) -> Arrays:
+        try:
+            return self._ask(one)(self.problem, theta)
+        except (StepError, ModelError):
+            return {**dict.fromkeys(one.quantities, np.full(one.size, np.nan)), FAILED: np.ones(1)}
