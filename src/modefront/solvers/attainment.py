@@ -73,6 +73,16 @@ _GUESS = Options(iterations=12)
 """A wrong active set may have no solution: it is not tried for long."""
 
 
+def active_bounds(shares: Floats) -> Bools:
+    """Return which bounds are active, from the weights times the normal (n,): the others have rho.
+
+    >>> active_bounds(np.array([0.3, SHARE, 0.7])).tolist()
+    [True, False, True]
+    """
+    active: Bools = shares > 2 * SHARE
+    return active
+
+
 @dataclass(frozen=True)
 class Attainment:
     """The programmes of three and more objectives; ``thetas`` (n, p) are the edges."""
@@ -118,7 +128,7 @@ class Attainment:
 
         From an edge, where derivatives often vanish, it is sought from between the edges too.
         """
-        found = self._solve(problem, beta, start)
+        found = replace(self._solve(problem, beta, start), beta=beta)
         span = problem.upper - problem.lower
         if (np.abs(self.thetas - start.at.theta) > EDGE * span).any(axis=1).all():
             return found
@@ -128,7 +138,7 @@ class Attainment:
         evaluations = found.evaluations + other.evaluations + 1
         key = (not found.converged, self.value(beta, found.at.J))
         better = (not other.converged, self.value(beta, other.at.J)) < key
-        return replace(other if better else found, evaluations=evaluations)
+        return replace(other if better else found, beta=beta, evaluations=evaluations)
 
     def _solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         if not start.at.feasible:

@@ -23,7 +23,7 @@ from modefront.solvers.advance import simplex
 from modefront.solvers.checkpoint import Checkpoint
 from modefront.solvers.edges import EXACT, near_best
 from modefront.solvers.nbi import nbi
-from modefront.solvers.payoff import payoff
+from modefront.solvers.payoff import Payoff, payoff
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
 
@@ -39,11 +39,13 @@ class Identifiable:
     ----------
     flat : (n,) how many points of the whole front lie in the flat part at each edge, besides it
     ends : where the part ends, one solution an objective
+    target : the simplex between them; None where the part is one point
     points : along it; empty where it is one point
     """
 
     flat: Ints
     ends: Sequence[Solution]
+    target: Payoff | None
     points: Sequence[Solution]
 
 
@@ -101,7 +103,7 @@ def identifiable_part(
         return None
     target = payoff(ends, sizes)
     if target is None:
-        return Identifiable(flat, ends, [])
+        return Identifiable(flat, ends, None, [])
     along = nbi(
         problem,
         ends,
@@ -109,4 +111,4 @@ def identifiable_part(
         simplex(n, divisions),
         lambda name, compute: checkpoint(f"identifiable-{name}", compute),
     )
-    return Identifiable(flat, ends, along)
+    return Identifiable(flat, ends, target, along)

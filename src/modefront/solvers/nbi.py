@@ -20,7 +20,7 @@ scale     (n,) range of each objective over the edges
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -53,11 +53,18 @@ class Projection:
 
     def solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         """Return the farthest point along the normal, from a start."""
-        return solve(problem, self.target.subproblem(beta), start)
+        return replace(solve(problem, self.target.subproblem(beta), start), beta=beta)
 
     def value(self, beta: Floats, J: Floats) -> float:
         """Return -t."""
         return self.target.subproblem(beta).value(J)
+
+
+def programmes(target: Payoff, edges: Sequence[Solution]) -> Projection | Attainment:
+    """Return the programmes of the points of a simplex between edges."""
+    if len(edges) == 2:
+        return Projection(target)
+    return Attainment(target, np.array([edge.at.theta for edge in edges]))
 
 
 def nbi(
@@ -74,10 +81,10 @@ def nbi(
     each may lie on a part of the front of its own. Solutions may be dominated, and those that did
     not converge say so in their status.
     """
+    solved = programmes(target, edges)
     if len(edges) == 2:
-        return advance(problem, Projection(target), edges, lattice, checkpoint)
+        return advance(problem, solved, edges, lattice, checkpoint)
     known = [*edges, *(one for one in minima if all(one is not edge for edge in edges))]
     optimal = nondominated(np.array([one.at.J for one in known]))
     others = [known[i] for i in np.flatnonzero(optimal) if i >= len(edges)]
-    programmes = Attainment(target, np.array([edge.at.theta for edge in edges]))
-    return advance(problem, programmes, [*edges, *others], lattice, checkpoint)
+    return advance(problem, solved, [*edges, *others], lattice, checkpoint)

@@ -22,27 +22,42 @@ optimal weights     :math:`w = a / J`:
                     (\partial J\, \delta\theta + \delta J)`
 level               min of the others at :math:`J_i = v`: only :math:`w_i` changes, and
                     :math:`\partial J_i \delta\theta + \delta J_i = \delta v`
-boundary (NBI)      :math:`J = J^* + P (\beta - t e)` with the edges E as columns,
-                    :math:`J^* = \operatorname{diag} E`, :math:`P = E - J^* e^T`, and
-                    :math:`w^T P e = 1`:
-                    :math:`\partial J \delta\theta + P e\, \delta t = \delta J^* - \delta J
-                    + \delta P (\beta - t e)`,
-                    :math:`(P e)^T \delta w = -(\delta P\, e)^T w`
+boundary (NBI)      :math:`J_A = (J^* + P (\beta + \tau e))_A` on the active bounds A, with
+                    :math:`n = P e` and :math:`w_A^T n_A = 1`, and :math:`w_i = \rho / n_i`
+                    on the others:
+                    :math:`(\partial J \delta\theta - n\, \delta\tau)_A = (\delta J^* -
+                    \delta J + \delta P (\beta + \tau e))_A`,
+                    :math:`n_A^T \delta w_A = -w_A^T \delta n_A`,
+                    :math:`\delta w_i = -\rho\, \delta n_i / n_i^2`
 ==================  =====================================================================
 
-So points of the front also follow the edges, which scatter themselves. A parameter that is pressed
-against a bound stays there. Directions in which no residual changes are left out and
-named: nothing holds the model there.
+With the edges E as columns, :math:`J^* = \operatorname{diag} E` and :math:`P = E - J^* e^T`; of the
+simplex of the ranges, P is diagonal. So points of the front also follow the edges, which scatter
+themselves; :math:`\beta` is fixed. Of two groups all bounds are active, since they are equations;
+of more, those whose weight is more than that of the share :math:`\rho`
+(`modefront.solvers.attainment`).
+
+A parameter that is pressed against a bound stays there. Directions in which no residual changes are
+left out and named: nothing holds the model there.
+
+All this holds as long as no active set changes and the solution stays a minimum. What says that
+either may be otherwise is returned with the scatter (`Doubt`): each inequality that decides an
+active set - a parameter within its bounds, the slope that presses it against one, the weight of an
+active bound of an objective, the slack of another one - is a number with a linearised standard
+deviation of its own, and should be more than that away from zero; and the second derivatives along
+what the equations leave open, with those of f, should all be positive.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from enum import Enum
 
 import numpy as np
 import scipy.linalg
 
 from modefront._typing import Bools, Floats
+from modefront.solvers.attainment import SHARE, active_bounds
 from modefront.solvers.curvature import SecondOrder
 from modefront.solvers.problem import Problem
 from modefront.uncertainty.noise import Noise
@@ -57,6 +72,18 @@ PRESSED = 1e-6
 """Slope of the Lagrangian at a bound, over the slopes of its terms, from which the bound holds."""
 
 
+class Doubt(Enum):
+    """Why a linearisation may say nothing of how far a point scatters."""
+
+    SADDLE = "second derivatives do not hold the model: the front jumps or folds near it"
+    MEETS = "within one standard deviation a parameter meets its bound"
+    LEAVES = "within one standard deviation a parameter comes off its bound"
+    SWITCHES = "within one standard deviation other objectives decide where the point lies"
+    ENDS = "within one standard deviation a piece of the front ends"
+    RIVAL = "within one standard deviation another minimum is as good"
+    UNSOLVED = "the solution has not converged"
+
+
 @dataclass(frozen=True)
 class Scatter:
     """Changes of a solution by each source of error, of standard deviation one.
@@ -65,14 +92,18 @@ class Scatter:
     ----------
     theta : (sources, p) changes of the parameters
     J : (sources, n) changes of the objectives at the solution, of its own data
+    w : (sources, n) changes of the weights of the objectives
     held : (p,) parameters that a bound holds
     free : (p, d) directions that no data determine, orthonormal over the ranges
+    doubts : why it may not be so
     """
 
     theta: Floats
     J: Floats
+    w: Floats
     held: Bools
     free: Floats
+    doubts: tuple[Doubt, ...]
 
     @property
     def covariance(self) -> Floats:
@@ -113,36 +144,62 @@ def spaces(problem: Problem, point: SecondOrder, w: Floats, held: Bools) -> tupl
 
 
 @dataclass(frozen=True)
-class Conditions:
-    r"""What a programme says of the changes: C dtheta + D dw + e dt = f, g^T dw = h.
+class Bounds:
+    """Bounds c_i <= tau on objectives.
 
-    Arrays are C (n, p), D (n, n), f (sources, n), and e (n, k), g (n, k), h (sources, k) with k
-    either 0 or 1.
+    Attributes
+    ----------
+    active : (n,) those that hold as equations
+    n, dn : (n,) and (sources, n) the normal and its changes
+    slack : (n,) tau n - n c
+    moved : (sources, n) changes of the slack at this model and this tau
+    """
+
+    active: Bools
+    n: Floats
+    dn: Floats
+    slack: Floats
+    moved: Floats
+
+    def switch(self, w: Floats, dw: Floats, dJ: Floats, dtau: Floats) -> bool:
+        """Return whether errors of one standard deviation change the active set."""
+        weight = w * self.n - SHARE
+        hardly = weight <= _std(dw * self.n + w * self.dn)
+        close = self.slack <= _std(self.moved - dJ + dtau * self.n)
+        return bool(np.where(self.active, hardly, close).any())
+
+
+@dataclass(frozen=True)
+class Conditions:
+    r"""What a programme says of the changes: C dtheta + D dw - e dtau = f, e^T dw = h.
+
+    Arrays are C (n, p), D (n,), a diagonal of ones and zeros, f (sources, n), and e (n, k), h
+    (sources, k) with k either 0 or 1. D is 0 for equations. ``bounds`` are on the objectives,
+    where they are no equations.
     """
 
     C: Floats
     D: Floats
     e: Floats
     f: Floats
-    g: Floats
     h: Floats
+    bounds: Bounds | None = None
 
 
 def _open(C: Floats, D: Floats, f: Floats) -> Conditions:
-    none = np.zeros((len(D), 0))
-    return Conditions(C, D, none, f, none, np.zeros((len(f), 0)))
+    return Conditions(C, D, np.zeros((len(D), 0)), f, np.zeros((len(f), 0)))
 
 
 def given_weights(noise: Noise) -> Conditions:
     """Return the conditions of weights that stay."""
     _, n, p = noise.dJ.shape
-    return _open(np.zeros((n, p)), np.eye(n), np.zeros(noise.J.shape))
+    return _open(np.zeros((n, p)), np.ones(n), np.zeros(noise.J.shape))
 
 
 def optimal_weights(point: SecondOrder, a: Floats, noise: Noise) -> Conditions:
     """Return the conditions of w = a / J."""
     second = a / point.at.J**2
-    return _open(second[:, None] * point.at.dJ, np.eye(a.size), -second * noise.J)
+    return _open(second[:, None] * point.at.dJ, np.ones(a.size), -second * noise.J)
 
 
 def level(point: SecondOrder, objective: int, dv: Floats, noise: Noise) -> Conditions:
@@ -150,34 +207,57 @@ def level(point: SecondOrder, objective: int, dv: Floats, noise: Noise) -> Condi
     at = np.arange(point.at.J.size) == objective
     f = np.zeros(noise.J.shape)
     f[:, objective] = dv - noise.J[:, objective]
-    return _open(at[:, None] * point.at.dJ, np.diag(~at).astype(float), f)
+    return _open(at[:, None] * point.at.dJ, (~at).astype(float), f)
+
+
+@dataclass(frozen=True)
+class Target:
+    """The simplex of normal-boundary intersection, and its changes with the data.
+
+    Attributes
+    ----------
+    utopia, dutopia : (n,) and (sources, n) the least objectives
+    P, dP : (n, n) and (sources, n, n) the corners above them, one column each
+    """
+
+    utopia: Floats
+    P: Floats
+    dutopia: Floats
+    dP: Floats
+
+
+def between(E: Floats, dE: Floats) -> Target:
+    """Return the simplex between edges, (n, n) with a column an edge, that change by (., n, n)."""
+    utopia, dutopia = np.diag(E), np.einsum("mii->mi", dE)
+    return Target(utopia, E - utopia[:, None], dutopia, dE - dutopia[:, :, None])
+
+
+def over_ranges(E: Floats, dE: Floats, top: Floats, dtop: Floats) -> Target:
+    """Return the simplex of the ranges up to ``top`` (n,), which changes by (sources, n)."""
+    utopia, dutopia = np.diag(E), np.einsum("mii->mi", dE)
+    dP = (dtop - dutopia)[:, :, None] * np.eye(top.size)
+    return Target(utopia, np.diag(top - utopia), dutopia, dP)
 
 
 def boundary(
-    point: SecondOrder, w: Floats, E: Floats, dE: Floats, noise: Noise
+    point: SecondOrder, w: Floats, target: Target, beta: Floats, noise: Noise
 ) -> tuple[Floats, Conditions]:
     """Return the weights in their right size and the conditions of a point of NBI.
 
-    ``E`` (n, n) are the objectives of the edges, one column an edge, ``dE`` (sources, n, n) their
-    changes. Raises LinAlgError where the edges do not span a simplex.
+    ``beta`` (n,) is the point of the simplex that it was projected from.
     """
-    n = len(E)
-    utopia = np.diag(E)
-    P = E - utopia[:, None]
-    shifted = np.linalg.solve(P, point.at.J - utopia)  # beta - t e
-    dutopia = np.einsum("mii->mi", dE)
-    dP = dE - dutopia[:, :, None]
-    normal = P.sum(axis=1)
-    w = w / (w @ normal)
-    f = dutopia - noise.J + dP @ shifted
-    return w, Conditions(
-        point.at.dJ,
-        np.zeros((n, n)),
-        normal[:, None],
-        f,
-        normal[:, None],
-        -(dP.sum(axis=2) @ w)[:, None],
-    )
+    n = target.P.sum(axis=1)
+    dn = target.dP.sum(axis=2)
+    active = np.ones(n.size, dtype=np.bool_) if n.size == 2 else active_bounds(w * n)
+    w = w / (w[active] @ n[active])
+    above = point.at.J - target.utopia - target.P @ beta  # n c
+    tau = float((above / n)[active].mean())
+    moved = target.dutopia + target.dP @ (beta + tau) - noise.J
+    f = np.where(active, moved, -SHARE * dn / n**2)
+    e = np.where(active, n, 0.0)[:, None]
+    h = -(dn[:, active] @ w[active])[:, None]
+    bounds = None if n.size == 2 else Bounds(active, n, dn, tau * n - above, moved)
+    return w, Conditions(active[:, None] * point.at.dJ, (~active).astype(float), e, f, h, bounds)
 
 
 def scatter(
@@ -189,20 +269,60 @@ def scatter(
     Q, free = spaces(problem, point, w, held)
     B = span[:, None] * Q  # parameters for unit changes of what is determined
     dJ = at.dJ @ B
-    W = B.T @ np.tensordot(w, point.H, axes=1) @ B
+    second = np.tensordot(w, point.H, axes=1)
+    W = B.T @ second @ B
     c = conditions
-    k = c.e.shape[1]
+    n, k = c.e.shape
     q = Q.shape[1]
     system = np.block(
         [
             [W, dJ.T, np.zeros((q, k))],
-            [c.C @ B, c.D, c.e],
-            [np.zeros((k, q)), c.g.T, np.zeros((k, k))],
+            [c.C @ B, np.diag(c.D), -c.e],
+            [np.zeros((k, q)), c.e.T, np.zeros((k, k))],
         ]
     )
-    right = np.hstack([-(np.einsum("mnp,n->mp", noise.dJ, w) @ B), c.f, c.h])
-    changes = _solve_scaled(system, right.T)[:q].T @ B.T
-    return Scatter(changes, noise.J + changes @ at.dJ.T, held, span[:, None] * free)
+    slope = np.einsum("mnp,n->mp", noise.dJ, w)
+    x = _solve_scaled(system, np.hstack([-slope @ B, c.f, c.h]).T).T
+    theta, dw, dtau = x[:, :q] @ B.T, x[:, q : q + n], x[:, q + n :]
+    J = noise.J + theta @ at.dJ.T
+    slope = (slope + theta @ second + dw @ at.dJ) * span
+    doubts = [
+        (Doubt.SADDLE, not _is_minimum(W, c.C @ B, dJ, c)),
+        (Doubt.MEETS, _meets(problem, at.theta, theta, held)),
+        (Doubt.LEAVES, bool((np.abs(w @ at.dJ * span) <= _std(slope))[held].any())),
+        (Doubt.SWITCHES, c.bounds is not None and c.bounds.switch(w, dw, theta @ at.dJ.T, dtau)),
+    ]
+    why = tuple(doubt for doubt, there in doubts if there)
+    return Scatter(theta, J, dw, held, span[:, None] * free, why)
+
+
+def _is_minimum(W: Floats, C: Floats, dJ: Floats, c: Conditions) -> bool:
+    """Return whether second derivatives are positive along all that equations leave open.
+
+    Weights that follow the solution, dw = f - C dtheta, bring the second derivatives of f with
+    them.
+    """
+    equations = c.D == 0
+    L = W - dJ[~equations].T @ C[~equations]
+    Z = np.eye(len(W))
+    if equations.any():
+        rows = np.hstack([C, c.e])[equations]
+        rows = rows / np.linalg.norm(rows, axis=1, keepdims=True)
+        C, e = rows[:, : len(W)], rows[:, len(W) :]
+        Z = scipy.linalg.null_space(scipy.linalg.null_space(e.T).T @ C if e.size else C)
+    return bool((np.linalg.eigvalsh(Z.T @ (L + L.T) @ Z) > 0).all())
+
+
+def _meets(problem: Problem, theta: Floats, changes: Floats, held: Bools) -> bool:
+    """Return whether a parameter that is not held is less than its scatter from a bound."""
+    room = np.minimum(theta - problem.lower, problem.upper - theta)
+    moves = np.abs(changes).max(axis=0, initial=0.0) > 0
+    return bool((room < _std(changes))[~held & moves].any())
+
+
+def _std(changes: Floats) -> Floats:
+    """Return the standard deviations over the sources, which are the first dimension."""
+    return np.asarray(np.sqrt((changes**2).sum(axis=0)))
 
 
 def _solve_scaled(A: Floats, b: Floats) -> Floats:
