@@ -1,5 +1,6 @@
 """What each method finds on the three-story building, and what it misses."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -138,3 +139,23 @@ def test_perfect_data_are_one_model_for_every_method(method: str) -> None:
     assert np.isnan(found.attrs["hypervolume"])
     (edge,) = found["theta"].values[found["label"].values == "edge-frequencies"]
     assert edge == pytest.approx([1.2, 0.9, 1.1], abs=1e-5)
+
+
+def test_scatter_next_to_the_end_of_a_piece_is_doubtful() -> None:
+    base = problem("c0")
+    known = replace(
+        base.data,
+        frequency_std=0.005 * base.data.frequency,
+        shape_std=0.02 * np.abs(base.data.shape).max(axis=2, keepdims=True) + 0 * base.data.shape,
+    )
+    data = mf.solve(replace(base, data=known), points=12, seed=1)
+    J, reach = data["objective"].values, data["objective_std"].values
+    ends = data["end_objective"].values
+    assert len(ends) == 2
+    near = (np.abs(J[:, None] - ends) <= reach[:, None]).all(axis=2).any(axis=1)
+    near &= np.char.startswith(data["label"].values.astype(str), "nbi-")
+    doubts = data["scatter_doubt"].values.tolist()
+    assert [text for text, there in zip(doubts, near, strict=True) if there] == ["ends"] * 2
+    assert set(doubts) == {"", "ends"}
+    named = ", ".join(data["label"].values[near])
+    assert any(f"scatter is doubtful at {named}: a piece" in x for x in data["finding"].values)

@@ -22,6 +22,7 @@ from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution, begin, solve
+from modefront.study.doubtful import with_neighbours
 from modefront.study.run import Front, Labelled, generator
 from modefront.study.tables.identifiability import Identifiability
 from modefront.study.tables.uncertainty import Uncertainty
@@ -124,7 +125,8 @@ def learn(
 
     scatter: Mapping[str, Scatter] = {}
     if source is not None and front.scale is not None:
-        scatter = front_scatter(problem, known, a, sizes, differentiate)
+        alone = front_scatter(problem, known, a, sizes, differentiate)
+        scatter = with_neighbours(front, known, alone, a, sizes)
     posterior = None
     if OPTIMAL in labels:
         local = differentiate(OPTIMAL, labels[OPTIMAL], None)

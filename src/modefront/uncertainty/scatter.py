@@ -40,18 +40,13 @@ of more, those whose weight is more than that of the share :math:`\rho`
 A parameter that is pressed against a bound stays there. Directions in which no residual changes are
 left out and named: nothing holds the model there.
 
-All this holds as long as no active set changes and the solution stays a minimum. What says that
-either may be otherwise is returned with the scatter (`Doubt`): each inequality that decides an
-active set - a parameter within its bounds, the slope that presses it against one, the weight of an
-active bound of an objective, the slack of another one - is a number with a linearised standard
-deviation of its own, and should be more than that away from zero; and the second derivatives along
-what the equations leave open, with those of f, should all be positive.
+All this holds as long as no active set changes and the solution goes on to be a minimum; what says
+that it may not is returned with it (`modefront.uncertainty.doubts`).
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from enum import Enum
 
 import numpy as np
 import scipy.linalg
@@ -60,6 +55,7 @@ from modefront._typing import Bools, Floats
 from modefront.solvers.attainment import SHARE, active_bounds
 from modefront.solvers.curvature import SecondOrder
 from modefront.solvers.problem import Problem
+from modefront.uncertainty.doubts import Doubt, std
 from modefront.uncertainty.noise import Noise
 
 FLAT = 1e-12
@@ -70,18 +66,6 @@ BENT = 1e-5
 
 PRESSED = 1e-6
 """Slope of the Lagrangian at a bound, over the slopes of its terms, from which the bound holds."""
-
-
-class Doubt(Enum):
-    """Why a linearisation may say nothing of how far a point scatters."""
-
-    SADDLE = "second derivatives do not hold the model: the front jumps or folds near it"
-    MEETS = "within one standard deviation a parameter meets its bound"
-    LEAVES = "within one standard deviation a parameter comes off its bound"
-    SWITCHES = "within one standard deviation other objectives decide where the point lies"
-    ENDS = "within one standard deviation a piece of the front ends"
-    RIVAL = "within one standard deviation another minimum is as good"
-    UNSOLVED = "the solution has not converged"
 
 
 @dataclass(frozen=True)
@@ -164,8 +148,8 @@ class Bounds:
     def switch(self, w: Floats, dw: Floats, dJ: Floats, dtau: Floats) -> bool:
         """Return whether errors of one standard deviation change the active set."""
         weight = w * self.n - SHARE
-        hardly = weight <= _std(dw * self.n + w * self.dn)
-        close = self.slack <= _std(self.moved - dJ + dtau * self.n)
+        hardly = weight <= std(dw * self.n + w * self.dn)
+        close = self.slack <= std(self.moved - dJ + dtau * self.n)
         return bool(np.where(self.active, hardly, close).any())
 
 
@@ -289,7 +273,7 @@ def scatter(
     doubts = [
         (Doubt.SADDLE, not _is_minimum(W, c.C @ B, dJ, c)),
         (Doubt.MEETS, _meets(problem, at.theta, theta, held)),
-        (Doubt.LEAVES, bool((np.abs(w @ at.dJ * span) <= _std(slope))[held].any())),
+        (Doubt.LEAVES, bool((np.abs(w @ at.dJ * span) <= std(slope))[held].any())),
         (Doubt.SWITCHES, c.bounds is not None and c.bounds.switch(w, dw, theta @ at.dJ.T, dtau)),
     ]
     why = tuple(doubt for doubt, there in doubts if there)
@@ -317,12 +301,7 @@ def _meets(problem: Problem, theta: Floats, changes: Floats, held: Bools) -> boo
     """Return whether a parameter that is not held is less than its scatter from a bound."""
     room = np.minimum(theta - problem.lower, problem.upper - theta)
     moves = np.abs(changes).max(axis=0, initial=0.0) > 0
-    return bool((room < _std(changes))[~held & moves].any())
-
-
-def _std(changes: Floats) -> Floats:
-    """Return the standard deviations over the sources, which are the first dimension."""
-    return np.asarray(np.sqrt((changes**2).sum(axis=0)))
+    return bool((room < std(changes))[~held & moves].any())
 
 
 def _solve_scaled(A: Floats, b: Floats) -> Floats:
