@@ -53,16 +53,13 @@ import scipy.linalg
 
 from modefront._typing import Bools, Floats
 from modefront.solvers.attainment import SHARE, active_bounds
-from modefront.solvers.curvature import SecondOrder
+from modefront.solvers.curvature import ERROR, SecondOrder
 from modefront.solvers.problem import Problem
 from modefront.uncertainty.doubts import Doubt, std
 from modefront.uncertainty.noise import Noise
 
 FLAT = 1e-12
 """Eigenvalue over the greatest one below which a direction changes no residual."""
-
-BENT = 1e-5
-"""Second derivative over the greatest one below which it is the error of differences."""
 
 PRESSED = 1e-6
 """Slope of the Lagrangian at a bound, over the slopes of its terms, from which the bound holds."""
@@ -123,7 +120,7 @@ def spaces(problem: Problem, point: SecondOrder, w: Floats, held: Bools) -> tupl
     flat = lam <= FLAT * max(float(lam.max(initial=0.0)), np.finfo(float).tiny)
     N = basis[:, flat]
     mu, U = np.linalg.eigh(N.T @ second @ N)
-    bent = np.abs(mu) > BENT * np.abs(second).max()
+    bent = np.abs(mu) > ERROR * np.abs(second).max()
     return np.hstack([basis[:, ~flat], N @ U[:, bent]]), N @ U[:, ~bent]
 
 
