@@ -107,7 +107,9 @@ def pareto_front(
     search = (search or Search()) if known is None else Search(0, 0, 0)
     n = len(problem.objectives)
     lattice = simplex(n, (points or default_points(n)) - 1) if n > 1 else None
-    subproblems = len(lattice.counts) if lattice and method not in EVOLUTIONARY else 1
+    subproblems = len(lattice.counts) if lattice else 1
+    if lattice and method in EVOLUTIONARY:
+        subproblems = max(evaluations // population, 1)
     expect(4 + 2 * n + len(given) + subproblems)
 
     def again(name: str, solutions: Sequence[Solution]) -> Sequence[Solution]:
@@ -169,8 +171,7 @@ def pareto_front(
     if target is not None and lattice is not None:
         if method in EVOLUTIONARY:
             rng = generator(seed, method)
-            evolved = partial(evolve_front, problem, method, population, evaluations, rng)
-            along = checkpoint(f"{method}-population", evolved)
+            along = evolve_front(problem, method, population, evaluations, rng, checkpoint)
         elif method == "weights":
             along = weight_sweep(problem, bests, target.scale, lattice, checkpoint)
         else:
