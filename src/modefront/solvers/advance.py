@@ -90,9 +90,8 @@ class Programmes(Protocol):
     def label(self) -> str:
         """What the points are called."""
 
-    @property
-    def beyond(self) -> bool:
-        """Whether points beyond the simplex are wanted, as far as the front goes."""
+    def goes_on(self, J: Floats, /) -> bool:
+        """Return whether points beyond the simplex are wanted next to one with these objectives."""
 
     @property
     def scale(self) -> Floats:
@@ -150,8 +149,9 @@ def advance(
     def settle(place: Place, solution: Solution, of: int) -> None:
         solved[place], origin[place] = solution, of
         renewed[place] += 1
-        here = programmes.beyond and place == _nearest(
-            divisions * programmes.place(of, solution.at.J), divisions
+        J = solution.at.J
+        here = programmes.goes_on(J) and place == _nearest(
+            divisions * programmes.place(of, J), divisions
         )
         queue.extend((near, place) for near in neighbours(place) if here or min(near) >= 0)
 

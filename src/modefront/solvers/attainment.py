@@ -85,12 +85,15 @@ def active_bounds(shares: Floats) -> Bools:
 
 @dataclass(frozen=True)
 class Attainment:
-    """The programmes of three and more objectives; ``thetas`` (n, p) are the edges."""
+    """The programmes of three and more objectives.
+
+    ``thetas`` (n, p) are the edges; below ``floor`` (n,), if there is one, no more is wanted.
+    """
 
     target: Payoff
     thetas: Floats
+    floor: Floats | None = None
     label: str = "nbi"
-    beyond: bool = True
 
     @property
     def scale(self) -> Floats:
@@ -101,6 +104,10 @@ class Attainment:
     def r(self) -> Floats:
         """The normal, towards greater objectives, shape (n,)."""
         return np.asarray(self.target.Phi.sum(axis=1))
+
+    def goes_on(self, J: Floats) -> bool:
+        """Return whether no objective is below its floor."""
+        return self.floor is None or bool((self.floor <= J).all())
 
     def place(self, _: int, J: Floats) -> Floats:
         """Return the coordinates (n,) of the point of the plane that is projected onto J."""

@@ -40,12 +40,15 @@ class Projection:
 
     target: Payoff
     label: str = "nbi"
-    beyond: bool = False
 
     @property
     def scale(self) -> Floats:
         """Range of each objective over the edges, shape (n,)."""
         return self.target.scale
+
+    def goes_on(self, _: Floats) -> bool:
+        """Return False: of two objectives, the front ends at the edges."""
+        return False
 
     def place(self, _: int, J: Floats) -> Floats:
         """Return the coordinates (n,) of the point that is projected onto J."""
@@ -60,11 +63,13 @@ class Projection:
         return self.target.subproblem(beta).value(J)
 
 
-def programmes(target: Payoff, edges: Sequence[Solution]) -> Projection | Attainment:
-    """Return the programmes of the points of a simplex between edges."""
+def programmes(
+    target: Payoff, edges: Sequence[Solution], floor: Floats | None = None
+) -> Projection | Attainment:
+    """Return the programmes of the points of a simplex between edges; see `nbi`."""
     if len(edges) == 2:
         return Projection(target)
-    return Attainment(target, np.array([edge.at.theta for edge in edges]))
+    return Attainment(target, np.array([edge.at.theta for edge in edges]), floor)
 
 
 def nbi(
@@ -74,14 +79,16 @@ def nbi(
     lattice: Simplex,
     checkpoint: Checkpoint = compute_always,
     minima: Sequence[Solution] = (),
+    floor: Floats | None = None,
 ) -> list[Solution]:
     """Return one solution a point of the lattice, in its order, then those beyond the simplex.
 
     Of three and more objectives, other ``minima`` of single objectives are started from as well:
-    each may lie on a part of the front of its own. Solutions may be dominated, and those that did
+    each may lie on a part of the front of its own; and the lattice goes on beyond the simplex as
+    long as no objective is below its ``floor`` (n,). Solutions may be dominated, and those that did
     not converge say so in their status.
     """
-    solved = programmes(target, edges)
+    solved = programmes(target, edges, floor)
     if len(edges) == 2:
         return advance(problem, solved, edges, lattice, checkpoint)
     known = [*edges, *(one for one in minima if all(one is not edge for edge in edges))]

@@ -96,10 +96,10 @@ def learn(
     bests = [labels[f"edge-{name}"] for name in problem.objectives]
     along = [one for label, one in front.points if label.startswith("nbi-")]
     part = None
-    if identifiability.flat > 0 and len(along) > 1 and a.size == 2:
+    if identifiability.flat > 0 and len(along) > 1:
         part = identifiable_part(
             *(problem, along, bests, [one for _, one in front.points]),
-            *(identifiability.flat, sizes, (points or default_points(2)) - 1, checkpoint),
+            *(identifiability.flat, sizes, (points or default_points(a.size)) - 1, checkpoint),
         )
     extra = _labelled(problem, part, bests)
 
