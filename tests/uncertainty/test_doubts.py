@@ -13,16 +13,15 @@ from modefront.solvers.nbi import programmes
 from modefront.solvers.payoff import spanned
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import begin, solve
-from modefront.uncertainty.doubts import Doubt
-from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.scatter import (
-    Scatter,
+from modefront.uncertainty.conditions import (
     between,
     boundary,
     given_weights,
     optimal_weights,
-    scatter,
 )
+from modefront.uncertainty.doubts import Doubt
+from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.scatter import Scatter, scatter
 
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 

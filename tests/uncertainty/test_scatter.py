@@ -15,17 +15,16 @@ from modefront.solvers.nbi import programmes as programmes_of
 from modefront.solvers.payoff import spanned
 from modefront.solvers.scalarisation import Linear, LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Options, Solution, begin, solve
-from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.scatter import (
-    Scatter,
+from modefront.uncertainty.conditions import (
     between,
     boundary,
     given_weights,
     level,
     optimal_weights,
     over_ranges,
-    scatter,
 )
+from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.scatter import Scatter, scatter
 
 TIGHT = Options(step=1e-11, constraint=1e-12, reduction=0.0, iterations=200)
 

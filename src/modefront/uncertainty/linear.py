@@ -10,10 +10,7 @@ from modefront._typing import Floats
 from modefront.solvers.curvature import SecondOrder
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
-from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.points import Point, Role, edge_weights, in_order
-from modefront.uncertainty.scatter import (
-    Scatter,
+from modefront.uncertainty.conditions import (
     Target,
     between,
     boundary,
@@ -21,8 +18,10 @@ from modefront.uncertainty.scatter import (
     level,
     optimal_weights,
     over_ranges,
-    scatter,
 )
+from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.points import Point, Role, edge_weights, in_order
+from modefront.uncertainty.scatter import Scatter, scatter
 
 Local = tuple[SecondOrder, Noise]
 
