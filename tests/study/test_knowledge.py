@@ -292,6 +292,7 @@ def test_a_study_runs_on_with_the_same_digits_and_shows_all(
     out = capsys.readouterr().out
     for text in (
         "scatter by errors of the data: standard deviations, linearised",
+        "doubtful",
         "scatter over data drawn again: standard deviations",
         "posterior around optimal-weights",
         "k1 and k2 can be scaled together: no shape changes",

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
-from problems import Derivatives, Known, box
+from problems import Derivatives, Known, box, many_minima
 
 from modefront._typing import Floats
 from modefront.solvers.attainment import Attainment
 from modefront.solvers.curvature import SecondOrder, second_order
+from modefront.solvers.edges import Edge
 from modefront.solvers.nbi import programmes
 from modefront.solvers.payoff import spanned
 from modefront.solvers.scalarisation import weighted
-from modefront.solvers.sqp import begin, solve
+from modefront.solvers.sqp import Status, begin, solve
+from modefront.study.doubtful import with_neighbours
+from modefront.study.run import Front
 from modefront.uncertainty.conditions import (
     between,
     boundary,
@@ -21,6 +26,7 @@ from modefront.uncertainty.conditions import (
 )
 from modefront.uncertainty.doubts import Doubt
 from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.points import Point, Role
 from modefront.uncertainty.scatter import Scatter, scatter
 
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
@@ -124,3 +130,32 @@ def test_points_next_to_a_change_of_the_active_set_are_doubtful() -> None:
         counts.append(where.size)
     assert counts[0] <= 1
     assert counts[0] < counts[1] < counts[2]
+
+
+@pytest.mark.parametrize(
+    ("std", "status", "doubts"),
+    [
+        (19.0, Status.CONVERGED, ()),
+        (21.0, Status.CONVERGED, (Doubt.RIVAL,)),
+        (1.0, Status.STALLED, (Doubt.UNSOLVED,)),
+    ],
+)
+def test_another_model_that_fits_as_well_is_a_rival(
+    std: float, status: Status, doubts: tuple[Doubt, ...]
+) -> None:
+    """J1 vanishes at (1, -2) and (1, 2), J2 is 20 less at the first: errors of J2 decide."""
+    problem = box(many_minima, [-4, -4], [4, 4])
+    best, other = (begin(problem.evaluate(np.array([1.0, y]))) for y in (-2.0, 2.0))
+    assert other.at.J - best.at.J == pytest.approx([0, 20])
+    best = replace(best, status=status)
+    edges = [Edge(best, [best, other]), Edge(other, [other])]
+    front = Front("nbi", [("edge-J1", best)], edges, [], None, (True, False), None, [])
+    points = [
+        Point("edge-J1", best, Role("edge", objective=0)),
+        Point("nbi-1", best, Role("end", ("edge-J1",))),
+    ]
+    none = np.zeros((1, 2))
+    own = Scatter(none, np.array([[0.0, std]]), none, np.zeros(2, bool), none.T, ())
+    scatters = {"edge-J1": own, "nbi-1": own}
+    found = with_neighbours(front, points, scatters, np.ones(2), np.ones(2))
+    assert [one.doubts for one in found.values()] == [doubts, doubts]
