@@ -73,3 +73,46 @@ def test_an_objective_that_is_fitted_exactly_has_no_flat_part() -> None:
 def test_one_point_beside_the_edge_is_not_flat() -> None:
     J = np.array([[1.0, 3.0], [1.001, 2.0], [1.5, 0.5], [2.0, 0.4]])
     assert flat_points(J, np.array([1.0, 0.4]), 0.01, np.ones(2)).tolist() == [0, 0]
+
+
+def flat_three(theta: Floats) -> Derivatives:
+    """J3 hardly falls any more where J1 goes on to rise; J2 goes with its own parameter.
+
+    J1 = x**2 + y**2 / 4, J2 = x**2 / 4 + (y - 1)**2, J3 = 1 + exp(-4 x) + (y - 1 / 2)**2.
+    """
+    x, y = theta
+    e = np.exp(-4 * x)
+    J = np.array([x**2 + y**2 / 4, x**2 / 4 + (y - 1) ** 2, 1 + e + (y - 0.5) ** 2])
+    dJ = np.array([[2 * x, y / 2], [x / 2, 2 * (y - 1)], [-4 * e, 2 * (y - 0.5)]])
+    H = np.array([np.diag([2, 0.5]), np.diag([0.5, 2]), np.diag([16 * e, 2.0])])
+    return J, dJ, H
+
+
+def test_a_flat_patch_of_three_objectives_is_left_out() -> None:
+    problem = box(flat_three, [0, -1], [4, 2], 3)
+    sizes = np.ones(3)
+    found = [edge(problem, i, sizes, np.random.default_rng(i), Search(starts=3)) for i in range(3)]
+    edges = [one.best for one in found if one]
+    target = payoff(edges, sizes)
+    assert target is not None
+    along = nbi(problem, edges, target, simplex(3, 9))
+    part = identifiable_part(problem, along, edges, along, 0.01, sizes, 9, compute_always)
+    assert part is not None
+    level = 1.01 * edges[2].at.J[2]
+    J = np.array([one.at.J for one in along])
+    assert part.flat.tolist() == [0, 0, (J[:, 2] <= level).sum() - 1]
+    assert part.flat[2] >= 5
+    assert part.ends[:2] == edges[:2]
+    # The end is the best of J1 + J2 at that level: checked on the curve of the level.
+    y = np.linspace(0.4, 0.6, 200_001)
+    room = level - 1 - (y - 0.5) ** 2
+    y, x = y[room > 0], -np.log(room[room > 0]) / 4
+    k = np.argmin(1.25 * x**2 + y**2 / 4 + (y - 1) ** 2)
+    assert part.ends[2].at.theta == pytest.approx([x[k], y[k]], abs=1e-5)
+    own = np.array([one.at.J for one in part.points])
+    assert all(one.converged for one in part.points)
+    assert own[:, 2].min() >= level * (1 - 1e-6)
+    assert len(own) > 1.5 * (J[:, 2] > level).sum(), "more of them where the front bends"
+    # Beyond the new simplex too: next to the level, but away from its end.
+    at_level = own[own[:, 2] < level + 0.05 * np.ptp(own[:, 2])]
+    assert np.ptp(at_level[:, 0]) > 0.05 * np.ptp(own[:, 0])

@@ -164,6 +164,74 @@ def test_residuals_that_bend_but_do_not_change_hold_a_minimum() -> None:
     problem = of(bowl, [-1, -1], [1, 1])
     found = follow(problem, ONE, problem.evaluate(np.zeros(2)), h=0.05, limit=20)
     assert (found.dimension, found.extent) == (0, Extent.ISOLATED)
+    assert problem.counts["eigenproblems"] == 5, "no step was tried"
+
+
+def test_a_direction_that_bends_is_no_part_of_a_manifold() -> None:
+    """J = (1 + x**2)**2 + (y - z)**2: of three parameters, two residuals change in one only."""
+
+    def valley(theta: Floats) -> Derivatives:
+        x, y, z = theta
+        return squares(np.array([1 + x**2, y - z]), np.array([[2 * x, 0, 0], [0, 1, -1]]))
+
+    problem = of(valley, [-1, -1, -1], [1, 1, 2])
+    found = follow(problem, ONE, problem.evaluate(np.array([0.0, 0.3, 0.3])), h=0.05, limit=200)
+    assert (found.dimension, found.extent) == (1, Extent.BOUNDED)
+    x, y, z = thetas(found.models).T
+    assert x == pytest.approx(0, abs=1e-8)
+    assert y == pytest.approx(z, abs=1e-8)
+    assert sorted([y[0], y[-1]]) == pytest.approx([-1, 1], abs=1e-12)
+
+
+@pytest.mark.parametrize("programme", [ONE, LogSum(np.array([4.0]))])
+def test_residuals_that_turn_leave_a_line(programme: Scalarisation) -> None:
+    """r = (1 + y**2) (cos x, sin x): J is least at y = 0, where r does not change with y but x."""
+
+    def turning(theta: Floats) -> Derivatives:
+        x, y = theta
+        e, de = np.array([np.cos(x), np.sin(x)]), np.array([-np.sin(x), np.cos(x)])
+        return squares((1 + y**2) * e, np.column_stack([(1 + y**2) * de, 2 * y * e]))
+
+    problem = of(turning, [-2, -1], [4, 1.5])
+    start = problem.evaluate(np.array([0.5, 0.0]))
+    found = follow(problem, programme, start, h=0.05, limit=200)
+    assert (found.dimension, found.extent) == (1, Extent.BOUNDED)
+    x, y = thetas(found.models).T
+    assert y == pytest.approx(0, abs=1e-6)
+    assert sorted([x[0], x[-1]]) == [-2, 4]
+    assert np.abs(np.diff(x)).max() <= 0.3 + 1e-9
+
+
+def turning_circle(theta: Floats) -> Derivatives:
+    """r = (1 + (|x|**2 - 0.49)**2) x / |x|: J is 1 on a circle along which r turns once."""
+    rho2 = theta @ theta
+    rho = np.sqrt(rho2)
+    g, e = 1 + (rho2 - 0.49) ** 2, theta / rho
+    dg = 4 * (rho2 - 0.49) * theta
+    return squares(g * e, np.outer(e, dg) + g * (np.eye(2) - np.outer(e, e)) / rho)
+
+
+def test_residuals_that_turn_leave_a_closed_curve() -> None:
+    problem = of(turning_circle, [-1, -1], [1, 1])
+    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
+    assert (found.dimension, found.extent) == (1, Extent.CLOSED)
+    theta = thetas(found.models)
+    assert np.hypot(*theta.T) == pytest.approx(0.7, abs=1e-7)
+    angles = np.unwrap(np.arctan2(theta[:, 1], theta[:, 0]))
+    steps = np.diff(angles)
+    assert (np.sign(steps) == np.sign(steps[0])).all(), "in order along the curve"
+    assert np.abs(steps).sum() > 2 * np.pi - 0.3
+    assert 0.7 * np.abs(steps).max() < 0.15
+    assert problem.counts["eigenproblems"] <= 12 * len(found.models)
+
+
+def test_a_circle_on_which_residuals_turn_ends_on_the_bounds() -> None:
+    problem = of(turning_circle, [-1, -0.3], [1, 0.5])
+    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
+    assert found.extent is Extent.BOUNDED
+    theta = thetas(found.models)
+    assert sorted(theta[[0, -1], 1].tolist()) == [-0.3, 0.5]
+    assert np.hypot(*theta.T) == pytest.approx(0.7, abs=1e-7)
 
 
 def test_no_more_models_than_wanted() -> None:

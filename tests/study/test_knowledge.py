@@ -114,6 +114,28 @@ def test_linearised_scatter_is_that_of_synthetic_data(source: str) -> None:
     assert at(data, "theta_std", "nbi-2") == pytest.approx(at(data, "theta_std", "edge-shapes"))
 
 
+def test_points_of_three_groups_scatter_as_synthetic_data_do() -> None:
+    """30 drawings tell a standard deviation to 13 %: within the simplex, on its border, beyond."""
+    base = problem_of(std=0.002)
+    groups = (
+        mf.Group("frequencies", "all"),
+        mf.Group("shape 1", shape=[1]),
+        mf.Group("others", shape=[2, 3]),
+    )
+    problem = mf.UpdatingProblem(base.model, base.data, groups, base.lower, base.upper, base.start)
+    data = mf.solve(
+        problem, points=4, seed=1, search=SEARCH, uncertainty=mf.Uncertainty("std", bootstrap=30)
+    )
+    along = data["front_part"].values == "whole"
+    assert along.sum() > 10, "some lie beyond the simplex"
+    for name in ("theta", "objective"):
+        linear = data[f"{name}_std"].values[along]
+        drawn = data[f"bootstrap_{name}_std"].values[along]
+        kept = linear > 1e-3 * linear.max(axis=0)
+        assert linear[kept] == pytest.approx(drawn[kept], rel=0.52), name
+    assert (data["scatter_doubt"].values[along] == "").all()
+
+
 def test_predictions_scatter_with_the_parameters() -> None:
     data = results("std")
     theta, C = at(data, "theta", "equal-weights"), at(data, "theta_covariance", "equal-weights")
@@ -217,16 +239,45 @@ bootstrap = 2
 """
 
 
+def write_data(folder: Path) -> None:
+    (folder / "modes.csv").write_text(
+        "set,mode,frequency,damping,floor1,floor2\n"
+        "a,1,4.2,,0.6,1.0\na,2,10.5,,1.0,-0.7\nb,1,4.1,,0.62,1.0\nb,2,10.4,,1.0,-0.68\n"
+    )
+
+
+THREE = """[[group]]
+name = "shapes"
+shape = [1]
+
+[[group]]
+name = "shape 2"
+shape = [2]
+"""
+
+
+def test_the_scatter_of_three_groups_runs_on_with_the_same_digits(tmp_path: Path) -> None:
+    write_data(tmp_path)
+    head, tail = STUDY.split('[[group]]\nname = "shapes"\nshape = "all"\n')
+    (tmp_path / "study.toml").write_text(head + THREE + tail)
+    first = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / "results")
+    pieces = tmp_path / "results" / "pieces"
+    for piece in [*pieces.rglob("second-nbi-*.npz"), *pieces.rglob("bootstrap-*.npz")]:
+        piece.unlink()
+    again = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / "results")
+    assert again.identical(first)
+    along = first["front_part"].values == "whole"
+    assert np.isfinite(first["theta_std"].values[along]).all()
+    assert np.isfinite(first["bootstrap_theta_std"].values[along]).any()
+
+
 @pytest.mark.parametrize("tolerance", [0.0, 0.05])
 def test_a_study_runs_on_with_the_same_digits_and_shows_all(
     tolerance: float, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     from modefront.cli.show import print_results
 
-    (tmp_path / "modes.csv").write_text(
-        "set,mode,frequency,damping,floor1,floor2\n"
-        "a,1,4.2,,0.6,1.0\na,2,10.5,,1.0,-0.7\nb,1,4.1,,0.62,1.0\nb,2,10.4,,1.0,-0.68\n"
-    )
+    write_data(tmp_path)
     text = STUDY.replace("points = 3", f"points = 3\ntolerance = {tolerance}")
     (tmp_path / "study.toml").write_text(text)
     study = mf.load(tmp_path / "study.toml")
@@ -241,6 +292,7 @@ def test_a_study_runs_on_with_the_same_digits_and_shows_all(
     out = capsys.readouterr().out
     for text in (
         "scatter by errors of the data: standard deviations, linearised",
+        "doubtful",
         "scatter over data drawn again: standard deviations",
         "posterior around optimal-weights",
         "k1 and k2 can be scaled together: no shape changes",

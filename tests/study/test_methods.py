@@ -1,5 +1,6 @@
 """What each method finds on the three-story building, and what it misses."""
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 from tempfile import TemporaryDirectory
@@ -7,12 +8,14 @@ from tempfile import TemporaryDirectory
 import numpy as np
 import pytest
 import xarray as xr
+from interruptions import interrupt_at
 
 import modefront as mf
 from modefront._typing import Floats
 from modefront.solvers.dominance import nondominated
 from modefront.study.examples import write_example
 from modefront.study.results import front_points
+from modefront.study.store import read_piece
 
 METHODS = ("nbi", "weights", "spea2", "nsga2")
 
@@ -138,3 +141,46 @@ def test_perfect_data_are_one_model_for_every_method(method: str) -> None:
     assert np.isnan(found.attrs["hypervolume"])
     (edge,) = found["theta"].values[found["label"].values == "edge-frequencies"]
     assert edge == pytest.approx([1.2, 0.9, 1.1], abs=1e-5)
+
+
+def test_scatter_next_to_the_end_of_a_piece_is_doubtful() -> None:
+    base = problem("c0")
+    known = replace(
+        base.data,
+        frequency_std=0.005 * base.data.frequency,
+        shape_std=0.02 * np.abs(base.data.shape).max(axis=2, keepdims=True) + 0 * base.data.shape,
+    )
+    data = mf.solve(replace(base, data=known), points=12, seed=1)
+    J, reach = data["objective"].values, data["objective_std"].values
+    ends = data["end_objective"].values
+    assert len(ends) == 2
+    near = (np.abs(J[:, None] - ends) <= reach[:, None]).all(axis=2).any(axis=1)
+    near &= np.char.startswith(data["label"].values.astype(str), "nbi-")
+    doubts = data["scatter_doubt"].values.tolist()
+    assert [text for text, there in zip(doubts, near, strict=True) if there] == ["ends"] * 2
+    assert set(doubts) == {"", "ends"}
+    named = ", ".join(data["label"].values[near])
+    assert any(f"scatter is doubtful at {named}: a piece" in x for x in data["finding"].values)
+
+
+@pytest.mark.parametrize("method", ["spea2", "nsga2"])
+def test_an_interrupted_evolution_goes_on_where_it_stopped(
+    method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    write_example("three-story-c0", tmp_path)
+    path = tmp_path / "study.toml"
+    settings = f'method = "{method}"\npopulation = 20\nevaluations = 200'
+    search = "\n[search]\nstarts = 1\nlimit = 1\nevolutions = 0\n"
+    path.write_text(path.read_text().replace('method = "nbi"', settings) + search)
+    whole = mf.run(mf.load(path), tmp_path / "whole")
+    interrupt_at(f"{method}-100-", monkeypatch)
+    with pytest.raises(KeyboardInterrupt):
+        mf.run(mf.load(path), tmp_path / "results")
+    before = set((tmp_path / "results" / "pieces").rglob("*.npz"))
+    assert sum(file.name.startswith(f"{method}-") for file in before) == 5
+    study = mf.load(path)
+    assert mf.run(study, tmp_path / "results").identical(whole)
+    new = set((tmp_path / "results" / "pieces").rglob("*.npz")) - before
+    assert sum(file.name.startswith(f"{method}-") for file in new) == 5
+    spent = sum(piece[2]["eigenproblems"] for piece in map(read_piece, new) if piece)
+    assert study.problem.counts["eigenproblems"] < spent + 20, "no generation is evaluated again"

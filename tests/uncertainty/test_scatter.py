@@ -9,19 +9,22 @@ from hypothesis import strategies as st
 from problems import Derivatives, Known, box
 
 from modefront._typing import Floats
+from modefront.solvers.attainment import Attainment, active_bounds
 from modefront.solvers.curvature import SecondOrder, second_order
-from modefront.solvers.payoff import payoff
+from modefront.solvers.nbi import programmes as programmes_of
+from modefront.solvers.payoff import spanned
 from modefront.solvers.scalarisation import Linear, LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Options, Solution, begin, solve
-from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.scatter import (
-    Scatter,
+from modefront.uncertainty.conditions import (
+    between,
     boundary,
     given_weights,
     level,
     optimal_weights,
-    scatter,
+    over_ranges,
 )
+from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.scatter import Scatter, scatter
 
 TIGHT = Options(step=1e-11, constraint=1e-12, reduction=0.0, iterations=200)
 
@@ -88,8 +91,8 @@ def compare(found: Scatter, ahead: list[Solution], behind: list[Solution], by: f
     for m, (one, other) in enumerate(zip(ahead, behind, strict=True)):
         theta = (one.at.theta - other.at.theta) / (2 * by)
         J = (one.at.J - other.at.J) / (2 * by)
-        assert found.theta[m] == pytest.approx(theta, rel=2e-4, abs=2e-5)
-        assert found.J[m] == pytest.approx(J, rel=2e-4, abs=2e-4)
+        assert found.theta[m] == pytest.approx(theta, rel=1e-4, abs=1e-5)
+        assert found.J[m] == pytest.approx(J, rel=1e-4, abs=1e-5)
 
 
 @given(st.integers(0, 10**6), st.integers(1, 3))
@@ -142,16 +145,39 @@ def test_a_level_that_moves_with_the_data() -> None:
     compare(result, moved[0], moved[1], by)
 
 
-@pytest.mark.parametrize("n", [2, 3])
-def test_points_of_the_front_follow_their_edges(n: int) -> None:
-    case, by = bent(11, n=n, bend=0.05), 1e-3
-    beta = np.array([0.3, 0.7] if n == 2 else [0.3, 0.5, 0.2])
+@pytest.mark.parametrize(
+    ("n", "beta", "active", "ranges"),
+    [
+        (2, [0.3, 0.7], [1, 1], False),
+        (3, [0.3, 0.5, 0.2], [1, 1, 1], False),
+        (3, [0.6, 0.5, -0.1], [1, 1, 1], False),
+        (3, [0.9, -0.4, 0.5], [1, 0, 1], False),
+        (3, [0.5, 0.2, 0.3], [1, 1, 1], True),
+        (3, [-0.5, 0.6, 0.9], [1, 1, 0], True),
+    ],
+)
+def test_points_of_the_front_follow_their_edges(
+    n: int, beta: list[float], active: list[int], ranges: bool
+) -> None:
+    """Within the simplex and beyond it, with all bounds active and not; by edges or by ranges."""
+    case, by = bent(16, n=n, bend=0.05), 1e-3
+    place, on = np.array(beta), np.array(active, dtype=bool)
 
     def solved(problem: Known) -> tuple[list[Solution], Solution]:
         edges = [minimum(problem, weighted(w), np.zeros(3)) for w in np.eye(n)]
-        target = payoff(edges, np.ones(n))
+        worst = [edges[2], edges[2], edges[1]] if ranges else []
+        target = spanned(edges, worst, np.ones(n))
         assert target is not None
-        return edges, minimum(problem, target.subproblem(beta), edges[0].at.theta)
+        programmes = programmes_of(target, edges)
+        found = programmes.solve(problem, place, edges[0])
+        if isinstance(programmes, Attainment):
+            assert found.converged
+            shares = found.weights * target.scale * programmes.r
+            assert (active_bounds(shares) == on).all()
+            exact = programmes.subproblem(place, on)
+        else:
+            exact = target.subproblem(place)
+        return edges, minimum(problem, exact, found.at.theta)
 
     problem = case.problem()
     edges, found = solved(problem)
@@ -161,7 +187,11 @@ def test_points_of_the_front_follow_their_edges(n: int) -> None:
         columns.append(scatter(problem, point, np.eye(n)[i], given_weights(noise), noise).J)
     E, dE = np.array([one.at.J for one in edges]).T, np.stack(columns, axis=2)
     noise, point = case.noise(found.at.theta), point_of(problem, found)
-    w, conditions = boundary(point, found.weights, E, dE, noise)
+    target = between(E, dE)
+    if ranges:
+        worst = [2, 2, 1]
+        target = over_ranges(E, dE, E[range(3), worst], dE[:, range(3), worst])
+    w, conditions = boundary(point, found.weights, target, place, noise)
     result = scatter(problem, point, w, conditions, noise)
     ahead, behind = (
         [solved(case.moved(m, s * by).problem())[1] for m in range(5 * n)] for s in (1, -1)

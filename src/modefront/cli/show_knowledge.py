@@ -21,10 +21,12 @@ def print_knowledge(console: Console, data: xr.Dataset) -> None:
         ("bootstrap_", "scatter over data drawn again: standard deviations"),
     ):
         if f"{kind}theta_std" in data:
-            rows = table(title, ["model", *(f"J {g}" for g in groups), *names])
+            doubts = data.get("scatter_doubt") if kind == "" else None
+            more = [] if doubts is None else ["doubtful"]
+            rows = table(title, ["model", *(f"J {g}" for g in groups), *names, *more])
             J, theta = data[f"{kind}objective_std"].values, data[f"{kind}theta_std"].values
             for i, label in enumerate(data["label"].values):
-                rows.add_row(safe(label), *_row([*J[i], *theta[i]]))
+                rows.add_row(safe(label), *_row([*J[i], *theta[i]]), *_of(doubts, i))
             console.print(rows)
     if "posterior_std" in data:
         modes = data["mode"].values
@@ -35,6 +37,10 @@ def print_knowledge(console: Console, data: xr.Dataset) -> None:
         values = [data[f"posterior_{name}std"].values for name in ("", "frequency_", "mac_")]
         rows.add_row("", *_row(np.concatenate(values)))
         console.print(rows)
+
+
+def _of(texts: xr.DataArray | None, i: int) -> list[str]:
+    return [] if texts is None else [safe(texts.values[i])]
 
 
 def _row(values: Sequence[float] | np.ndarray[Any, Any]) -> list[str]:

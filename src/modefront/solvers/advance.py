@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections import Counter, deque
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
 from math import comb
@@ -90,9 +90,8 @@ class Programmes(Protocol):
     def label(self) -> str:
         """What the points are called."""
 
-    @property
-    def beyond(self) -> bool:
-        """Whether points beyond the simplex are wanted, as far as the front goes."""
+    def goes_on(self, J: Floats, /) -> bool:
+        """Return whether points beyond the simplex are wanted next to one with these objectives."""
 
     @property
     def scale(self) -> Floats:
@@ -128,8 +127,11 @@ def advance(
     edges: Sequence[Solution],
     lattice: Simplex,
     checkpoint: Checkpoint = compute_always,
+    before: Sequence[Solution] = (),
 ) -> list[Solution]:
     """Return one solution a point of the lattice, in its order, then those beyond the simplex.
+
+    ``before`` are solutions of nearly the same problem, from which points are solved first.
 
     Solutions may be dominated, and those that did not converge say so in their status; beyond the
     simplex only those are returned that converged and are not there yet.
@@ -150,8 +152,9 @@ def advance(
     def settle(place: Place, solution: Solution, of: int) -> None:
         solved[place], origin[place] = solution, of
         renewed[place] += 1
-        here = programmes.beyond and place == _nearest(
-            divisions * programmes.place(of, solution.at.J), divisions
+        J = solution.at.J
+        here = programmes.goes_on(J) and place == _nearest(
+            divisions * programmes.place(of, J), divisions
         )
         queue.extend((near, place) for near in neighbours(place) if here or min(near) >= 0)
 
@@ -181,6 +184,11 @@ def advance(
             found = checkpoint(name, solve_one)[0]
         if place not in solved or better(place, found, solved[place]):
             settle(place, found, i)
+    for one in before:
+        if one.beta is None or (at := _nearest(divisions * one.beta, divisions)) in solved:
+            continue
+        again = partial(_solve_again, programmes, problem, beta(at), one)
+        settle(at, checkpoint(f"{programmes.label}-{_text(at)}-again", again)[0], -1)
     while queue:
         place, source = queue.popleft()
         if not worth_trying(place, source):
@@ -208,6 +216,13 @@ def advance(
         if solved[place].converged and away.min() > SAME:
             out.append(solved[place])
     return out
+
+
+def _solve_again(
+    programmes: Programmes, problem: Problem, beta: Floats, before: Solution
+) -> list[Solution]:
+    start = replace(before, at=problem.evaluate(before.at.theta))
+    return _solve_one(programmes, problem, beta, start)
 
 
 def _solve_one(

@@ -73,14 +73,27 @@ _GUESS = Options(iterations=12)
 """A wrong active set may have no solution: it is not tried for long."""
 
 
+def active_bounds(shares: Floats) -> Bools:
+    """Return which bounds are active, from the weights times the normal (n,): the others have rho.
+
+    >>> active_bounds(np.array([0.3, SHARE, 0.7])).tolist()
+    [True, False, True]
+    """
+    active: Bools = shares > 2 * SHARE
+    return active
+
+
 @dataclass(frozen=True)
 class Attainment:
-    """The programmes of three and more objectives; ``thetas`` (n, p) are the edges."""
+    """The programmes of three and more objectives.
+
+    ``thetas`` (n, p) are the edges; below ``floor`` (n,), if there is one, no more is wanted.
+    """
 
     target: Payoff
     thetas: Floats
+    floor: Floats | None = None
     label: str = "nbi"
-    beyond: bool = True
 
     @property
     def scale(self) -> Floats:
@@ -91,6 +104,10 @@ class Attainment:
     def r(self) -> Floats:
         """The normal, towards greater objectives, shape (n,)."""
         return np.asarray(self.target.Phi.sum(axis=1))
+
+    def goes_on(self, J: Floats) -> bool:
+        """Return whether no objective is below its floor."""
+        return self.floor is None or bool((self.floor <= J).all())
 
     def place(self, _: int, J: Floats) -> Floats:
         """Return the coordinates (n,) of the point of the plane that is projected onto J."""
@@ -118,7 +135,7 @@ class Attainment:
 
         From an edge, where derivatives often vanish, it is sought from between the edges too.
         """
-        found = self._solve(problem, beta, start)
+        found = replace(self._solve(problem, beta, start), beta=beta)
         span = problem.upper - problem.lower
         if (np.abs(self.thetas - start.at.theta) > EDGE * span).any(axis=1).all():
             return found
@@ -128,7 +145,7 @@ class Attainment:
         evaluations = found.evaluations + other.evaluations + 1
         key = (not found.converged, self.value(beta, found.at.J))
         better = (not other.converged, self.value(beta, other.at.J)) < key
-        return replace(other if better else found, evaluations=evaluations)
+        return replace(other if better else found, beta=beta, evaluations=evaluations)
 
     def _solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         if not start.at.feasible:

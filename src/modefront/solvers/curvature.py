@@ -25,6 +25,9 @@ from modefront.solvers.problem import Evaluation, Problem
 STEP = 3e-4
 """Step of the differences, over the range of a parameter."""
 
+ERROR = 1e-5
+"""Second derivative over the greatest one below which it is the error of differences."""
+
 
 @dataclass(frozen=True)
 class SecondOrder:

@@ -4,18 +4,26 @@ They are here to be compared with. They use no derivatives and stop when their e
 spent, with no test of how far their points are from the front: none of them counts as converged.
 (Zitzler, Laumanns & Thiele 2001, doi:10.3929/ethz-a-004284029; Deb et al. 2002,
 doi:10.1109/4235.996017.)
+
+With a seed, pymoo asks for the same models in the same order as long as it is told the same
+objectives. So a generation's evaluations are a piece of work, and a run that is continued is played
+again with those that are kept, without solving anything, up to where it stopped.
 """
 
 from __future__ import annotations
 
 import importlib.util
+import zlib
+from dataclasses import replace
+from functools import partial
 from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.dominance import nondominated
-from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.problem import Evaluation, Problem, infeasible
 from modefront.solvers.sqp import Solution, Status
 
 EVOLUTIONARY = ("spea2", "nsga2")
@@ -30,7 +38,12 @@ def available() -> bool:
 
 
 def evolve_front(
-    problem: Problem, method: str, population: int, evaluations: int, rng: np.random.Generator
+    problem: Problem,
+    method: str,
+    population: int,
+    evaluations: int,
+    rng: np.random.Generator,
+    checkpoint: Checkpoint = compute_always,
 ) -> list[Solution]:
     """Return the non-dominated models of the last population, ascending in the first objective.
 
@@ -53,10 +66,14 @@ def evolve_front(
     spent = 0
     while spent == 0 or spent + population <= evaluations:
         asked = algorithm.ask()
-        found = {theta.tobytes(): _evaluate(problem, theta) for theta in asked.get("X")}
+        thetas = asked.get("X")
+        # Another version of pymoo may ask for other models.
+        name = f"{method}-{spent}-{zlib.crc32(thetas.tobytes()):x}"
+        (kept,) = checkpoint(name, partial(_generation, problem, thetas))
+        found = _members(kept, n)
         spent += len(asked)
-        known |= found
-        J = np.array([known[theta.tobytes()].J for theta in asked.get("X")])
+        known |= {theta.tobytes(): at for theta, at in zip(thetas, found, strict=True)}
+        J = np.array([at.J for at in found])
         F = np.nan_to_num(J, posinf=UNDEFINED)
         Evaluator().eval(StaticProblem(described, F=F), asked)
         algorithm.tell(infills=asked)
@@ -79,8 +96,34 @@ def _algorithm(method: str, population: int) -> Any:
     return NSGA2(pop_size=population)
 
 
-def _evaluate(problem: Problem, theta: Floats) -> Evaluation:
-    return problem.evaluate(np.clip(theta, problem.lower, problem.upper), derivatives=False)
+def _generation(problem: Problem, thetas: Floats) -> list[Solution]:
+    """Return the evaluations of a generation (members, p), packed into one.
+
+    Its arrays have the members as their first dimension, quantities those that are feasible.
+    """
+    inside = np.clip(thetas, problem.lower, problem.upper)
+    found = [problem.evaluate(theta, derivatives=False) for theta in inside]
+    kept = [at.quantities for at in found if at.feasible]
+    names = kept[0] if kept else {}
+    quantities = {name: np.array([one[name] for one in kept]) for name in names}
+    none = np.zeros(0)
+    at = Evaluation(inside, np.array([at.J for at in found]), none, none, quantities)
+    return [Solution(at, none, none, 0.0, Status.SAMPLED, len(found))]
+
+
+def _members(generation: Solution, n: int) -> list[Evaluation]:
+    """Return the evaluations of a generation."""
+    at = generation.at
+    count = iter(range(len(at.theta)))
+    out = []
+    for theta, J in zip(at.theta, at.J, strict=True):
+        one = infeasible(theta, n)
+        if np.isfinite(J).all():
+            k = next(count)
+            quantities = {name: values[k] for name, values in at.quantities.items()}
+            one = replace(one, J=J, quantities=quantities)
+        out.append(one)
+    return out
 
 
 def _objectives(evaluations: list[Evaluation], n: int) -> Floats:

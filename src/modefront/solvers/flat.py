@@ -1,13 +1,15 @@
 r"""Flat parts of a front: where one objective hardly changes while others do.
 
 The models next to an edge may all be nearly as good in its objective, far from each other as they
-are: the data do not say which of them it is. Of points that lie evenly along the front, those with
+are: the data do not say which of them it is. Such a part of the front is flat: points with
 
 .. math:: J_i \le (1 + \epsilon) \min J_i
 
-beyond the edge itself then are many. The identifiable part of the front begins where the best of
-the others at that level lies (`modefront.solvers.edges.near_best`), and is covered by
-normal-boundary intersection of its own.
+spread over much of the range of another objective. The identifiable part of the front begins where
+the best of the others at that level lies (`modefront.solvers.edges.near_best`), and is covered by
+normal-boundary intersection of its own. Of three and more objectives the flat part is a patch, and
+that point is one of its border: points of the new simplex that come to lie in the patch are left
+out, and the lattice does not go on from them.
 """
 
 from __future__ import annotations
@@ -21,14 +23,14 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.solvers.advance import simplex
 from modefront.solvers.checkpoint import Checkpoint
-from modefront.solvers.edges import EXACT, near_best
+from modefront.solvers.edges import EXACT, TIE, near_best
 from modefront.solvers.nbi import nbi
-from modefront.solvers.payoff import payoff
+from modefront.solvers.payoff import Payoff, payoff
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
 
-SHARE = 0.1
-"""Share of the points of a front, beside the edge, that make a part of it flat."""
+SPREAD = 0.2
+"""Share of the range of another objective over which a flat part extends at least."""
 
 
 @dataclass(frozen=True)
@@ -39,11 +41,13 @@ class Identifiable:
     ----------
     flat : (n,) how many points of the whole front lie in the flat part at each edge, besides it
     ends : where the part ends, one solution an objective
+    target : the simplex between them; None where the part is one point
     points : along it; empty where it is one point
     """
 
     flat: Ints
     ends: Sequence[Solution]
+    target: Payoff | None
     points: Sequence[Solution]
 
 
@@ -51,15 +55,18 @@ def flat_points(J: Floats, least: Floats, tolerance: float, sizes: Floats) -> In
     """Return how many rows of J (points, n) lie in the flat part at each edge, besides the edge.
 
     ``least`` (n,) are the least values; an objective that is fitted exactly, compared with
-    ``sizes`` (n,), has no flat part. Fewer than two points, or a tenth of all, make none.
+    ``sizes`` (n,), has no flat part. Fewer than two points make none, nor do such as spread over
+    less than a fifth of the range of every other objective: neighbours of a minimum.
 
     >>> J = np.array([[1.0, 3.0], [1.001, 2.0], [1.002, 1.0], [1.5, 0.5], [2.0, 0.4]])
     >>> flat_points(J, np.array([1.0, 0.4]), 0.01, np.ones(2)).tolist()
     [2, 0]
     """
-    level = (1 + tolerance) * least
-    count = (level >= J).sum(axis=0) - 1
-    enough = (count >= max(2, SHARE * len(J))) & (least > EXACT * sizes)
+    within = (1 + tolerance) * least >= J
+    count = np.maximum(within.sum(axis=0) - 1, 0)
+    scaled = J / np.maximum(np.ptp(J, axis=0), np.finfo(float).tiny)
+    spread = [float(np.ptp(scaled[own], axis=0).max()) if own.any() else 0.0 for own in within.T]
+    enough = (count >= 2) & (np.array(spread) >= SPREAD) & (least > EXACT * sizes)
     return np.where(enough, count, 0)
 
 
@@ -101,12 +108,15 @@ def identifiable_part(
         return None
     target = payoff(ends, sizes)
     if target is None:
-        return Identifiable(flat, ends, [])
+        return Identifiable(flat, ends, None, [])
+    floor = np.where(flat > 0, (1 - TIE) * target.utopia, 0.0)
     along = nbi(
         problem,
         ends,
         target,
         simplex(n, divisions),
         lambda name, compute: checkpoint(f"identifiable-{name}", compute),
+        floor=floor,
     )
-    return Identifiable(flat, ends, along)
+    above = [one for one in along if (floor <= one.at.J).all()]
+    return Identifiable(flat, ends, target, above)

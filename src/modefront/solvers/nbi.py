@@ -20,7 +20,7 @@ scale     (n,) range of each objective over the edges
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -33,6 +33,9 @@ from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution, solve
 
+HALVINGS = 2
+"""How often a step along the front is halved, at most."""
+
 
 @dataclass(frozen=True)
 class Projection:
@@ -40,24 +43,52 @@ class Projection:
 
     target: Payoff
     label: str = "nbi"
-    beyond: bool = False
 
     @property
     def scale(self) -> Floats:
         """Range of each objective over the edges, shape (n,)."""
         return self.target.scale
 
+    def goes_on(self, _: Floats) -> bool:
+        """Return False: of two objectives, the front ends at the edges."""
+        return False
+
     def place(self, _: int, J: Floats) -> Floats:
         """Return the coordinates (n,) of the point that is projected onto J."""
         return self.target.place(J)
 
     def solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
-        """Return the farthest point along the normal, from a start."""
-        return solve(problem, self.target.subproblem(beta), start)
+        """Return the farthest point along the normal, from a start.
+
+        A step along the front that is too wide for the solver is halved.
+        """
+        return replace(self._solve(problem, beta, start, HALVINGS), beta=beta)
+
+    def _solve(self, problem: Problem, beta: Floats, start: Solution, halvings: int) -> Solution:
+        found = solve(problem, self.target.subproblem(beta), start)
+        if found.converged or not halvings or not start.at.feasible:
+            return found
+        between = (beta + self.place(0, start.at.J)) / 2
+        near = self._solve(problem, between, start, halvings - 1)
+        evaluations = found.evaluations + near.evaluations
+        if near.converged:
+            again = solve(problem, self.target.subproblem(beta), near)
+            evaluations += again.evaluations
+            found = again if again.converged else found
+        return replace(found, evaluations=evaluations)
 
     def value(self, beta: Floats, J: Floats) -> float:
         """Return -t."""
         return self.target.subproblem(beta).value(J)
+
+
+def programmes(
+    target: Payoff, edges: Sequence[Solution], floor: Floats | None = None
+) -> Projection | Attainment:
+    """Return the programmes of the points of a simplex between edges; see `nbi`."""
+    if len(edges) == 2:
+        return Projection(target)
+    return Attainment(target, np.array([edge.at.theta for edge in edges]), floor)
 
 
 def nbi(
@@ -67,17 +98,21 @@ def nbi(
     lattice: Simplex,
     checkpoint: Checkpoint = compute_always,
     minima: Sequence[Solution] = (),
+    floor: Floats | None = None,
+    before: Sequence[Solution] = (),
 ) -> list[Solution]:
     """Return one solution a point of the lattice, in its order, then those beyond the simplex.
 
     Of three and more objectives, other ``minima`` of single objectives are started from as well:
-    each may lie on a part of the front of its own. Solutions may be dominated, and those that did
-    not converge say so in their status.
+    each may lie on a part of the front of its own; and the lattice goes on beyond the simplex as
+    long as no objective is below its ``floor`` (n,). ``before`` are points of a front of nearly the
+    same problem. Solutions may be dominated, and those that did not converge say so in their
+    status.
     """
+    solved = programmes(target, edges, floor)
     if len(edges) == 2:
-        return advance(problem, Projection(target), edges, lattice, checkpoint)
+        return advance(problem, solved, edges, lattice, checkpoint, before)
     known = [*edges, *(one for one in minima if all(one is not edge for edge in edges))]
     optimal = nondominated(np.array([one.at.J for one in known]))
     others = [known[i] for i in np.flatnonzero(optimal) if i >= len(edges)]
-    programmes = Attainment(target, np.array([edge.at.theta for edge in edges]))
-    return advance(problem, programmes, [*edges, *others], lattice, checkpoint)
+    return advance(problem, solved, [*edges, *others], lattice, checkpoint, before)

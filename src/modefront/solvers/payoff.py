@@ -21,11 +21,20 @@ FLAT = 1e-2
 
 @dataclass(frozen=True)
 class Payoff:
-    """Utopia point, range of the objectives and the scaled pay-off matrix, one column an edge."""
+    """The simplex between the edges.
+
+    Attributes
+    ----------
+    utopia : (n,) least objectives
+    scale : (n,) range of each objective
+    Phi : (n, n) the scaled pay-off matrix, one column an edge
+    worst : the model worst in each objective, where the simplex is that of the ranges; else none
+    """
 
     utopia: Floats
     scale: Floats
     Phi: Floats
+    worst: Sequence[Solution] = ()
 
     def place(self, J: Floats) -> Floats:
         """Return the coordinates (n,) of the point of the plane that is projected onto J."""
@@ -50,17 +59,35 @@ def payoff(
     objective and best in all others, with the ranges over all ``minima``, which need not be
     attained.
     """
-    J = np.array([edge.at.J for edge in edges]).T
-    utopia = np.diag(J).copy()
-    scale = np.asarray((J - utopia[:, None]).max(axis=1))
-    n = len(edges)
-    if n > 2 and not _solid((J - utopia[:, None]) / np.maximum(scale, POINT * sizes)[:, None]):
-        known = np.array([*J.T, *(one.at.J for one in minima)])
-        scale = (known[nondominated(known)] - utopia).max(axis=0)
-        J = utopia[:, None] + np.diag(scale)
+    P = _simplex(edges)
+    scale = np.maximum(P.max(axis=1), POINT * sizes)
+    if len(edges) == 2 or _solid(P / scale[:, None]):
+        return spanned(edges, (), sizes)
+    known = [*edges, *minima]
+    optimal = nondominated(np.array([one.at.J for one in known]))
+    kept = [known[k] for k in np.flatnonzero(optimal).tolist()]
+    worst = [max(kept, key=lambda one: float(one.at.J[i])) for i in range(len(edges))]
+    return spanned(edges, worst, sizes)
+
+
+def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats) -> Payoff | None:
+    """Return the pay-off of the edges, or of the ranges up to the ``worst`` models if given.
+
+    None where an objective does not vary.
+    """
+    P, utopia = _simplex(edges), np.array([one.at.J[i] for i, one in enumerate(edges)])
+    if worst:
+        P = np.diag([one.at.J[i] for i, one in enumerate(worst)] - utopia)
+    scale = P.max(axis=1)
     if (scale <= POINT * sizes).any():
         return None
-    return Payoff(utopia, scale, (J - utopia[:, None]) / scale[:, None])
+    return Payoff(utopia, scale, P / scale[:, None], worst)
+
+
+def _simplex(edges: Sequence[Solution]) -> Floats:
+    """Return the objectives of the edges above the least ones, (n, n), one column an edge."""
+    J = np.array([edge.at.J for edge in edges]).T
+    return np.asarray(J - np.diag(J)[:, None])
 
 
 def _solid(Phi: Floats) -> bool:

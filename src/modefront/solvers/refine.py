@@ -17,10 +17,11 @@ import numpy as np
 
 from modefront._typing import Bools, Floats
 from modefront.solvers.checkpoint import Checkpoint, compute_always
+from modefront.solvers.nbi import Projection
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.pieces import Gap, piece_numbers
 from modefront.solvers.problem import Problem
-from modefront.solvers.sqp import Solution, solve
+from modefront.solvers.sqp import Solution
 
 SMALLEST = 1e-4
 """Distance of two projections below which a distance of points is a jump that is left as it is."""
@@ -88,4 +89,4 @@ def _between(
 
 
 def _solve(problem: Problem, target: Payoff, beta: Floats, start: Solution) -> list[Solution]:
-    return [solve(problem, target.subproblem(beta), start)]
+    return [Projection(target).solve(problem, beta, start)]

@@ -102,6 +102,8 @@ class Solution:
     violation : greatest violation of the constraints
     status : how it ended
     evaluations : evaluations that it took
+    beta : (n,) the point of the simplex that it was projected from, by normal-boundary
+        intersection; None of another programme
     """
 
     at: Evaluation
@@ -110,6 +112,7 @@ class Solution:
     violation: float
     status: Status
     evaluations: int
+    beta: Floats | None = None
 
     @property
     def converged(self) -> bool:

@@ -34,7 +34,10 @@ class WeightedSums:
 
     scale: Floats
     label: str = "weights"
-    beyond: bool = False
+
+    def goes_on(self, _: Floats) -> bool:
+        """Return False: there are no weights beyond the simplex."""
+        return False
 
     def place(self, edge: int, _: Floats) -> Floats:
         """Return the corner of the simplex at which an edge is the solution."""

@@ -18,9 +18,11 @@ from modefront.solvers.edges import EXACT, TIE
 from modefront.solvers.evolutionary import EVOLUTIONARY
 from modefront.solvers.flat import Identifiable, identifiable_part, same
 from modefront.solvers.manifold import Extent, Manifold, equally_good
+from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution, begin, solve
+from modefront.study.doubtful import with_neighbours
 from modefront.study.run import Front, Labelled, generator
 from modefront.study.tables.identifiability import Identifiability
 from modefront.study.tables.uncertainty import Uncertainty
@@ -64,7 +66,7 @@ class Knowledge:
     replicates: Sequence[Mapping[str, Solution]]
 
 
-SOLVING_NONE = ("nbi-", *(f"{method}-" for method in EVOLUTIONARY))
+SOLVING_NONE = tuple(f"{method}-" for method in EVOLUTIONARY)
 """Beginnings of the labels of points of which the scatter is not known."""
 
 
@@ -94,10 +96,10 @@ def learn(
     bests = [labels[f"edge-{name}"] for name in problem.objectives]
     along = [one for label, one in front.points if label.startswith("nbi-")]
     part = None
-    if identifiability.flat > 0 and len(along) > 1 and a.size == 2:
+    if identifiability.flat > 0 and len(along) > 1:
         part = identifiable_part(
             *(problem, along, bests, [one for _, one in front.points]),
-            *(identifiability.flat, sizes, (points or default_points(2)) - 1, checkpoint),
+            *(identifiability.flat, sizes, (points or default_points(a.size)) - 1, checkpoint),
         )
     extra = _labelled(problem, part, bests)
 
@@ -108,7 +110,7 @@ def learn(
             packed = checkpoint(f"manifold-{i + 1}-{name}", sample)
             manifolds.append((name, _unpack_manifolds(packed)))
 
-    known = _roles(problem, front, extra, tolerance, identifiability.flat)
+    known = _roles(problem, front, extra, part, tolerance, identifiability.flat)
     slopes: dict[str, Mapping[str, Floats]] = {}
     done: dict[str, Local | None] = {}
 
@@ -123,7 +125,8 @@ def learn(
 
     scatter: Mapping[str, Scatter] = {}
     if source is not None and front.scale is not None:
-        scatter = front_scatter(problem, known, a, sizes, differentiate)
+        alone = front_scatter(problem, known, a, sizes, differentiate)
+        scatter = with_neighbours(front, known, alone, a, sizes)
     posterior = None
     if OPTIMAL in labels:
         local = differentiate(OPTIMAL, labels[OPTIMAL], None)
@@ -176,42 +179,70 @@ def _equal_minima(
 
 
 def _roles(
-    problem: UpdatingProblem, front: Front, extra: Labelled, tolerance: float, flat: float
+    problem: UpdatingProblem,
+    front: Front,
+    extra: Labelled,
+    part: Identifiable | None,
+    tolerance: float,
+    flat: float,
 ) -> list[Point]:
-    """Return the points with what each of them solves, as far as that is one smooth programme.
+    """Return the points with what each of them solves, as far as that is a programme.
 
-    Points of weights follow from their weights, points of NBI of two groups from their edges; of
-    more groups, the programmes have bounds, and evolved points solve none.
+    Points of weights follow from their weights, points of NBI from their edges, or from the models
+    up to which the ranges of the objectives reach; evolved points solve none.
     """
     names = problem.objectives
+    labels = dict(front.points)
     whole = tuple(f"edge-{name}" for name in names)
-    cut = {label for label, _ in extra}
-    part = tuple(PART + label if PART + label in cut else label for label in whole)
-    out = []
+    added = {label for label, _ in extra}
+    ends = tuple(PART + label if PART + label in added else label for label in whole)
+    cut = list(zip(ends, part.ends, strict=True)) if part else []
+    minima = [
+        Point(f"minimum-{k + 1}-{name}", one, Role("minimum", objective=i))
+        for i, (name, edge) in enumerate(zip(names, front.edges, strict=True))
+        for k, one in enumerate(edge.minima)
+    ]
+    known = [*((label, labels[label]) for label in whole), *((x.label, x.solution) for x in minima)]
+    worst = _labels_of(front.target, known)
+    out = [point for point in minima if point.label in worst]
     for i, (label, edge) in enumerate(zip(whole, front.edges, strict=True)):
-        solution = dict(front.points)[label]
+        solution = labels[label]
         if tolerance > 0 and not same(solution, edge.best):
             out.append(Point(f"{label}-best", edge.best, Role("edge", objective=i)))
-            out.append(Point(label, solution, Role("level", (), i, tolerance)))
+            out.append(Point(label, solution, Role("level", objective=i, tolerance=tolerance)))
         else:
             out.append(Point(label, edge.best, Role("edge", objective=i)))
+    reach = _labels_of(part.target if part else None, cut)
     for label, solution in [*front.points, *extra]:
         if label in whole:
             continue
         if label == OPTIMAL:
             role = Role("optimal")
-        elif label.startswith("nbi-") and len(names) == 2:
-            role = Role("boundary", whole)
+        elif label.startswith("nbi-"):
+            role = _between(solution, whole, worst, known)
         elif label.startswith(SOLVING_NONE):
             continue
         elif label.startswith(f"{PART}edge-"):
-            role = Role("level", (), names.index(label.removeprefix(f"{PART}edge-")), flat)
+            i = names.index(label.removeprefix(f"{PART}edge-"))
+            role = Role("level", objective=i, tolerance=flat)
         elif label.startswith(PART):
-            role = Role("boundary", part)
+            role = _between(solution, ends, reach, cut)
         else:
             role = Role("weights")
         out.append(Point(label, solution, role))
     return out
+
+
+def _between(one: Solution, ends: tuple[str, ...], worst: tuple[str, ...], known: Labelled) -> Role:
+    """Return the role of a point of NBI between labelled ends, or of one of these ends."""
+    own = [label for label, end in known if label in ends and same(one, end)]
+    return Role("end", (own[0],)) if own else Role("boundary", ends, worst)
+
+
+def _labels_of(target: Payoff | None, known: Labelled) -> tuple[str, ...]:
+    """Return the labels of the models up to which ranges reach that a simplex is made of."""
+    worst = target.worst if target else ()
+    return tuple(next(label for label, one in known if same(one, end)) for end in worst)
 
 
 def _differentiate(

@@ -20,12 +20,16 @@ from modefront.solvers.manifold import Extent, Manifold
 from modefront.solvers.sqp import Solution
 from modefront.study.knowledge import OPTIMAL, PART, Knowledge
 from modefront.study.run import Front
+from modefront.uncertainty.doubts import Doubt
 from modefront.uncertainty.prediction import linear
 
 Variables = dict[str, tuple[tuple[str, ...], object, str]]
 """Name: dimensions, values, meaning."""
 
 ALL = "all data"
+FEW = 10
+"""Points that are named one by one in a sentence."""
+
 AT_BOUND = 1e-9
 """Distance from a bound, over the range, up to which a parameter is at it."""
 
@@ -245,6 +249,13 @@ def _scatter(
     missing = [label for label in labels if label not in knowledge.scatter]
     if missing:
         said.append(f"no scatter is known at {', '.join(missing)}")
+    known = [(label, knowledge.scatter[label]) for label in labels if label in knowledge.scatter]
+    for doubt in Doubt:
+        there = [label for label, one in known if doubt in one.doubts]
+        if there:
+            where = ", ".join(there) if len(there) <= FEW else f"{len(there)} of {m} points"
+            said.append(f"the linearised scatter is doubtful at {where}: {doubt.value}")
+    doubts = {label: ", ".join(doubt.name.lower() for doubt in one.doubts) for label, one in known}
     return {
         "theta_std": (
             ("point", "parameter"),
@@ -271,6 +282,12 @@ def _scatter(
             ("point", "mode"),
             predicted["mac"],
             f"standard deviation of the MAC with the data as they are {by}",
+        ),
+        "scatter_doubt": (
+            ("point",),
+            np.array([doubts.get(label, "") for label in labels], dtype=str),
+            "why the linearised scatter may not be so; empty where nothing says that. "
+            + "; ".join(f"{one.name.lower()}: {one.value}" for one in Doubt),
         ),
     }, said
 

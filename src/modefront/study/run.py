@@ -107,7 +107,9 @@ def pareto_front(
     search = (search or Search()) if known is None else Search(0, 0, 0)
     n = len(problem.objectives)
     lattice = simplex(n, (points or default_points(n)) - 1) if n > 1 else None
-    subproblems = len(lattice.counts) if lattice and method not in EVOLUTIONARY else 1
+    subproblems = len(lattice.counts) if lattice else 1
+    if lattice and method in EVOLUTIONARY:
+        subproblems = max(evaluations // population, 1)
     expect(4 + 2 * n + len(given) + subproblems)
 
     def again(name: str, solutions: Sequence[Solution]) -> Sequence[Solution]:
@@ -173,12 +175,12 @@ def pareto_front(
     if target is not None and lattice is not None:
         if method in EVOLUTIONARY:
             rng = generator(seed, method)
-            evolved = partial(evolve_front, problem, method, population, evaluations, rng)
-            along = checkpoint(f"{method}-population", evolved)
+            along = evolve_front(problem, method, population, evaluations, rng, checkpoint)
         elif method == "weights":
             along = weight_sweep(problem, bests, target.scale, lattice, checkpoint)
         else:
-            along = nbi(problem, bests, target, lattice, checkpoint, minima_of_one)
+            before = [one for _, one in known.points if one.beta is not None] if known else []
+            along = nbi(problem, bests, target, lattice, checkpoint, minima_of_one, before=before)
             if n == 2:
                 along, breaks = _pieces(problem, target, along, refined, checkpoint)
     labelled = [(f"{method}-{i + 1}", one) for i, one in enumerate(along)]

@@ -121,6 +121,7 @@ def _packed(solutions: Solutions) -> tuple[Any, Arrays]:
         at = one.at
         parts = {"theta": at.theta, "J": at.J, "dJ": at.dJ, "H": at.H}
         parts |= {"learned": one.learned, "weights": one.weights}
+        parts |= {} if one.beta is None else {"beta": one.beta}
         parts |= {f"quantity:{key}": value for key, value in at.quantities.items()}
         arrays |= {f"{i}:{key}": value for key, value in parts.items()}
         heads.append([one.violation, one.status.name, one.evaluations])
@@ -133,7 +134,6 @@ def _unpacked(heads: Any, arrays: Arrays) -> Solutions:
         own = {key.split(":", 1)[1]: a for key, a in arrays.items() if key.startswith(f"{i}:")}
         kept = {key[9:]: value for key, value in own.items() if key.startswith("quantity:")}
         at = Evaluation(own["theta"], own["J"], own["dJ"], own["H"], kept)
-        solutions.append(
-            Solution(at, own["learned"], own["weights"], violation, Status[status], evaluations)
-        )
+        ended = (violation, Status[status], evaluations)
+        solutions.append(Solution(at, own["learned"], own["weights"], *ended, own.get("beta")))
     return solutions

@@ -2,25 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.curvature import SecondOrder
-from modefront.solvers.flat import same
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
-from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.points import Point, edge_weights
-from modefront.uncertainty.scatter import (
-    Scatter,
+from modefront.uncertainty.conditions import (
+    Target,
+    between,
     boundary,
     given_weights,
     level,
     optimal_weights,
-    scatter,
+    over_ranges,
 )
+from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.points import Point, Role, edge_weights, in_order
+from modefront.uncertainty.scatter import Scatter, scatter
 
 Local = tuple[SecondOrder, Noise]
 
@@ -39,33 +40,30 @@ def front_scatter(
     differentiate: Differentiate,
 ) -> dict[str, Scatter]:
     """Return the scatter of the points for which it is defined, by label."""
-    n = a.size
-    edges: dict[int, tuple[Floats, Scatter]] = {}
-    for i in range(n):
-        (own,) = (p for p in points if p.role.kind == "edge" and p.role.objective == i)
-        w = edge_weights(i, sizes)
-        local = differentiate(own.label, own.solution, w)
-        if local is not None:
-            point, noise = local
-            found = scatter(problem, point, w, given_weights(noise), noise)
-            edges[i] = point.at.J, found
+    level_of: dict[int, Floats] = {}  # changes of the least value of each objective
     ends: dict[str, tuple[Floats, Floats]] = {}
     out: dict[str, Scatter] = {}
-    for one in sorted(points, key=lambda one: one.role.kind == "boundary"):
+    for one in in_order(points):
         role = one.role
-        if role.kind == "edge":
-            if role.objective in edges:
-                J, out[one.label] = edges[role.objective]
-                ends[one.label] = J, out[one.label].J
+        if role.kind in ("edge", "minimum"):
+            w = edge_weights(role.objective, sizes)
+            local = differentiate(one.label, one.solution, w)
+            if local is None:
+                continue
+            point, noise = local
+            out[one.label] = scatter(problem, point, w, given_weights(noise), noise)
+            ends[one.label] = point.at.J, out[one.label].J
+            if role.kind == "edge":
+                level_of[role.objective] = out[one.label].J[:, role.objective]
             continue
-        twin = next((x for x in role.ends if _is_end(x, one, points)), None)
-        if twin is not None:
-            if twin in out:
-                out[one.label] = out[twin]
+        if role.kind == "end":
+            if role.ends[0] in out:
+                out[one.label] = out[role.ends[0]]
             continue
-        if not set(role.ends) <= set(ends) or (
-            role.kind == "level" and role.objective not in edges
-        ):
+        beta = one.solution.beta
+        if role.kind == "boundary" and (beta is None or not {*role.ends, *role.worst} <= set(ends)):
+            continue
+        if role.kind == "level" and role.objective not in level_of:
             continue
         local = differentiate(one.label, one.solution, None)
         if local is None:
@@ -78,22 +76,22 @@ def front_scatter(
             w = a / point.at.J
             conditions = optimal_weights(point, a, noise)
         elif role.kind == "level":
-            dv = (1 + role.tolerance) * edges[role.objective][1].J[:, role.objective]
+            dv = (1 + role.tolerance) * level_of[role.objective]
             conditions = level(point, role.objective, dv, noise)
-        else:
-            E = np.array([ends[label][0] for label in role.ends]).T
-            dE = np.stack([ends[label][1] for label in role.ends], axis=2)
-            try:
-                w, conditions = boundary(point, w, E, dE, noise)
-            except np.linalg.LinAlgError:
-                continue
+        elif beta is not None:
+            w, conditions = boundary(point, w, _target(role, ends), beta, noise)
         out[one.label] = scatter(problem, point, w, conditions, noise)
         if role.kind == "level":
             ends[one.label] = point.at.J, out[one.label].J
     return out
 
 
-def _is_end(label: str, one: Point, points: Sequence[Point]) -> bool:
-    """Return whether a point is the end of this label itself."""
-    (end,) = (point for point in points if point.label == label)
-    return same(end.solution, one.solution)
+def _target(role: Role, ends: Mapping[str, tuple[Floats, Floats]]) -> Target:
+    """Return the simplex of a point of NBI, from the objectives of labelled points."""
+    E = np.array([ends[label][0] for label in role.ends]).T
+    dE = np.stack([ends[label][1] for label in role.ends], axis=2)
+    if not role.worst:
+        return between(E, dE)
+    top = np.array([ends[label][0][i] for i, label in enumerate(role.worst)])
+    dtop = np.stack([ends[label][1][:, i] for i, label in enumerate(role.worst)], axis=1)
+    return over_ranges(E, dE, top, dtop)

@@ -4,18 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
+from typing import Literal, get_args
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.edges import near_best
-from modefront.solvers.payoff import payoff
+from modefront.solvers.nbi import programmes
+from modefront.solvers.payoff import spanned
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution, begin, solve
 
-Kind = Literal["edge", "level", "boundary", "weights", "optimal"]
+Kind = Literal["edge", "minimum", "level", "weights", "optimal", "end", "boundary"]
+"""What a point solves; each kind depends on those before it alone."""
 
 SMALL = 1e-4
 """Weight of the other objectives, over that of an edge's own, that keeps an edge regular.
@@ -31,15 +33,18 @@ class Role:
 
     Attributes
     ----------
-    kind : an edge; the best of the others at a level of an objective; a point of NBI; weights
-        that are given or optimal
-    ends : labels of the ends between which a point of NBI lies, one an objective
-    objective : of an edge or a level
+    kind : an edge; another minimum of an objective; the best of the others at a level of an
+        objective; weights that are given or optimal; one of the ends; a point of NBI
+    ends : labels of the ends between which a point of NBI lies, one an objective; or the end
+    worst : labels of the points up to which the ranges of the objectives reach, where the
+        simplex is that of the ranges
+    objective : of an edge, a minimum or a level
     tolerance : share by which a level exceeds the least value of its objective
     """
 
     kind: Kind
     ends: tuple[str, ...] = ()
+    worst: tuple[str, ...] = ()
     objective: int = -1
     tolerance: float = 0.0
 
@@ -60,10 +65,9 @@ def edge_weights(objective: int, sizes: Floats) -> Floats:
     return w / sizes
 
 
-def shifted(J: Floats, E: Floats) -> Floats:
-    """Return beta - t e of a point of NBI, from its objectives and those of the ends (columns)."""
-    utopia = np.diag(E)
-    return np.asarray(np.linalg.solve(E - utopia[:, None], J - utopia), dtype=float)
+def in_order(points: Sequence[Point]) -> list[Point]:
+    """Return the points, each after those that it depends on."""
+    return sorted(points, key=lambda one: get_args(Kind).index(one.role.kind))
 
 
 def solve_again(
@@ -75,39 +79,39 @@ def solve_again(
     objectives. A point of which the ends do not span a simplex any more is infeasible.
     """
     solved: dict[str, Solution] = {}
-    known = {point.label: point for point in points}
-    for point in sorted(points, key=lambda one: one.role.kind == "boundary"):
-        solved[point.label] = _again(problem, point, known, solved, a, sizes)
+    for point in in_order(points):
+        solved[point.label] = _again(problem, point, solved, a, sizes)
     return [solved[point.label] for point in points]
 
 
 def _again(
     problem: Problem,
     point: Point,
-    known: Mapping[str, Point],
     solved: Mapping[str, Solution],
     a: Floats,
     sizes: Floats,
 ) -> Solution:
     role = point.role
+    if role.kind == "end":
+        return solved[role.ends[0]]
     start = begin(problem.evaluate(point.solution.at.theta))
     programme: Scalarisation
     if role.kind == "optimal":
         programme = LogSum(a)
     elif role.kind == "weights":
         programme = weighted(point.solution.weights)
-    elif role.kind in ("edge", "level"):
+    elif role.kind in ("edge", "minimum", "level"):
         best = solve(problem, weighted(edge_weights(role.objective, sizes)), start)
-        if role.kind == "edge" or not best.at.feasible:
+        if role.kind != "level" or not best.at.feasible:
             return best
         own = np.arange(sizes.size) == role.objective
         sizes = np.where(own, sizes, 1 / point.solution.weights)  # as it was solved with
         return near_best(problem, best, role.objective, role.tolerance, sizes, [start])[0]
     else:
-        target = payoff([solved[label] for label in role.ends], sizes)
-        if target is None:
+        ends = [solved[label] for label in role.ends]
+        target = spanned(ends, [solved[label] for label in role.worst], sizes)
+        beta = point.solution.beta
+        if target is None or beta is None:
             return start
-        E = np.array([known[label].solution.at.J for label in role.ends]).T
-        gamma = shifted(point.solution.at.J, E)
-        programme = target.subproblem(gamma + (1 - gamma.sum()) / gamma.size)
+        return programmes(target, ends).solve(problem, beta, start)
     return solve(problem, programme, start)

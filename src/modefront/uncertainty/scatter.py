@@ -13,7 +13,7 @@ Stability Analysis in Nonlinear Programming*, section 2.4):
 .. math:: W \delta\theta + \partial J^T \delta w = - \delta \partial J^T w, \qquad
     W = \sum_i w_i H_i ,
 
-together with what the programme says of w:
+together with what the programme says of w (`modefront.uncertainty.conditions`):
 
 ==================  =====================================================================
 weights given       :math:`\delta w = 0`
@@ -22,17 +22,26 @@ optimal weights     :math:`w = a / J`:
                     (\partial J\, \delta\theta + \delta J)`
 level               min of the others at :math:`J_i = v`: only :math:`w_i` changes, and
                     :math:`\partial J_i \delta\theta + \delta J_i = \delta v`
-boundary (NBI)      :math:`J = J^* + P (\beta - t e)` with the edges E as columns,
-                    :math:`J^* = \operatorname{diag} E`, :math:`P = E - J^* e^T`, and
-                    :math:`w^T P e = 1`:
-                    :math:`\partial J \delta\theta + P e\, \delta t = \delta J^* - \delta J
-                    + \delta P (\beta - t e)`,
-                    :math:`(P e)^T \delta w = -(\delta P\, e)^T w`
+boundary (NBI)      :math:`J_A = (J^* + P (\beta + \tau e))_A` on the active bounds A, with
+                    :math:`n = P e` and :math:`w_A^T n_A = 1`, and :math:`w_i = \rho / n_i`
+                    on the others:
+                    :math:`(\partial J \delta\theta - n\, \delta\tau)_A = (\delta J^* -
+                    \delta J + \delta P (\beta + \tau e))_A`,
+                    :math:`n_A^T \delta w_A = -w_A^T \delta n_A`,
+                    :math:`\delta w_i = -\rho\, \delta n_i / n_i^2`
 ==================  =====================================================================
 
-So points of the front also follow the edges, which scatter themselves. A parameter that is pressed
-against a bound stays there. Directions in which no residual changes are left out and
-named: nothing holds the model there.
+With the edges E as columns, :math:`J^* = \operatorname{diag} E` and :math:`P = E - J^* e^T`; of the
+simplex of the ranges, P is diagonal. So points of the front also follow the edges, which scatter
+themselves; :math:`\beta` is fixed. Of two groups all bounds are active, since they are equations;
+of more, those whose weight is more than that of the share :math:`\rho`
+(`modefront.solvers.attainment`).
+
+A parameter that is pressed against a bound stays there. Directions in which no residual changes are
+left out and named: nothing holds the model there.
+
+All this holds as long as no active set changes and the solution goes on to be a minimum; what says
+that it may not is returned with it (`modefront.uncertainty.doubts`).
 """
 
 from __future__ import annotations
@@ -43,15 +52,14 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Bools, Floats
-from modefront.solvers.curvature import SecondOrder
+from modefront.solvers.curvature import ERROR, SecondOrder
 from modefront.solvers.problem import Problem
+from modefront.uncertainty.conditions import Conditions
+from modefront.uncertainty.doubts import Doubt, std
 from modefront.uncertainty.noise import Noise
 
 FLAT = 1e-12
 """Eigenvalue over the greatest one below which a direction changes no residual."""
-
-BENT = 1e-5
-"""Second derivative over the greatest one below which it is the error of differences."""
 
 PRESSED = 1e-6
 """Slope of the Lagrangian at a bound, over the slopes of its terms, from which the bound holds."""
@@ -65,14 +73,18 @@ class Scatter:
     ----------
     theta : (sources, p) changes of the parameters
     J : (sources, n) changes of the objectives at the solution, of its own data
+    w : (sources, n) changes of the weights of the objectives
     held : (p,) parameters that a bound holds
     free : (p, d) directions that no data determine, orthonormal over the ranges
+    doubts : why it may not be so
     """
 
     theta: Floats
     J: Floats
+    w: Floats
     held: Bools
     free: Floats
+    doubts: tuple[Doubt, ...]
 
     @property
     def covariance(self) -> Floats:
@@ -108,76 +120,8 @@ def spaces(problem: Problem, point: SecondOrder, w: Floats, held: Bools) -> tupl
     flat = lam <= FLAT * max(float(lam.max(initial=0.0)), np.finfo(float).tiny)
     N = basis[:, flat]
     mu, U = np.linalg.eigh(N.T @ second @ N)
-    bent = np.abs(mu) > BENT * np.abs(second).max()
+    bent = np.abs(mu) > ERROR * np.abs(second).max()
     return np.hstack([basis[:, ~flat], N @ U[:, bent]]), N @ U[:, ~bent]
-
-
-@dataclass(frozen=True)
-class Conditions:
-    r"""What a programme says of the changes: C dtheta + D dw + e dt = f, g^T dw = h.
-
-    Arrays are C (n, p), D (n, n), f (sources, n), and e (n, k), g (n, k), h (sources, k) with k
-    either 0 or 1.
-    """
-
-    C: Floats
-    D: Floats
-    e: Floats
-    f: Floats
-    g: Floats
-    h: Floats
-
-
-def _open(C: Floats, D: Floats, f: Floats) -> Conditions:
-    none = np.zeros((len(D), 0))
-    return Conditions(C, D, none, f, none, np.zeros((len(f), 0)))
-
-
-def given_weights(noise: Noise) -> Conditions:
-    """Return the conditions of weights that stay."""
-    _, n, p = noise.dJ.shape
-    return _open(np.zeros((n, p)), np.eye(n), np.zeros(noise.J.shape))
-
-
-def optimal_weights(point: SecondOrder, a: Floats, noise: Noise) -> Conditions:
-    """Return the conditions of w = a / J."""
-    second = a / point.at.J**2
-    return _open(second[:, None] * point.at.dJ, np.eye(a.size), -second * noise.J)
-
-
-def level(point: SecondOrder, objective: int, dv: Floats, noise: Noise) -> Conditions:
-    """Return the conditions of the least of the others at J_objective = v; dv is (sources,)."""
-    at = np.arange(point.at.J.size) == objective
-    f = np.zeros(noise.J.shape)
-    f[:, objective] = dv - noise.J[:, objective]
-    return _open(at[:, None] * point.at.dJ, np.diag(~at).astype(float), f)
-
-
-def boundary(
-    point: SecondOrder, w: Floats, E: Floats, dE: Floats, noise: Noise
-) -> tuple[Floats, Conditions]:
-    """Return the weights in their right size and the conditions of a point of NBI.
-
-    ``E`` (n, n) are the objectives of the edges, one column an edge, ``dE`` (sources, n, n) their
-    changes. Raises LinAlgError where the edges do not span a simplex.
-    """
-    n = len(E)
-    utopia = np.diag(E)
-    P = E - utopia[:, None]
-    shifted = np.linalg.solve(P, point.at.J - utopia)  # beta - t e
-    dutopia = np.einsum("mii->mi", dE)
-    dP = dE - dutopia[:, :, None]
-    normal = P.sum(axis=1)
-    w = w / (w @ normal)
-    f = dutopia - noise.J + dP @ shifted
-    return w, Conditions(
-        point.at.dJ,
-        np.zeros((n, n)),
-        normal[:, None],
-        f,
-        normal[:, None],
-        -(dP.sum(axis=2) @ w)[:, None],
-    )
 
 
 def scatter(
@@ -189,20 +133,57 @@ def scatter(
     Q, free = spaces(problem, point, w, held)
     B = span[:, None] * Q  # parameters for unit changes of what is determined
     dJ = at.dJ @ B
-    W = B.T @ np.tensordot(w, point.H, axes=1) @ B
+    second = np.tensordot(w, point.H, axes=1)
+    W = B.T @ second @ B
     c = conditions
-    k = c.e.shape[1]
+    n, k = c.e.shape
     q = Q.shape[1]
     system = np.block(
         [
             [W, dJ.T, np.zeros((q, k))],
-            [c.C @ B, c.D, c.e],
-            [np.zeros((k, q)), c.g.T, np.zeros((k, k))],
+            [c.C @ B, np.diag(c.D), -c.e],
+            [np.zeros((k, q)), c.e.T, np.zeros((k, k))],
         ]
     )
-    right = np.hstack([-(np.einsum("mnp,n->mp", noise.dJ, w) @ B), c.f, c.h])
-    changes = _solve_scaled(system, right.T)[:q].T @ B.T
-    return Scatter(changes, noise.J + changes @ at.dJ.T, held, span[:, None] * free)
+    slope = np.einsum("mnp,n->mp", noise.dJ, w)
+    x = _solve_scaled(system, np.hstack([-slope @ B, c.f, c.h]).T).T
+    theta, dw, dtau = x[:, :q] @ B.T, x[:, q : q + n], x[:, q + n :]
+    J = noise.J + theta @ at.dJ.T
+    slope = (slope + theta @ second + dw @ at.dJ) * span
+    doubts = [
+        (Doubt.SADDLE, not _is_minimum(W, c.C @ B, dJ, c)),
+        (Doubt.MEETS, _meets(problem, at.theta, theta, held)),
+        (Doubt.LEAVES, bool((np.abs(w @ at.dJ * span) <= std(slope))[held].any())),
+        (Doubt.SWITCHES, c.bounds is not None and c.bounds.switch(w, dw, theta @ at.dJ.T, dtau)),
+    ]
+    why = tuple(doubt for doubt, there in doubts if there)
+    return Scatter(theta, J, dw, held, span[:, None] * free, why)
+
+
+def _is_minimum(W: Floats, C: Floats, dJ: Floats, c: Conditions) -> bool:
+    """Return whether second derivatives are positive along all that equations leave open.
+
+    Weights that follow the solution, dw = f - C dtheta, bring the second derivatives of f with
+    them.
+    """
+    if len(W) == 0:
+        return True
+    equations = c.D == 0
+    L = W - dJ[~equations].T @ C[~equations]
+    Z = np.eye(len(W))
+    if equations.any():
+        rows = np.hstack([C, c.e])[equations]
+        rows = rows / np.linalg.norm(rows, axis=1, keepdims=True)
+        C, e = rows[:, : len(W)], rows[:, len(W) :]
+        Z = scipy.linalg.null_space(scipy.linalg.null_space(e.T).T @ C if e.size else C)
+    return bool((np.linalg.eigvalsh(Z.T @ (L + L.T) @ Z) > 0).all())
+
+
+def _meets(problem: Problem, theta: Floats, changes: Floats, held: Bools) -> bool:
+    """Return whether a parameter that is not held is less than its scatter from a bound."""
+    room = np.minimum(theta - problem.lower, problem.upper - theta)
+    moves = np.abs(changes).max(axis=0, initial=0.0) > 0
+    return bool((room < std(changes))[~held & moves].any())
 
 
 def _solve_scaled(A: Floats, b: Floats) -> Floats:

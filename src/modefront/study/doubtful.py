@@ -1,0 +1,58 @@
+"""Points of a front whose scatter is doubtful for what lies next to them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+
+from modefront._typing import Floats
+from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
+from modefront.solvers.sqp import Solution
+from modefront.study.run import Front
+from modefront.uncertainty.doubts import Doubt, has_rival, near_an_end
+from modefront.uncertainty.points import Point, edge_weights, in_order
+from modefront.uncertainty.scatter import Scatter
+
+
+def with_neighbours(
+    front: Front,
+    points: Sequence[Point],
+    scatter: Mapping[str, Scatter],
+    a: Floats,
+    sizes: Floats,
+) -> dict[str, Scatter]:
+    """Return the scatter of points with the doubts that their neighbours raise."""
+    ends = [one.at.J for gap in front.gaps for one in (gap.end, gap.start)]
+    out: dict[str, Scatter] = {}
+    for point in in_order(points):
+        label, at = point.label, point.solution.at
+        if label not in scatter:
+            continue
+        if point.role.kind == "end":
+            out[label] = out[point.role.ends[0]]
+            continue
+        own = scatter[label]
+        found = [
+            (Doubt.ENDS, point.role.kind == "boundary" and near_an_end(at.J, own.J, ends)),
+            (Doubt.RIVAL, _has_rival(front, point, own, a, sizes)),
+            (Doubt.UNSOLVED, not point.solution.converged),
+        ]
+        doubts = (*own.doubts, *(doubt for doubt, there in found if there))
+        out[label] = replace(own, doubts=doubts)
+    return out
+
+
+def _has_rival(front: Front, point: Point, scatter: Scatter, a: Floats, sizes: Floats) -> bool:
+    """Return whether another minimum of what an edge or the optimal weights minimise is as good."""
+    programme: Scalarisation
+    others: Sequence[Solution]
+    if point.role.kind == "edge":
+        i = point.role.objective
+        programme, others = weighted(edge_weights(i, sizes)), front.edges[i].minima[1:]
+    elif point.role.kind == "optimal":
+        programme, others = LogSum(a), front.optimal[1:]
+    else:
+        return False
+    J = point.solution.at.J
+    changes = scatter.J @ programme.gradient(J)
+    return has_rival(programme.value(J), changes, [programme.value(x.at.J) for x in others])

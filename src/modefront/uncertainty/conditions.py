@@ -1,0 +1,133 @@
+"""What each kind of programme says of the changes of a solution.
+
+The equations are derived at the top of `modefront.uncertainty.scatter`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront._typing import Bools, Floats
+from modefront.solvers.attainment import SHARE, active_bounds
+from modefront.solvers.curvature import SecondOrder
+from modefront.uncertainty.doubts import std
+from modefront.uncertainty.noise import Noise
+
+
+@dataclass(frozen=True)
+class Bounds:
+    """Bounds c_i <= tau on objectives.
+
+    Attributes
+    ----------
+    active : (n,) those that hold as equations
+    n, dn : (n,) and (sources, n) the normal and its changes
+    slack : (n,) tau n - n c
+    moved : (sources, n) changes of the slack at this model and this tau
+    """
+
+    active: Bools
+    n: Floats
+    dn: Floats
+    slack: Floats
+    moved: Floats
+
+    def switch(self, w: Floats, dw: Floats, dJ: Floats, dtau: Floats) -> bool:
+        """Return whether errors of one standard deviation change the active set."""
+        weight = w * self.n - SHARE
+        hardly = weight <= std(dw * self.n + w * self.dn)
+        close = self.slack <= std(self.moved - dJ + dtau * self.n)
+        return bool(np.where(self.active, hardly, close).any())
+
+
+@dataclass(frozen=True)
+class Conditions:
+    r"""What a programme says of the changes: C dtheta + D dw - e dtau = f, e^T dw = h.
+
+    Arrays are C (n, p), D (n,), a diagonal of ones and zeros, f (sources, n), and e (n, k), h
+    (sources, k) with k either 0 or 1. D is 0 for equations. ``bounds`` are on the objectives,
+    where they are no equations.
+    """
+
+    C: Floats
+    D: Floats
+    e: Floats
+    f: Floats
+    h: Floats
+    bounds: Bounds | None = None
+
+
+def _open(C: Floats, D: Floats, f: Floats) -> Conditions:
+    return Conditions(C, D, np.zeros((len(D), 0)), f, np.zeros((len(f), 0)))
+
+
+def given_weights(noise: Noise) -> Conditions:
+    """Return the conditions of weights that stay."""
+    _, n, p = noise.dJ.shape
+    return _open(np.zeros((n, p)), np.ones(n), np.zeros(noise.J.shape))
+
+
+def optimal_weights(point: SecondOrder, a: Floats, noise: Noise) -> Conditions:
+    """Return the conditions of w = a / J."""
+    second = a / point.at.J**2
+    return _open(second[:, None] * point.at.dJ, np.ones(a.size), -second * noise.J)
+
+
+def level(point: SecondOrder, objective: int, dv: Floats, noise: Noise) -> Conditions:
+    """Return the conditions of the least of the others at J_objective = v; dv is (sources,)."""
+    at = np.arange(point.at.J.size) == objective
+    f = np.zeros(noise.J.shape)
+    f[:, objective] = dv - noise.J[:, objective]
+    return _open(at[:, None] * point.at.dJ, (~at).astype(float), f)
+
+
+@dataclass(frozen=True)
+class Target:
+    """The simplex of normal-boundary intersection, and its changes with the data.
+
+    Attributes
+    ----------
+    utopia, dutopia : (n,) and (sources, n) the least objectives
+    P, dP : (n, n) and (sources, n, n) the corners above them, one column each
+    """
+
+    utopia: Floats
+    P: Floats
+    dutopia: Floats
+    dP: Floats
+
+
+def between(E: Floats, dE: Floats) -> Target:
+    """Return the simplex between edges, (n, n) with a column an edge, that change by (., n, n)."""
+    utopia, dutopia = np.diag(E), np.einsum("mii->mi", dE)
+    return Target(utopia, E - utopia[:, None], dutopia, dE - dutopia[:, :, None])
+
+
+def over_ranges(E: Floats, dE: Floats, top: Floats, dtop: Floats) -> Target:
+    """Return the simplex of the ranges up to ``top`` (n,), which changes by (sources, n)."""
+    utopia, dutopia = np.diag(E), np.einsum("mii->mi", dE)
+    dP = (dtop - dutopia)[:, :, None] * np.eye(top.size)
+    return Target(utopia, np.diag(top - utopia), dutopia, dP)
+
+
+def boundary(
+    point: SecondOrder, w: Floats, target: Target, beta: Floats, noise: Noise
+) -> tuple[Floats, Conditions]:
+    """Return the weights in their right size and the conditions of a point of NBI.
+
+    ``beta`` (n,) is the point of the simplex that it was projected from.
+    """
+    n = target.P.sum(axis=1)
+    dn = target.dP.sum(axis=2)
+    active = np.ones(n.size, dtype=np.bool_) if n.size == 2 else active_bounds(w * n)
+    w = w / (w[active] @ n[active])
+    above = point.at.J - target.utopia - target.P @ beta  # n c
+    tau = float((above / n)[active].mean())
+    moved = target.dutopia + target.dP @ (beta + tau) - noise.J
+    f = np.where(active, moved, -SHARE * dn / n**2)
+    e = np.where(active, n, 0.0)[:, None]
+    h = -(dn[:, active] @ w[active])[:, None]
+    bounds = None if n.size == 2 else Bounds(active, n, dn, tau * n - above, moved)
+    return w, Conditions(active[:, None] * point.at.dJ, (~active).astype(float), e, f, h, bounds)

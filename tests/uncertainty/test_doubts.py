@@ -1,0 +1,161 @@
+"""Where linearised scatter is doubtful: closed forms on both sides of each criterion."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from problems import Derivatives, Known, box, many_minima
+
+from modefront._typing import Floats
+from modefront.solvers.attainment import Attainment
+from modefront.solvers.curvature import SecondOrder, second_order
+from modefront.solvers.edges import Edge
+from modefront.solvers.nbi import programmes
+from modefront.solvers.payoff import spanned
+from modefront.solvers.scalarisation import weighted
+from modefront.solvers.sqp import Status, begin, solve
+from modefront.study.doubtful import with_neighbours
+from modefront.study.run import Front
+from modefront.uncertainty.conditions import (
+    between,
+    boundary,
+    given_weights,
+    optimal_weights,
+)
+from modefront.uncertainty.doubts import Doubt
+from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.points import Point, Role
+from modefront.uncertainty.scatter import Scatter, scatter
+
+CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+
+
+def point_at(problem: Known, theta: list[float]) -> SecondOrder:
+    point = second_order(problem, problem.evaluate(np.array(theta)))
+    assert point is not None
+    return point
+
+
+@pytest.mark.parametrize(
+    ("measured", "doubts"),
+    [
+        (0.70, ()),
+        (0.95, (Doubt.MEETS,)),
+        (1.05, (Doubt.LEAVES,)),
+        (1.30, ()),
+    ],
+)
+def test_a_bound_within_the_scatter_of_a_measured_value(
+    measured: float, doubts: tuple[Doubt, ...]
+) -> None:
+    """J = (theta - y)**2, y with a standard deviation of 0.1, theta at most 1."""
+
+    def bowl(theta: Floats) -> Derivatives:
+        r = theta - measured
+        return r**2, 2 * r[None], np.full((1, 1, 1), 2.0)
+
+    problem = box(bowl, [0.0], [1.0], 1)
+    theta = min(measured, 1.0)
+    noise = Noise(np.array([[-0.2 * (theta - measured)]]), np.array([[[-0.2]]]))
+    found = scatter(problem, point_at(problem, [theta]), np.ones(1), given_weights(noise), noise)
+    assert found.theta == pytest.approx(0.1 if measured < 1 else 0.0)
+    assert found.doubts == doubts
+
+
+@pytest.mark.parametrize(("d", "doubts"), [(0.9, ()), (1.1, (Doubt.SADDLE,))])
+def test_optimal_weights_hold_a_model_between_close_minima_only(
+    d: float, doubts: tuple[Doubt, ...]
+) -> None:
+    """J = 1 + (theta -+ d)**2: ln J1 + ln J2 has a minimum at 0 for d < 1, else a maximum."""
+
+    def bowls(theta: Floats) -> Derivatives:
+        r = theta - np.array([d, -d])
+        return 1 + r**2, 2 * r[:, None], np.full((2, 1, 1), 2.0)
+
+    problem = box(bowls, [-2.0], [2.0])
+    point, a = point_at(problem, [0.0]), np.ones(2)
+    noise = Noise(np.array([[0.01, 0.0]]), np.array([[[0.01], [0.0]]]))
+    found = scatter(problem, point, a / point.at.J, optimal_weights(point, a, noise), noise)
+    assert found.doubts == doubts
+
+
+def of_corners(beta: Floats, std: float) -> Scatter:
+    """Return the scatter of a point of three bowls whose corners have errors."""
+
+    def bowls(theta: Floats) -> Derivatives:
+        r = theta - CORNERS
+        return 0.1 + (r**2).sum(axis=1), 2 * r, np.array([2 * np.eye(2)] * 3)
+
+    def noise(theta: Floats) -> Noise:
+        J, dJ = np.zeros((3, 2, 3)), np.zeros((3, 2, 3, 2))
+        for i, k in np.ndindex(3, 2):
+            J[i, k, i] = -2 * std * (theta - CORNERS[i])[k]
+            dJ[i, k, i, k] = -2 * std
+        return Noise(J.reshape(6, 3), dJ.reshape(6, 3, 2))
+
+    problem = box(bowls, [-2.0, -2.0], [2.0, 2.0], 3)
+    weights = [weighted(w) for w in np.eye(3)]
+    edges = [solve(problem, w, begin(problem.evaluate(np.zeros(2)))) for w in weights]
+    dE = []
+    for edge, w in zip(edges, np.eye(3), strict=True):
+        point, own = point_at(problem, edge.at.theta.tolist()), noise(edge.at.theta)
+        dE.append(scatter(problem, point, w, given_weights(own), own).J)
+    target = spanned(edges, (), np.ones(3))
+    assert target is not None
+    of = programmes(target, edges)
+    assert isinstance(of, Attainment)
+    found = of.solve(problem, beta, edges[0])
+    assert found.converged
+    E = np.array([edge.at.J for edge in edges]).T
+    point, own = point_at(problem, found.at.theta.tolist()), noise(found.at.theta)
+    moving = between(E, np.stack(dE, axis=2))
+    w, conditions = boundary(point, found.weights, moving, beta, own)
+    return scatter(problem, point, w, conditions, own)
+
+
+def test_points_next_to_a_change_of_the_active_set_are_doubtful() -> None:
+    """From the middle of the triangle across its side, where the third weight vanishes."""
+    inside, outside = np.array([0.35, 0.3, 0.35]), np.array([0.6, -0.2, 0.6])
+    steps = np.linspace(0, 1, 21)
+    line = [(1 - s) * inside + s * outside for s in steps]
+    counts = []
+    for std in (1e-6, 0.05, 0.15):
+        doubtful = [Doubt.SWITCHES in of_corners(beta, std).doubts for beta in line]
+        assert not doubtful[0]
+        assert not doubtful[-1]
+        where = np.flatnonzero(doubtful)
+        assert (np.diff(where) == 1).all(), "one band around the change"
+        counts.append(where.size)
+    assert counts[0] <= 1
+    assert counts[0] < counts[1] < counts[2]
+
+
+@pytest.mark.parametrize(
+    ("std", "status", "doubts"),
+    [
+        (19.0, Status.CONVERGED, ()),
+        (21.0, Status.CONVERGED, (Doubt.RIVAL,)),
+        (1.0, Status.STALLED, (Doubt.UNSOLVED,)),
+    ],
+)
+def test_another_model_that_fits_as_well_is_a_rival(
+    std: float, status: Status, doubts: tuple[Doubt, ...]
+) -> None:
+    """J1 vanishes at (1, -2) and (1, 2), J2 is 20 less at the first: errors of J2 decide."""
+    problem = box(many_minima, [-4, -4], [4, 4])
+    best, other = (begin(problem.evaluate(np.array([1.0, y]))) for y in (-2.0, 2.0))
+    assert other.at.J - best.at.J == pytest.approx([0, 20])
+    best = replace(best, status=status)
+    edges = [Edge(best, [best, other]), Edge(other, [other])]
+    front = Front("nbi", [("edge-J1", best)], edges, [], None, (True, False), None, [])
+    points = [
+        Point("edge-J1", best, Role("edge", objective=0)),
+        Point("nbi-1", best, Role("end", ("edge-J1",))),
+    ]
+    none = np.zeros((1, 2))
+    own = Scatter(none, np.array([[0.0, std]]), none, np.zeros(2, bool), none.T, ())
+    scatters = {"edge-J1": own, "nbi-1": own}
+    found = with_neighbours(front, points, scatters, np.ones(2), np.ones(2))
+    assert [one.doubts for one in found.values()] == [doubts, doubts]
