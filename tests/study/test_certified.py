@@ -16,6 +16,7 @@ import modefront as mf
 from modefront.cli.main import main
 from modefront.fem import grids
 from modefront.models.reduced.model import ReducedModel
+from modefront.study.check import check
 from modefront.study.results import read
 
 N = 14
@@ -272,3 +273,17 @@ def test_a_model_without_a_basis_says_so(
     out = capfd.readouterr().out
     assert status in (0, 1)
     assert "no reduced basis: the model has only 100 degrees of freedom" in out
+
+
+def test_bounds_are_checked_in_the_full_model(file: Path) -> None:
+    bounds = "nominal = 1.0\nbounds = [0.4, 2.5]\n\n[[parameter]]"
+    weak = bounds.replace("[0.4", "[-1e-5")
+    study = mf.load(variant(file, "weak", bounds, weak))
+    problem = study.problem
+    model = problem.model
+    assert isinstance(model, ReducedModel)
+    assert model.modes(problem.lower, 3, derivatives=False).lam[0] > 0, "the basis does not see it"
+    assert any(
+        "at the lower bounds" in warning and "indefinite" in warning
+        for warning in check(study).warnings
+    )

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -17,6 +17,7 @@ from modefront.identifiability.combinations import (
     relative_unit,
 )
 from modefront.identifiability.words import in_words, measured_thing, summary
+from modefront.models.reduced.model import ReducedModel
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.file import Study
 
@@ -140,7 +141,12 @@ def derivative_error(problem: UpdatingProblem) -> float:
 
 
 def _corners(problem: UpdatingProblem) -> list[str]:
-    """Warn where the model has no modes at the bounds of all parameters at once."""
+    """Warn where the model has no modes at the bounds of all parameters at once.
+
+    It is the full model that is asked: a basis may not hold what makes a matrix indefinite.
+    """
+    if isinstance(problem.model, ReducedModel):
+        problem = replace(problem, model=problem.model.full)
     out = []
     for name, theta in (("lower", problem.lower), ("upper", problem.upper)):
         try:

@@ -16,7 +16,7 @@ from modefront.study.tables.parameters import Parameter
 
 AUTO, OFF = "auto", "off"
 
-PAYS = 5000
+PAYS = 2000
 """Degrees of freedom from which ``auto`` takes a basis; smaller models are solved in full."""
 
 UNREDUCED = ("chain",)
