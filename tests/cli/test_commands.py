@@ -15,6 +15,7 @@ from typing import Any
 import pytest
 import xarray as xr
 from interruptions import interrupt_after
+from texts import two_of_each
 
 import modefront
 from modefront.cli.main import main
@@ -23,7 +24,8 @@ from modefront.solvers import edges
 from modefront.study import session
 from modefront.study.results import FILE, read
 
-STUDY = """
+STUDY = (
+    """
 [study]
 name = "two masses"
 seed = 3
@@ -37,24 +39,9 @@ masses = [2.0, 1.0]
 stiffnesses = [3000.0, 2000.0]
 stiffness_parameters = ["k1", "k2"]
 
-[[parameter]]
-name = "k1"
-nominal = 1.0
-bounds = [0.2, 5.0]
-
-[[parameter]]
-name = "k2"
-nominal = 1.0
-bounds = [0.2, 5.0]
-
-[[group]]
-name = "frequencies"
-frequency = "all"
-
-[[group]]
-name = "shapes"
-shape = "all"
-
+"""
+    + two_of_each()
+    + """
 [[weighted]]
 name = "mine"
 weights = { frequencies = 2.0, shapes = 1.0 }
@@ -67,6 +54,7 @@ starts = 1
 limit = 1
 evolutions = 0
 """
+)
 
 DATA = """set,mode,frequency,damping,floor1,floor2
 a,1,4.2,,0.6,1.0

@@ -11,6 +11,7 @@ import pytest
 import scipy.sparse
 import xarray as xr
 from interruptions import interrupt_after
+from texts import two_of_each
 
 import modefront as mf
 from modefront.cli.main import main
@@ -20,7 +21,8 @@ from modefront.study.check import check
 from modefront.study.results import read
 
 N = 14
-STUDY = """
+STUDY = (
+    """
 [study]
 name = "membrane"
 seed = 2
@@ -35,24 +37,9 @@ mass = { base = "M.npz" }
 sensors = { a = 25, b = 62, c = 107, d = 150, e = 172 }
 reduction = 1e-8
 
-[[parameter]]
-name = "k1"
-nominal = 1.0
-bounds = [0.4, 2.5]
-
-[[parameter]]
-name = "k2"
-nominal = 1.0
-bounds = [0.4, 2.5]
-
-[[group]]
-name = "frequencies"
-frequency = "all"
-
-[[group]]
-name = "shapes"
-shape = "all"
-
+"""
+    + two_of_each(0.4, 2.5)
+    + """
 [pareto]
 points = 3
 
@@ -61,6 +48,7 @@ starts = 2
 limit = 2
 evolutions = 0
 """
+)
 
 
 def write_study(folder: Path) -> Path:

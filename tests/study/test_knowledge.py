@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 import xarray as xr
+from texts import two_of_each
 
 import modefront as mf
 from modefront._typing import Floats
@@ -190,7 +191,8 @@ def test_a_front_that_is_a_point_has_no_scatter_to_speak_of() -> None:
     assert any("no scatter is known at" in text for text in found["finding"].values)
 
 
-STUDY = """
+STUDY = (
+    """
 [study]
 name = "valley"
 
@@ -203,24 +205,9 @@ masses = [2.0, 1.0]
 stiffnesses = [3000.0, 2000.0]
 stiffness_parameters = ["k1", "k2"]
 
-[[parameter]]
-name = "k1"
-nominal = 1.0
-bounds = [0.2, 5.0]
-
-[[parameter]]
-name = "k2"
-nominal = 1.0
-bounds = [0.2, 5.0]
-
-[[group]]
-name = "frequencies"
-frequency = "all"
-
-[[group]]
-name = "shapes"
-shape = "all"
-
+"""
+    + two_of_each()
+    + """
 [pareto]
 points = 3
 
@@ -237,6 +224,7 @@ step = 0.2
 source = "sets"
 bootstrap = 2
 """
+)
 
 
 def write_data(folder: Path) -> None:

@@ -8,6 +8,7 @@ import numpy as np
 import scipy.linalg
 import xarray as xr
 from numpy.typing import NDArray
+from texts import two_of_each
 
 import modefront as mf
 from modefront._typing import Floats
@@ -18,7 +19,8 @@ MASSES = np.array([2.0, 1.0])
 STIFFNESS = np.array([3000.0, 2000.0])
 ZETA = np.array([0.02, 0.03])
 
-STUDY = """
+STUDY = (
+    """
 [study]
 name = "two masses"
 seed = 3
@@ -34,24 +36,9 @@ stiffness_parameters = ["k1", "k2"]
 sensors = { low = 0, high = 1 }
 outputs = { middle = [[0, 0.5], [1, 0.5]] }
 
-[[parameter]]
-name = "k1"
-nominal = 1.0
-bounds = [0.2, 5.0]
-
-[[parameter]]
-name = "k2"
-nominal = 1.0
-bounds = [0.2, 5.0]
-
-[[group]]
-name = "frequencies"
-frequency = "all"
-
-[[group]]
-name = "shapes"
-shape = "all"
-
+"""
+    + two_of_each()
+    + """
 [pareto]
 points = 3
 
@@ -63,6 +50,7 @@ starts = 1
 limit = 1
 evolutions = 0
 """
+)
 
 FRF = """
 [[predict.frf]]
