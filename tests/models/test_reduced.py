@@ -19,7 +19,7 @@ from modefront.models.matrices import MatrixModel, affine_model
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced import window
 from modefront.models.reduced.basis import DERIVATIVES, snapshot
-from modefront.models.reduced.model import ReducedModel, Snap
+from modefront.models.reduced.model import Complete, ReducedModel, Snap
 from modefront.modes import derivatives as exact
 from modefront.modes.sparse import lowest
 
@@ -241,6 +241,17 @@ def test_a_mode_that_the_basis_misses_is_found_by_inertia() -> None:
     assert model.counts.factorisations == 3
     model.take(theta)
     assert model.certify(theta, np.arange(3)).eigenvalue.max() < 1e-8
+
+
+def test_a_proof_that_no_mode_is_missing_speaks_for_models_nearby() -> None:
+    model, complete = reduced(plate()), list[Complete]()
+    at, wanted = np.array([2.4, 0.6, 2.4]), np.arange(9)
+    for change in (1.0, 0.995, 1.005):
+        assert np.isfinite(model.certify(change * at, wanted, complete=complete).eigenvalue).all()
+        assert model.counts.factorisations == 3, "two of the snapshot, one where it was in doubt"
+    assert [one.theta.tolist() for one in complete] == [at.tolist()]
+    model.certify(np.ones(3), wanted, complete=complete)
+    assert len(complete) == 1, "the snapshot speaks for itself"
 
 
 def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:

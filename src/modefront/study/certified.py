@@ -22,7 +22,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
-from modefront.models.reduced.model import ReducedModel, Snap
+from modefront.models.reduced.model import Complete, ReducedModel, Snap
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.checkpoint import Checkpoint, Solutions
 from modefront.solvers.edges import Edge
@@ -120,10 +120,8 @@ def certified_points(
     model = problem.model
     if not isinstance(model, ReducedModel) or not points:
         return points
-    kept = checkpoint(
-        "certificates-of-others",
-        lambda: [_certified(model, one, quick=False) for _, one in points],
-    )
+    found = [one for _, one in points]
+    kept = checkpoint("certificates-of-others", lambda: _certificates(model, found))
     return [(label, one) for (label, _), one in zip(points, kept, strict=True)]
 
 
@@ -221,15 +219,13 @@ def _probe(model: ReducedModel, front: Front) -> list[Solution]:
     """Return the worst of the models that are the farthest from all snapshots."""
     distinct = list({_key(one): one for one in _of_the_front(front)}.values())
     ranked = sorted(distinct, key=lambda one: model.distance(one.at.theta), reverse=True)
-    tried = [_certified(model, one, quick=True) for one in ranked[:PROBED]]
+    tried = [_certified(model, one) for one in ranked[:PROBED]]
     return [max(tried, key=_error)]
 
 
 def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> Front:
     """Return the front with the estimated errors of all its models."""
-    kept = checkpoint(
-        "certificates", lambda: [_certified(model, one, quick=False) for one in _distinct(front)]
-    )
+    kept = checkpoint("certificates", lambda: _certificates(model, _distinct(front)))
     errors = {_key(one): {name: one.at.quantities[name] for name in ERRORS} for one in kept}
 
     def known(one: Solution) -> Solution:
@@ -246,10 +242,21 @@ def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> F
     )
 
 
-def _certified(model: ReducedModel, one: Solution, *, quick: bool) -> Solution:
-    """Return a solution with the errors of the modes that are paired with measured ones."""
+def _certificates(model: ReducedModel, solutions: Sequence[Solution]) -> list[Solution]:
+    """Return solutions with the errors of their modes; none of these is missing unnoticed."""
+    complete: list[Complete] = []
+    return [_certified(model, one, complete) for one in solutions]
+
+
+def _certified(
+    model: ReducedModel, one: Solution, complete: list[Complete] | None = None
+) -> Solution:
+    """Return a solution with the errors of the modes that are paired with measured ones.
+
+    These are rough unless proofs that no mode is missing are collected.
+    """
     wanted, place = np.unique(_paired(one), return_inverse=True)
-    found = model.certify(one.at.theta, wanted, quick=quick)
+    found = model.certify(one.at.theta, wanted, quick=complete is None, complete=complete)
     errors = dict(zip(ERRORS, (found.eigenvalue[place], found.shape[place]), strict=True))
     return replace(one, at=replace(one.at, quantities={**one.at.quantities, **errors}))
 

@@ -53,6 +53,14 @@ class Snap:
 
 
 @dataclass(frozen=True)
+class Complete:
+    """The proof that at ``theta`` no modes below an eigenvalue are missing in the basis."""
+
+    theta: Floats
+    beyond: float
+
+
+@dataclass(frozen=True)
 class _Taken:
     """A snapshot: which, up to which eigenvalue all modes are known, factorisations it took."""
 
@@ -199,18 +207,27 @@ class ReducedModel:
         span = self.upper - self.lower
         return float(min(np.linalg.norm((theta - one.theta) / span) for one in self._wanted))
 
-    def certify(self, theta: Floats, wanted: Ints, *, quick: bool = False) -> Certificate:
+    def certify(
+        self,
+        theta: Floats,
+        wanted: Ints,
+        *,
+        quick: bool = False,
+        complete: list[Complete] | None = None,
+    ) -> Certificate:
         """Return how wrong the ``wanted`` modes are, counted from 0; see `Certificate`.
 
         Their errors are infinite where a mode below them is missing. That is looked for by a
-        factorisation where it is in doubt. A ``quick`` certificate does not look for missing
-        modes, and takes only the first term of the estimate.
+        factorisation where it is in doubt, and what it proves is added to ``complete``, which
+        speaks for models nearby. A ``quick`` certificate does not look for missing modes, and takes
+        only the first term of the estimate.
         """
         state = self._ready()
         started = time.perf_counter()
         basis, pencil = state.basis, self.full.pencil
         ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        if not quick and self._misses(state, theta, ritz.lam, int(wanted.max())):
+        proofs = [] if complete is None else complete
+        if not quick and self._misses(state, theta, ritz.lam, int(wanted.max()), proofs):
             found = Certificate(np.full(wanted.size, np.inf), np.ones(wanted.size))
         else:
             near = window.condition(basis.K, theta, state.taken[-1].what.theta) <= NEAR
@@ -228,9 +245,11 @@ class ReducedModel:
         self.counts.certificate_time += time.perf_counter() - started
         return found
 
-    def _misses(self, state: _State, theta: Floats, lam: Floats, last: int) -> bool:
+    def _misses(
+        self, state: _State, theta: Floats, lam: Floats, last: int, proofs: list[Complete]
+    ) -> bool:
         """Return whether modes below the Ritz value of the ``last`` one wanted are missing."""
-        if _knows(state.basis, state.taken, theta, lam[last]):
+        if _knows(state.basis, [*_proofs(state.taken), *proofs], theta, lam[last]):
             return False
         pencil = self.full.pencil
         below, sigma = window.gap_above(lam, last)
@@ -239,7 +258,10 @@ class ReducedModel:
             factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
         except SingularMatrixError:
             return True
-        return factor.negative != below
+        if factor.negative != below:
+            return True
+        proofs.append(Complete(theta, sigma))
+        return False
 
     def _in_full(self, theta: Floats, count: int, derivatives: bool) -> Modes:
         before = self.full.counts.factorisations
@@ -285,19 +307,23 @@ class ReducedModel:
         ritz = dense.decompose(basis.K.at(what.theta), basis.M.at(what.theta))
         enough = count + max(2, count // 2)
         if ritz.lam.size < enough or not _knows(
-            basis, taken, what.theta, float(ritz.lam[max(what.derived, 1) - 1])
+            basis, _proofs(taken), what.theta, float(ritz.lam[max(what.derived, 1) - 1])
         ):
             return None
         return combine(basis.V, ritz.Phi[:, :enough])
 
 
-def _knows(basis: Basis, taken: Sequence[_Taken], theta: Floats, lam: float) -> bool:
-    """Return whether snapshots rule out that modes below ``lam`` are missing in the basis."""
+def _proofs(taken: Sequence[_Taken]) -> list[Complete]:
+    return [Complete(one.what.theta, one.beyond) for one in taken]
+
+
+def _knows(basis: Basis, proofs: Sequence[Complete], theta: Floats, lam: float) -> bool:
+    """Return whether proofs rule out that modes below ``lam`` are missing in the basis."""
     K, M = basis.K, basis.M
     return (
         window.semidefinite(K)
         and window.semidefinite(M)
-        and any(window.lower_bound(K, M, theta, one.what.theta) * one.beyond > lam for one in taken)
+        and any(window.lower_bound(K, M, theta, one.theta) * one.beyond > lam for one in proofs)
     )
 
 

@@ -48,8 +48,11 @@ def condition(K: DenseAffine, at: Floats, snapshot: Floats) -> float:
 
 
 def gap_above(lam: Floats, last: int) -> tuple[int, float]:
-    """Return how many Ritz values are below a sigma in the first gap above the last one wanted."""
+    """Return how many Ritz values are below a sigma in a gap above the last one wanted.
+
+    It is the wider one of the next two, if that is no cluster, else the widest of all.
+    """
     gap = np.diff(lam[last:]) / np.maximum(np.abs(lam[last + 1 :]), np.finfo(float).tiny)
-    wide = np.flatnonzero(gap > GAP)
-    at = last + int(wide[0] if wide.size else np.argmax(gap))
+    near = int(np.argmax(gap[:2]))
+    at = last + (near if gap[near] > GAP else int(np.argmax(gap)))
     return at + 1, float(lam[at] + 0.5 * (lam[at + 1] - lam[at]))
