@@ -59,8 +59,10 @@ def shell(size: int, regions: int) -> MatrixModel:
 
 def solid(size: int, regions: int) -> MatrixModel:
     """Return a block of 3 m x 0.7 m x 0.4 m, clamped at one end, of tetrahedra with 10 nodes."""
-    n = (size / 3 / 8 / (3 * 0.7 * 0.4)) ** (1 / 3)
-    X, bricks = fem.grids.box((3.0, 0.7, 0.4), (round(3 * n), round(0.7 * n), round(0.4 * n)))
+    box = np.array([3.0, 0.7, 0.4])
+    grids = [np.rint(n * box).astype(int) for n in np.arange(2.0, 60.0, 0.05)]
+    grid = min(grids, key=lambda k: abs(6 * k[0] * (2 * k[1] + 1) * (2 * k[2] + 1) - size))
+    X, bricks = fem.grids.box((3.0, 0.7, 0.4), (int(grid[0]), int(grid[1]), int(grid[2])))
     X, cells = fem.grids.tetrahedra(X, bricks)
     return _model(X, cells, regions, lambda name, part: fem.Solids(name, part, STEEL))
 

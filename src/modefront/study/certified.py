@@ -4,8 +4,8 @@ A round does all of the work in the basis at hand and estimates the errors of th
 models that are the farthest from all snapshots. Where an estimate exceeds the tolerance, a snapshot
 is taken there, and another one where the known models would need it next, before the next round
 starts from what is known; otherwise every model that is reported gets its certificate. Minima that
-cannot be the best ones, whatever their errors are, need not hold. The global search is repeated
-as long as an estimate is poor: a basis that bad may have led it astray.
+cannot be the best ones, whatever their errors are, need not hold. As long as an estimate is poor,
+a basis that bad may have led astray: after a single snapshot the global search is repeated.
 
 Every round's pieces of work have names of their own, and its snapshots are among them, so that an
 interrupted run goes on with the same digits.
@@ -38,10 +38,10 @@ POOR = 1e-3
 ROUNDS = 8
 """Rounds, after which the tolerance is given up."""
 
-AHEAD = 2
+AHEAD = 3
 """Snapshots between two rounds, at most."""
 
-PROBED = 4
+PROBED = 3
 """Models of which the errors are estimated on the way, those farthest from all snapshots."""
 
 ERRORS = ("eigenvalue_error", "shape_error")
@@ -85,7 +85,8 @@ def certified_front(
     expected, at, error = 0, Snap(problem.start, model.count), np.inf
     for number in range(1, ROUNDS + 1):
         here = _Round(checkpoint, number)
-        snapshots = _take_some(problem, model, at, front, here)
+        known = front if error <= POOR else None
+        snapshots = _take_some(problem, model, at, known, here)
         if not snapshots.count:
             break
         base = expected + 2 * AHEAD
@@ -95,7 +96,6 @@ def certified_front(
             expected = base + pieces
             expect(expected)
 
-        known = front if error <= POOR else None
         front = work(checkpoint=here, expect=more, known=known)
         probed = None if snapshots.enough else here("probe", partial(_probe, model, front))
         if probed is None or _error(probed[0]) <= model.tolerance:
@@ -174,7 +174,7 @@ class _Taken:
 def _take_some(
     problem: UpdatingProblem, model: ReducedModel, at: Snap, front: Front | None, here: Checkpoint
 ) -> _Taken:
-    """Take a snapshot, and others where a front that is known would need them next."""
+    """Take a snapshot, and others where a front from which it goes on would need them next."""
     for count in range(AHEAD):
         before = model.snapshots
         taken = here(f"snapshot-{count + 1}", partial(_take, problem, model, at))
