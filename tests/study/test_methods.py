@@ -102,6 +102,31 @@ def test_refining_closes_the_gaps_of_each_piece_up_to_its_end(size: float) -> No
     assert extra <= 6 * new + 40
 
 
+def test_refining_finds_a_gap_that_few_points_step_over() -> None:
+    """Of 8 points, none lies in the gap of M0: only that nothing is found there tells of it."""
+    coarse, expected = (mf.solve(problem("c0"), points=n, seed=1) for n in (8, 20))
+    assert coarse.sizes["end"] == 0
+    fine = mf.solve(problem("c0"), points=8, refined=0.1, seed=1)
+    assert fine["end_label"].values.tolist() == ["end-1", "start-2"]
+    assert fine["end_objective"].values == pytest.approx(expected["end_objective"].values, rel=1e-4)
+    assert fine.attrs["largest_gap"] <= 0.1
+    behind = (front(fine) >= fine["end_objective"].values[1]).all(axis=1)
+    assert behind.any(), "points that the start of the second piece dominates"
+    assert (fine["piece"].values[front_points(fine)][behind] == 0).all()
+
+
+def test_edges_of_three_groups_are_pareto_optimal() -> None:
+    """Next to an edge, what is lost in its own objective is of the second order."""
+    groups = (
+        mf.Group("frequencies", "all"),
+        mf.Group("shape 1", shape=[1]),
+        mf.Group("shapes 2 and 3", shape=[2, 3]),
+    )
+    data = mf.solve(grouped("c0", *groups), points=4, seed=1)
+    edges = [str(label).startswith("edge-") for label in data["label"].values]
+    assert data["pareto"].values[edges].all()
+
+
 def test_three_groups_are_covered_within_and_beyond_the_simplex() -> None:
     groups = (
         mf.Group("frequencies", "all"),

@@ -42,7 +42,7 @@ def uncertified(data: xr.Dataset) -> np.ndarray:
 def cost_lines(counts: Counts) -> list[str]:
     """Return what this run has solved, and how long that took."""
     out = [
-        f"{counts.eigenproblems} full eigensolutions in {counts.full_time:.3g} s, "
+        f"this time: {counts.eigenproblems} full eigensolutions in {counts.full_time:.3g} s, "
         f"{counts.factorisations} factorisations"
     ]
     if counts.reduced:

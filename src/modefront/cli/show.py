@@ -77,7 +77,7 @@ def print_summary(data: xr.Dataset, folder: Path, counts: Counts) -> None:
         cost = data.attrs["front_evaluations"] / front.size
         _print(
             screen,
-            f"  {optimal} of {front.size} points of the front are Pareto optimal; "
+            f"  {optimal} of {front.size} points of the front are Pareto optimal among these; "
             f"{data.attrs['model_evaluations']} eigenproblems in all, {cost:.1f} a point",
         )
         _print(screen, f"  {in_numbers(data)}")
@@ -118,6 +118,12 @@ def remarks(data: xr.Dataset) -> list[str]:
                 f"{', '.join(data['label'].values[inside])}: in the gap, though no other point "
                 "dominates; the start of the next piece does"
             )
+    wanted = data.attrs.get("refined", np.inf)
+    if data.attrs["largest_gap"] > wanted:
+        out.append(
+            f"neighbours on the front are up to {data.attrs['largest_gap']:.3g} apart, though "
+            f"{wanted:g} was asked for: no point was found between them"
+        )
     negative = (data["stationary_weight"].values < -1e-6).any(axis=1)
     negative &= ~np.isnan(data["stationary_weight"].values).any(axis=1)
     if negative.any():

@@ -94,6 +94,14 @@ def decompose(G: Floats) -> list[Combination]:
     ]
 
 
+LEAST = 1e-3
+"""Root of the mean square of residuals that no measurement is taken to be better than."""
+
+
 def optimal_weights(a: Floats, J: Floats) -> Floats:
-    """Return w = a / J; ones where an objective is fitted exactly, which has no finite weight."""
-    return a / J if (J > 0).all() else np.ones(J.size)
+    """Return w = a / J, with residuals of 1e-3 at least.
+
+    The weight of an objective that is fitted exactly would have no bound, and what the others
+    determine would drown in it.
+    """
+    return np.asarray(a / np.maximum(J, a * LEAST**2))

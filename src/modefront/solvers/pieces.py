@@ -9,6 +9,8 @@ piece, the other one is either that too, or where its piece comes to the same le
   :math:`J_1` reaches the start of the right piece (an end that itself is dominated);
 * otherwise the left piece ends at its minimum of :math:`J_2` and the right one starts at that
   level.
+
+Points that the start of the right piece dominates do not count as the last one.
 """
 
 from __future__ import annotations
@@ -25,6 +27,9 @@ from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import level, weighted
 from modefront.solvers.sqp import Options, Solution, solve
+
+SAME = 1e-6
+"""Difference of an objective, over its range, that the solver may leave."""
 
 _TIGHT = Options(reduction=1e-17)
 
@@ -43,23 +48,37 @@ def gaps(
     optimal: Bools,
     scale: Floats,
     checkpoint: Checkpoint = compute_always,
+    jumps: Sequence[tuple[Solution, Solution]] = (),
 ) -> list[Gap]:
     """Return the gaps between points in their order along the front, of two objectives.
 
-    ``optimal`` says which points are Pareto optimal among them; a gap is where some are not.
+    ``optimal`` says which points are Pareto optimal among them; a gap is where some are not. At
+    ``jumps`` there may be gaps as well; points that the piece behind one dominates do not count.
     """
     kept = np.flatnonzero(optimal).tolist()
     out = []
-    for a, b in pairwise(kept):
-        if b > a + 1:
+    for k, (a, b) in enumerate(pairwise(kept)):
+        jump = any(points[a] is one and points[b] is other for one, other in jumps)
+        if b > a + 1 or jump:
+            before = [points[i] for i in kept[: k + 1]]
             ends = checkpoint(
-                f"gap-{a + 1}-{b + 1}", partial(_ends, problem, points[a], points[b], scale)
+                f"gap-{a + 1}-{b + 1}", partial(_ends, problem, before, points[b], scale)
             )
-            out.append(Gap(*ends))
+            if not jump or _apart(ends[0], ends[1], points[b], scale):
+                out.append(Gap(*ends))
     return out
 
 
-def _ends(problem: Problem, a: Solution, b: Solution, scale: Floats) -> list[Solution]:
+def _apart(end: Solution, start: Solution, b: Solution, scale: Floats) -> bool:
+    """Return whether a gap that was found lies to the left of the point b behind it."""
+    left, right = ((start.at.J - end.at.J) / scale, (b.at.J - start.at.J) / scale)
+    before = left[0] >= -SAME and left[1] < -SAME and right[0] >= -SAME
+    return bool(end.converged and start.converged and before)
+
+
+def _ends(
+    problem: Problem, before: Sequence[Solution], b: Solution, scale: Floats
+) -> list[Solution]:
     def minimum(objective: int, start: Solution) -> Solution:
         return solve(problem, weighted(np.eye(2)[objective] / scale), start, _TIGHT)
 
@@ -67,7 +86,9 @@ def _ends(problem: Problem, a: Solution, b: Solution, scale: Floats) -> list[Sol
         programme = level(1 - objective, objective, of.at.J[objective], scale)
         return solve(problem, programme, start, _TIGHT)
 
-    start = minimum(0, b)
+    start, a = minimum(0, b), before[-1]
+    if start.converged:
+        a = next((one for one in before[::-1] if (one.at.J < start.at.J).any()), a)
     if start.converged and start.at.J[0] >= a.at.J[0] and start.at.J[1] < a.at.J[1]:
         end = minimum(1, a)
         if not (end.converged and end.at.J[0] <= start.at.J[0]):

@@ -35,12 +35,14 @@ def refine(
     gaps: Sequence[Gap],
     size: float,
     checkpoint: Checkpoint = compute_always,
-) -> list[Solution]:
+) -> tuple[list[Solution], list[tuple[Solution, Solution]]]:
     """Return the points of a front in their order, with new ones between them.
 
-    ``optimal`` says which of the points (in their order along the front) are Pareto optimal.
+    ``optimal`` says which of the points (in their order along the front) are Pareto optimal. Also
+    returned are the neighbours between which there is none: the front may have a gap there.
     """
     found: list[Solution] = []
+    jumps: list[tuple[Solution, Solution]] = []
     for piece in pieces(points, optimal, gaps):
         pairs = list(pairwise(piece))[::-1]
         while pairs:
@@ -51,7 +53,9 @@ def refine(
             if middle:
                 found.append(middle)
                 pairs += [(middle, b), (a, middle)]
-    return sorted([*points, *found], key=lambda one: -float(target.place(one.at.J)[0]))
+            else:
+                jumps.append((a, b))
+    return sorted([*points, *found], key=lambda one: -float(target.place(one.at.J)[0])), jumps
 
 
 def pieces(points: Sequence[Solution], optimal: Bools, gaps: Sequence[Gap]) -> list[list[Solution]]:

@@ -221,7 +221,10 @@ def _scatter(
     problem: UpdatingProblem, front: Front, knowledge: Knowledge
 ) -> tuple[Variables, list[str]]:
     if knowledge.source is None:
-        return {}, []
+        data = problem.data
+        given = np.isfinite(data.frequency_std).any() or np.isfinite(data.shape_std).any()
+        used = (data.frequency_std > 0).any() or (data.shape_std > 0).any()
+        return {}, ["no standard deviation is above 0: none is used"] if given and not used else []
     labels = [label for label, _ in front.points]
     m, n, p = len(labels), len(problem.objectives), len(problem.model.parameters)
     r = len(problem.data.modes)

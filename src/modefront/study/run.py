@@ -31,6 +31,10 @@ Labelled = Sequence[tuple[str, Solution]]
 """Solutions with what they are called."""
 
 
+TURNS = 3
+"""Refinements of a front at most, each with the gaps that were found by the one before."""
+
+
 @dataclass(frozen=True)
 class Front:
     """Everything that was found.
@@ -209,10 +213,17 @@ def _pieces(
     breaks = gaps(problem, along, optimal, target.scale, checkpoint)
     if refined is None:
         return along, breaks
-    along = refine(problem, target, along, optimal, breaks, refined, checkpoint)
-    optimal = nondominated(np.array([one.at.J for one in along]))
+    for turn in range(TURNS):
+        again = partial(_renamed, checkpoint, f"-turn-{turn + 1}")
+        along, jumps = refine(problem, target, along, optimal, breaks, refined, again)
+        optimal = nondominated(np.array([one.at.J for one in along]))
+        before, breaks = len(breaks), gaps(problem, along, optimal, target.scale, again, jumps)
+        if len(breaks) == before:
+            break
+    return along, breaks
 
-    def again(name: str, compute: Callable[[], Solutions]) -> Solutions:
-        return checkpoint(f"{name}-of-{len(along)}", compute)
 
-    return along, gaps(problem, along, optimal, target.scale, again)
+def _renamed(
+    checkpoint: Checkpoint, suffix: str, name: str, compute: Callable[[], Solutions]
+) -> Solutions:
+    return checkpoint(name + suffix, compute)
