@@ -18,8 +18,9 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.models.affine import DenseAffine
 
-INDEFINITE = 1e-8
-"""Negative eigenvalue of a projected term, over the greatest one, that passes for rounding."""
+INDEFINITE = 1e-6
+"""Negative eigenvalue of a projected term, over the greatest one, that passes for rounding: in
+thin shells of many elements, that is a good deal."""
 
 GAP = 1e-3
 """Relative gap of Ritz values in which sigma may lie."""
