@@ -119,7 +119,8 @@ def weighted_minimum(
         if not isinstance(model, ReducedModel) or not found.converged:
             return found
         wanted = np.unique(found.at.quantities["paired_mode"].astype(int) - 1)
-        if model.certify(found.at.theta, wanted).eigenvalue.max() <= model.tolerance:
+        (certificate,) = model.certify([(found.at.theta, wanted)])
+        if certificate.eigenvalue.max() <= model.tolerance:
             return found
         model.take(found.at.theta)
         found = begin(problem.evaluate(found.at.theta))

@@ -19,7 +19,7 @@ from modefront.models.matrices import MatrixModel, affine_model
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced import window
 from modefront.models.reduced.basis import DERIVATIVES, snapshot
-from modefront.models.reduced.model import Complete, ReducedModel, Snap
+from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.modes import derivatives as exact
 from modefront.modes.sparse import lowest
 
@@ -138,14 +138,14 @@ def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int)
     for theta in rng.uniform(0.5, 2.3, (3, 3)):
         exact_modes, found = lowest(full.pencil, theta, 8), model.modes(theta, 8)
         r = elastic(found.lam)
-        certificate = model.certify(theta, r)
+        (certificate,) = model.certify([(theta, r)])
         shift = model._ready().below.sigma
         noise = 1e2 * exact_modes.noise[r] / exact_modes.lam[r]
         truth = (found.lam[r] - exact_modes.lam[r]) / (found.lam[r] - shift)
         sure = truth > 10 * noise
         assert (certificate.eigenvalue[sure] <= 2 * truth[sure]).all()
         assert (certificate.eigenvalue[sure] >= truth[sure] / 2).all()
-        quick = model.certify(theta, r, quick=True).eigenvalue
+        (quick,) = (one.eigenvalue for one in model.certify([(theta, r)], quick=True))
         assert (quick <= certificate.eigenvalue * (1 + 1e-12)).all()
         assert (quick >= certificate.eigenvalue / 3).all()
 
@@ -232,26 +232,29 @@ def test_a_mode_that_the_basis_misses_is_found_by_inertia() -> None:
     full = two_structures()
     bounds = np.full(2, 1e-4), np.full(2, 2.0)
     model = ReducedModel(full, 4, np.ones(2), *bounds)
-    near = model.certify(np.array([0.99, 1.0]), np.arange(3))
+    (near,) = model.certify([(np.array([0.99, 1.0]), np.arange(3))])
     assert near.eigenvalue.max() < 1e-3
     assert model.counts.factorisations == 2, "there is no doubt near a snapshot"
     theta = np.array([1e-4, 1.0])
     assert model.modes(theta, 4).lam[0] > 1.5 * full.modes(theta, 4).lam[0]
-    assert np.isinf(model.certify(theta, np.arange(3)).eigenvalue).all()
+    first, there = model.certify([(np.ones(2), np.arange(3)), (theta, np.arange(3))])
+    assert np.isfinite(first.eigenvalue).all()
+    assert np.isinf(there.eigenvalue).all()
     assert model.counts.factorisations == 3
     model.take(theta)
-    assert model.certify(theta, np.arange(3)).eigenvalue.max() < 1e-8
+    (known,) = model.certify([(theta, np.arange(3))])
+    assert known.eigenvalue.max() < 1e-8
 
 
 def test_a_proof_that_no_mode_is_missing_speaks_for_models_nearby() -> None:
-    model, complete = reduced(plate()), list[Complete]()
+    model = reduced(plate())
     at, wanted = np.array([2.4, 0.6, 2.4]), np.arange(9)
-    for change in (1.0, 0.995, 1.005):
-        assert np.isfinite(model.certify(change * at, wanted, complete=complete).eigenvalue).all()
-        assert model.counts.factorisations == 3, "two of the snapshot, one where it was in doubt"
-    assert [one.theta.tolist() for one in complete] == [at.tolist()]
-    model.certify(np.ones(3), wanted, complete=complete)
-    assert len(complete) == 1, "the snapshot speaks for itself"
+    thetas = [at, 0.995 * at, 1.005 * at, np.ones(3)]
+    for one in model.certify([(theta, wanted) for theta in thetas]):
+        assert np.isfinite(one.eigenvalue).all()
+    assert model.counts.factorisations == 3, "two of the snapshot, one where it was in doubt"
+    model.certify([(np.ones(3), wanted)])
+    assert model.counts.factorisations == 3, "the snapshot speaks for itself"
 
 
 def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
@@ -268,3 +271,13 @@ def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
         now, then = (full.modes(at, 8, derivatives=False).lam for at in (theta, one.theta))
         assert (now >= ratio * then * (1 - 1e-9)).all()
     assert window.lower_bound(basis.K, basis.M, np.array([1.0, -1.0, 1.0]), one.theta) == 0
+
+
+def test_certificates_are_the_same_whatever_they_are_asked_for_with() -> None:
+    model, wanted = reduced(plate()), np.arange(6)
+    thetas = np.random.default_rng(1).uniform(0.5, 2.3, (4, 3))
+    together = model.certify([(theta, wanted[: 6 - k]) for k, theta in enumerate(thetas)])
+    for k, (theta, one) in enumerate(zip(thetas, together, strict=True)):
+        (alone,) = model.certify([(theta, wanted[: 6 - k])])
+        assert one.eigenvalue == pytest.approx(alone.eigenvalue, rel=1e-9)
+        assert one.shape == pytest.approx(alone.shape, rel=1e-9)

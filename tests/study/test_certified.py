@@ -151,7 +151,7 @@ def test_a_few_full_solutions_are_enough_and_all_models_hold(whole: xr.Dataset) 
     assert whole.attrs["model_evaluations"] == total
 
 
-@pytest.mark.parametrize("pieces", [1, 30])
+@pytest.mark.parametrize("pieces", [1, 20])
 def test_an_interrupted_run_goes_on_to_the_same_digits(
     pieces: int, file: Path, whole: xr.Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:

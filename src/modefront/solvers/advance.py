@@ -8,7 +8,7 @@ everywhere, at the price of a few more programmes.
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
@@ -103,6 +103,9 @@ class Programmes(Protocol):
     def solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         """Return the solution at beta, from a start."""
 
+    def solve_again(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
+        """Return the solution at beta, from another start than that of one that converged."""
+
     def value(self, beta: Floats, J: Floats) -> float:
         """Return what is least at the solution, in units of the range of the objectives."""
 
@@ -180,14 +183,14 @@ def advance(
             fixed.add(place)
         else:
             name = f"{programmes.label}-{_text(place)}-from-edge-{i + 1}"
-            solve_one = partial(_solve_one, programmes, problem, beta(place), edge)
+            solve_one = partial(_one, programmes.solve, problem, beta(place), edge)
             found = checkpoint(name, solve_one)[0]
         if place not in solved or better(place, found, solved[place]):
             settle(place, found, i)
     for one in before:
         if one.beta is None or (at := _nearest(divisions * one.beta, divisions)) in solved:
             continue
-        again = partial(_solve_again, programmes, problem, beta(at), one)
+        again = partial(_from_before, programmes, problem, beta(at), one)
         settle(at, checkpoint(f"{programmes.label}-{_text(at)}-again", again)[0], -1)
     while queue:
         place, source = queue.popleft()
@@ -200,9 +203,8 @@ def advance(
         tried.add((place, source, renewed[source]))
         known = solved.get(place)
         name = f"{programmes.label}-{_text(place)}-from-{_text(source)}-{renewed[source]}"
-        found = checkpoint(
-            name, partial(_solve_one, programmes, problem, beta(place), solved[source])
-        )[0]
+        solve = programmes.solve_again if known and known.converged else programmes.solve
+        found = checkpoint(name, partial(_one, solve, problem, beta(place), solved[source]))[0]
         if known is None or better(place, found, known):
             settle(place, found, origin[source])
         elif found.converged and not better(place, known, found):
@@ -218,16 +220,19 @@ def advance(
     return out
 
 
-def _solve_again(
+def _one(
+    solve: Callable[[Problem, Floats, Solution], Solution],
+    problem: Problem,
+    beta: Floats,
+    start: Solution,
+) -> list[Solution]:
+    return [solve(problem, beta, start)]
+
+
+def _from_before(
     programmes: Programmes, problem: Problem, beta: Floats, before: Solution
 ) -> list[Solution]:
     start = replace(before, at=problem.evaluate(before.at.theta))
-    return _solve_one(programmes, problem, beta, start)
-
-
-def _solve_one(
-    programmes: Programmes, problem: Problem, beta: Floats, start: Solution
-) -> list[Solution]:
     return [programmes.solve(problem, beta, start)]
 
 

@@ -147,6 +147,8 @@ class Attainment:
         better = (not other.converged, self.value(beta, other.at.J)) < key
         return replace(other if better else found, beta=beta, evaluations=evaluations)
 
+    solve_again = solve
+
     def _solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         if not start.at.feasible:
             return start

@@ -64,6 +64,10 @@ class Projection:
         """
         return replace(self._solve(problem, beta, start, HALVINGS), beta=beta)
 
+    def solve_again(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
+        """Return the farthest point along the normal, from another start, by a single step."""
+        return replace(self._solve(problem, beta, start, 0), beta=beta)
+
     def _solve(self, problem: Problem, beta: Floats, start: Solution, halvings: int) -> Solution:
         found = solve(problem, self.target.subproblem(beta), start)
         if found.converged or not halvings or not start.at.feasible:
@@ -103,16 +107,16 @@ def nbi(
 ) -> list[Solution]:
     """Return one solution a point of the lattice, in its order, then those beyond the simplex.
 
-    Of three and more objectives, other ``minima`` of single objectives are started from as well:
-    each may lie on a part of the front of its own; and the lattice goes on beyond the simplex as
-    long as no objective is below its ``floor`` (n,). ``before`` are points of a front of nearly the
-    same problem. Solutions may be dominated, and those that did not converge say so in their
-    status.
+    Other ``minima`` of single objectives are started from as well: each may lie on a part of the
+    front of its own. Of two objectives these are minima between the edges only. Of three and more
+    objectives, the lattice goes on beyond the simplex as long as no objective is below its
+    ``floor`` (n,). ``before`` are points of a front of nearly the same problem. Solutions may be
+    dominated, and those that did not converge say so in their status.
     """
     solved = programmes(target, edges, floor)
-    if len(edges) == 2:
-        return advance(problem, solved, edges, lattice, checkpoint, before)
     known = [*edges, *(one for one in minima if all(one is not edge for edge in edges))]
     optimal = nondominated(np.array([one.at.J for one in known]))
     others = [known[i] for i in np.flatnonzero(optimal) if i >= len(edges)]
+    if len(edges) == 2:
+        others = [one for one in others if target.place(one.at.J).min() >= 0]
     return advance(problem, solved, [*edges, *others], lattice, checkpoint, before)

@@ -51,6 +51,8 @@ class WeightedSums:
         """Return the minimum of the weighted sum, from a start."""
         return solve(problem, weighted(self.weights(beta)), start)
 
+    solve_again = solve
+
     def value(self, beta: Floats, J: Floats) -> float:
         """Return the weighted sum."""
         w = self.weights(beta)

@@ -22,7 +22,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
-from modefront.models.reduced.model import Complete, ReducedModel, Snap
+from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.checkpoint import Checkpoint, Solutions
 from modefront.solvers.edges import Edge
@@ -41,7 +41,7 @@ ROUNDS = 8
 AHEAD = 3
 """Snapshots between two rounds, at most."""
 
-PROBED = 3
+PROBED = 2
 """Models of which the errors are estimated on the way, those farthest from all snapshots."""
 
 ERRORS = ("eigenvalue_error", "shape_error")
@@ -82,7 +82,8 @@ def certified_front(
         return work(checkpoint=checkpoint, expect=expect, known=None)
     model.restart()
     front: Front | None = None
-    expected, at, error = 0, Snap(problem.start, model.count), np.inf
+    at = Snap(problem.start, min(len(problem.data.modes), model.count))
+    expected, error = 0, np.inf
     for number in range(1, ROUNDS + 1):
         here = _Round(checkpoint, number)
         known = front if error <= POOR else None
@@ -97,8 +98,8 @@ def certified_front(
             expect(expected)
 
         front = work(checkpoint=here, expect=more, known=known)
-        probed = None if snapshots.enough else here("probe", partial(_probe, model, front))
-        if probed is None or _error(probed[0]) <= model.tolerance:
+        probed = here("probe", partial(_probe, model, front))
+        if _error(probed[0]) <= model.tolerance:
             front = _with_errors(model, front, here)
             needed = [*_of_the_front(front), *_rivals(problem, front)]
             probed = [max(needed, key=_error)]
@@ -121,7 +122,7 @@ def certified_points(
     if not isinstance(model, ReducedModel) or not points:
         return points
     found = [one for _, one in points]
-    kept = checkpoint("certificates-of-others", lambda: _certificates(model, found))
+    kept = checkpoint("certificates-of-others", lambda: _certified(model, found))
     return [(label, one) for (label, _), one in zip(points, kept, strict=True)]
 
 
@@ -162,13 +163,11 @@ def certificate_variables(
 class _Taken:
     """What taking snapshots has led to.
 
-    ``count`` of them were taken; ``full`` says that there is no room for more, ``enough`` that the
-    known models do not need more.
+    ``count`` of them were taken; ``full`` says that there is no room for more.
     """
 
     count: int
     full: bool = False
-    enough: bool = False
 
 
 def _take_some(
@@ -186,9 +185,7 @@ def _take_some(
             return _Taken(count + 1, full)
         (worst,) = here(f"ahead-{count + 1}", partial(_probe, model, front))
         at = _snap(worst)
-        if _error(worst) <= model.tolerance:
-            return _Taken(count + 1, enough=True)
-        if _there(model, at):
+        if _error(worst) <= model.tolerance or _there(model, at):
             return _Taken(count + 1)
     return _Taken(AHEAD)
 
@@ -219,13 +216,12 @@ def _probe(model: ReducedModel, front: Front) -> list[Solution]:
     """Return the worst of the models that are the farthest from all snapshots."""
     distinct = list({_key(one): one for one in _of_the_front(front)}.values())
     ranked = sorted(distinct, key=lambda one: model.distance(one.at.theta), reverse=True)
-    tried = [_certified(model, one) for one in ranked[:PROBED]]
-    return [max(tried, key=_error)]
+    return [max(_certified(model, ranked[:PROBED], quick=True), key=_error)]
 
 
 def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> Front:
     """Return the front with the estimated errors of all its models."""
-    kept = checkpoint("certificates", lambda: _certificates(model, _distinct(front)))
+    kept = checkpoint("certificates", lambda: _certified(model, _distinct(front)))
     errors = {_key(one): {name: one.at.quantities[name] for name in ERRORS} for one in kept}
 
     def known(one: Solution) -> Solution:
@@ -242,23 +238,22 @@ def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> F
     )
 
 
-def _certificates(model: ReducedModel, solutions: Sequence[Solution]) -> list[Solution]:
-    """Return solutions with the errors of their modes; none of these is missing unnoticed."""
-    complete: list[Complete] = []
-    return [_certified(model, one, complete) for one in solutions]
-
-
 def _certified(
-    model: ReducedModel, one: Solution, complete: list[Complete] | None = None
-) -> Solution:
-    """Return a solution with the errors of the modes that are paired with measured ones.
+    model: ReducedModel, solutions: Sequence[Solution], *, quick: bool = False
+) -> list[Solution]:
+    """Return solutions with the errors of the modes that are paired with measured ones.
 
-    These are rough unless proofs that no mode is missing are collected.
+    None of these is missing unnoticed, unless the certificates are ``quick``.
     """
-    wanted, place = np.unique(_paired(one), return_inverse=True)
-    found = model.certify(one.at.theta, wanted, quick=complete is None, complete=complete)
-    errors = dict(zip(ERRORS, (found.eigenvalue[place], found.shape[place]), strict=True))
-    return replace(one, at=replace(one.at, quantities={**one.at.quantities, **errors}))
+    paired = [np.unique(_paired(one), return_inverse=True) for one in solutions]
+    asked = [(one.at.theta, wanted) for one, (wanted, _) in zip(solutions, paired, strict=True)]
+    certificates = model.certify(asked, quick=quick)
+    found = []
+    for one, certificate, (_, place) in zip(solutions, certificates, paired, strict=True):
+        errors = (certificate.eigenvalue[place], certificate.shape[place])
+        quantities = {**one.at.quantities, **dict(zip(ERRORS, errors, strict=True))}
+        found.append(replace(one, at=replace(one.at, quantities=quantities)))
+    return found
 
 
 def _of_the_front(front: Front) -> Iterator[Solution]:

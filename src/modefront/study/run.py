@@ -16,7 +16,7 @@ from modefront.solvers.checkpoint import Checkpoint, Solutions, compute_always
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.edges import EXACT, Edge, edge, near_best, sample, typical_sizes
 from modefront.solvers.evolutionary import EVOLUTIONARY, evolve_front
-from modefront.solvers.explore import Search, explore
+from modefront.solvers.explore import Search, distinct, explore
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import Payoff, payoff
 from modefront.solvers.pieces import Gap, gaps
@@ -30,6 +30,9 @@ from modefront.solvers.weights import iterate_weights, optimal_minima, regular
 Labelled = Sequence[tuple[str, Solution]]
 """Solutions with what they are called."""
 
+
+MOVED = 0.1
+"""Distance of two edges, over the ranges of the parameters, above which their fronts differ."""
 
 TURNS = 3
 """Refinements of a front at most, each with the gaps that were found by the one before."""
@@ -183,7 +186,7 @@ def pareto_front(
         elif method == "weights":
             along = weight_sweep(problem, bests, target.scale, lattice, checkpoint)
         else:
-            before = [one for _, one in known.points if one.beta is not None] if known else []
+            before = _before(problem, known, bests) if known else []
             along = nbi(problem, bests, target, lattice, checkpoint, minima_of_one, before=before)
             if n == 2:
                 along, breaks = _pieces(problem, target, along, refined, checkpoint)
@@ -199,6 +202,14 @@ def pareto_front(
         target,
         breaks,
     )
+
+
+def _before(problem: Problem, known: Front, bests: Sequence[Solution]) -> list[Solution]:
+    """Return the points of a known front, none where it had other edges."""
+    edges = [[edge.best] for edge in known.edges]
+    if any(distinct(was, best, problem, MOVED) for was, best in zip(edges, bests, strict=True)):
+        return []
+    return [one for _, one in known.points if one.beta is not None]
 
 
 def _pieces(

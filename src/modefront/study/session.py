@@ -9,6 +9,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 import modefront
 from modefront._typing import Floats
@@ -156,7 +157,14 @@ class _Session:
     later: int = 0
 
     def results(self) -> xr.Dataset:
-        """Do the work and return all that it finds."""
+        """Do the work and return all that it finds.
+
+        Dense problems of a hundred unknowns are slower on several threads of the BLAS than on one.
+        """
+        with threadpool_limits(1, user_api="blas"):
+            return self._results()
+
+    def _results(self) -> xr.Dataset:
         from modefront.study.posterior_predictions import around, predicted_around
         from modefront.study.predictions import pieces, predicted
         from modefront.study.results import dataset

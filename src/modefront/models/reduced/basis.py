@@ -124,7 +124,7 @@ def extended(
     """
     A, V = basis.A, basis.V
     W = vectors
-    for least in (shortest, 0.5, 0.5):  # what is left after the first pass has the length 1
+    for least in (shortest, 0.5):  # what is left after the first pass has the length 1
         W = W - combine(V, gram(V, A @ W))
         squares, U = np.linalg.eigh(gram(W, A @ W))
         there = np.flatnonzero(squares > least**2)[::-1][: capacity - V.shape[1]]

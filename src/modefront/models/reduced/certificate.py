@@ -12,10 +12,13 @@ there. Each Ritz mode j near r is mixed in as well, by :math:`r_j^T \delta / (\l
 Conjugate gradients with the factor of an earlier :math:`A = K + s M` give both: they sum up
 :math:`\epsilon` from below, one solution with the factor a term,
 
-.. math:: \epsilon = \sum_k \alpha_k \, r_k^T z_k, \qquad z_k = A^{-1} r_k .
+.. math:: \epsilon = \sum_k t_k, \qquad t_k = \alpha_k \, r_k^T z_k, \qquad z_k = A^{-1} r_k .
 
 The first term alone is at least :math:`4 \kappa / (1 + \kappa)^2` of the whole (Kantorovich), with
-:math:`\kappa` the condition of :math:`A^{-1} C`; others follow until they are small.
+:math:`\kappa` the condition of :math:`A^{-1} C`; others follow until they are small. What is left
+then is taken for a geometric series with the ratio q of the last terms, :math:`t_k q / (1 - q)`.
+
+Several models share every solution: the factor is read once for all of them.
 
 Sources: Sleijpen & Van der Vorst 1996, doi:10.1137/S0895479894270427 (correction); Golub & Meurant
 2010, doi:10.1515/9781400833887 (quadratic forms by conjugate gradients).
@@ -23,17 +26,21 @@ Sources: Sleijpen & Van der Vorst 1996, doi:10.1137/S0895479894270427 (correctio
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse
 
 from modefront._typing import Floats, Ints
+from modefront.modes.pencil import Pencil
 from modefront.modes.products import combine, gram
 from modefront.modes.spectrum import Shifted
 
-SETTLED = 0.2
+SETTLED = 1 / 3
 """Share of the sum in the last term, below which no other one is added."""
+
+SLOWEST = 0.5
+"""Ratio of terms at most that what is left is extrapolated with."""
 
 NEAR = 3.0
 """Condition of K over that of the factor up to which the first term is enough: 3/4 of the whole."""
@@ -56,50 +63,99 @@ class Certificate:
     shape: Floats
 
 
-def estimate(
-    K: scipy.sparse.csr_array,
-    M: scipy.sparse.csr_array,
-    lam: Floats,
-    Phi: Floats,
-    wanted: Ints,
-    below: Shifted,
-    steps: int = STEPS,
-) -> Certificate:
-    """Return the certificate of the ``wanted`` ones of low Ritz pairs, Phi (N, modes).
+def missing(modes: int) -> Certificate:
+    """Return the certificate of as many modes, below which others are missing."""
+    return Certificate(np.full(modes, np.inf), np.ones(modes))
 
-    ``lam`` (modes,) ascends and holds all Ritz values up to beyond the wanted ones; ``below`` is
-    the factor of a positive definite K + s M at any parameters. Errors of eigenvalues are over
-    lam + s.
+
+@dataclass(frozen=True, eq=False)
+class Pairs:
+    """Low Ritz pairs of one model.
+
+    Attributes
+    ----------
+    theta : (p,) parameters
+    lam, Phi : (low,) all Ritz values up to beyond the wanted ones, ascending, and (N, low) modes
+    wanted : (modes,) which of them are to be judged, counted from 0
+    steps : terms at most
     """
-    MPhi = M @ Phi
-    rest = K @ Phi - MPhi * lam
-    r, shift = np.ascontiguousarray(rest[:, wanted]), lam[wanted]
-    r -= combine(MPhi, gram(Phi, r))
-    delta, P = np.zeros_like(r), np.zeros_like(r)
-    square = np.zeros(wanted.size)  # delta^T M delta
-    total, energy = np.zeros(wanted.size), np.ones(wanted.size)
-    active, lost = np.ones(wanted.size, dtype=bool), np.zeros(wanted.size, dtype=bool)
-    for step in range(steps):
-        z = below.factor.solve(np.ascontiguousarray(r[:, active]))
-        z -= combine(Phi, gram(MPhi, z))
-        before, now = energy[active], np.einsum("nc,nc->c", r[:, active], z)
-        p = z + P[:, active] * (now / np.maximum(before, np.finfo(float).tiny) if step else 0.0)
-        Mp = M @ p
-        Cp = K @ p - Mp * shift[active]
+
+    theta: Floats
+    lam: Floats
+    Phi: Floats
+    wanted: Ints
+    steps: int = STEPS
+
+
+def estimates(pencil: Pencil, models: Sequence[Pairs], below: Shifted) -> list[Certificate]:
+    """Return the certificates of some models, by one solution with the factor a step.
+
+    ``below`` is the factor of a positive definite K + s M at any parameters. Errors of eigenvalues
+    are over lam + s.
+    """
+    sums = [_Sum(pencil, one) for one in models]
+    while unfinished := [one for one in sums if one.active.any()]:
+        ends = np.cumsum([np.count_nonzero(one.active) for one in unfinished])
+        right = np.hstack([one.r[:, one.active] for one in unfinished])
+        found = np.hsplit(below.factor.solve(right), ends[:-1])
+        for one, z in zip(unfinished, found, strict=True):
+            one.add(z)
+    return [one.certificate(below.sigma) for one in sums]
+
+
+class _Sum:
+    """Conjugate gradients for the wanted modes of one model, and what they have summed up."""
+
+    def __init__(self, pencil: Pencil, of: Pairs) -> None:
+        self.pencil, self.of = pencil, of
+        K, self.M = pencil.K.at(of.theta), pencil.M.at(of.theta)
+        self.MPhi = self.M @ of.Phi
+        self.rest = K @ of.Phi - self.MPhi * of.lam
+        self.shift = of.lam[of.wanted]
+        self.r = np.ascontiguousarray(self.rest[:, of.wanted])
+        self.r -= combine(self.MPhi, gram(of.Phi, self.r))
+        self.delta, self.P = np.zeros_like(self.r), np.zeros_like(self.r)
+        modes = of.wanted.size
+        self.square = np.zeros(modes)  # delta^T M delta
+        self.total, self.left, self.term = np.zeros(modes), np.zeros(modes), np.zeros(modes)
+        self.energy = np.ones(modes)
+        self.active, self.lost = np.ones(modes, dtype=bool), np.zeros(modes, dtype=bool)
+        self.steps = 0
+
+    def add(self, z: Floats) -> None:
+        """Add a term for the active modes, given the solutions for their residuals."""
+        active, Phi = self.active.copy(), self.of.Phi
+        z = z - combine(Phi, gram(self.MPhi, z))
+        r = self.r[:, active]
+        energy = np.einsum("nc,nc->c", r, z)
+        before = np.maximum(self.energy[active], np.finfo(float).tiny)
+        p = z + self.P[:, active] * (energy / before if self.steps else 0.0)
+        Mp = self.M @ p
+        Cp = self.pencil.K.at(self.of.theta) @ p - Mp * self.shift[active]
         curvature = np.einsum("nc,nc->c", p, Cp)
-        lost[active] |= curvature <= 0
-        alpha = np.divide(now, curvature, out=np.zeros_like(now), where=curvature > 0)
-        term = alpha * now
-        total[active] += term
-        square[active] += alpha * np.einsum("nc,nc->c", alpha * p - 2 * delta[:, active], Mp)
-        delta[:, active] -= alpha * p
-        r[:, active] -= alpha * (Cp - combine(MPhi, gram(Phi, Cp)))
-        P[:, active], energy[active] = p, now
-        active[active] = (term > SETTLED * total[active]) & ~lost[active]
-        if not active.any():
-            break
-    gap = lam[:, None] - shift
-    mixed = np.divide(gram(rest, delta), gap, out=np.zeros_like(gap), where=gap != 0)
-    shape = np.sqrt(np.maximum(square, 0.0) + (mixed**2).sum(axis=0))
-    relative = total / (shift - below.sigma)
-    return Certificate(np.where(lost, np.inf, relative), np.where(lost, 1.0, np.minimum(shape, 1)))
+        self.lost[active] |= curvature <= 0
+        alpha = np.divide(energy, curvature, out=np.zeros_like(energy), where=curvature > 0)
+        term, last = alpha * energy, self.term[active]
+        self.total[active] += term
+        ratio = np.divide(term, last, out=np.zeros_like(term), where=last > 0)
+        ratio = np.minimum(ratio, SLOWEST)
+        self.left[active] = term * ratio / (1 - ratio)
+        step = alpha * p - 2 * self.delta[:, active]
+        self.square[active] += alpha * np.einsum("nc,nc->c", step, Mp)
+        self.delta[:, active] -= alpha * p
+        self.r[:, active] = r - alpha * (Cp - combine(self.MPhi, gram(Phi, Cp)))
+        self.P[:, active], self.energy[active], self.term[active] = p, energy, term
+        self.steps += 1
+        more = self.steps < self.of.steps
+        self.active[active] = more & (term > SETTLED * self.total[active]) & ~self.lost[active]
+
+    def certificate(self, sigma: float) -> Certificate:
+        """Return what was found, with what is left of the sums."""
+        gap = self.of.lam[:, None] - self.shift
+        mixed = np.divide(gram(self.rest, self.delta), gap, out=np.zeros_like(gap), where=gap != 0)
+        shape = np.sqrt(np.maximum(self.square, 0.0) + (mixed**2).sum(axis=0))
+        relative = (self.total + self.left) / (self.shift - sigma)
+        return Certificate(
+            np.where(self.lost, np.inf, relative),
+            np.where(self.lost, 1.0, np.minimum(shape, 1.0)),
+        )

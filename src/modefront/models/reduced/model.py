@@ -19,7 +19,9 @@ from modefront.models.reduced.certificate import (
     NEAR,
     STEPS,
     Certificate,
-    estimate,
+    Pairs,
+    estimates,
+    missing,
 )
 from modefront.modes import dense
 from modefront.modes.factorisation import SingularMatrixError
@@ -32,6 +34,9 @@ SHORTEST = 0.1
 
 SPARE = 2
 """Modes in the basis beyond those that are used, without derivatives: they may enter later."""
+
+ENTRIES = 2**22
+"""Entries of the right-hand sides that certificates solve together, unless one needs more."""
 
 TOLERANCE = 1e-8
 """Relative error of eigenvalues that is aimed at, if nothing else is said."""
@@ -209,47 +214,54 @@ class ReducedModel:
 
     def certify(
         self,
-        theta: Floats,
-        wanted: Ints,
+        asked: Sequence[tuple[Floats, Ints]],
         *,
         quick: bool = False,
-        complete: list[Complete] | None = None,
-    ) -> Certificate:
-        """Return how wrong the ``wanted`` modes are, counted from 0; see `Certificate`.
+    ) -> list[Certificate]:
+        """Return how wrong modes are at some parameters; see `Certificate`.
 
-        Their errors are infinite where a mode below them is missing. That is looked for by a
-        factorisation where it is in doubt, and what it proves is added to ``complete``, which
-        speaks for models nearby. A ``quick`` certificate does not look for missing modes, and takes
-        only the first term of the estimate.
+        ``asked`` are theta (p,) and the modes wanted there, counted from 0. Their errors are
+        infinite where a mode below them is missing. That is looked for by a factorisation where it
+        is in doubt, and what it proves speaks for the other models nearby. ``quick`` certificates
+        do not look for missing modes, and take only the first term of the estimate.
         """
         state = self._ready()
         started = time.perf_counter()
-        basis, pencil = state.basis, self.full.pencil
-        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        proofs = [] if complete is None else complete
-        if not quick and self._misses(state, theta, ritz.lam, int(wanted.max()), proofs):
-            found = Certificate(np.full(wanted.size, np.inf), np.ones(wanted.size))
-        else:
-            near = window.condition(basis.K, theta, state.taken[-1].what.theta) <= NEAR
-            low = min(ritz.lam.size, int(wanted.max()) + 1 + SPARE)
-            found = estimate(
-                pencil.K.at(theta),
-                pencil.M.at(theta),
-                ritz.lam[:low],
-                combine(basis.V, ritz.Phi[:, :low]),
-                wanted,
-                state.below,
-                1 if quick or near else STEPS,
-            )
-        self.counts.certificates += 1
+        proofs = _proofs(state.taken)
+        most = max((wanted.size for _, wanted in asked), default=1)
+        together = max(1, ENTRIES // self.size // most)
+        found: list[Certificate] = []
+        for first in range(0, len(asked), together):
+            some = asked[first : first + together]
+            pairs = [self._pairs(state, *one, quick, proofs) for one in some]
+            there = [one for one in pairs if one is not None]
+            known = iter(estimates(self.full.pencil, there, state.below))
+            found += [
+                missing(wanted.size) if one is None else next(known)
+                for (_, wanted), one in zip(some, pairs, strict=True)
+            ]
+        self.counts.certificates += len(asked)
         self.counts.certificate_time += time.perf_counter() - started
         return found
+
+    def _pairs(
+        self, state: _State, theta: Floats, wanted: Ints, quick: bool, proofs: list[Complete]
+    ) -> Pairs | None:
+        """Return the Ritz pairs that a certificate is of; None where modes are missing."""
+        basis = state.basis
+        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        if not quick and self._misses(state, theta, ritz.lam, int(wanted.max()), proofs):
+            return None
+        near = window.condition(basis.K, theta, state.taken[-1].what.theta) <= NEAR
+        low = min(ritz.lam.size, int(wanted.max()) + 1 + SPARE)
+        Phi = combine(basis.V, ritz.Phi[:, :low])
+        return Pairs(theta, ritz.lam[:low], Phi, wanted, 1 if quick or near else STEPS)
 
     def _misses(
         self, state: _State, theta: Floats, lam: Floats, last: int, proofs: list[Complete]
     ) -> bool:
         """Return whether modes below the Ritz value of the ``last`` one wanted are missing."""
-        if _knows(state.basis, [*_proofs(state.taken), *proofs], theta, lam[last]):
+        if _knows(state.basis, proofs, theta, lam[last]):
             return False
         pencil = self.full.pencil
         below, sigma = window.gap_above(lam, last)
