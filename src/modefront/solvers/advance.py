@@ -143,6 +143,7 @@ def advance(
     origin: dict[Place, int] = {}
     renewed: Counter[Place] = Counter()
     queue: deque[tuple[Place, Place]] = deque()
+    doubtful: deque[tuple[Place, Place]] = deque()  # from solutions that did not converge
     tried: set[tuple[Place, Place, int]] = set()
     divisions = lattice.divisions
     fixed: set[Place] = set()
@@ -159,7 +160,8 @@ def advance(
         here = programmes.goes_on(J) and place == _nearest(
             divisions * programmes.place(of, J), divisions
         )
-        queue.extend((near, place) for near in neighbours(place) if here or min(near) >= 0)
+        steps = queue if solution.converged else doubtful
+        steps.extend((near, place) for near in neighbours(place) if here or min(near) >= 0)
 
     def worth_trying(place: Place, source: Place) -> bool:
         if place not in solved:
@@ -192,8 +194,8 @@ def advance(
             continue
         again = partial(_from_before, programmes, problem, beta(at), one)
         settle(at, checkpoint(f"{programmes.label}-{_text(at)}-again", again)[0], -1)
-    while queue:
-        place, source = queue.popleft()
+    while queue or doubtful:
+        place, source = (queue or doubtful).popleft()
         if not worth_trying(place, source):
             continue
         if place not in solved and min(place) < 0:
