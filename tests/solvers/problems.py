@@ -98,6 +98,20 @@ def valley(theta: Floats) -> Derivatives:
     return J, np.array([2 * r1, 2 * r2 @ dr2]), np.array([2 * np.eye(2), 2 * dr2.T @ dr2])
 
 
+def three_wells(theta: Floats) -> Derivatives:
+    """Squared distances of x from 0 and 1, in three wells along y with offsets of their own.
+
+    Those near y = -1, 0 and 1 have about (0, 1), (0.05, 0.05) and (0.6, 0): the outer ones hold the
+    edges, and the one between them nearly all of the front.
+    """
+    x, y = theta
+    barrier = 20 * np.array([y**2 * (y**2 - 1) ** 2, 2 * y * (y**2 - 1) * (3 * y**2 - 1)])
+    offsets = np.array([[0.05, 0.3, 0.25], [0.05, -0.5, 0.45]])
+    J = np.array([x**2, (x - 1) ** 2]) + offsets @ [1, y, y**2] + barrier[0]
+    slopes = offsets @ [0, 1, 2 * y] + barrier[1]
+    return J, np.array([[2 * x, slopes[0]], [2 * (x - 1), slopes[1]]]), np.zeros((2, 2, 2))
+
+
 def many_minima(theta: Floats) -> Derivatives:
     """J1 vanishes at (+-1, +-2), four models; J2 decides between them."""
     x, y = theta

@@ -21,6 +21,7 @@ from problems import (
     many_minima,
     patches,
     sphere,
+    three_wells,
     valley,
 )
 
@@ -289,6 +290,24 @@ def patches_front(_: np.random.Generator) -> Floats:
     grid = np.linspace(0, 1, 71)
     J = np.array([patches(np.array([x, y, 0.0]))[0] for x in grid for y in grid])
     return J[nondominated(J)]
+
+
+def test_a_piece_of_the_front_between_the_edges_is_reached_from_its_own_minimum() -> None:
+    problem = box(three_wells, [-1, -1.5], [2, 1.5])
+    sizes = sizes_of(problem)
+    found = [edge(problem, i, sizes, np.random.default_rng(i), Search()) for i in range(2)]
+    edges = [one.best for one in found if one]
+    assert [round(one.at.theta[1]) for one in edges] == [-1, 1]
+    target = payoff(edges, sizes)
+    assert target is not None
+    alone = nbi(problem, edges, target, simplex(2, 10))
+    assert not any(abs(one.at.theta[1]) < 0.5 for one in alone)
+    minima = [one for each in found if each for one in each.minima]
+    front = nbi(problem, edges, target, simplex(2, 10), minima=minima)
+    assert sum(abs(one.at.theta[1]) < 0.5 for one in front) >= 6
+    optimal = nondominated(np.array([one.at.J for one in front]))
+    assert all(one.converged for one in front)
+    assert sum(optimal[i] for i, one in enumerate(front) if abs(one.at.theta[1]) < 0.5) >= 6
 
 
 @pytest.mark.parametrize(
