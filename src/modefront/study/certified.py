@@ -82,8 +82,7 @@ def certified_front(
         return work(checkpoint=checkpoint, expect=expect, known=None)
     model.restart()
     front: Front | None = None
-    at = Snap(problem.start, min(len(problem.data.modes), model.count))
-    expected, error = 0, np.inf
+    expected, at, error = 0, Snap(problem.start, model.count), np.inf
     for number in range(1, ROUNDS + 1):
         here = _Round(checkpoint, number)
         known = front if error <= POOR else None
