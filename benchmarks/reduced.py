@@ -151,7 +151,7 @@ def memory() -> float:
 def reduced_model(full: MatrixModel, count: int) -> ReducedModel:
     """Return the full model in a basis."""
     lower, upper = (np.full(REGIONS, bound) for bound in BOUNDS)
-    return ReducedModel(full, count, np.ones(REGIONS), lower, upper)
+    return ReducedModel(full, count, np.ones(REGIONS), lower, upper, spare=count - MODES)
 
 
 def modal_error(full: MatrixModel, columns: int, found: xr.Dataset) -> float:

@@ -93,7 +93,10 @@ def frequencies_and_shapes(
     start = np.zeros(structure.lower.size)
     if reduced:
         count = modes_needed(pairing, structure.data, model.size)
-        model = ReducedModel(structure.model, count, start, structure.lower, structure.upper)
+        spare = count - len(structure.data.modes)
+        model = ReducedModel(
+            structure.model, count, start, structure.lower, structure.upper, spare=spare
+        )
     return UpdatingProblem(
         model,
         structure.data,

@@ -2,11 +2,15 @@
 
 from __future__ import annotations
 
+from concurrent.futures import ThreadPoolExecutor
+
 import numpy as np
 import pytest
+import scipy.sparse
 from hypothesis import given
 from hypothesis import strategies as st
 
+from modefront._typing import Floats
 from modefront.modes import products
 
 
@@ -30,3 +34,25 @@ def test_nothing_with_more_rows_than_a_block() -> None:
     tall = np.ones((3 * products.WORK, 1))
     assert products.gram(tall[:, :0], tall).shape == (0, 1)
     assert products.combine(tall[:, :0], np.zeros((0, 2))).tolist() == [[0, 0]] * len(tall)
+
+
+@pytest.mark.parametrize("columns", [1, 2, 30])
+def test_sharing_among_threads_changes_no_digit(
+    columns: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    rng = np.random.default_rng(columns)
+    A = scipy.sparse.random_array((5001, 5001), density=2e-3, format="csr", rng=rng)
+    X, Y = rng.standard_normal((5001, columns)), rng.standard_normal((5001, 25))
+    C = rng.standard_normal((columns, 40))
+
+    def found() -> list[Floats]:
+        return [products.gram(X, Y), products.combine(X, C), products.times(A, X)]
+
+    whole = found()
+    monkeypatch.setattr(products, "SHARED", 0)
+    for threads in (1, 2, 3):
+        with ThreadPoolExecutor(threads) as pool:
+            monkeypatch.setattr(products, "_pool", lambda pool=pool, n=threads: (pool, n))
+            for expected, shared in zip(whole, found(), strict=True):
+                assert np.array_equal(expected, shared)
+    assert whole[2] == pytest.approx(A @ X)

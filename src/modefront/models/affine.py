@@ -26,7 +26,7 @@ import scipy.sparse
 from numpy.typing import NDArray
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.modes.products import gram
+from modefront.modes.products import gram, times
 
 ROWS = 2**15
 """Rows of a term that are projected at once, to bound the memory."""
@@ -133,6 +133,14 @@ class SparseAffine:
 
     def at(self, theta: Floats) -> scipy.sparse.csr_array:
         """Return A(theta), N x N; it holds every entry of the pattern, zero or not."""
+        return self._constant if not self.coefficients.exponents.any() else self._at(theta)
+
+    @cached_property
+    def _constant(self) -> scipy.sparse.csr_array:
+        """The matrix that does not depend on theta."""
+        return self._at(np.ones(self.coefficients.exponents.shape[1]))
+
+    def _at(self, theta: Floats) -> scipy.sparse.csr_array:
         values = self.terms @ self.coefficients.values(theta)
         shape = self.size, self.size
         return scipy.sparse.csr_array((values, self.indices, self.indptr), shape=shape)
@@ -156,7 +164,7 @@ class SparseAffine:
         degrees of freedom costs as little.
         """
         stack, dof, starts = self._stack
-        products = stack @ vectors
+        products = times(stack, vectors)
         dc = self.coefficients.jacobian(theta)
         m, p = vectors.shape[1], dc.shape[1]
         rows, columns, values = [np.zeros(0, np.intp)], [np.zeros(0, np.intp)], [np.zeros(0)]
@@ -174,7 +182,7 @@ class SparseAffine:
         Columns of ``right`` should be the fewer ones.
         """
         stack, dof, starts = self._stack
-        products = stack @ right
+        products = times(stack, right)
         out = np.zeros((starts.size - 1, left.shape[1], right.shape[1]))
         for j, (start, stop) in enumerate(pairwise(starts.tolist())):
             for k in range(start, stop, ROWS):

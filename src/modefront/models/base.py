@@ -17,17 +17,20 @@ class Counts:
     Attributes
     ----------
     eigenproblems : how many were solved in full, with derivatives or without
+    corrected : how many were solved in full with the factor of another one, for a reduced basis
     factorisations : of sparse matrices, for these and for certificates
     reduced : eigenproblems that were solved in a reduced basis
     certificates : estimates of the error of reduced solutions
-    full_time, reduced_time, certificate_time : seconds that these took
+    full_time, corrected_time, reduced_time, certificate_time : seconds that these took
     """
 
     eigenproblems: int = 0
+    corrected: int = 0
     factorisations: int = 0
     reduced: int = 0
     certificates: int = 0
     full_time: float = 0.0
+    corrected_time: float = 0.0
     reduced_time: float = 0.0
     certificate_time: float = 0.0
 

@@ -48,7 +48,7 @@ import scipy.sparse
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
 from modefront.modes.pencil import Pencil
-from modefront.modes.products import combine, gram
+from modefront.modes.products import combine, gram, times
 from modefront.modes.spectrum import Shifted, Spectrum
 
 COINCIDENT = 1e-6
@@ -200,7 +200,7 @@ def _forms(
         scale = np.divide(1.0, beta, out=np.zeros_like(beta), where=beta > 0)
         W *= scale
         dual *= scale
-        MQ = found.M @ W
+        MQ = times(found.M, W)
         alpha = np.einsum("nc,nc->c", W, MQ)
         if step:
             lower = tau * beta / d

@@ -37,7 +37,7 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
-from modefront.modes.products import combine, gram
+from modefront.modes.products import combine, gram, times
 
 TOLERANCE = 1e-7
 """Residual of a Ritz pair over its mu; modes are usually refined once more with another shift."""
@@ -79,13 +79,11 @@ def greatest(
     start: Floats,
     wanted: int,
     steps: int = STEPS,
-    tolerance: float = TOLERANCE,
 ) -> Ritz:
     """Return Ritz pairs of T with the ``wanted`` greatest mu, or as many as ``steps`` allow.
 
     ``start`` (N, b) is the first block; of an eigenvalue repeated more often than b times, some
-    may be missed. ``tolerance`` is the residual of a pair over its mu. Raises ModelError where M
-    is indefinite.
+    may be missed. Raises ModelError where M is indefinite.
     """
     n, b = start.shape
     capacity = min(n, max(3 * wanted, 40) + 4 * b)
@@ -98,7 +96,7 @@ def greatest(
         new = slice(d, d + Q.shape[1])
         V[:, new], AV[:, new] = Q, AQ
         d = new.stop
-        MQ = M @ Q
+        MQ = times(M, Q)
         H[:d, new] = gram(V[:, :d], MQ)
         H[new, :d] = H[:d, new].T
         W = _outside(solve(MQ) - combine(V[:, :d], H[:d, new]), V[:, :d], AV[:, :d])
@@ -113,7 +111,7 @@ def greatest(
         mu, Y = mu[::-1], Y[:, ::-1]
         if mu[-1] < -1e-10 * mu[0]:
             raise ModelError("the mass matrix is indefinite")
-        good = np.linalg.norm(R @ Y[new], axis=0) <= np.maximum(tolerance * mu, LOST * mu[0])
+        good = np.linalg.norm(R @ Y[new], axis=0) <= np.maximum(TOLERANCE * mu, LOST * mu[0])
         leading = d if good.all() else int(np.argmin(good))
         if leading >= wanted and mu[wanted - 1] > LOST * mu[0]:
             break
@@ -162,7 +160,7 @@ def _orthonormal(
 
     Directions shorter than ``least``, and the shortest ones beyond ``most``, are dropped.
     """
-    AW = A @ W
+    AW = times(A, W)
     squares, U = np.linalg.eigh(gram(W, AW))
     there = squares > max(least**2, 1e-28 * squares.max(initial=0.0))
     there[: squares.size - min(squares.size, squares.size if most is None else most)] = False

@@ -1,40 +1,108 @@
-"""Products with tall matrices that do not depend on the number of threads.
+"""Products with tall matrices, shared among all processors, that do not depend on their number.
 
 BLAS shares a large product between threads, which changes its rounding with their number, and its
 waiting threads slow down everything else on a busy machine. In blocks of rows that are too small
-to be shared, the same products are as fast on one core and always the same.
+to be shared by it, the same products are as fast on one core and always the same, and blocks may
+be computed by several threads of our own.
 """
 
 from __future__ import annotations
 
+import os
+from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
+from functools import cache
+from itertools import pairwise
+
 import numpy as np
+import scipy.sparse
 
 from modefront._typing import Floats
 
 WORK = 2**17
 """Multiplications a block; OpenBLAS shares products from 2**18 on."""
 
+GROUP = 16
+"""Blocks of which products are added up together."""
+
+SHARED = 2**22
+"""Multiplications from which on a product is shared among threads."""
+
+WIDE = 2
+"""Columns from which on that pays for a sparse matrix."""
+
 
 def gram(X: Floats, Y: Floats) -> Floats:
     """Return X^T Y for X of shape (N, a) and Y of shape (N, b)."""
-    whole, rows = _blocks(X, Y.shape[1])
+    (a, b), (whole, rows) = (X.shape[1], Y.shape[1]), _blocks(X, Y.shape[1])
     out: Floats = X[whole:].T @ Y[whole:]
     if whole:
-        left = X[:whole].reshape(whole // rows, rows, X.shape[1])
-        right = Y[:whole].reshape(whole // rows, rows, Y.shape[1])
-        out += np.matmul(left.transpose(0, 2, 1), right).sum(axis=0)
+        left = X[:whole].reshape(whole // rows, rows, a).transpose(0, 2, 1)
+        right = Y[:whole].reshape(whole // rows, rows, b)
+        groups = -(-left.shape[0] // GROUP)
+        sums = np.empty((groups, a, b))
+
+        def add(first: int, last: int) -> None:
+            for k in range(first, last):
+                some = slice(k * GROUP, (k + 1) * GROUP)
+                np.matmul(left[some], right[some]).sum(axis=0, out=sums[k])
+
+        _share(add, groups, whole * a * b)
+        out += sums.sum(axis=0)
     return out
 
 
 def combine(X: Floats, C: Floats) -> Floats:
     """Return X C for X of shape (N, a) and C of shape (a, b)."""
-    whole, rows = _blocks(X, C.shape[1])
-    out = np.empty((X.shape[0], C.shape[1]))
+    (a, b), (whole, rows) = C.shape, _blocks(X, C.shape[1])
+    out = np.empty((X.shape[0], b))
     np.matmul(X[whole:], C, out=out[whole:])
     if whole:
-        blocks = X[:whole].reshape(whole // rows, rows, X.shape[1])
-        np.matmul(blocks, C, out=out[:whole].reshape(whole // rows, rows, C.shape[1]))
+        left = X[:whole].reshape(whole // rows, rows, a)
+        product = out[:whole].reshape(whole // rows, rows, b)
+
+        def multiply(first: int, last: int) -> None:
+            np.matmul(left[first:last], C, out=product[first:last])
+
+        _share(multiply, left.shape[0], whole * a * b)
     return out
+
+
+def times(A: scipy.sparse.csr_array, X: Floats) -> Floats:
+    """Return A X for a sparse A of shape (M, N) and X of shape (N, b)."""
+    M, N = A.shape
+    if X.shape[1] < WIDE:
+        product: Floats = A @ X
+        return product
+    out = np.empty((M, X.shape[1]))
+    X = np.ascontiguousarray(X)
+
+    def multiply(first: int, last: int) -> None:
+        begin, end = A.indptr[first], A.indptr[last]
+        part = scipy.sparse.csr_array((last - first, N))
+        part.indptr = A.indptr[first : last + 1] - begin
+        part.indices, part.data = A.indices[begin:end], A.data[begin:end]  # views, not copies
+        out[first:last] = part @ X
+
+    _share(multiply, M, A.nnz * X.shape[1])
+    return out
+
+
+def _share(work: Callable[[int, int], None], count: int, multiplications: int) -> None:
+    """Do some work on all of ``count`` pieces, from a first one to before a last one at a time."""
+    pool, threads = _pool()
+    if multiplications < SHARED or threads == 1 or count < threads:
+        work(0, count)
+        return
+    ends = [count * k // threads for k in range(threads + 1)]
+    for done in [pool.submit(work, *part) for part in pairwise(ends)]:
+        done.result()
+
+
+@cache
+def _pool() -> tuple[ThreadPoolExecutor, int]:
+    threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
+    return ThreadPoolExecutor(threads, "products"), threads or 1
 
 
 def _blocks(X: Floats, columns: int) -> tuple[int, int]:

@@ -35,7 +35,7 @@ from modefront.modes import derivatives as exact
 from modefront.modes.factorisation import Factorisation, SingularMatrixError
 from modefront.modes.lanczos import greatest
 from modefront.modes.pencil import Pencil
-from modefront.modes.products import combine, gram
+from modefront.modes.products import combine, gram, times
 from modefront.modes.result import Modes
 from modefront.modes.spectrum import Shifted, Spectrum
 
@@ -119,28 +119,6 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
     raise ModelError(
         f"the lowest {count} modes could not be told from the next ones, or some were missed"
     )
-
-
-def lowest_near(
-    pencil: Pencil, theta: Floats, count: int, space: Floats, tolerance: float
-) -> Spectrum:
-    """Return at least the ``count`` lowest modes that can be got to from a space near them.
-
-    ``space`` (N, columns) are approximations of these and of a few more modes, ``tolerance`` is
-    the residual of a mode over its eigenvalue. It takes a single factor, since that no mode is
-    missing is not proved: that is as certain as of the space. Where its modes do not converge the
-    result is that of `lowest`.
-    """
-    K, M = pencil.K.at(theta), pencil.M.at(theta)
-    below, A, start = _positive_definite(pencil, K, M, count, M @ space)
-    ritz = greatest(below.factor.solve, A, M, start, count, tolerance=tolerance)
-    known = min(ritz.converged, int(np.sum(ritz.mu > SINGULAR * ritz.mu[0])))
-    if known < count:
-        return lowest(pencil, theta, count)
-    lam, Phi = 1 / ritz.mu + below.sigma, ritz.X[:, :known] / np.sqrt(ritz.mu[:known])
-    beyond = lam[known] if lam.size > known else np.inf
-    noise = _noise(K, Phi)
-    return Spectrum(lam[:known], Phi, M @ Phi, M, noise, beyond, known, (below, below))
 
 
 def _noise(K: scipy.sparse.csr_array, Phi: Floats) -> Floats:
@@ -253,11 +231,11 @@ def _refined(
     Of the modes beyond the ``needed`` ones, those are left out that would take longer; None where
     the needed ones do not converge.
     """
-    MPhi = M @ Phi
+    MPhi = times(M, Phi)
     for _ in range(REFINEMENTS):
         distance = lam - above.sigma
         Y = above.factor.solve(MPhi) * distance
-        MY = M @ Y
+        MY = times(M, Y)
         error = np.sqrt(np.abs(np.einsum("nr,nr->r", Y - Phi, MY - MPhi)))
         B = gram(Y, MPhi) * distance
         distance, Z = scipy.linalg.eigh((B + B.T) / 2, gram(Y, MY))

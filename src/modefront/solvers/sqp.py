@@ -60,6 +60,9 @@ SWITCH = 0.5
 FREE = 1e-4
 """Gradient, over the greatest curvature, below which a bound does not hold a variable."""
 
+PATIENCE = 20
+"""Iterations in which the violation of the constraints is to be halved, or there is no way."""
+
 NOISE = 1e-11
 """Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
 
@@ -144,7 +147,7 @@ def solve(
     trusted = bool(learned.any())
     radius, penalty = options.radius, PENALTY
     multipliers: Floats | None = None
-    escaped, proposed = False, np.inf
+    escaped, proposed, before = False, np.inf, np.inf
     farthest = max(1.0, FUNNEL * _length(programme.A @ start.at.J - programme.b))
     for count in range(options.iterations + 1):
         at = state.at
@@ -168,6 +171,10 @@ def solve(
         if _length(s) < 0.99 * radius:
             proposed = _length(s)
         violation = _length(c)
+        if count % PATIENCE == 0:
+            if violation > max(options.constraint, 0.5 * before):
+                return Solution(at, state.learned, w, violation, Status.STALLED, count)
+            before = violation
         value = programme.value(at.J)
         still = _length(s) <= options.step or bool(abs(g @ s) <= options.reduction * abs(value))
         if still and violation <= options.constraint and not escaped:

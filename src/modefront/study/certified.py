@@ -82,7 +82,7 @@ def certified_front(
         return work(checkpoint=checkpoint, expect=expect, known=None)
     model.restart()
     front: Front | None = None
-    expected, at, error = 0, Snap(problem.start, model.count), np.inf
+    expected, at, error = 0, model.first, np.inf
     for number in range(1, ROUNDS + 1):
         here = _Round(checkpoint, number)
         known = front if error <= POOR else None

@@ -31,17 +31,10 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.models.affine import DenseAffine, SparseAffine
-from modefront.modes import derivatives as exact
 from modefront.modes.pencil import Pencil
-from modefront.modes.products import combine, gram
-from modefront.modes.sparse import lowest, lowest_near
+from modefront.modes.products import combine, gram, times
+from modefront.modes.sparse import lowest
 from modefront.modes.spectrum import Shifted
-
-DERIVATIVES = 1e-2
-"""Residual of the derivatives in the basis, which need not be exact to be of use there."""
-
-NEARLY = 1e-4
-"""Residual of the modes of a snapshot near to which a space is known, over their eigenvalues."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,14 +44,14 @@ class Snapshot:
     Attributes
     ----------
     theta : where it was taken
-    beyond : eigenvalues below it were proved to be all among the modes; below all of them if none
-    vectors : (N, columns) modes of unit energy and their derivatives
+    beyond : eigenvalues below it were proved to be all among the modes
+    modes : (N, modes) of unit energy
     below : the factor of K + s M, which is positive definite
     """
 
     theta: Floats
     beyond: float
-    vectors: Floats
+    modes: Floats
     below: Shifted
 
 
@@ -77,33 +70,14 @@ class Basis:
         return self.V.shape[1]
 
 
-def snapshot(
-    pencil: Pencil,
-    theta: Floats,
-    count: int,
-    derived: int,
-    half_range: Floats,
-    space: Floats | None = None,
-) -> Snapshot:
-    """Solve the full model for ``count`` modes or more, the first ``derived`` with derivatives.
-
-    ``half_range`` (p,) is how far the parameters go from a middle; ``space`` (N, columns) is near
-    the modes, if such a space is known.
+def snapshot(pencil: Pencil, theta: Floats, count: int) -> Snapshot:
+    """Solve the full model for ``count`` modes or more.
 
     Raises ModelError where the model has no such modes.
     """
-    if space is None:
-        found = lowest(pencil, theta, count)
-    else:
-        found = lowest_near(pencil, theta, count, space, NEARLY)
-    everywhere = scipy.sparse.eye_array(pencil.size, format="csr")
-    _, dphi, _ = exact.at_sensors(pencil, everywhere, theta, found, derived, DERIVATIVES)
+    found = lowest(pencil, theta, count)
     below, above = found.factors
-    energy = np.sqrt(found.lam - below.sigma)
-    dphi *= half_range / energy[:derived, None]
-    vectors = np.hstack([found.Phi / energy, dphi.reshape(pencil.size, -1)])
-    beyond = above.sigma if above is not below else below.sigma
-    return Snapshot(theta, beyond, vectors, below)
+    return Snapshot(theta, above.sigma, found.Phi / np.sqrt(found.lam - below.sigma), below)
 
 
 def empty(pencil: Pencil, first: Snapshot) -> Basis:
@@ -123,12 +97,14 @@ def extended(
     the projected matrices only the new rows and columns are computed.
     """
     A, V = basis.A, basis.V
-    W = vectors
-    for least in (shortest, 0.5):  # what is left after the first pass has the length 1
-        W = W - combine(V, gram(V, A @ W))
-        squares, U = np.linalg.eigh(gram(W, A @ W))
-        there = np.flatnonzero(squares > least**2)[::-1][: capacity - V.shape[1]]
-        W = combine(W, U[:, there] / np.sqrt(squares[there]))
+    W = vectors - combine(V, gram(V, times(A, vectors)))
+    squares, U = np.linalg.eigh(gram(W, times(A, W)))
+    there = np.flatnonzero(squares > shortest**2)[::-1][: capacity - V.shape[1]]
+    W = combine(W, U[:, there] / np.sqrt(squares[there]))
+    AW = times(A, W)
+    inside = gram(V, AW)  # what rounding has left of V in directions that are now of unit length
+    squares, U = np.linalg.eigh(gram(W, AW) - inside.T @ inside)
+    W = combine(W - combine(V, inside), U / np.sqrt(squares))
     V = np.hstack([V, W])
     return Basis(A, V, _grown(pencil.K, basis.K, V, W), _grown(pencil.M, basis.M, V, W))
 

@@ -16,13 +16,16 @@ from modefront.models.ports import Ports, Transfer
 from modefront.models.reduced import window
 from modefront.models.reduced.basis import Basis, empty, extended, snapshot
 from modefront.models.reduced.certificate import (
+    FIRST,
     NEAR,
-    STEPS,
+    SETTLED,
+    Asked,
     Certificate,
-    Pairs,
     estimates,
     missing,
 )
+from modefront.models.reduced.corrections import pairs, together
+from modefront.models.reduced.nearby import Wanted, with_derivatives, with_modes
 from modefront.modes import dense
 from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.products import combine
@@ -35,8 +38,20 @@ SHORTEST = 0.1
 SPARE = 2
 """Modes in the basis beyond those that are used, without derivatives: they may enter later."""
 
-ENTRIES = 2**22
-"""Entries of the right-hand sides that certificates solve together, unless one needs more."""
+COARSE = 3e-3
+"""Length of the shortest direction of the basis that stands for the bounds."""
+
+SHARE = 0.03
+"""Last term of a sum of conjugate gradients over the sum, for derivatives."""
+
+ROUGH = 0.1
+"""The same for modes at the bounds."""
+
+FAR = 30.0
+"""Condition of K over that of the factor up to which a snapshot has no factor of its own."""
+
+HALVINGS = 4
+"""How often a bound that is farther away is drawn nearer."""
 
 TOLERANCE = 1e-8
 """Relative error of eigenvalues that is aimed at, if nothing else is said."""
@@ -67,20 +82,22 @@ class Complete:
 
 @dataclass(frozen=True)
 class _Taken:
-    """A snapshot: which, up to which eigenvalue all modes are known, factorisations it took."""
+    """A snapshot, what it proves if it has factors of its own, and what it took."""
 
     what: Snap
-    beyond: float
+    proof: Complete | None
+    corrected: int
     factorisations: int
 
 
 @dataclass(frozen=True)
 class _State:
-    """The basis of some snapshots, as the sensors see it, and the factor of the last one."""
+    """The basis of some snapshots, as the sensors see it, and the last factor, at ``theta``."""
 
     taken: tuple[_Taken, ...]
     basis: Basis
     sensed: Floats
+    theta: Floats
     below: Shifted
 
 
@@ -98,6 +115,7 @@ class ReducedModel:
     nominal, lower, upper : (p,) parameters
     tolerance : relative error of eigenvalues that is aimed at
     memory : GiB that the basis may take; one mode is always allowed
+    spare : how many of the modes are only there to tell the others from them
     counts : what the evaluations and the snapshots in use have cost
     """
 
@@ -108,6 +126,7 @@ class ReducedModel:
     upper: Floats
     tolerance: float = TOLERANCE
     memory: float = MEMORY
+    spare: int = 0
     counts: Counts = field(default_factory=Counts)
     _charged: Counts = field(default_factory=Counts)
     _wanted: tuple[Snap, ...] = ()
@@ -164,6 +183,11 @@ class ReducedModel:
         return self._ready().basis.columns
 
     @property
+    def first(self) -> Snap:
+        """The first snapshot, unless another one is taken before it."""
+        return Snap(self.nominal, self.count - self.spare)
+
+    @property
     def snapshots(self) -> tuple[Snap, ...]:
         """The snapshots in use."""
         return self._wanted
@@ -172,6 +196,7 @@ class ReducedModel:
         """Use no snapshots. Those at hand are not computed again, but count when taken again."""
         self._wanted = ()
         self.counts.eigenproblems -= self._charged.eigenproblems
+        self.counts.corrected -= self._charged.corrected
         self.counts.factorisations -= self._charged.factorisations
         self._charged = Counts()
 
@@ -192,7 +217,8 @@ class ReducedModel:
             self._wanted = before
             raise
         for counts in (self.counts, self._charged):
-            counts.eigenproblems += 1
+            counts.eigenproblems += last.proof is not None
+            counts.corrected += last.corrected
             counts.factorisations += last.factorisations
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
@@ -228,34 +254,34 @@ class ReducedModel:
         state = self._ready()
         started = time.perf_counter()
         proofs = _proofs(state.taken)
-        most = max((wanted.size for _, wanted in asked), default=1)
-        together = max(1, ENTRIES // self.size // most)
+        width = together(self.size, max((wanted.size for _, wanted in asked), default=1))
         found: list[Certificate] = []
-        for first in range(0, len(asked), together):
-            some = asked[first : first + together]
-            pairs = [self._pairs(state, *one, quick, proofs) for one in some]
-            there = [one for one in pairs if one is not None]
-            known = iter(estimates(self.full.pencil, there, state.below))
+        for first in range(0, len(asked), width):
+            some = asked[first : first + width]
+            models = [self._asked(state, *one, quick, proofs) for one in some]
+            there = [one for one in models if one is not None]
+            known = iter(estimates(there, state.below))
             found += [
                 missing(wanted.size) if one is None else next(known)
-                for (_, wanted), one in zip(some, pairs, strict=True)
+                for (_, wanted), one in zip(some, models, strict=True)
             ]
         self.counts.certificates += len(asked)
         self.counts.certificate_time += time.perf_counter() - started
         return found
 
-    def _pairs(
+    def _asked(
         self, state: _State, theta: Floats, wanted: Ints, quick: bool, proofs: list[Complete]
-    ) -> Pairs | None:
+    ) -> Asked | None:
         """Return the Ritz pairs that a certificate is of; None where modes are missing."""
         basis = state.basis
         ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
         if not quick and self._misses(state, theta, ritz.lam, int(wanted.max()), proofs):
             return None
-        near = window.condition(basis.K, theta, state.taken[-1].what.theta) <= NEAR
-        low = min(ritz.lam.size, int(wanted.max()) + 1 + SPARE)
+        near = window.condition(basis.K, theta, state.theta) <= NEAR
+        low = int(wanted.max()) + 1 + SPARE
         Phi = combine(basis.V, ritz.Phi[:, :low])
-        return Pairs(theta, ritz.lam[:low], Phi, wanted, 1 if quick or near else STEPS)
+        found = pairs(self.full.pencil, theta, ritz.lam[:low], Phi)
+        return Asked(found, wanted, FIRST if quick or near else SETTLED)
 
     def _misses(
         self, state: _State, theta: Floats, lam: Floats, last: int, proofs: list[Complete]
@@ -287,7 +313,7 @@ class ReducedModel:
     def _ready(self) -> _State:
         """Return the basis of the snapshots wanted; only those not yet in it are computed."""
         if not self._wanted:
-            self.take(self.nominal)
+            self.take(self.first.theta, self.first.derived)
         if self._state is not None and not _begins(self._wanted, self._state.taken):
             self._state = None
         while self._state is None or len(self._state.taken) < len(self._wanted):
@@ -295,38 +321,99 @@ class ReducedModel:
         return self._state
 
     def _add(self, what: Snap) -> None:
-        """Compute another snapshot."""
-        started, before = time.perf_counter(), self.full.counts.factorisations
-        pencil, half = self.full.pencil, (self.upper - self.lower) / 2
-        basis, taken = (self._state.basis, self._state.taken) if self._state else (None, ())
+        """Compute another snapshot: with the factor at hand, or with factors of its own."""
+        started, state = time.perf_counter(), self._state
+        if state and (basis := self._near(state, what)):
+            taken = _Taken(what, None, 1, 0)
+            self._state = self._extended(state.taken, taken, basis, state.theta, state.below)
+            self.counts.corrected_time += time.perf_counter() - started
+            return
         self._state = None  # its factor makes room for those of the snapshot
-        count = min((what.derived if taken else self.count) + SPARE, self.size)
-        space = None if basis is None else self._near(basis, taken, what, count)
-        one = snapshot(pencil, what.theta, count, what.derived, half, space)
-        if basis is None:
-            basis = empty(pencil, one)
-        shortest = SHORTEST * float(np.sqrt(self.tolerance))
-        basis = extended(pencil, basis, one.vectors, shortest, self.capacity)
+        pencil, before = self.full.pencil, self.full.counts.factorisations
+        count = (what.derived if state else max(what.derived, self.count)) + SPARE
+        one = snapshot(pencil, what.theta, min(count, self.size))
+        known = state.basis if state else empty(pencil, one)
+        basis = extended(pencil, known, one.modes, self._shortest, self.capacity)
         cost = self.full.counts.factorisations - before
-        taken = (*taken, _Taken(what, one.beyond, cost))
-        sensed = np.asarray(self.full.selection @ basis.V)
-        self._state = _State(taken, basis, sensed, one.below)
-        self.counts.full_time += time.perf_counter() - started
+        solved = time.perf_counter()
+        self.counts.full_time += solved - started
+        basis = self._with_derivatives(basis, one.below, what)
+        bounds = [] if state else self._bounds(basis, what.theta, one.below.sigma)
+        if bounds:
+            basis = self._at_bounds(basis, one.below, bounds)
+        self.counts.corrected_time += time.perf_counter() - solved
+        taken = _Taken(what, Complete(what.theta, one.beyond), len(bounds), cost)
+        self._state = self._extended(
+            state.taken if state else (), taken, basis, what.theta, one.below
+        )
 
-    @staticmethod
-    def _near(basis: Basis, taken: Sequence[_Taken], what: Snap, count: int) -> Floats | None:
-        """Return the lowest Ritz vectors, a few more than ``count``; None where some may miss."""
-        ritz = dense.decompose(basis.K.at(what.theta), basis.M.at(what.theta))
-        enough = count + max(2, count // 2)
-        if ritz.lam.size < enough or not _knows(
-            basis, _proofs(taken), what.theta, float(ritz.lam[max(what.derived, 1) - 1])
+    def _extended(
+        self,
+        before: tuple[_Taken, ...],
+        taken: _Taken,
+        basis: Basis,
+        theta: Floats,
+        below: Shifted,
+    ) -> _State:
+        """Return the state with another snapshot and the factor of the one at ``theta``."""
+        sensed = np.asarray(self.full.selection @ basis.V)
+        return _State((*before, taken), basis, sensed, theta, below)
+
+    def _near(self, state: _State, what: Snap) -> Basis | None:
+        """Return the basis with a snapshot that needs no factor of its own.
+
+        None where modes may be missing in the basis, or where the factor at hand is of no use.
+        """
+        basis, theta, below = state.basis, what.theta, state.below
+        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        count = what.derived + SPARE
+        if (
+            ritz.lam.size < count + SPARE
+            or window.condition_within(basis.K, basis.M, theta, below.sigma) > FAR
+            or not _knows(basis, _proofs(state.taken), theta, float(ritz.lam[what.derived - 1]))
         ):
             return None
-        return combine(basis.V, ritz.Phi[:, :enough])
+        wanted = Wanted(0.0, self._shortest, self.capacity)
+        found = with_modes(self.full.pencil, basis, below, [theta], count, SPARE, wanted)
+        return found and self._with_derivatives(found, below, what)
+
+    def _with_derivatives(self, basis: Basis, below: Shifted, what: Snap) -> Basis:
+        """Return the basis of some modes with their derivatives."""
+        half, wanted = (self.upper - self.lower) / 2, Wanted(SHARE, self._shortest, self.capacity)
+        count, pencil = min(what.derived, basis.columns - 1), self.full.pencil
+        return with_derivatives(pencil, basis, below, what.theta, count, SPARE, half, wanted)
+
+    def _bounds(self, basis: Basis, theta: Floats, sigma: float) -> list[Floats]:
+        """Return the parameters with one of them at a bound, or nearer to ``theta``."""
+        out = []
+        for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
+            for end in ends:
+                for halving in range(HALVINGS + 1):
+                    at = theta.copy()
+                    at[i] += (end - theta[i]) / 2**halving
+                    if window.condition_within(basis.K, basis.M, at, sigma) <= FAR:
+                        out.append(at)
+                        break
+        return out
+
+    def _at_bounds(self, basis: Basis, below: Shifted, bounds: list[Floats]) -> Basis:
+        """Return the basis with the modes at some parameters, for the global search.
+
+        They take no more than half of what is left of the memory.
+        """
+        capacity = (basis.columns + self.capacity) // 2
+        count = min(self.first.derived, basis.columns - SPARE)
+        wanted = Wanted(ROUGH, COARSE, capacity)
+        found = with_modes(self.full.pencil, basis, below, bounds, count, SPARE, wanted)
+        return found or basis
+
+    @property
+    def _shortest(self) -> float:
+        return SHORTEST * float(np.sqrt(self.tolerance))
 
 
 def _proofs(taken: Sequence[_Taken]) -> list[Complete]:
-    return [Complete(one.what.theta, one.beyond) for one in taken]
+    return [one.proof for one in taken if one.proof]
 
 
 def _knows(basis: Basis, proofs: Sequence[Complete], theta: Floats, lam: float) -> bool:

@@ -48,6 +48,17 @@ def condition(K: DenseAffine, at: Floats, snapshot: Floats) -> float:
         return float(c.max() / c.min()) if (c > 0).all() else np.inf
 
 
+def condition_within(K: DenseAffine, M: DenseAffine, at: Floats, sigma: float) -> float:
+    """Return the condition of K - sigma M in a basis that is orthonormal in A: that of A^-1 K.
+
+    It is infinite where the matrices are indefinite there.
+    """
+    if np.linalg.eigvalsh(M.at(at))[0] < -INDEFINITE * np.abs(M.at(at)).max():
+        return np.inf
+    values = np.linalg.eigvalsh(K.at(at) - sigma * M.at(at))
+    return float(values[-1] / values[0]) if values[0] > 0 else np.inf
+
+
 def gap_above(lam: Floats, last: int) -> tuple[int, float]:
     """Return how many Ritz values are below a sigma in a gap above the last one wanted.
 

@@ -61,14 +61,16 @@ def reduced(
         return model
     if reduction == AUTO and model.size < PAYS:
         return model
+    count = modes_needed(pairing, data, model.size)
     return ReducedModel(
         model,
-        modes_needed(pairing, data, model.size),
+        count,
         np.array([one.nominal for one in parameters]),
         np.array([one.lower for one in parameters]),
         np.array([one.upper for one in parameters]),
         tolerance=TOLERANCE if reduction == AUTO else float(reduction),
         memory=memory,
+        spare=count - len(data.modes),
     )
 
 
