@@ -25,12 +25,14 @@ K, M      affine as in the full model, with the terms :math:`V^T K_j V`
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.models.affine import DenseAffine, SparseAffine
+from modefront.models.reduced import window
 from modefront.modes.pencil import Pencil
 from modefront.modes.products import combine, gram, times
 from modefront.modes.sparse import lowest
@@ -68,6 +70,11 @@ class Basis:
     def columns(self) -> int:
         """Dimension n of the space."""
         return self.V.shape[1]
+
+    @cached_property
+    def semidefinite(self) -> bool:
+        """Whether no projected term shows that a term of K or M is indefinite."""
+        return window.semidefinite(self.K) and window.semidefinite(self.M)
 
 
 def snapshot(pencil: Pencil, theta: Floats, count: int) -> Snapshot:

@@ -41,11 +41,8 @@ SPARE = 2
 COARSE = 3e-3
 """Length of the shortest direction of the basis that stands for the bounds."""
 
-SHARE = 0.03
-"""Last term of a sum of conjugate gradients over the sum, for derivatives."""
-
-ROUGH = 0.1
-"""The same for modes at the bounds."""
+SHARE = 0.1
+"""Last term of a sum of conjugate gradients over the sum, for what need not be exact."""
 
 FAR = 30.0
 """Condition of K over that of the factor up to which a snapshot has no factor of its own."""
@@ -403,7 +400,7 @@ class ReducedModel:
         """
         capacity = (basis.columns + self.capacity) // 2
         count = min(self.first.derived, basis.columns - SPARE)
-        wanted = Wanted(ROUGH, COARSE, capacity)
+        wanted = Wanted(SHARE, COARSE, capacity)
         found = with_modes(self.full.pencil, basis, below, bounds, count, SPARE, wanted)
         return found or basis
 
@@ -419,10 +416,8 @@ def _proofs(taken: Sequence[_Taken]) -> list[Complete]:
 def _knows(basis: Basis, proofs: Sequence[Complete], theta: Floats, lam: float) -> bool:
     """Return whether proofs rule out that modes below ``lam`` are missing in the basis."""
     K, M = basis.K, basis.M
-    return (
-        window.semidefinite(K)
-        and window.semidefinite(M)
-        and any(window.lower_bound(K, M, theta, one.theta) * one.beyond > lam for one in proofs)
+    return basis.semidefinite and any(
+        window.lower_bound(K, M, theta, one.theta) * one.beyond > lam for one in proofs
     )
 
 
