@@ -327,7 +327,7 @@ class ReducedModel:
             return
         self._state = None  # its factor makes room for those of the snapshot
         pencil, before = self.full.pencil, self.full.counts.factorisations
-        count = (what.derived if state else max(what.derived, self.count)) + SPARE
+        count = what.derived + SPARE if state else max(what.derived + SPARE, self.count)
         one = snapshot(pencil, what.theta, min(count, self.size))
         known = state.basis if state else empty(pencil, one)
         basis = extended(pencil, known, one.modes, self._shortest, self.capacity)
