@@ -144,8 +144,9 @@ def test_a_few_full_solutions_are_enough_and_all_models_hold(whole: xr.Dataset) 
         assert J[i] > 1.5 * least, "only what is clearly no best model may not hold"
         assert whole["minimum_eigenvalue_error"].values[i].max() < 1e-3
     assert float(whole["eigenvalue_error"].max()) <= whole.attrs["eigenvalue_tolerance"] == 1e-8
-    assert whole.attrs["full_eigensolutions"] <= 3
-    assert whole.attrs["factorisations"] > whole.attrs["full_eigensolutions"]
+    assert whole.attrs["full_eigensolutions"] == 1
+    assert whole.attrs["factorisations"] <= 4, "two of the snapshot, others where modes may miss"
+    assert 4 < whole.attrs["corrected_eigensolutions"] < 10, "four of them at the bounds"
     assert whole.attrs["reduced_solutions"] > 100
     total = whole.attrs["full_eigensolutions"] + whole.attrs["reduced_solutions"]
     assert whole.attrs["model_evaluations"] == total
@@ -187,7 +188,8 @@ def test_run_shows_the_cost_and_show_the_errors(
     assert command(monkeypatch, "run", file, "-o", folder) == 0
     out = capfd.readouterr().out
     n = whole.attrs["full_eigensolutions"]
-    assert f"reduced basis from {n} full eigensolutions" in out
+    corrected = whole.attrs["corrected_eigensolutions"]
+    assert f"reduced basis from {n} full eigensolutions and {corrected} by conjugate" in out
     assert f"{n} full eigensolutions in" in out
     assert "reduced solutions in" in out
     assert command(monkeypatch, "show", folder) == 0

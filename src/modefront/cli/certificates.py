@@ -16,10 +16,11 @@ def certificate_remarks(data: xr.Dataset) -> list[str]:
     tolerance = data.attrs["eigenvalue_tolerance"]
     worst = float(data["eigenvalue_error"].max())
     predicted = data.attrs.get("prediction_eigensolutions", 0)
+    corrected = data.attrs.get("corrected_eigensolutions", 0)
     out.append(
-        f"reduced basis from {data.attrs['full_eigensolutions'] - predicted} full eigensolutions: "
-        "relative "
-        f"errors of eigenvalues up to {worst:.1e} (estimated; tolerance {tolerance:.0e}), of "
+        f"reduced basis from {data.attrs['full_eigensolutions'] - predicted} full eigensolutions "
+        f"and {corrected} by conjugate gradients with their factors: relative errors of "
+        f"eigenvalues up to {worst:.1e} (estimated; tolerance {tolerance:.0e}), of "
         f"shapes up to {float(data['shape_error'].max()):.1e}"
     )
     if predicted:
@@ -45,6 +46,11 @@ def cost_lines(counts: Counts) -> list[str]:
         f"this time: {counts.eigenproblems} full eigensolutions in {counts.full_time:.3g} s, "
         f"{counts.factorisations} factorisations"
     ]
+    if counts.corrected:
+        out.append(
+            f"{counts.corrected} by conjugate gradients, and derivatives, "
+            f"in {counts.corrected_time:.3g} s"
+        )
     if counts.reduced:
         out.append(
             f"{counts.reduced} reduced solutions in {counts.reduced_time:.3g} s, "

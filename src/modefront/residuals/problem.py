@@ -98,6 +98,7 @@ class UpdatingProblem:
             "eigenproblems": counts.eigenproblems,
             "factorisations": counts.factorisations,
             "reduced": counts.reduced,
+            "corrected": counts.corrected,
         }
 
     @cached_property

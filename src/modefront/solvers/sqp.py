@@ -60,7 +60,7 @@ SWITCH = 0.5
 FREE = 1e-4
 """Gradient, over the greatest curvature, below which a bound does not hold a variable."""
 
-PATIENCE = 20
+PATIENCE = 30
 """Iterations in which the violation of the constraints is to be halved, or there is no way."""
 
 NOISE = 1e-11

@@ -221,6 +221,7 @@ class _Session:
             "nbi_evaluations": by_nbi["eigenproblems"] + by_nbi["reduced"],
             "full_eigensolutions": total["eigenproblems"],
             "prediction_eigensolutions": self.store.total("predict-")["eigenproblems"],
+            "corrected_eigensolutions": total["corrected"],
             "factorisations": total["factorisations"],
             "reduced_solutions": total["reduced"],
             "front_is_a_point": int(front.target is None),

@@ -75,7 +75,7 @@ class Store:
     def total(self, prefix: str = "") -> dict[str, int]:
         """Return what all pieces cost whose names begin so."""
         chosen = [cost for name, cost in self.costs.items() if name.startswith(prefix)]
-        return {key: sum(cost[key] for cost in chosen) for key in self.counter()}
+        return {key: sum(cost.get(key, 0) for cost in chosen) for key in self.counter()}
 
 
 def _file_name(name: str) -> str:

@@ -79,10 +79,11 @@ class Complete:
 
 @dataclass(frozen=True)
 class _Taken:
-    """A snapshot, what it proves if it has factors of its own, and what it took."""
+    """A snapshot, what its factors prove if it has some, and what it took."""
 
     what: Snap
     proof: Complete | None
+    solved: int
     corrected: int
     factorisations: int
 
@@ -214,7 +215,7 @@ class ReducedModel:
             self._wanted = before
             raise
         for counts in (self.counts, self._charged):
-            counts.eigenproblems += last.proof is not None
+            counts.eigenproblems += last.solved
             counts.corrected += last.corrected
             counts.factorisations += last.factorisations
 
@@ -248,7 +249,7 @@ class ReducedModel:
         is in doubt, and what it proves speaks for the other models nearby. ``quick`` certificates
         do not look for missing modes, and take only the first term of the estimate.
         """
-        state = self._ready()
+        state, before = self._ready(), self.full.counts.factorisations
         started = time.perf_counter()
         proofs = _proofs(state.taken)
         width = together(self.size, max((wanted.size for _, wanted in asked), default=1))
@@ -263,6 +264,7 @@ class ReducedModel:
                 for (_, wanted), one in zip(some, models, strict=True)
             ]
         self.counts.certificates += len(asked)
+        self.counts.factorisations += self.full.counts.factorisations - before
         self.counts.certificate_time += time.perf_counter() - started
         return found
 
@@ -272,7 +274,7 @@ class ReducedModel:
         """Return the Ritz pairs that a certificate is of; None where modes are missing."""
         basis = state.basis
         ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        if not quick and self._misses(state, theta, ritz.lam, int(wanted.max()), proofs):
+        if not quick and self._misses(basis, theta, ritz.lam, int(wanted.max()), proofs):
             return None
         near = window.condition(basis.K, theta, state.theta) <= NEAR
         low = int(wanted.max()) + 1 + SPARE
@@ -281,14 +283,16 @@ class ReducedModel:
         return Asked(found, wanted, FIRST if quick or near else SETTLED)
 
     def _misses(
-        self, state: _State, theta: Floats, lam: Floats, last: int, proofs: list[Complete]
+        self, basis: Basis, theta: Floats, lam: Floats, last: int, proofs: list[Complete]
     ) -> bool:
-        """Return whether modes below the Ritz value of the ``last`` one wanted are missing."""
-        if _knows(state.basis, proofs, theta, lam[last]):
+        """Return whether modes below the Ritz value of the ``last`` one wanted are missing.
+
+        Where that is in doubt, a factor tells, and a proof of the contrary joins the others.
+        """
+        if _knows(basis, proofs, theta, lam[last]):
             return False
         pencil = self.full.pencil
         below, sigma = window.gap_above(lam, last)
-        self.counts.factorisations += 1
         try:
             factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
         except SingularMatrixError:
@@ -320,13 +324,15 @@ class ReducedModel:
     def _add(self, what: Snap) -> None:
         """Compute another snapshot: with the factor at hand, or with factors of its own."""
         started, state = time.perf_counter(), self._state
-        if state and (basis := self._near(state, what)):
-            taken = _Taken(what, None, 1, 0)
+        before = self.full.counts.factorisations
+        if state and (found := self._near(state, what)):
+            basis, proof = found
+            taken = _Taken(what, proof, 0, 1, self.full.counts.factorisations - before)
             self._state = self._extended(state.taken, taken, basis, state.theta, state.below)
             self.counts.corrected_time += time.perf_counter() - started
             return
         self._state = None  # its factor makes room for those of the snapshot
-        pencil, before = self.full.pencil, self.full.counts.factorisations
+        pencil = self.full.pencil
         count = what.derived + SPARE if state else max(what.derived + SPARE, self.count)
         one = snapshot(pencil, what.theta, min(count, self.size))
         known = state.basis if state else empty(pencil, one)
@@ -339,7 +345,7 @@ class ReducedModel:
         if bounds:
             basis = self._at_bounds(basis, one.below, bounds)
         self.counts.corrected_time += time.perf_counter() - solved
-        taken = _Taken(what, Complete(what.theta, one.beyond), len(bounds), cost)
+        taken = _Taken(what, Complete(what.theta, one.beyond), 1, len(bounds), cost)
         self._state = self._extended(
             state.taken if state else (), taken, basis, what.theta, one.below
         )
@@ -356,23 +362,28 @@ class ReducedModel:
         sensed = np.asarray(self.full.selection @ basis.V)
         return _State((*before, taken), basis, sensed, theta, below)
 
-    def _near(self, state: _State, what: Snap) -> Basis | None:
-        """Return the basis with a snapshot that needs no factor of its own.
+    def _near(self, state: _State, what: Snap) -> tuple[Basis, Complete | None] | None:
+        """Return the basis with a snapshot that has no factor of its own.
 
-        None where modes may be missing in the basis, or where the factor at hand is of no use.
+        A proof is with it where it took one that the basis misses no mode there. None where modes
+        are missing, or where the factor at hand is of no use.
         """
         basis, theta, below = state.basis, what.theta, state.below
         ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        count = what.derived + SPARE
+        count, proofs = what.derived + SPARE, _proofs(state.taken)
+        known = len(proofs)
         if (
             ritz.lam.size < count + SPARE
             or window.condition_within(basis.K, basis.M, theta, below.sigma) > FAR
-            or not _knows(basis, _proofs(state.taken), theta, float(ritz.lam[what.derived - 1]))
+            or self._misses(basis, theta, ritz.lam, what.derived - 1, proofs)
         ):
             return None
         wanted = Wanted(0.0, self._shortest, self.capacity)
         found = with_modes(self.full.pencil, basis, below, [theta], count, SPARE, wanted)
-        return found and self._with_derivatives(found, below, what)
+        if found is None:
+            return None
+        found = self._with_derivatives(found, below, what)
+        return found, (proofs[-1] if len(proofs) > known else None)
 
     def _with_derivatives(self, basis: Basis, below: Shifted, what: Snap) -> Basis:
         """Return the basis of some modes with their derivatives."""
