@@ -38,7 +38,7 @@ POOR = 1e-3
 ROUNDS = 8
 """Rounds, after which the tolerance is given up."""
 
-AHEAD = 3
+AHEAD = 6
 """Snapshots between two rounds, at most."""
 
 PROBED = 2
