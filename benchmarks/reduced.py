@@ -9,12 +9,12 @@ in twelve parts and with noise, so that frequencies and shapes disagree. Printed
 work of a study (edges by global search, weighted models, 20 points of the front):
 
 - the time and the memory of one full eigensolution, without and with derivatives;
-- full eigensolutions, factorisations and reduced ones, the greatest estimated error and the time
-  of the work, over that of one full eigensolution without derivatives: processor time, and the
-  time that passes;
+- eigensolutions in full, by conjugate gradients with the factor of another one, and reduced ones,
+  factorisations, the greatest estimated error and the time of the work, over that of one full
+  eigensolution without derivatives: processor time, and the time that passes;
 - the greatest memory of the process, over that after one factorisation;
 - the greatest estimated error, at the models that were found, of the basis from the nominal model
-  alone, with derivatives;
+  alone, with derivatives and with the modes at the bounds;
 - for the sizes up to ``--exact-up-to``: the least and the greatest ratio of an estimated error to
   the true one, over all points and modes. The truth is that of Rayleigh quotients in extended
   precision, of full modes and of the basis, since rounding in a full eigenvalue is often greater
@@ -221,7 +221,9 @@ def line(
     out["ratio_elapsed"] = out["work_elapsed"] / out["modes_elapsed"]
     out["ratio_memory"] = out["memory_work"] / out["memory_factor"]
     out["columns"] = model.columns
-    for name in ("full_eigensolutions", "factorisations", "reduced_solutions"):
+    for name in ("full", "corrected"):
+        out[f"{name}_eigensolutions"] = data_of.attrs[f"{name}_eigensolutions"]
+    for name in ("factorisations", "reduced_solutions"):
         out[name] = data_of.attrs[name]
     out["error"] = float(data_of["eigenvalue_error"].max())
     out["converged"] = float(data_of["converged"].mean())

@@ -15,7 +15,7 @@ from modefront import Group, ModalData, Pairing, UpdatingProblem, matrices, moda
 from modefront._typing import Floats
 from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.model import ReducedModel
+from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.pairing.match import modes_needed
 from modefront.residuals.groups import Scale
 from modefront.solvers.scalarisation import weighted
@@ -125,5 +125,5 @@ def weighted_minimum(
         (certificate,) = model.certify([(found.at.theta, wanted)])
         if certificate.eigenvalue.max() <= model.tolerance:
             return found
-        model.take(found.at.theta)
+        model.take(Snap(found.at.theta, model.count))
         found = begin(problem.evaluate(found.at.theta))

@@ -89,7 +89,7 @@ def test_the_basis_is_orthonormal_in_energy_and_grows_without_change(full: Matri
     model = reduced(full)
     model.modes(np.ones(3), 8)
     before = model._ready().basis
-    model.take(np.array([0.6, 1.5, 2.0]))
+    model.take(Snap(np.array([0.6, 1.5, 2.0]), 10))
     basis = model._ready().basis
     n = before.columns
     assert basis.columns > n
@@ -104,7 +104,7 @@ def test_the_basis_is_orthonormal_in_energy_and_grows_without_change(full: Matri
 
 def test_a_snapshot_is_exact_with_its_derivatives(full: MatrixModel) -> None:
     model, theta = reduced(full), np.array([0.7, 1.4, 2.1])
-    model.take(theta)
+    model.take(Snap(theta, 10))
     found, expected = model.modes(theta, 8), full.modes(theta, 8)
     r = elastic(expected.lam)
     assert found.lam[r] == pytest.approx(expected.lam[r], rel=1e-9)
@@ -134,7 +134,7 @@ def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int)
     model = reduced(full)
     model.modes(np.ones(3), 8)
     for _ in range(snapshots - 1):
-        model.take(rng.uniform(0.5, 2.3, 3))
+        model.take(Snap(rng.uniform(0.5, 2.3, 3), 10))
     for theta in rng.uniform(0.5, 2.3, (3, 3)):
         exact_modes, found = lowest(full.pencil, theta, 8), model.modes(theta, 8)
         r = elastic(found.lam)
@@ -171,9 +171,9 @@ def test_costs_are_counted_once() -> None:
     for _ in range(3):
         model.modes(np.ones(3), 8)
     assert cost() == (1, 2, 6, 3), "one solution in full, and one at each bound with its factor"
-    model.take(np.array([0.5, 1.0, 2.0]))
+    model.take(Snap(np.array([0.5, 1.0, 2.0]), 10))
     assert cost() == (1, 3, 7, 3), "a factor tells that the basis misses none of ten modes"
-    model.take(np.array([0.95, 1.0, 1.05]), 6)
+    model.take(Snap(np.array([0.95, 1.0, 1.05]), 6))
     assert cost() == (1, 3, 8, 3), "the first factor is enough where no mode can be missing"
     model.modes(np.ones(3), 11)
     assert cost() == (2, 5, 8, 3)
@@ -190,7 +190,7 @@ def test_the_order_of_computing_snapshots_changes_no_digit() -> None:
     full, thetas = plate(), [np.ones(3), np.array([0.5, 1.0, 2.0])]
     one, other = reduced(full), reduced(plate())
     for theta in thetas:
-        one.take(theta)
+        one.take(Snap(theta, 10))
     other.resume([Snap(theta, 10) for theta in thetas])
     at = np.array([0.9, 0.6, 1.4])
     assert one.modes(at, 8).lam.tolist() == other.modes(at, 8).lam.tolist()
@@ -203,7 +203,7 @@ def test_the_basis_keeps_within_its_memory() -> None:
     assert model.capacity == 20
     model.modes(np.ones(3), 8)
     assert model.columns == 20
-    model.take(np.array([0.5, 1.0, 2.0]))
+    model.take(Snap(np.array([0.5, 1.0, 2.0]), 10))
     assert model.columns == 20
 
 
@@ -211,7 +211,7 @@ def test_a_snapshot_that_fails_leaves_the_model_as_it_was() -> None:
     model = reduced(plate())
     before = model.modes(np.ones(3), 8).lam
     with pytest.raises(ModelError):
-        model.take(np.array([1.0, 1.0, -1.0]))
+        model.take(Snap(np.array([1.0, 1.0, -1.0]), 10))
     assert model.modes(np.ones(3), 8).lam.tolist() == before.tolist()
     assert model.counts.eigenproblems == 1
 
@@ -247,7 +247,7 @@ def test_a_mode_that_the_basis_misses_is_found_by_inertia() -> None:
     assert np.isfinite(first.eigenvalue).all()
     assert np.isinf(there.eigenvalue).all()
     assert model.counts.factorisations == 3
-    model.take(theta)
+    model.take(Snap(theta, 10))
     (known,) = model.certify([(theta, np.arange(3))])
     assert known.eigenvalue.max() < 1e-8
 
@@ -268,7 +268,7 @@ def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
     pencil = full.pencil
     one = snapshot(pencil, np.ones(3), 10)
     model = reduced(full)
-    model.take(np.ones(3))
+    model.take(Snap(np.ones(3), 10))
     basis = model._ready().basis
     assert window.semidefinite(basis.K)
     for theta in rng.uniform(0.4, 2.5, (5, 3)):

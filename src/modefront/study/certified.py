@@ -35,6 +35,9 @@ from modefront.study.run import Front, Labelled
 POOR = 1e-3
 """Relative error of an eigenvalue at a reported model above which the search is not trusted."""
 
+NEARLY = 30.0
+"""Error over the tolerance up to which a snapshot does without derivatives."""
+
 ROUNDS = 8
 """Rounds, after which the tolerance is given up."""
 
@@ -105,7 +108,7 @@ def certified_front(
             if _error(probed[0]) <= model.tolerance:
                 return front
         (worst,) = probed
-        error, at = _error(worst), _snap(worst)
+        error, at = _error(worst), _snap(model, worst)
         if snapshots.full or _there(model, at):
             break
     if front is None:
@@ -183,7 +186,7 @@ def _take_some(
         if front is None or full:
             return _Taken(count + 1, full)
         (worst,) = here(f"ahead-{count + 1}", partial(_probe, model, front))
-        at = _snap(worst)
+        at = _snap(model, worst)
         if _error(worst) <= model.tolerance or _there(model, at):
             return _Taken(count + 1)
     return _Taken(AHEAD)
@@ -195,16 +198,20 @@ def _take(problem: UpdatingProblem, model: ReducedModel, at: Snap) -> list[Solut
     Nothing is returned where the model cannot be solved there.
     """
     try:
-        model.take(at.theta, at.derived)
+        model.take(at)
     except ModelError:
         return []
     kept = {"columns": np.array([model.columns])}
     return [begin(replace(infeasible(at.theta, len(problem.objectives)), quantities=kept))]
 
 
-def _snap(worst: Solution) -> Snap:
-    """Return the snapshot that a model wants, with derivatives up to the last paired mode."""
-    return Snap(worst.at.theta, int(_paired(worst).max()) + 1)
+def _snap(model: ReducedModel, worst: Solution) -> Snap:
+    """Return the snapshot that a model wants, of modes up to the last paired one.
+
+    Their derivatives are of no use where the error is nearly within the tolerance.
+    """
+    modes = int(_paired(worst).max()) + 1
+    return Snap(worst.at.theta, modes, _error(worst) > NEARLY * model.tolerance)
 
 
 def _there(model: ReducedModel, at: Snap) -> bool:

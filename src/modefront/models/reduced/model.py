@@ -59,14 +59,16 @@ MEMORY = 4.0
 
 @dataclass(frozen=True)
 class Snap:
-    """Where a snapshot is to be taken, and of how many modes with derivatives."""
+    """Where a snapshot is to be taken, and of how many modes, with their derivatives or without."""
 
     theta: Floats
-    derived: int
+    modes: int
+    derivatives: bool = True
 
     def same(self, other: Snap) -> bool:
         """Return whether it is the same snapshot."""
-        return self.derived == other.derived and np.array_equal(self.theta, other.theta)
+        same = (self.modes, self.derivatives) == (other.modes, other.derivatives)
+        return same and np.array_equal(self.theta, other.theta)
 
 
 @dataclass(frozen=True)
@@ -202,13 +204,10 @@ class ReducedModel:
         """Use these snapshots, which were counted before; they are computed when needed."""
         self._wanted = tuple(snapshots)
 
-    def take(self, theta: Floats, derived: int | None = None) -> None:
-        """Add a snapshot, with derivatives of all modes that are asked for or of fewer.
-
-        Raises ModelError where the model has no modes there.
-        """
+    def take(self, what: Snap) -> None:
+        """Add a snapshot. Raises ModelError where the model has no modes there."""
         before = self._wanted
-        self._wanted = (*before, Snap(theta, self.count if derived is None else derived))
+        self._wanted = (*before, what)
         try:
             last = self._ready().taken[-1]
         except ModelError:
@@ -314,7 +313,7 @@ class ReducedModel:
     def _ready(self) -> _State:
         """Return the basis of the snapshots wanted; only those not yet in it are computed."""
         if not self._wanted:
-            self.take(self.first.theta, self.first.derived)
+            self.take(self.first)
         if self._state is not None and not _begins(self._wanted, self._state.taken):
             self._state = None
         while self._state is None or len(self._state.taken) < len(self._wanted):
@@ -333,7 +332,7 @@ class ReducedModel:
             return
         self._state = None  # its factor makes room for those of the snapshot
         pencil = self.full.pencil
-        count = what.derived + SPARE if state else max(what.derived + SPARE, self.count)
+        count = what.modes + SPARE if state else max(what.modes + SPARE, self.count)
         one = snapshot(pencil, what.theta, min(count, self.size))
         known = state.basis if state else empty(pencil, one)
         basis = extended(pencil, known, one.modes, self._shortest, self.capacity)
@@ -370,12 +369,12 @@ class ReducedModel:
         """
         basis, theta, below = state.basis, what.theta, state.below
         ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        count, proofs = what.derived + SPARE, _proofs(state.taken)
+        count, proofs = what.modes + SPARE, _proofs(state.taken)
         known = len(proofs)
         if (
             ritz.lam.size < count + SPARE
             or window.condition_within(basis.K, basis.M, theta, below.sigma) > FAR
-            or self._misses(basis, theta, ritz.lam, what.derived - 1, proofs)
+            or self._misses(basis, theta, ritz.lam, what.modes - 1, proofs)
         ):
             return None
         wanted = Wanted(0.0, self._shortest, self.capacity)
@@ -386,9 +385,11 @@ class ReducedModel:
         return found, (proofs[-1] if len(proofs) > known else None)
 
     def _with_derivatives(self, basis: Basis, below: Shifted, what: Snap) -> Basis:
-        """Return the basis of some modes with their derivatives."""
+        """Return the basis of some modes with their derivatives, if these are wanted."""
+        if not what.derivatives:
+            return basis
         half, wanted = (self.upper - self.lower) / 2, Wanted(SHARE, self._shortest, self.capacity)
-        count, pencil = min(what.derived, basis.columns - 1), self.full.pencil
+        count, pencil = min(what.modes, basis.columns - 1), self.full.pencil
         return with_derivatives(pencil, basis, below, what.theta, count, SPARE, half, wanted)
 
     def _bounds(self, basis: Basis, theta: Floats, sigma: float) -> list[Floats]:
@@ -410,7 +411,7 @@ class ReducedModel:
         They take no more than half of what is left of the memory.
         """
         capacity = (basis.columns + self.capacity) // 2
-        count = min(self.first.derived, basis.columns - SPARE)
+        count = min(self.first.modes, basis.columns - SPARE)
         wanted = Wanted(SHARE, COARSE, capacity)
         found = with_modes(self.full.pencil, basis, below, bounds, count, SPARE, wanted)
         return found or basis
