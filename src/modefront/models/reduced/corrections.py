@@ -39,7 +39,10 @@ SLOWEST = 0.5
 """Ratio of terms at most that what is left is extrapolated with."""
 
 ENTRIES = 2**21
-"""Entries of the right-hand sides that are solved together, unless one model needs more."""
+"""Entries of the right-hand sides that are solved together, but for `FEWEST` columns."""
+
+FEWEST = 24
+"""Right-hand sides that are solved together however large the model is, if there are as many."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -154,6 +157,6 @@ def solve(models: Sequence[Corrections], below: Shifted) -> None:
             one.add(z)
 
 
-def together(size: int, columns: int) -> int:
-    """Return how many models with so many columns are solved together."""
-    return max(1, ENTRIES // size // max(columns, 1))
+def together(size: int) -> int:
+    """Return how many right-hand sides are solved together."""
+    return max(FEWEST, ENTRIES // size)

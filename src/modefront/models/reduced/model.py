@@ -251,7 +251,8 @@ class ReducedModel:
         state, before = self._ready(), self.full.counts.factorisations
         started = time.perf_counter()
         proofs = _proofs(state.taken)
-        width = together(self.size, max((wanted.size for _, wanted in asked), default=1))
+        most = max((wanted.size for _, wanted in asked), default=1)
+        width = max(1, together(self.size) // most)
         found: list[Certificate] = []
         for first in range(0, len(asked), width):
             some = asked[first : first + width]

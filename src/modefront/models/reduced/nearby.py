@@ -16,7 +16,6 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.models.reduced.basis import Basis, extended
 from modefront.models.reduced.corrections import (
-    ENTRIES,
     Corrections,
     Enough,
     pairs,
@@ -30,9 +29,6 @@ from modefront.modes.spectrum import Shifted
 
 TINY = 1e-100
 """Least unit of a column."""
-
-FEWEST = 8
-"""Right-hand sides that are solved together however large the model is."""
 
 
 @dataclass(frozen=True)
@@ -70,7 +66,7 @@ def with_modes(
 
     They are told from ``spare`` modes more. None where conjugate gradients do not get there.
     """
-    width, lacking = together(pencil.size, count), []
+    width, lacking = max(1, together(pencil.size) // count), []
     for first in range(0, len(thetas), width):
         models = []
         for theta in thetas[first : first + width]:
@@ -111,7 +107,7 @@ def with_derivatives(
     Phi, dY = of.Phi[:, :count], dY[:, :count].reshape(basis.columns, -1)
     dK = pencil.K.derivative_rows(theta, Phi)
     dM = pencil.M.derivative_rows(theta, Phi)
-    width, lacking = max(FEWEST, ENTRIES // pencil.size), []
+    width, lacking = together(pencil.size), []
     for first in range(0, count * p, width):
         some = slice(first, first + width)
         dPhi = combine(basis.V, np.ascontiguousarray(dY[:, some]))
