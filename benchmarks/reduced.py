@@ -233,7 +233,8 @@ def line(
     out |= {name: value for name, value in vars(model.counts).items() if name.endswith("_time")}
     if exact:
         ratios = sharpness(full, model, data_of)
-        out["sharpness_least"], out["sharpness_greatest"] = ratios.min(), ratios.max()
+        out["sharpness_least"] = float(ratios.min())
+        out["sharpness_greatest"] = float(ratios.max())
     if compare:
         out["work_full"], _ = timed(lambda: found.append(work(full, data)))
         difference = found[1]["theta"].values - found[0]["theta"].values
