@@ -71,7 +71,10 @@ class Status(Enum):
     """How a solution ended; the value says what it means and what to do about it."""
 
     CONVERGED = "converged"
-    STALLED = "no step improves it further: the objectives are not smooth here, or bounds conflict"
+    STALLED = (
+        "no step improves it further: the constraints cannot be met from there, the objectives are "
+        "not smooth, or bounds conflict"
+    )
     EXHAUSTED = "the limit of iterations was reached: more iterations, or another start"
     SAMPLED = "the method has no tolerance: more evaluations, or normal-boundary intersection"
     INFEASIBLE = "the model cannot be evaluated at the start: narrower bounds, or another start"
