@@ -20,6 +20,7 @@ from modefront.pairing.match import modes_needed
 from modefront.residuals.groups import Scale
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Options, Solution, begin, solve
+from modefront.study.certified import POOR
 
 FOLDER = Path(__file__).resolve().parents[1].parent / "shared" / "data" / "smu"
 
@@ -113,17 +114,19 @@ def weighted_minimum(
 ) -> Solution:
     """Return the minimum of sum w J below a start.
 
-    Where the model is a reduced one, snapshots are taken until its modes hold there.
+    Where the model is a reduced one, snapshots are taken until its modes hold there; where these
+    were poor, they have led astray, and it begins again.
     """
     model = problem.model
     found = begin(problem.evaluate(theta))
     while True:
         found = solve(problem, weighted(w), found, Options(iterations=iterations))
-        if not isinstance(model, ReducedModel) or not found.converged:
+        if not isinstance(model, ReducedModel):
             return found
         wanted = np.unique(found.at.quantities["paired_mode"].astype(int) - 1)
         (certificate,) = model.certify([(found.at.theta, wanted)])
         if certificate.eigenvalue.max() <= model.tolerance:
             return found
         model.take(Snap(found.at.theta, model.count))
-        found = begin(problem.evaluate(found.at.theta))
+        poor = certificate.eigenvalue.max() > POOR
+        found = begin(problem.evaluate(theta if poor else found.at.theta))

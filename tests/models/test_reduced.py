@@ -207,6 +207,15 @@ def test_the_basis_keeps_within_its_memory() -> None:
     assert model.columns == 20
 
 
+def test_a_single_mode_is_a_basis_where_there_is_no_room_for_more() -> None:
+    model = ReducedModel(plate(), 1, np.ones(3), LOWER, UPPER, memory=1e-9)
+    model.take(Snap(np.ones(3), 1))
+    model.take(Snap(np.array([0.9, 1.0, 1.1]), 1))
+    assert model.columns == 1
+    found, expected = model.modes(np.ones(3), 1), model.full.modes(np.ones(3), 1)
+    assert found.lam == pytest.approx(expected.lam, rel=1e-9)
+
+
 def test_a_snapshot_that_fails_leaves_the_model_as_it_was() -> None:
     model = reduced(plate())
     before = model.modes(np.ones(3), 8).lam

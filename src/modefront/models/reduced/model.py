@@ -336,14 +336,14 @@ class ReducedModel:
         count = what.modes + SPARE if state else max(what.modes + SPARE, self.count)
         one = snapshot(pencil, what.theta, min(count, self.size))
         known = state.basis if state else empty(pencil, one)
-        basis = extended(pencil, known, one.modes, self._shortest, self.capacity)
+        modes = one.modes[:, : self.capacity]  # of directions of equal length, the lowest ones
+        basis = extended(pencil, known, modes, self._shortest, self.capacity)
         cost = self.full.counts.factorisations - before
         solved = time.perf_counter()
         self.counts.full_time += solved - started
         basis = self._with_derivatives(basis, one.below, what)
         bounds = [] if state else self._bounds(basis, what.theta, one.below.sigma)
-        if bounds:
-            basis = self._at_bounds(basis, one.below, bounds)
+        basis = self._at_bounds(basis, one.below, bounds)
         self.counts.corrected_time += time.perf_counter() - solved
         taken = _Taken(what, Complete(what.theta, one.beyond), 1, len(bounds), cost)
         self._state = self._extended(
@@ -387,10 +387,10 @@ class ReducedModel:
 
     def _with_derivatives(self, basis: Basis, below: Shifted, what: Snap) -> Basis:
         """Return the basis of some modes with their derivatives, if these are wanted."""
-        if not what.derivatives:
+        count, pencil = min(what.modes, basis.columns - 1), self.full.pencil
+        if not what.derivatives or count < 1:
             return basis
         half, wanted = (self.upper - self.lower) / 2, Wanted(SHARE, self._shortest, self.capacity)
-        count, pencil = min(what.modes, basis.columns - 1), self.full.pencil
         return with_derivatives(pencil, basis, below, what.theta, count, SPARE, half, wanted)
 
     def _bounds(self, basis: Basis, theta: Floats, sigma: float) -> list[Floats]:
@@ -413,6 +413,8 @@ class ReducedModel:
         """
         capacity = (basis.columns + self.capacity) // 2
         count = min(self.first.modes, basis.columns - SPARE)
+        if not bounds or count < 1:
+            return basis
         wanted = Wanted(SHARE, COARSE, capacity)
         found = with_modes(self.full.pencil, basis, below, bounds, count, SPARE, wanted)
         return found or basis
