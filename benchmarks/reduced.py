@@ -45,7 +45,6 @@ from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel
 from modefront.modes import dense
-from modefront.modes.products import combine
 from modefront.modes.sparse import lowest
 from modefront.study.tables.identifiability import Identifiability
 
@@ -158,7 +157,7 @@ def modal_error(full: MatrixModel, columns: int, found: xr.Dataset) -> float:
     """Return the greatest error of eigenvalues from so many modes of the nominal model."""
     pencil = full.pencil
     Phi = lowest(pencil, np.ones(REGIONS), columns).Phi[:, :columns]
-    K, M = (DenseAffine(A.project(Phi, Phi), A.coefficients) for A in (pencil.K, pencil.M))
+    K, M = (DenseAffine(A.project([Phi], Phi), A.coefficients) for A in (pencil.K, pencil.M))
     errors = []
     for i in range(found.sizes["point"]):
         theta = found["theta"].values[i]
@@ -176,13 +175,13 @@ def asked(found: xr.Dataset) -> list[tuple[Floats, Ints]]:
 
 def sharpness(full: MatrixModel, model: ReducedModel, found: xr.Dataset) -> Floats:
     """Return estimated errors over true ones, wherever these can be told from rounding."""
-    basis = model._ready().basis
+    basis = model._ready().space.basis
     models = asked(found)
     ratios = []
     for (theta, r), one in zip(models, model.certify(models), strict=True):
         K, M = full.pencil.K.at(theta), full.pencil.M.at(theta)
         exact = lowest(full.pencil, theta, model.count)
-        ritz = combine(basis.V, dense.decompose(basis.K.at(theta), basis.M.at(theta)).Phi[:, r])
+        ritz = basis.combine(dense.decompose(basis.K.at(theta), basis.M.at(theta)).Phi[:, r])
         truth = quotients(K, M, ritz) / quotients(K, M, exact.Phi[:, r]) - 1
         ratios.append((one.eigenvalue / truth)[truth > TOLD * exact.noise[r] / exact.lam[r]])
     return np.concatenate(ratios)

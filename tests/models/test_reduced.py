@@ -88,17 +88,19 @@ def test_derivatives_everywhere_are_those_at_the_sensors(full: MatrixModel) -> N
 def test_the_basis_is_orthonormal_in_energy_and_grows_without_change(full: MatrixModel) -> None:
     model = reduced(full)
     model.modes(np.ones(3), 8)
-    before = model._ready().basis
+    before = model._ready().space.basis
     model.take(Snap(np.array([0.6, 1.5, 2.0]), 10))
-    basis = model._ready().basis
+    basis = model._ready().space.basis
     n = before.columns
     assert basis.columns > n
-    assert np.array_equal(basis.V[:, :n], before.V)
+    assert all(map(np.array_equal, basis.blocks, before.blocks))
     assert np.array_equal(basis.K.terms[:, :n, :n], before.K.terms)
-    assert basis.V.T @ (basis.A @ basis.V) == pytest.approx(np.eye(basis.columns), abs=1e-8)
+    V = np.hstack(basis.blocks)
+    A = full.pencil.K.at(basis.theta) - basis.sigma * full.pencil.M.at(basis.theta)
+    assert V.T @ (A @ V) == pytest.approx(np.eye(basis.columns), abs=1e-8)
     theta = np.array([0.8, 0.7, 2.2])
     for matrix, projected in ((full.pencil.K, basis.K), (full.pencil.M, basis.M)):
-        expected = basis.V.T @ (matrix.at(theta) @ basis.V)
+        expected = V.T @ (matrix.at(theta) @ V)
         assert projected.at(theta) == pytest.approx(expected, abs=1e-9 * np.abs(expected).max())
 
 
@@ -139,7 +141,7 @@ def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int)
         exact_modes, found = lowest(full.pencil, theta, 8), model.modes(theta, 8)
         r = elastic(found.lam)
         (certificate,) = model.certify([(theta, r)])
-        shift = model._ready().below.sigma
+        shift = model._ready().space.factor.below.sigma
         noise = 1e2 * exact_modes.noise[r] / exact_modes.lam[r]
         truth = (found.lam[r] - exact_modes.lam[r]) / (found.lam[r] - shift)
         sure = truth > 10 * noise
@@ -149,9 +151,9 @@ def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int)
         assert (quick <= certificate.eigenvalue * (1 + 1e-12)).all()
         assert (quick >= certificate.eigenvalue / 3).all()
 
-        basis = model._ready().basis
+        basis = model._ready().space.basis
         K, M = basis.K.at(theta), basis.M.at(theta)
-        vectors = basis.V @ scipy.linalg.eigh(M, K + 1e-3 * M)[1][:, ::-1][:, r]
+        vectors = basis.combine(scipy.linalg.eigh(M, K + 1e-3 * M)[1][:, ::-1][:, r])
         MPhi = exact_modes.MPhi[:, r]
         size = np.einsum("nr,nr->r", vectors, full.pencil.M.at(theta) @ vectors)
         cosine = np.einsum("nr,nr->r", vectors, MPhi) ** 2 / size
@@ -278,7 +280,7 @@ def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
     one = snapshot(pencil, np.ones(3), 10)
     model = reduced(full)
     model.take(Snap(np.ones(3), 10))
-    basis = model._ready().basis
+    basis = model._ready().space.basis
     assert window.semidefinite(basis.K)
     for theta in rng.uniform(0.4, 2.5, (5, 3)):
         ratio = window.lower_bound(basis.K, basis.M, theta, one.theta)
@@ -288,11 +290,15 @@ def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
     assert window.lower_bound(basis.K, basis.M, np.array([1.0, -1.0, 1.0]), one.theta) == 0
 
 
-def test_certificates_are_the_same_whatever_they_are_asked_for_with() -> None:
+def test_certificates_asked_for_together_are_sharper_than_alone() -> None:
     model, wanted = reduced(plate()), np.arange(6)
     thetas = np.random.default_rng(1).uniform(0.5, 2.3, (4, 3))
     together = model.certify([(theta, wanted[: 6 - k]) for k, theta in enumerate(thetas)])
     for k, (theta, one) in enumerate(zip(thetas, together, strict=True)):
         (alone,) = model.certify([(theta, wanted[: 6 - k])])
-        assert one.eigenvalue == pytest.approx(alone.eigenvalue, rel=1e-9)
-        assert one.shape == pytest.approx(alone.shape, rel=1e-9)
+        found = model.modes(theta, 6 - k).lam
+        truth = found / model.full.modes(theta, 6 - k).lam - 1
+        assert (alone.eigenvalue * (1 - 1e-9) <= one.eigenvalue).all()
+        assert (one.eigenvalue <= 1.01 * truth).all()
+        assert (alone.shape <= 1.5 * one.shape).all()
+        assert (one.shape <= 1.5 * alone.shape).all()

@@ -31,6 +31,13 @@ from modefront.modes.products import gram, times
 ROWS = 2**15
 """Rows of a term that are projected at once, to bound the memory."""
 
+FEW = 2**10
+"""Rows that are added at once, which stay in the cache."""
+
+
+SPARSE = 1.5
+"""Rows of zeros that are rather added than the others copied, over these."""
+
 
 def first_axis(A: Floats, B: Floats) -> Floats:
     """Return sum_j A_ij B_j for a matrix A (m, k) and an array B (k, ...), shape (m, ...)."""
@@ -153,9 +160,15 @@ class SparseAffine:
 
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
-        products = self.derivative_rows(theta, vectors).toarray()
-        shape = vectors.shape[1], -1, self.size
-        return np.ascontiguousarray(products.reshape(shape).transpose(2, 0, 1))
+        stack, dof, starts = self._stack
+        dc, parts = self.coefficients.jacobian(theta), _parts(starts)
+        out = np.zeros((*vectors.shape, dc.shape[1]))
+        if dc.any():
+            products = times(stack, vectors)
+            for j, i in np.argwhere(dc != 0):
+                for rows in _blocks(parts[j], FEW):
+                    out[_place(dof[rows]), :, i] += dc[j, i] * products[rows]
+        return out
 
     def derivative_rows(self, theta: Floats, vectors: Floats) -> scipy.sparse.csr_array:
         """Return the same products as rows (vector, parameter), sparse: (m * parameters, N).
@@ -176,18 +189,31 @@ class SparseAffine:
         entries = np.concatenate(rows), np.concatenate(columns)
         return scipy.sparse.csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
 
-    def project(self, left: Floats, right: Floats) -> Floats:
-        """Return left^T A_j right for every term, shape (terms, columns of left, of right).
+    def each(self, thetas: Floats, vectors: Floats) -> Floats:
+        """Return A(theta_k) v_k for every row of thetas (m, p) and column of vectors (N, m)."""
+        if not self.coefficients.exponents.any():
+            return times(self._constant, vectors)
+        stack, dof, starts = self._stack
+        coefficients = np.transpose([self.coefficients.values(theta) for theta in thetas])
+        products, out = times(stack, vectors), np.zeros(vectors.shape)
+        for part, c in zip(_parts(starts), coefficients, strict=True):
+            for rows in _blocks(part, FEW):
+                out[_place(dof[rows])] += products[rows] * c
+        return out
 
-        Columns of ``right`` should be the fewer ones.
+    def project(self, left: Sequence[Floats], right: Floats) -> Floats:
+        """Return L^T A_j R for every term, shape (terms, columns of L, columns of R).
+
+        L is given as ``left``, some of its columns after the others. R should have fewer.
         """
         stack, dof, starts = self._stack
-        products = times(stack, right)
-        out = np.zeros((starts.size - 1, left.shape[1], right.shape[1]))
-        for j, (start, stop) in enumerate(pairwise(starts.tolist())):
-            for k in range(start, stop, ROWS):
-                rows = slice(k, min(k + ROWS, stop))
-                out[j] += gram(left[dof[rows]], products[rows])
+        products, ends = times(stack, right), np.cumsum([block.shape[1] for block in left])
+        out = np.zeros((starts.size - 1, ends[-1], right.shape[1]))
+        for j, part in enumerate(_parts(starts)):
+            for rows in _blocks(part, ROWS):
+                place, some = _in_a_row(dof[rows], products[rows])
+                for block, end in zip(left, ends, strict=True):
+                    out[j, end - block.shape[1] : end] += gram(block[place], some)
         return out
 
     @cached_property
@@ -227,6 +253,33 @@ def sparse_affine(
     data = scipy.sparse.csc_array(entries, shape=(keys.size, len(found)))
     indptr = np.searchsorted(keys, np.arange(size + 1) * size)
     return SparseAffine(indptr.astype(np.int32), (keys % size).astype(np.int32), data, coefficients)
+
+
+def _in_a_row(dof: Ints, rows: Floats) -> tuple[slice | Ints, Floats]:
+    """Return a range of degrees of freedom, and rows of zeros for those that were not in it.
+
+    Where these would be too many, nothing is changed.
+    """
+    place, length = _place(dof), int(dof[-1] - dof[0]) + 1
+    if isinstance(place, slice) or length > SPARSE * dof.size:
+        return place, rows
+    out = np.zeros((length, rows.shape[1]))
+    out[dof - dof[0]] = rows
+    return slice(int(dof[0]), int(dof[0]) + length), out
+
+
+def _place(dof: Ints) -> slice | Ints:
+    """Return ascending degrees of freedom as a range, if they are one."""
+    first, last = int(dof[0]), int(dof[-1]) + 1
+    return slice(first, last) if last - first == dof.size else dof
+
+
+def _blocks(rows: slice, size: int) -> list[slice]:
+    return [slice(k, min(k + size, rows.stop)) for k in range(rows.start, rows.stop, size)]
+
+
+def _parts(starts: Ints) -> list[slice]:
+    return [slice(*ends) for ends in pairwise(starts.tolist())]
 
 
 def _expand(indptr: NDArray[np.int32]) -> Ints:

@@ -9,7 +9,7 @@ be computed by several threads of our own.
 from __future__ import annotations
 
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from functools import cache
 from itertools import pairwise
@@ -21,6 +21,9 @@ from modefront._typing import Floats
 
 WORK = 2**17
 """Multiplications a block; OpenBLAS shares products from 2**18 on."""
+
+CHUNK = 2**12
+"""Rows that are combined at once, which stay in the cache."""
 
 GROUP = 16
 """Blocks of which products are added up together."""
@@ -54,18 +57,34 @@ def gram(X: Floats, Y: Floats) -> Floats:
 
 def combine(X: Floats, C: Floats) -> Floats:
     """Return X C for X of shape (N, a) and C of shape (a, b)."""
+    return combine_all([X], C)
+
+
+def combine_all(blocks: Sequence[Floats], C: Floats) -> Floats:
+    """Return X C for C of shape (a, b), where blocks (N, a_i) are the columns of X."""
+    N, b = blocks[0].shape[0], C.shape[1]
+    parts = np.split(C, np.cumsum([X.shape[1] for X in blocks])[:-1])
+    out = np.empty((N, b))
+
+    def multiply(first: int, last: int) -> None:
+        for k in range(first * CHUNK, min(last * CHUNK, N), CHUNK):
+            rows = slice(k, min(k + CHUNK, N))
+            _multiply(blocks[0][rows], parts[0], out[rows])
+            for X, some in zip(blocks[1:], parts[1:], strict=True):
+                more = np.empty((rows.stop - k, b))
+                _multiply(X[rows], some, more)
+                out[rows] += more
+
+    _share(multiply, -(-N // CHUNK), N * C.size)
+    return out
+
+
+def _multiply(X: Floats, C: Floats, out: Floats) -> None:
     (a, b), (whole, rows) = C.shape, _blocks(X, C.shape[1])
-    out = np.empty((X.shape[0], b))
     np.matmul(X[whole:], C, out=out[whole:])
     if whole:
         left = X[:whole].reshape(whole // rows, rows, a)
-        product = out[:whole].reshape(whole // rows, rows, b)
-
-        def multiply(first: int, last: int) -> None:
-            np.matmul(left[first:last], C, out=product[first:last])
-
-        _share(multiply, left.shape[0], whole * a * b)
-    return out
+        np.matmul(left, C, out=out[:whole].reshape(whole // rows, rows, b))
 
 
 def times(A: scipy.sparse.csr_array, X: Floats) -> Floats:

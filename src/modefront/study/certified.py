@@ -41,11 +41,12 @@ NEARLY = 30.0
 ROUNDS = 8
 """Rounds, after which the tolerance is given up."""
 
-AHEAD = 6
-"""Snapshots between two rounds, at most."""
+AHEAD = 4
+"""Snapshots between two rounds at most, each of one or more models."""
 
-PROBED = 2
-"""Models of which the errors are estimated on the way, those farthest from all snapshots."""
+PROBED = 3
+"""Models of which the errors are estimated on the way, those farthest from all snapshots; and of
+which a snapshot is taken at most."""
 
 ERRORS = ("eigenvalue_error", "shape_error")
 """Names under which the estimates are kept with a solution."""
@@ -103,14 +104,14 @@ def certified_front(
         probed = here("probe", partial(_probe, model, front))
         if _error(probed[0]) <= model.tolerance:
             front = _with_errors(model, front, here)
-            needed = [*_of_the_front(front), *_rivals(problem, front)]
-            probed = [max(needed, key=_error)]
+            needed = {_key(one): one for one in [*_of_the_front(front), *_rivals(problem, front)]}
+            probed = sorted(needed.values(), key=_error, reverse=True)[:PROBED]
             if _error(probed[0]) <= model.tolerance:
                 return front
-        (worst,) = probed
-        error, at = _error(worst), _snap(model, worst)
-        if snapshots.full or _there(model, at):
+        error, wanted = _error(probed[0]), _snap(model, probed)
+        if snapshots.full or not wanted:
             break
+        at = wanted
     if front is None:
         raise UnfinishedError("the model cannot be solved at the nominal parameters")
     return _with_errors(model, front, checkpoint)
@@ -185,10 +186,11 @@ def _take_some(
         full = int(taken[0].at.quantities["columns"][0]) >= model.capacity
         if front is None or full:
             return _Taken(count + 1, full)
-        (worst,) = here(f"ahead-{count + 1}", partial(_probe, model, front))
-        at = _snap(model, worst)
-        if _error(worst) <= model.tolerance or _there(model, at):
+        probed = here(f"ahead-{count + 1}", partial(_probe, model, front))
+        wanted = _snap(model, probed)
+        if not wanted:
             return _Taken(count + 1)
+        at = wanted
     return _Taken(AHEAD)
 
 
@@ -202,27 +204,30 @@ def _take(problem: UpdatingProblem, model: ReducedModel, at: Snap) -> list[Solut
     except ModelError:
         return []
     kept = {"columns": np.array([model.columns])}
-    return [begin(replace(infeasible(at.theta, len(problem.objectives)), quantities=kept))]
+    theta = at.models[0][0]
+    return [begin(replace(infeasible(theta, len(problem.objectives)), quantities=kept))]
 
 
-def _snap(model: ReducedModel, worst: Solution) -> Snap:
-    """Return the snapshot that a model wants, of modes up to the last paired one.
+def _snap(model: ReducedModel, probed: Sequence[Solution]) -> Snap | None:
+    """Return the snapshot that some models want, the worst ones first, of modes up to the last one.
 
-    Their derivatives are of no use where the error is nearly within the tolerance.
+    Derivatives are of no use where the error is nearly within the tolerance. None where all are
+    within it, or where there are snapshots already.
     """
-    modes = int(_paired(worst).max()) + 1
-    return Snap(worst.at.theta, modes, _error(worst) > NEARLY * model.tolerance)
-
-
-def _there(model: ReducedModel, at: Snap) -> bool:
-    return any(np.array_equal(at.theta, one.theta) for one in model.snapshots)
+    there = {theta.tobytes() for one in model.snapshots for theta, _ in one.models}
+    wanted = [one for one in probed if _error(one) > model.tolerance and _key(one) not in there]
+    if not wanted:
+        return None
+    modes = max(int(_paired(one).max()) + 1 for one in wanted)
+    derivatives = _error(wanted[0]) > NEARLY * model.tolerance
+    return Snap(np.array([one.at.theta for one in wanted]), modes, derivatives)
 
 
 def _probe(model: ReducedModel, front: Front) -> list[Solution]:
-    """Return the worst of the models that are the farthest from all snapshots."""
+    """Return the models that are the farthest from all snapshots, the worst ones first."""
     distinct = list({_key(one): one for one in _of_the_front(front)}.values())
     ranked = sorted(distinct, key=lambda one: model.distance(one.at.theta), reverse=True)
-    return [max(_certified(model, ranked[:PROBED], quick=True), key=_error)]
+    return sorted(_certified(model, ranked[:PROBED], quick=True), key=_error, reverse=True)
 
 
 def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> Front:

@@ -24,17 +24,16 @@ K, M      affine as in the full model, with the terms :math:`V^T K_j V`
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
-import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.models.affine import DenseAffine, SparseAffine
+from modefront.models.affine import DenseAffine
 from modefront.models.reduced import window
 from modefront.modes.pencil import Pencil
-from modefront.modes.products import combine, gram, times
+from modefront.modes.products import combine, combine_all, gram
 from modefront.modes.sparse import lowest
 from modefront.modes.spectrum import Shifted
 
@@ -59,22 +58,39 @@ class Snapshot:
 
 @dataclass(frozen=True, eq=False)
 class Basis:
-    """A basis and the model in it."""
+    """A basis and the model in it.
 
-    A: scipy.sparse.csr_array
-    V: Floats
+    Attributes
+    ----------
+    blocks : (N, n_i) the columns of V, some after the others
+    K, M : the matrices in the basis
+    theta, sigma : the parameters and the shift of A = K - sigma M
+    """
+
+    blocks: tuple[Floats, ...]
     K: DenseAffine
     M: DenseAffine
+    theta: Floats
+    sigma: float
 
     @property
     def columns(self) -> int:
         """Dimension n of the space."""
-        return self.V.shape[1]
+        return self.K.size
 
     @cached_property
     def semidefinite(self) -> bool:
         """Whether no projected term shows that a term of K or M is indefinite."""
         return window.semidefinite(self.K) and window.semidefinite(self.M)
+
+    @property
+    def A(self) -> Floats:
+        """The identity but for rounding, as the projected matrices give it."""
+        return self.K.at(self.theta) - self.sigma * self.M.at(self.theta)
+
+    def combine(self, C: Floats) -> Floats:
+        """Return V C for C of shape (n, m)."""
+        return combine_all(self.blocks, C)
 
 
 def snapshot(pencil: Pencil, theta: Floats, count: int) -> Snapshot:
@@ -89,10 +105,11 @@ def snapshot(pencil: Pencil, theta: Floats, count: int) -> Snapshot:
 
 def empty(pencil: Pencil, first: Snapshot) -> Basis:
     """Return the basis without columns in the norm of the first snapshot."""
-    A = pencil.K.at(first.theta) - first.below.sigma * pencil.M.at(first.theta)
-    K = DenseAffine(np.zeros((pencil.K.terms.shape[1], 0, 0)), pencil.K.coefficients)
-    M = DenseAffine(np.zeros((pencil.M.terms.shape[1], 0, 0)), pencil.M.coefficients)
-    return Basis(A, np.zeros((pencil.size, 0)), K, M)
+    K, M = (
+        DenseAffine(np.zeros((A.terms.shape[1], 0, 0)), A.coefficients)
+        for A in (pencil.K, pencil.M)
+    )
+    return Basis((np.zeros((pencil.size, 0)),), K, M, first.theta, first.below.sigma)
 
 
 def extended(
@@ -100,28 +117,85 @@ def extended(
 ) -> Basis:
     """Return the basis with what vectors (N, m) add to it, by the longest directions first.
 
-    Directions shorter than ``shortest``, and those beyond ``capacity`` columns, are left out. Of
-    the projected matrices only the new rows and columns are computed.
+    Directions shorter than ``shortest``, and those beyond ``capacity`` columns, are left out.
     """
-    A, V = basis.A, basis.V
-    W = vectors - combine(V, gram(V, times(A, vectors)))
-    squares, U = np.linalg.eigh(gram(W, times(A, W)))
-    there = np.flatnonzero(squares > shortest**2)[::-1][: capacity - V.shape[1]]
+
+    def A(X: Floats) -> Floats:
+        theta = np.tile(basis.theta, (X.shape[1], 1))
+        return residuals(pencil, theta, np.full(X.shape[1], basis.sigma), X)
+
+    if not basis.columns:
+        return joined(pencil, basis, vectors, A(vectors), shortest, capacity)
+    AX = A(vectors)
+    W = vectors - basis.combine(np.vstack([gram(block, AX) for block in basis.blocks]))
+    return joined(pencil, basis, W, A(W), shortest, capacity)
+
+
+def joined(
+    pencil: Pencil, basis: Basis, W: Floats, AW: Floats, shortest: float, capacity: int
+) -> Basis:
+    """Return the basis with some vectors W (N, m), given A W, that are orthogonal to it in A.
+
+    What is added is orthonormal in spite of rounding, and otherwise as in `extended`. Of the
+    projected matrices only the new rows and columns are computed.
+    """
+    n = basis.columns
+    squares, U = np.linalg.eigh(gram(W, AW))
+    there = np.flatnonzero(squares > shortest**2)[::-1][: capacity - n]
+    if not there.size:
+        return basis
     W = combine(W, U[:, there] / np.sqrt(squares[there]))
-    AW = times(A, W)
-    inside = gram(V, AW)  # what rounding has left of V in directions that are now of unit length
-    squares, U = np.linalg.eigh(gram(W, AW) - inside.T @ inside)
-    W = combine(W - combine(V, inside), U / np.sqrt(squares))
-    V = np.hstack([V, W])
-    return Basis(A, V, _grown(pencil.K, basis.K, V, W), _grown(pencil.M, basis.M, V, W))
+    blocks = *basis.blocks, W
+    K, M = (
+        _bordered(reduced, full.project(blocks, W))
+        for full, reduced in ((pencil.K, basis.K), (pencil.M, basis.M))
+    )
+    A = replace(basis, K=K, M=M).A
+    inside = A[:n, n:]
+    squares, U = np.linalg.eigh(A[n:, n:] - inside.T @ inside)
+    U /= np.sqrt(squares)
+    turn = np.vstack([-inside @ U, U])
+    W = combine_all(blocks, turn)
+    K, M = (_turned(one, n, turn) for one in (K, M))
+    return replace(basis, blocks=(*basis.blocks, W), K=K, M=M)
 
 
-def _grown(full: SparseAffine, reduced: DenseAffine, V: Floats, W: Floats) -> DenseAffine:
-    """Return the projection on V, of which W are the last columns, given that on the first ones."""
-    new = full.project(V, W)
-    n = V.shape[1] - W.shape[1]
+def trimmed(basis: Basis, space: Basis, vectors: Floats, shortest: float, capacity: int) -> Basis:
+    """Return the basis with what some vectors add to it, given in a space that contains it.
+
+    ``vectors`` (columns of the space, m) are left out in part as in `extended`.
+    """
+    n, known = basis.columns, len(basis.blocks)
+    U, lengths, _ = np.linalg.svd(vectors[n:], full_matrices=False)
+    U = U[:, lengths > shortest][:, : capacity - n]
+    if not U.size:
+        return basis
+    turn = np.vstack([np.zeros((n, U.shape[1])), U])
+    K, M = (_turned(one, n, turn) for one in (space.K, space.M))
+    outside = replace(space, blocks=space.blocks[known:])
+    return replace(basis, blocks=(*basis.blocks, outside.combine(U)), K=K, M=M)
+
+
+def residuals(pencil: Pencil, thetas: Floats, lam: Floats, X: Floats) -> Floats:
+    """Return (K(theta_k) - lam_k M(theta_k)) x_k for thetas (m, p), lam (m,) and X (N, m)."""
+    out = pencil.M.each(thetas, X)
+    out *= -lam
+    out += pencil.K.each(thetas, X)
+    return out
+
+
+def _bordered(reduced: DenseAffine, new: Floats) -> DenseAffine:
+    """Return projected terms with new columns (terms, rows, m), the last of which are new rows."""
+    n = reduced.size
     across, inner = new[:, :n], new[:, n:]
     inner = (inner + inner.transpose(0, 2, 1)) / 2
     top = np.concatenate([reduced.terms, across], axis=2)
     bottom = np.concatenate([across.transpose(0, 2, 1), inner], axis=2)
     return DenseAffine(np.concatenate([top, bottom], axis=1), reduced.coefficients)
+
+
+def _turned(A: DenseAffine, n: int, turn: Floats) -> DenseAffine:
+    """Return A on its first n columns and on ``turn`` (columns of A, m) of all."""
+    right = A.terms @ turn
+    new = np.concatenate([right[:, :n], turn.T @ right], axis=1)
+    return _bordered(DenseAffine(A.terms[:, :n, :n], A.coefficients), new)

@@ -1,14 +1,18 @@
 r"""How wrong the modes of a reduced model are, from their residuals in the full one.
 
-A mode that lacks :math:`\delta`, see `modefront.models.reduced.corrections`, has an eigenvalue that
-is too high by
+The basis is extended by :math:`A^{-1} r` for the residuals r of all models that are asked for, see
+`modefront.models.reduced.corrections`. The reduced problem in that space has the modes
+:math:`\varphi_j` and eigenvalues :math:`\lambda_j`. A mode x with the Rayleigh quotient
+:math:`\lambda`, of the basis alone, is made up of these by
 
-.. math:: \epsilon = -r^T \delta = r^T C^+ r
+.. math:: c_j = \varphi_j^T M x = \frac{\varphi_j^T r}{\lambda_j - \lambda}, \qquad
+    \lambda - \lambda_s = \sum_{j \ne s} c_j^2 \, (\lambda_j - \lambda_s) ,
 
-to leading order, and each Ritz mode j near r is mixed in as well, by
-:math:`r_j^T \delta / (\lambda - \lambda_j)`. The first term of the sum for :math:`\epsilon` is at
-least :math:`4 \kappa / (1 + \kappa)^2` of the whole (Kantorovich), with :math:`\kappa` the
-condition of :math:`A^{-1} C`; others follow until they are small.
+without cancellation, s being the mode that x stands for; the error of its shape is the root of the
+sum of the other :math:`c_j^2`. Both grow towards the errors in the full model as the space does.
+The first extension gives at least :math:`4 \kappa / (1 + \kappa)^2` of the error to leading order
+(Kantorovich), with :math:`\kappa` the condition of :math:`A^{-1} C`; others follow until they add
+little.
 """
 
 from __future__ import annotations
@@ -19,18 +23,26 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.models.reduced.corrections import Corrections, Enough, Pairs, solve
-from modefront.modes.products import gram, times
-from modefront.modes.spectrum import Shifted
+from modefront.models.reduced.basis import Basis, residuals
+from modefront.models.reduced.corrections import SLOWEST, Factor
+from modefront.modes import dense
+from modefront.modes.pencil import Pencil
 
-SETTLED = Enough(share=1 / 3)
-"""When an estimate is within a factor of 2."""
+NEAR = 9.8
+"""Condition of K over that of the factor up to which the first extension is enough: a third of the
+error at the least, and nearly all of it in most cases."""
 
-FIRST = Enough(share=1.0)
-"""The first term only."""
+SETTLED = 1 / 3
+"""What an extension adds to an estimate, over all of it, below which another one is not needed."""
 
-NEAR = 5.8
-"""Condition of K over that of the factor up to which the first term is half of the whole."""
+STEPS = 8
+"""Extensions at most."""
+
+SHARE = 1e-3
+"""Share of the energies of residuals that compressing them may lose."""
+
+CLOSE = 1e-8
+"""Relative gap of eigenvalues below which no quotient is formed with it."""
 
 
 @dataclass(frozen=True)
@@ -54,35 +66,93 @@ def missing(modes: int) -> Certificate:
 
 @dataclass(frozen=True, eq=False)
 class Asked:
-    """What is to be judged: some of the pairs of a model, counted from 0, and how exactly."""
+    """What is to be judged.
 
-    pairs: Pairs
-    wanted: Ints
-    enough: Enough
-
-
-def estimates(models: Sequence[Asked], below: Shifted) -> list[Certificate]:
-    """Return the certificates of some models.
-
-    ``below`` is the factor of a positive definite K + s M at any parameters. Errors of eigenvalues
-    are over lam + s.
+    Attributes
+    ----------
+    theta : (p,) parameters of the model
+    wanted : (modes,) the modes in question, counted from 0
+    lam, Y : (modes,), (n, modes) these modes in the basis, mass-normalised
+    near : whether the first extension is enough
     """
-    rests = [one.pairs.residuals() for one in models]
-    found = [
-        Corrections(one.pairs, rest[:, one.wanted], one.pairs.lam[one.wanted], one.enough)
-        for one, rest in zip(models, rests, strict=True)
+
+    theta: Floats
+    wanted: Ints
+    lam: Floats
+    Y: Floats
+    near: bool
+
+
+@dataclass(frozen=True, eq=False)
+class _Judged:
+    """Errors as a space knows them, of eigenvalues and shapes; and the modes of that space."""
+
+    eigenvalue: Floats
+    shape: Floats
+    lam: Floats
+    Y: Floats
+
+
+def estimates(
+    pencil: Pencil, basis: Basis, factor: Factor, asked: Sequence[Asked]
+) -> list[Certificate]:
+    """Return the certificates of some models. Errors of eigenvalues are over lam + s."""
+    sigma, space = factor.below.sigma, basis
+    nothing = [np.zeros(one.lam.shape) for one in asked]
+    found = [_Judged(z, z, one.lam, one.Y) for one, z in zip(asked, nothing, strict=True)]
+    left, added, pending = nothing[:], nothing[:], list(range(len(asked)))
+    for _ in range(STEPS):
+        space = _with_solutions(
+            pencil, space, factor, [(asked[k].theta, found[k]) for k in pending]
+        )
+        unsettled = []
+        for k in pending:
+            before, found[k] = found[k].eigenvalue, _judged(space, basis.columns, asked[k])
+            gain, total = found[k].eigenvalue - before, found[k].eigenvalue
+            ratio = np.divide(gain, added[k], out=np.zeros_like(gain), where=added[k] > 0)
+            ratio = np.clip(ratio, 0.0, SLOWEST)
+            left[k], added[k] = gain * ratio / (1 - ratio), gain
+            if not (asked[k].near or (gain <= SETTLED * total).all()):
+                unsettled.append(k)
+        pending = unsettled
+        if not pending:
+            break
+    return [
+        Certificate((one.eigenvalue + rest) / (of.lam - sigma), np.minimum(one.shape, 1.0))
+        for one, rest, of in zip(found, left, asked, strict=True)
     ]
-    solve(found, below)
-    return [_certificate(one, rest, below.sigma) for one, rest in zip(found, rests, strict=True)]
 
 
-def _certificate(found: Corrections, rest: Floats, sigma: float) -> Certificate:
-    gap = found.of.lam[:, None] - found.shift
-    mixed = np.divide(gram(rest, found.delta), gap, out=np.zeros_like(gap), where=gap != 0)
-    square = np.einsum("nc,nc->c", found.delta, times(found.of.M, found.delta))
-    shape = np.sqrt(np.maximum(square, 0.0) + (mixed**2).sum(axis=0))
-    relative = (found.total + found.left) / (found.shift - sigma)
-    return Certificate(
-        np.where(found.lost, np.inf, relative),
-        np.where(found.lost, 1.0, np.minimum(shape, 1.0)),
-    )
+def _with_solutions(
+    pencil: Pencil, space: Basis, factor: Factor, models: Sequence[tuple[Floats, _Judged]]
+) -> Basis:
+    """Return the space with the solutions for the residuals of some modes."""
+    thetas = np.repeat([theta for theta, _ in models], [one.lam.size for _, one in models], axis=0)
+    lam = np.concatenate([one.lam for _, one in models])
+    X = space.combine(np.hstack([one.Y for _, one in models]))
+    R = residuals(pencil, thetas, lam, X)
+    Z = factor.below.factor.solve(R)
+    energy = np.einsum("nc,nc->c", R, Z)
+    unit = np.divide(1.0, np.sqrt(energy), out=np.zeros_like(energy), where=energy > 0)
+    R *= unit
+    Z *= unit
+    return factor.extend(pencil, space, Z, R, np.sqrt(SHARE), pencil.size)
+
+
+def _judged(space: Basis, n: int, of: Asked) -> _Judged:
+    """Return how wrong modes of a basis are, given a space of which it is the first n columns."""
+    K, M = space.K.at(of.theta), space.M.at(of.theta)
+    modes, s = dense.decompose(K, M), of.wanted
+    r = K[n:, :n] @ of.Y - M[n:, :n] @ of.Y * of.lam
+    mu, shift = modes.mu[:, None], modes.sigma
+    gap = 1 - (of.lam + shift) * mu  # (lam_j - lam) mu_j
+    c = modes.X[n:].T @ r
+    close = np.abs(gap) < CLOSE
+    c = np.divide(c, gap, out=np.zeros_like(c), where=~close)  # over the root of mu_j
+    if close.any():
+        c = np.where(close, modes.X.T @ (M[:, :n] @ of.Y) / np.where(close, mu, 1.0), c)
+    lam = modes.lam[s]
+    c[s, np.arange(s.size)] = 0.0
+    eigenvalue = (c**2 * (1 - (lam + shift) * mu)).sum(axis=0)
+    shape = np.sqrt((c**2 * np.maximum(mu, 0.0)).sum(axis=0))
+    return _Judged(np.maximum(eigenvalue, 0.0), shape, lam, modes.Phi[:, s])

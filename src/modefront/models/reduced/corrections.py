@@ -5,156 +5,234 @@ For a Ritz pair :math:`(\lambda, \varphi)`, :math:`\varphi^T M \varphi = 1`, the
 
 .. math:: C \delta = -r, \qquad r = C \varphi, \qquad C = K - \lambda M
 
-on the M-complement of the low Ritz modes, where C is positive definite unless a mode is missing
-there. What a derivative :math:`\varphi'` of the reduced problem lacks solves the same equation with
+on the M-complement of the low Ritz modes. What a derivative :math:`\varphi'` of the reduced
+problem lacks solves the same equation with
 
 .. math:: r = C \varphi' + (K' - \lambda M' - \lambda' M) \varphi .
 
-With the factor of an earlier :math:`A = K + s M`, conjugate gradients find :math:`\delta`, and sum
-up :math:`-r^T \delta` from below, one solution a term:
+With the factor of an earlier :math:`A = K + s M`, the space is extended by :math:`A^{-1} r`, the
+modes or derivatives are those of the reduced problem in the new space, and so on (Davidson's
+method). It contains what conjugate gradients would find for each of them, and of several models
+each profits from the others: where the stiffness of some parts of a structure changes by factors,
+most eigenvalues of :math:`A^{-1} C` are 1 or one of these. What is kept of the space is the modes
+or derivatives themselves.
 
-.. math:: -r^T \delta = \sum_k t_k, \qquad t_k = \alpha_k \, r_k^T z_k, \qquad z_k = A^{-1} r_k .
+Residuals are orthogonal to the basis, so their solutions are orthogonal to it in A: no product
+with A is needed to extend it. A step is worth :math:`r^T A^{-1} r`, the square of the length that
+was lacking but for the condition of :math:`A^{-1} C`.
 
-What is left is taken for a geometric series with the ratio q of the last terms,
-:math:`t_k q / (1 - q)`. Several models share every solution: the factor is read once for all.
-
-Sources: Sleijpen & Van der Vorst 1996, doi:10.1137/S0895479894270427 (correction); Golub & Meurant
-2010, doi:10.1515/9781400833887 (quadratic forms by conjugate gradients).
+Sources: Sleijpen & Van der Vorst 1996, doi:10.1137/S0895479894270427 (correction); Morgan & Scott
+1986, doi:10.1137/0907054 (Davidson's method with other preconditioners).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
-import scipy.sparse
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
+from modefront.models.reduced.basis import Basis, extended, joined, residuals, trimmed
+from modefront.modes import dense
 from modefront.modes.pencil import Pencil
-from modefront.modes.products import combine, gram, times
 from modefront.modes.spectrum import Shifted
 
 SLOWEST = 0.5
-"""Ratio of terms at most that what is left is extrapolated with."""
+"""Ratio of steps at most that what is left is extrapolated with."""
 
 ENTRIES = 2**21
 """Entries of the right-hand sides that are solved together, but for `FEWEST` columns."""
 
-FEWEST = 24
+FEWEST = 36
 """Right-hand sides that are solved together however large the model is, if there are as many."""
 
-
-@dataclass(frozen=True, eq=False)
-class Pairs:
-    """Low Ritz pairs of one model.
-
-    Attributes
-    ----------
-    K, M : the sparse matrices of the model
-    lam : (low,) Ritz values, ascending from the lowest one
-    Phi, MPhi : (N, low) their modes, and M times these
-    """
-
-    K: scipy.sparse.csr_array
-    M: scipy.sparse.csr_array
-    lam: Floats
-    Phi: Floats
-    MPhi: Floats
-
-    def residuals(self) -> Floats:
-        """Return (K - lam M) Phi, shape (N, low)."""
-        return times(self.K, self.Phi) - self.MPhi * self.lam
+STEPS = 30
+"""Steps, after which a full solution is better."""
 
 
-def pairs(pencil: Pencil, theta: Floats, lam: Floats, Phi: Floats) -> Pairs:
-    """Return Ritz values (low,) and modes (N, low) with the matrices at ``theta``."""
-    K, M = pencil.K.at(theta), pencil.M.at(theta)
-    return Pairs(K, M, lam, Phi, times(M, Phi))
-
-
-@dataclass(frozen=True, eq=False)
-class Enough:
-    """When a sum needs no other term: after ``steps``, or where a term is small.
+@dataclass(frozen=True)
+class Wanted:
+    """How exactly a basis is to know a model.
 
     Attributes
     ----------
-    share : the term over the sum
-    floor : the term itself, for every column or for each
-    steps : terms at most
+    share : what is left over all that was lacking
+    shortest : length of the directions that are too short to matter, in energy
+    capacity : columns that the basis may have
     """
 
     share: float
-    floor: Floats | float = 0.0
-    steps: int = 8
+    shortest: float
+    capacity: int
 
 
-class Corrections:
-    """Conjugate gradients for some residuals r (N, columns) of one model.
+@dataclass(frozen=True, eq=False)
+class Factor:
+    """The factor of a positive definite A = K(theta) - sigma M(theta)."""
 
-    Attributes
-    ----------
-    shift : (columns,) the eigenvalue in C
-    delta : (N, columns) what is lacking, as far as it is known
-    total, left : (columns,) the sum, and what is left of it
-    settled : (columns,) where no other term is needed
-    lost : (columns,) where C is not positive definite
-    active : (active,) columns that need another term
-    r : (N, active) their residuals
+    theta: Floats
+    below: Shifted
+
+    def extend(
+        self,
+        pencil: Pencil,
+        space: Basis,
+        solutions: Floats,
+        right: Floats,
+        shortest: float,
+        capacity: int,
+    ) -> Basis:
+        """Return a space with solutions (N, m) for residuals that are orthogonal to it."""
+        if np.array_equal(space.theta, self.theta) and space.sigma == self.below.sigma:
+            return joined(pencil, space, solutions, right, shortest, capacity)
+        return extended(pencil, space, solutions, shortest, capacity)
+
+
+class _Sought(Protocol):
+    """Modes or derivatives of them, scaled by their energy, each at one of thetas (m, p)."""
+
+    @property
+    def thetas(self) -> Floats:
+        """Parameters of each, (m, p)."""
+
+    def coordinates(self, space: Basis) -> Floats:
+        """Return what is sought as the reduced problem has it (n, m)."""
+
+    def residuals(self, space: Basis, some: Ints) -> Floats:
+        """Return residuals r (N, some)."""
+
+
+@dataclass(frozen=True, eq=False)
+class _Modes:
+    pencil: Pencil
+    models: Sequence[Floats]
+    count: int
+
+    @property
+    def thetas(self) -> Floats:
+        return np.repeat(self.models, self.count, axis=0)
+
+    def coordinates(self, space: Basis) -> Floats:
+        return self._reduced(space)[0]
+
+    def residuals(self, space: Basis, some: Ints) -> Floats:
+        Y, lam = self._reduced(space)
+        return residuals(self.pencil, self.thetas[some], lam[some], space.combine(Y[:, some]))
+
+    def _reduced(self, space: Basis) -> tuple[Floats, Floats]:
+        """Return modes (n, m) of unit energy, and their eigenvalues (m,)."""
+        found = [dense.decompose(space.K.at(at), space.M.at(at)) for at in self.models]
+        lam = np.concatenate([one.lam[: self.count] for one in found])
+        Y = np.hstack([one.Phi[:, : self.count] for one in found])
+        return Y / np.sqrt(lam - space.sigma), lam
+
+
+@dataclass(frozen=True, eq=False)
+class _Derivatives:
+    pencil: Pencil
+    theta: Floats
+    count: int
+    half_range: Floats
+
+    @property
+    def thetas(self) -> Floats:
+        return np.tile(self.theta, (self.count * self.theta.size, 1))
+
+    def coordinates(self, space: Basis) -> Floats:
+        return self._reduced(space)[0]
+
+    def residuals(self, space: Basis, some: Ints) -> Floats:
+        dY, Y, lam, dlam, unit = self._reduced(space)
+        dY, dlam, lam, unit = dY[:, some], dlam[some], lam[some], unit[some]
+        modes, of = np.unique(some // self.theta.size, return_inverse=True)
+        pencil, thetas = self.pencil, self.thetas[some]
+        R = pencil.M.each(thetas, space.combine(-dY * lam - Y[:, modes[of]] * (unit * dlam)))
+        R += pencil.K.each(thetas, space.combine(dY))
+        Phi, column = space.combine(Y[:, modes]), of * self.theta.size + some % self.theta.size
+        for A, factor in ((pencil.K, unit), (pencil.M, -lam * unit)):
+            if A.coefficients.exponents.any():
+                forces = A.derivatives_times(self.theta, Phi).reshape(len(Phi), -1)
+                R += forces[:, column] * factor
+        return R
+
+    def _reduced(self, space: Basis) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """Return derivatives (n, m) over their units, modes (n, count), lam, dlam, units (m,)."""
+        theta, count = self.theta, self.count
+        ritz = dense.decompose(space.K.at(theta), space.M.at(theta))
+        dlam, dY, _ = dense.nelson(space.K, space.M, theta, ritz, count)
+        lam = np.repeat(ritz.lam[:count], theta.size)
+        unit = np.tile(self.half_range, count) / np.sqrt(lam - space.sigma)
+        dY = dY[:, :count].reshape(space.columns, -1) * unit
+        return dY, ritz.Phi[:, :count], lam, dlam[:count].ravel(), unit
+
+
+def with_modes(
+    pencil: Pencil,
+    basis: Basis,
+    factor: Factor,
+    thetas: Sequence[Floats],
+    count: int,
+    wanted: Wanted,
+) -> Basis | None:
+    """Return the basis with what the ``count`` lowest modes at some parameters lack in it.
+
+    None where that would take too many steps.
     """
-
-    def __init__(self, of: Pairs, r: Floats, shift: Floats, enough: Enough) -> None:
-        self.of, self.shift, self.enough = of, shift, enough
-        self.r = r - combine(of.MPhi, gram(of.Phi, r))
-        self.p, self.delta = np.zeros((0, 0)), np.zeros_like(self.r)
-        columns = shift.size
-        self.total, self.left, self.term = np.zeros(columns), np.zeros(columns), np.zeros(columns)
-        self.floor = np.broadcast_to(enough.floor, columns)
-        self.settled, self.lost = np.zeros(columns, dtype=bool), np.zeros(columns, dtype=bool)
-        self.active, self.energy, self.steps = np.arange(columns), np.ones(columns), 0
-
-    def add(self, z: Floats) -> None:
-        """Add a term for the active columns, given the solutions for their residuals."""
-        of, r, active, before = self.of, self.r, self.active, self.energy
-        z = z - combine(of.Phi, gram(of.MPhi, z))
-        energy = np.einsum("nc,nc->c", r, z)
-        p = z + self.p * (energy / before) if self.steps else z
-        Cp = times(of.K, p) - times(of.M, p) * self.shift[active]
-        curvature = np.einsum("nc,nc->c", p, Cp)
-        self.lost[active] = curvature < 0
-        alpha = np.divide(energy, curvature, out=np.zeros_like(energy), where=curvature > 0)
-        term, last = alpha * energy, self.term[active]
-        self.total[active] += term
-        self.term[active] = term
-        ratio = np.divide(term, last, out=np.zeros_like(term), where=last > 0)
-        ratio = np.minimum(ratio, SLOWEST)
-        self.left[active] = term * ratio / (1 - ratio)
-        if active.size == self.shift.size:
-            self.delta -= alpha * p
-        else:
-            self.delta[:, active] -= alpha * p
-        self.settled[active] = term <= np.maximum(
-            self.enough.share * self.total[active], self.floor[active]
-        )
-        self.steps += 1
-        more = ~(self.settled | self.lost)[active] & (self.steps < self.enough.steps)
-        self.active, self.energy = active[more], energy[more]
-        if more.any():
-            r = r - alpha * (Cp - combine(of.MPhi, gram(of.Phi, Cp)))
-            self.r, self.p = (r, p) if more.all() else (r[:, more], p[:, more])
+    width = max(1, together(pencil.size) // count)
+    for first in range(0, len(thetas), width):
+        sought = _Modes(pencil, thetas[first : first + width], count)
+        found = _with(pencil, basis, factor, sought, np.arange(len(sought.thetas)), wanted)
+        if found is None:
+            return None
+        basis = found
+    return basis
 
 
-def solve(models: Sequence[Corrections], below: Shifted) -> None:
-    """Find what is lacking in some models, by one solution with the factor a step.
+def with_derivatives(
+    pencil: Pencil,
+    basis: Basis,
+    factor: Factor,
+    theta: Floats,
+    count: int,
+    half_range: Floats,
+    wanted: Wanted,
+) -> Basis:
+    """Return the basis with what the derivatives of the ``count`` lowest modes lack in it.
 
-    ``below`` is the factor of a positive definite K + s M at any parameters.
+    The modes themselves must be in it. Derivatives are over ``half_range`` (p,). They need not be
+    exact to be of use.
     """
-    while unfinished := [one for one in models if one.active.size]:
-        ends = np.cumsum([one.active.size for one in unfinished])
-        right = np.hstack([one.r for one in unfinished])
-        found = np.hsplit(below.factor.solve(right), ends[:-1])
-        for one, z in zip(unfinished, found, strict=True):
-            one.add(z)
+    sought = _Derivatives(pencil, theta, count, half_range)
+    columns, width = count * theta.size, together(pencil.size)
+    for first in range(0, columns, width):
+        some = np.arange(first, min(first + width, columns))
+        basis = _with(pencil, basis, factor, sought, some, wanted) or basis
+    return basis
+
+
+def _with(
+    pencil: Pencil, basis: Basis, factor: Factor, sought: _Sought, columns: Ints, wanted: Wanted
+) -> Basis | None:
+    """Return the basis with some columns of what is sought, or None where that takes too long."""
+    space, active = basis, columns
+    total, last = np.zeros((2, len(sought.thetas)))
+    for _ in range(STEPS):
+        R = sought.residuals(space, active)
+        Z = factor.below.factor.solve(R)
+        worth = np.einsum("nc,nc->c", R, Z)
+        space = factor.extend(pencil, space, Z, R, wanted.shortest, pencil.size)
+        total[active] += worth
+        ratio = np.full(worth.shape, SLOWEST)
+        np.divide(worth, last[active], out=ratio, where=last[active] > 0)
+        left = worth * np.minimum(ratio, SLOWEST)
+        last[active] = worth
+        active = active[left > np.maximum(wanted.share * total[active], wanted.shortest**2)]
+        if not active.size:
+            Y = sought.coordinates(space)[:, columns]
+            return trimmed(basis, space, Y, wanted.shortest, wanted.capacity)
+    return None
 
 
 def together(size: int) -> int:

@@ -15,22 +15,17 @@ from modefront.models.matrices import MatrixModel
 from modefront.models.ports import Ports, Transfer
 from modefront.models.reduced import window
 from modefront.models.reduced.basis import Basis, empty, extended, snapshot
-from modefront.models.reduced.certificate import (
-    FIRST,
-    NEAR,
-    SETTLED,
-    Asked,
-    Certificate,
-    estimates,
-    missing,
+from modefront.models.reduced.certificate import NEAR, Asked, Certificate, estimates, missing
+from modefront.models.reduced.corrections import (
+    Factor,
+    Wanted,
+    together,
+    with_derivatives,
+    with_modes,
 )
-from modefront.models.reduced.corrections import pairs, together
-from modefront.models.reduced.nearby import Wanted, with_derivatives, with_modes
 from modefront.modes import dense
 from modefront.modes.factorisation import SingularMatrixError
-from modefront.modes.products import combine
 from modefront.modes.result import Modes
-from modefront.modes.spectrum import Shifted
 
 SHORTEST = 0.1
 """Length of the shortest direction of the basis, over the square root of the tolerance."""
@@ -42,7 +37,7 @@ COARSE = 3e-3
 """Length of the shortest direction of the basis that stands for the bounds."""
 
 SHARE = 0.1
-"""Last term of a sum of conjugate gradients over the sum, for what need not be exact."""
+"""What is left of a correction over all of it, where it need not be exact."""
 
 FAR = 30.0
 """Condition of K over that of the factor up to which a snapshot has no factor of its own."""
@@ -59,11 +54,24 @@ MEMORY = 4.0
 
 @dataclass(frozen=True)
 class Snap:
-    """Where a snapshot is to be taken, and of how many modes, with their derivatives or without."""
+    """Where a snapshot is to be taken, at one model or at several together.
+
+    Attributes
+    ----------
+    theta : (p,) parameters of the model, or (models, p)
+    modes : how many modes are wanted
+    derivatives : whether the derivatives of those of the first model are wanted as well
+    """
 
     theta: Floats
     modes: int
     derivatives: bool = True
+
+    @property
+    def models(self) -> list[tuple[Floats, bool]]:
+        """The parameters of each model and whether derivatives are wanted there."""
+        thetas = enumerate(np.atleast_2d(self.theta))
+        return [(theta, self.derivatives and k == 0) for k, theta in thetas]
 
     def same(self, other: Snap) -> bool:
         """Return whether it is the same snapshot."""
@@ -81,24 +89,30 @@ class Complete:
 
 @dataclass(frozen=True)
 class _Taken:
-    """A snapshot, what its factors prove if it has some, and what it took."""
+    """A snapshot and what it took."""
 
     what: Snap
-    proof: Complete | None
     solved: int
     corrected: int
     factorisations: int
 
 
 @dataclass(frozen=True)
+class _Space:
+    """A basis, the last factor, and what is known of modes that are missing."""
+
+    basis: Basis
+    factor: Factor
+    proofs: tuple[Complete, ...]
+
+
+@dataclass(frozen=True)
 class _State:
-    """The basis of some snapshots, as the sensors see it, and the last factor, at ``theta``."""
+    """The space of some snapshots, and the basis as the sensors see it."""
 
     taken: tuple[_Taken, ...]
-    basis: Basis
+    space: _Space
     sensed: Floats
-    theta: Floats
-    below: Shifted
 
 
 @dataclass(eq=False)
@@ -180,7 +194,7 @@ class ReducedModel:
     @property
     def columns(self) -> int:
         """Columns that the basis has."""
-        return self._ready().basis.columns
+        return self._ready().space.basis.columns
 
     @property
     def first(self) -> Snap:
@@ -224,7 +238,7 @@ class ReducedModel:
             return self._in_full(theta, count, derivatives)
         state = self._ready()
         started = time.perf_counter()
-        K, M = state.basis.K, state.basis.M
+        K, M = state.space.basis.K, state.space.basis.M
         found = dense.modes(K, M, state.sensed, theta, count, derivatives)
         self.counts.reduced += 1
         self.counts.reduced_time += time.perf_counter() - started
@@ -233,7 +247,8 @@ class ReducedModel:
     def distance(self, theta: Floats) -> float:
         """Return how far the nearest snapshot is, over the ranges of the parameters."""
         span = self.upper - self.lower
-        return float(min(np.linalg.norm((theta - one.theta) / span) for one in self._wanted))
+        there = [at for one in self._wanted for at, _ in one.models]
+        return float(min(np.linalg.norm((theta - at) / span) for at in there))
 
     def certify(
         self,
@@ -246,19 +261,19 @@ class ReducedModel:
         ``asked`` are theta (p,) and the modes wanted there, counted from 0. Their errors are
         infinite where a mode below them is missing. That is looked for by a factorisation where it
         is in doubt, and what it proves speaks for the other models nearby. ``quick`` certificates
-        do not look for missing modes, and take only the first term of the estimate.
+        do not look for missing modes, and extend the basis only once.
         """
-        state, before = self._ready(), self.full.counts.factorisations
+        space, before = self._ready().space, self.full.counts.factorisations
         started = time.perf_counter()
-        proofs = _proofs(state.taken)
+        proofs = list(space.proofs)
         most = max((wanted.size for _, wanted in asked), default=1)
         width = max(1, together(self.size) // most)
         found: list[Certificate] = []
         for first in range(0, len(asked), width):
             some = asked[first : first + width]
-            models = [self._asked(state, *one, quick, proofs) for one in some]
+            models = [self._asked(space, *one, quick, proofs) for one in some]
             there = [one for one in models if one is not None]
-            known = iter(estimates(there, state.below))
+            known = iter(estimates(self.full.pencil, space.basis, space.factor, there))
             found += [
                 missing(wanted.size) if one is None else next(known)
                 for (_, wanted), one in zip(some, models, strict=True)
@@ -269,18 +284,15 @@ class ReducedModel:
         return found
 
     def _asked(
-        self, state: _State, theta: Floats, wanted: Ints, quick: bool, proofs: list[Complete]
+        self, space: _Space, theta: Floats, wanted: Ints, quick: bool, proofs: list[Complete]
     ) -> Asked | None:
         """Return the Ritz pairs that a certificate is of; None where modes are missing."""
-        basis = state.basis
+        basis = space.basis
         ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
         if not quick and self._misses(basis, theta, ritz.lam, int(wanted.max()), proofs):
             return None
-        near = window.condition(basis.K, theta, state.theta) <= NEAR
-        low = int(wanted.max()) + 1 + SPARE
-        Phi = combine(basis.V, ritz.Phi[:, :low])
-        found = pairs(self.full.pencil, theta, ritz.lam[:low], Phi)
-        return Asked(found, wanted, FIRST if quick or near else SETTLED)
+        near = quick or window.condition(basis.K, theta, space.factor.theta) <= NEAR
+        return Asked(theta, wanted, ritz.lam[wanted], ritz.Phi[:, wanted], near)
 
     def _misses(
         self, basis: Basis, theta: Floats, lam: Floats, last: int, proofs: list[Complete]
@@ -323,75 +335,95 @@ class ReducedModel:
 
     def _add(self, what: Snap) -> None:
         """Compute another snapshot: with the factor at hand, or with factors of its own."""
-        started, state = time.perf_counter(), self._state
+        taken = self._state.taken if self._state else ()
+        space = self._state.space if self._state else None
         before = self.full.counts.factorisations
-        if state and (found := self._near(state, what)):
-            basis, proof = found
-            taken = _Taken(what, proof, 0, 1, self.full.counts.factorisations - before)
-            self._state = self._extended(state.taken, taken, basis, state.theta, state.below)
-            self.counts.corrected_time += time.perf_counter() - started
-            return
-        self._state = None  # its factor makes room for those of the snapshot
-        pencil = self.full.pencil
-        count = what.modes + SPARE if state else max(what.modes + SPARE, self.count)
-        one = snapshot(pencil, what.theta, min(count, self.size))
-        known = state.basis if state else empty(pencil, one)
-        modes = one.modes[:, : self.capacity]  # of directions of equal length, the lowest ones
-        basis = extended(pencil, known, modes, self._shortest, self.capacity)
+        rest, solved, corrected = what.models, 0, 0
+        while rest:
+            found = self._corrected(space, rest, what.modes) if space else None
+            if found:
+                space, others = found
+                corrected += len(rest) - len(others)
+                rest = others
+                continue
+            known, proofs = (space.basis, space.proofs) if space else (None, ())
+            space = self._state = None  # its factor makes room for those of the snapshot
+            space, bounds = self._solved(known, proofs, *rest[0], what.modes)
+            solved, corrected, rest = solved + 1, corrected + bounds, rest[1:]
         cost = self.full.counts.factorisations - before
+        assert space is not None
+        sensed = np.hstack([self.full.selection @ block for block in space.basis.blocks])
+        self._state = _State((*taken, _Taken(what, solved, corrected, cost)), space, sensed)
+
+    def _solved(
+        self,
+        known: Basis | None,
+        proofs: tuple[Complete, ...],
+        theta: Floats,
+        derivatives: bool,
+        modes: int,
+    ) -> tuple[_Space, int]:
+        """Return the space with the modes of a full solution, and how many others came with it."""
+        started = time.perf_counter()
+        pencil, count = self.full.pencil, modes + SPARE
+        one = snapshot(pencil, theta, min(count if known else max(count, self.count), self.size))
+        lowest = one.modes[:, : self.capacity]  # of directions of equal length, the lowest ones
+        basis = extended(pencil, known or empty(pencil, one), lowest, self._shortest, self.capacity)
         solved = time.perf_counter()
         self.counts.full_time += solved - started
-        basis = self._with_derivatives(basis, one.below, what)
-        bounds = [] if state else self._bounds(basis, what.theta, one.below.sigma)
-        basis = self._at_bounds(basis, one.below, bounds)
+        factor = Factor(theta, one.below)
+        if derivatives:
+            basis = self._with_derivatives(basis, factor, theta, modes)
+        bounds = [] if known else self._bounds(basis, theta, one.below.sigma)
+        basis = self._at_bounds(basis, factor, bounds)
         self.counts.corrected_time += time.perf_counter() - solved
-        taken = _Taken(what, Complete(what.theta, one.beyond), 1, len(bounds), cost)
-        self._state = self._extended(
-            state.taken if state else (), taken, basis, what.theta, one.below
-        )
+        return _Space(basis, factor, (*proofs, Complete(theta, one.beyond))), len(bounds)
 
-    def _extended(
-        self,
-        before: tuple[_Taken, ...],
-        taken: _Taken,
-        basis: Basis,
-        theta: Floats,
-        below: Shifted,
-    ) -> _State:
-        """Return the state with another snapshot and the factor of the one at ``theta``."""
-        sensed = np.asarray(self.full.selection @ basis.V)
-        return _State((*before, taken), basis, sensed, theta, below)
+    def _corrected(
+        self, space: _Space, models: list[tuple[Floats, bool]], modes: int
+    ) -> tuple[_Space, list[tuple[Floats, bool]]] | None:
+        """Return the space with modes that need no factor of their own, and the models that do.
 
-    def _near(self, state: _State, what: Snap) -> tuple[Basis, Complete | None] | None:
-        """Return the basis with a snapshot that has no factor of its own.
-
-        A proof is with it where it took one that the basis misses no mode there. None where modes
-        are missing, or where the factor at hand is of no use.
+        None where all do.
         """
-        basis, theta, below = state.basis, what.theta, state.below
-        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        count, proofs = what.modes + SPARE, _proofs(state.taken)
-        known = len(proofs)
-        if (
-            ritz.lam.size < count + SPARE
-            or window.condition_within(basis.K, basis.M, theta, below.sigma) > FAR
-            or self._misses(basis, theta, ritz.lam, what.modes - 1, proofs)
-        ):
+        started = time.perf_counter()
+        basis, factor, proofs = space.basis, space.factor, list(space.proofs)
+        near = [self._is_near(basis, factor, theta, modes, proofs) for theta, _ in models]
+        here = [one for one, is_near in zip(models, near, strict=True) if is_near]
+        others = [one for one, is_near in zip(models, near, strict=True) if not is_near]
+        if not here:
             return None
+        new = tuple(proofs[len(space.proofs) :])
+        count = modes + SPARE if new else modes  # all modes that a proof is of
         wanted = Wanted(0.0, self._shortest, self.capacity)
-        found = with_modes(self.full.pencil, basis, below, [theta], count, SPARE, wanted)
+        thetas = [theta for theta, _ in here]
+        found = with_modes(self.full.pencil, basis, factor, thetas, count, wanted)
         if found is None:
             return None
-        found = self._with_derivatives(found, below, what)
-        return found, (proofs[-1] if len(proofs) > known else None)
+        for theta, derivatives in here:
+            if derivatives:
+                found = self._with_derivatives(found, factor, theta, modes)
+        self.counts.corrected_time += time.perf_counter() - started
+        return _Space(found, factor, (*space.proofs, *new)), others
 
-    def _with_derivatives(self, basis: Basis, below: Shifted, what: Snap) -> Basis:
-        """Return the basis of some modes with their derivatives, if these are wanted."""
-        count, pencil = min(what.modes, basis.columns - 1), self.full.pencil
-        if not what.derivatives or count < 1:
+    def _is_near(
+        self, basis: Basis, factor: Factor, theta: Floats, modes: int, proofs: list[Complete]
+    ) -> bool:
+        """Return whether the factor at hand is of use for a snapshot, and no mode is missing."""
+        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        return (
+            ritz.lam.size >= modes + 2 * SPARE
+            and window.condition_within(basis.K, basis.M, theta, factor.below.sigma) <= FAR
+            and not self._misses(basis, theta, ritz.lam, modes - 1, proofs)
+        )
+
+    def _with_derivatives(self, basis: Basis, factor: Factor, theta: Floats, modes: int) -> Basis:
+        """Return the basis of some modes with their derivatives."""
+        count, half = min(modes, basis.columns - 1), (self.upper - self.lower) / 2
+        wanted = Wanted(SHARE, self._shortest, self.capacity)
+        if count < 1:
             return basis
-        half, wanted = (self.upper - self.lower) / 2, Wanted(SHARE, self._shortest, self.capacity)
-        return with_derivatives(pencil, basis, below, what.theta, count, SPARE, half, wanted)
+        return with_derivatives(self.full.pencil, basis, factor, theta, count, half, wanted)
 
     def _bounds(self, basis: Basis, theta: Floats, sigma: float) -> list[Floats]:
         """Return the parameters with one of them at a bound, or nearer to ``theta``."""
@@ -406,7 +438,7 @@ class ReducedModel:
                         break
         return out
 
-    def _at_bounds(self, basis: Basis, below: Shifted, bounds: list[Floats]) -> Basis:
+    def _at_bounds(self, basis: Basis, factor: Factor, bounds: list[Floats]) -> Basis:
         """Return the basis with the modes at some parameters, for the global search.
 
         They take no more than half of what is left of the memory.
@@ -416,16 +448,11 @@ class ReducedModel:
         if not bounds or count < 1:
             return basis
         wanted = Wanted(SHARE, COARSE, capacity)
-        found = with_modes(self.full.pencil, basis, below, bounds, count, SPARE, wanted)
-        return found or basis
+        return with_modes(self.full.pencil, basis, factor, bounds, count, wanted) or basis
 
     @property
     def _shortest(self) -> float:
         return SHORTEST * float(np.sqrt(self.tolerance))
-
-
-def _proofs(taken: Sequence[_Taken]) -> list[Complete]:
-    return [one.proof for one in taken if one.proof]
 
 
 def _knows(basis: Basis, proofs: Sequence[Complete], theta: Floats, lam: float) -> bool:
