@@ -336,22 +336,26 @@ class ReducedModel:
     def _add(self, what: Snap) -> None:
         """Compute another snapshot: with the factor at hand, or with factors of its own."""
         taken = self._state.taken if self._state else ()
-        space = self._state.space if self._state else None
         before = self.full.counts.factorisations
         rest, solved, corrected = what.models, 0, 0
+        if self._state:
+            space = self._state.space
+        else:
+            space, corrected = self._solved(None, (), *rest[0], what.modes)
+            rest, solved = rest[1:], 1
         while rest:
-            found = self._corrected(space, rest, what.modes) if space else None
+            found = self._corrected(space, rest, what.modes)
             if found:
                 space, others = found
                 corrected += len(rest) - len(others)
                 rest = others
                 continue
-            known, proofs = (space.basis, space.proofs) if space else (None, ())
-            space = self._state = None  # its factor makes room for those of the snapshot
-            space, bounds = self._solved(known, proofs, *rest[0], what.modes)
-            solved, corrected, rest = solved + 1, corrected + bounds, rest[1:]
+            known, proofs = space.basis, space.proofs
+            del space
+            self._state = None  # its factor makes room for those of the snapshot
+            space, _ = self._solved(known, proofs, *rest[0], what.modes)
+            rest, solved = rest[1:], solved + 1
         cost = self.full.counts.factorisations - before
-        assert space is not None
         sensed = np.hstack([self.full.selection @ block for block in space.basis.blocks])
         self._state = _State((*taken, _Taken(what, solved, corrected, cost)), space, sensed)
 
