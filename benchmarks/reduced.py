@@ -9,7 +9,7 @@ in twelve parts and with noise, so that frequencies and shapes disagree. Printed
 work of a study (edges by global search, weighted models, 20 points of the front):
 
 - the time and the memory of one full eigensolution, without and with derivatives;
-- eigensolutions in full, by conjugate gradients with the factor of another one, and reduced ones,
+- eigensolutions in full, corrected with the factor of another one, and reduced ones,
   factorisations, the greatest estimated error and the time of the work, over that of one full
   eigensolution without derivatives: processor time, and the time that passes;
 - the greatest memory of the process, over that after one factorisation;

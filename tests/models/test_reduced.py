@@ -188,6 +188,37 @@ def test_costs_are_counted_once() -> None:
     assert cost() == (2, 4, 6, 5)
 
 
+def test_a_snapshot_of_several_models_is_exact_at_each() -> None:
+    full = plate()
+    model, thetas = reduced(full), np.array([[0.5, 1.0, 2.0], [1.5, 0.6, 0.8], [2.4, 2.0, 1.0]])
+    model.modes(np.ones(3), 8)
+    before = model.counts.corrected
+    model.take(Snap(thetas, 6))
+    assert model.counts.corrected == before + 3
+    assert model.counts.eigenproblems == 1
+    for k, theta in enumerate(thetas):
+        found, expected = model.modes(theta, 6), full.modes(theta, 6)
+        assert found.lam == pytest.approx(expected.lam, rel=1e-9)
+        sign = np.sign((found.phi * expected.phi).sum(axis=0))
+        off = np.abs(found.dphi * sign[:, None] - expected.dphi).max() / np.abs(expected.dphi).max()
+        assert off < (1e-3 if k == 0 else 0.2), "the first one has its derivatives"
+        assert model.distance(theta) == 0
+
+
+def test_models_too_far_for_the_factor_are_solved_in_full_and_the_others_are_not() -> None:
+    full = plate()
+    bounds = np.full(3, 0.01), np.full(3, 2.5)
+    model = ReducedModel(full, 10, np.ones(3), *bounds)
+    model.modes(np.ones(3), 8)
+    corrected = model.counts.corrected
+    model.take(Snap(np.array([[0.015, 2.0, 2.0], [0.9, 1.1, 1.0]]), 6))
+    assert model.counts.eigenproblems == 2
+    assert model.counts.corrected == corrected + 1
+    for theta in ([0.015, 2.0, 2.0], [0.9, 1.1, 1.0]):
+        at = np.array(theta)
+        assert model.modes(at, 6).lam == pytest.approx(full.modes(at, 6).lam, rel=1e-8)
+
+
 def test_the_order_of_computing_snapshots_changes_no_digit() -> None:
     full, thetas = plate(), [np.ones(3), np.array([0.5, 1.0, 2.0])]
     one, other = reduced(full), reduced(plate())

@@ -39,6 +39,27 @@ def test_same_as_dense(case: tuple[int, int, int, int]) -> None:
     assert sparse.derivatives_times(theta, V) == pytest.approx(expected, abs=1e-12)
     rows = sparse.derivative_rows(theta, V).toarray().reshape(3, case[2], case[0])
     assert rows == pytest.approx(expected.transpose(1, 2, 0), abs=1e-12)
+    thetas = rng.uniform(0.5, 2.0, (3, case[2]))
+    each = [dense.at(at) @ v for at, v in zip(thetas, V.T, strict=True)]
+    assert sparse.each(thetas, V) == pytest.approx(np.transpose(each), abs=1e-12)
+    projected = np.concatenate([V[:, :2].T, V[:, 2:].T]) @ (dense.terms @ V)
+    assert sparse.project([V[:, :2], V[:, 2:]], V) == pytest.approx(projected, abs=1e-12)
+
+
+@pytest.mark.parametrize("stride", [1, 2, 5])
+def test_terms_that_touch_scattered_rows(stride: int) -> None:
+    """Rows next to each other are a range, others are copied, or filled up where they are near."""
+    size, rng = 4000, np.random.default_rng(stride)
+    there = np.arange(0, size - 1, stride)
+    values = np.concatenate([rng.standard_normal((2, there.size)).ravel(), np.ones(there.size)])
+    row, column = np.tile(there, 3), np.concatenate([there, there + 1, there])
+    half = scipy.sparse.coo_array((values, (row, column)), shape=(size, size))
+    A = sparse_affine([scipy.sparse.coo_array(half + half.T)], Monomials(np.eye(1)), size)
+    X, theta = rng.standard_normal((size, 3)), np.array([0.7])
+    full = A.at(np.ones(1))
+    assert A.each(np.tile(theta, (3, 1)), X) == pytest.approx(0.7 * (full @ X), abs=1e-12)
+    assert A.project([X], X)[0] == pytest.approx(X.T @ (full @ X), abs=1e-9)
+    assert A.derivatives_times(theta, X)[:, :, 0] == pytest.approx(full @ X, abs=1e-12)
 
 
 @given(sizes)

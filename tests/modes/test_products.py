@@ -21,6 +21,8 @@ def test_blocks_cover_all_rows(rows: int, a: int, b: int) -> None:
     C = rng.standard_normal((a, b))
     assert products.gram(X, Y) == pytest.approx(X.T @ Y, abs=1e-10)
     assert products.combine(X, C) == pytest.approx(X @ C, abs=1e-10)
+    blocks, both = [X, np.zeros((rows, 0)), Y], np.vstack([C, np.eye(b)])
+    assert products.combine_all(blocks, both) == pytest.approx(X @ C + Y, abs=1e-10)
 
 
 def test_part_of_a_wider_array() -> None:
@@ -46,7 +48,8 @@ def test_sharing_among_threads_changes_no_digit(
     C = rng.standard_normal((columns, 40))
 
     def found() -> list[Floats]:
-        return [products.gram(X, Y), products.combine(X, C), products.times(A, X)]
+        every = products.combine_all([X, Y], np.vstack([C, C[:1].repeat(25, axis=0)]))
+        return [products.gram(X, Y), products.combine(X, C), products.times(A, X), every]
 
     whole = found()
     monkeypatch.setattr(products, "SHARED", 0)

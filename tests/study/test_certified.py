@@ -189,7 +189,7 @@ def test_run_shows_the_cost_and_show_the_errors(
     out = capfd.readouterr().out
     n = whole.attrs["full_eigensolutions"]
     corrected = whole.attrs["corrected_eigensolutions"]
-    assert f"reduced basis from {n} full eigensolutions and {corrected} by conjugate" in out
+    assert f"reduced basis from {n} full eigensolutions and {corrected} corrected" in out
     assert f"{n} full eigensolutions in" in out
     assert "reduced solutions in" in out
     assert command(monkeypatch, "show", folder) == 0

@@ -19,7 +19,7 @@ def certificate_remarks(data: xr.Dataset) -> list[str]:
     corrected = data.attrs.get("corrected_eigensolutions", 0)
     out.append(
         f"reduced basis from {data.attrs['full_eigensolutions'] - predicted} full eigensolutions "
-        f"and {corrected} by conjugate gradients with their factors: relative errors of "
+        f"and {corrected} corrected with their factors: relative errors of "
         f"eigenvalues up to {worst:.1e} (estimated; tolerance {tolerance:.0e}), of "
         f"shapes up to {float(data['shape_error'].max()):.1e}"
     )
@@ -48,7 +48,7 @@ def cost_lines(counts: Counts) -> list[str]:
     ]
     if counts.corrected:
         out.append(
-            f"{counts.corrected} by conjugate gradients, and derivatives, "
+            f"{counts.corrected} corrected with their factors, and derivatives, "
             f"in {counts.corrected_time:.3g} s"
         )
     if counts.reduced:

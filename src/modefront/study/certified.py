@@ -38,9 +38,6 @@ POOR = 1e-3
 ROUNDS = 8
 """Rounds, after which the tolerance is given up."""
 
-AIM = 0.1
-"""Error over the tolerance that snapshots aim at: parameters are in error by the root of it."""
-
 AHEAD = 4
 """Snapshots between two rounds at most, each of one or more models."""
 
@@ -211,18 +208,14 @@ def _take(problem: UpdatingProblem, model: ReducedModel, at: Snap) -> list[Solut
 def _snap(model: ReducedModel, probed: Sequence[Solution]) -> Snap | None:
     """Return the snapshot that some models want, the worst ones first, of modes up to the last one.
 
-    Those of the worst one have derivatives where it is not within the tolerance. None where all
-    are well within it, or where there are snapshots already.
+    None where all are within the tolerance, or where there are snapshots already.
     """
     there = {theta.tobytes() for one in model.snapshots for theta, _ in one.models}
-    wanted = [
-        one for one in probed if _error(one) > AIM * model.tolerance and _key(one) not in there
-    ]
+    wanted = [one for one in probed if _error(one) > model.tolerance and _key(one) not in there]
     if not wanted:
         return None
     modes = max(int(_paired(one).max()) + 1 for one in wanted)
-    derivatives = _error(wanted[0]) > model.tolerance
-    return Snap(np.array([one.at.theta for one in wanted]), modes, derivatives)
+    return Snap(np.array([one.at.theta for one in wanted]), modes)
 
 
 def _probe(model: ReducedModel, front: Front) -> list[Solution]:

@@ -109,7 +109,7 @@ def empty(pencil: Pencil, first: Snapshot) -> Basis:
         DenseAffine(np.zeros((A.terms.shape[1], 0, 0)), A.coefficients)
         for A in (pencil.K, pencil.M)
     )
-    return Basis((np.zeros((pencil.size, 0)),), K, M, first.theta, first.below.sigma)
+    return Basis((), K, M, first.theta, first.below.sigma)
 
 
 def extended(

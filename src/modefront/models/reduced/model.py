@@ -59,24 +59,20 @@ class Snap:
     Attributes
     ----------
     theta : (p,) parameters of the model, or (models, p)
-    modes : how many modes are wanted
-    derivatives : whether the derivatives of those of the first model are wanted as well
+    modes : how many modes are wanted, of the first model with their derivatives
     """
 
     theta: Floats
     modes: int
-    derivatives: bool = True
 
     @property
     def models(self) -> list[tuple[Floats, bool]]:
         """The parameters of each model and whether derivatives are wanted there."""
-        thetas = enumerate(np.atleast_2d(self.theta))
-        return [(theta, self.derivatives and k == 0) for k, theta in thetas]
+        return [(theta, k == 0) for k, theta in enumerate(np.atleast_2d(self.theta))]
 
     def same(self, other: Snap) -> bool:
         """Return whether it is the same snapshot."""
-        same = (self.modes, self.derivatives) == (other.modes, other.derivatives)
-        return same and np.array_equal(self.theta, other.theta)
+        return self.modes == other.modes and np.array_equal(self.theta, other.theta)
 
 
 @dataclass(frozen=True)
