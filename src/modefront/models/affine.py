@@ -34,7 +34,6 @@ ROWS = 2**15
 FEW = 2**10
 """Rows that are added at once, which stay in the cache."""
 
-
 SPARSE = 1.5
 """Rows of zeros that are rather added than the others copied, over these."""
 

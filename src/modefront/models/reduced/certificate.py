@@ -132,7 +132,7 @@ def _with_solutions(
     X = space.combine(np.hstack([one.Y for _, one in models]))
     R = residuals(pencil, thetas, lam, X)
     Z = factor.below.factor.solve(R)
-    energy = np.einsum("nc,nc->c", R, Z)
+    energy = np.maximum(np.einsum("nc,nc->c", R, Z), 0.0)
     unit = np.divide(1.0, np.sqrt(energy), out=np.zeros_like(energy), where=energy > 0)
     R *= unit
     Z *= unit
