@@ -227,7 +227,7 @@ def line(
     out["error"] = float(data_of["eigenvalue_error"].max())
     out["converged"] = float(data_of["converged"].mean())
     alone = reduced_model(full, count)
-    nominal = alone.certify(asked(data_of), quick=True)
+    nominal = alone.certify(asked(data_of))
     out["error_nominal"] = max(float(one.eigenvalue.max()) for one in nominal)
     out |= {name: value for name, value in vars(model.counts).items() if name.endswith("_time")}
     if exact:

@@ -146,7 +146,7 @@ def test_a_few_full_solutions_are_enough_and_all_models_hold(whole: xr.Dataset) 
     assert float(whole["eigenvalue_error"].max()) <= whole.attrs["eigenvalue_tolerance"] == 1e-8
     assert whole.attrs["full_eigensolutions"] == 1
     assert whole.attrs["factorisations"] <= 4, "two of the snapshot, others where modes may miss"
-    assert 4 < whole.attrs["corrected_eigensolutions"] < 10, "four of them at the bounds"
+    assert 4 < whole.attrs["corrected_eigensolutions"] <= 10, "four of them at the bounds"
     assert whole.attrs["reduced_solutions"] > 100
     total = whole.attrs["full_eigensolutions"] + whole.attrs["reduced_solutions"]
     assert whole.attrs["model_evaluations"] == total

@@ -1,11 +1,11 @@
 r"""The work of a study on a reduced model, until every reported model holds in the full one.
 
-A round does all of the work in the basis at hand and estimates the errors of the modes of those
-models that are the farthest from all snapshots. Where an estimate exceeds the tolerance, a snapshot
-is taken there, and another one where the known models would need it next, before the next round
-starts from what is known; otherwise every model that is reported gets its certificate. Minima that
-cannot be the best ones, whatever their errors are, need not hold. As long as an estimate is poor,
-a basis that bad may have led astray: after a single snapshot the global search is repeated.
+A round does all of the work in the basis at hand. Then snapshots are taken of those models that are
+the farthest from all others, as long as they lack more than a tenth of the tolerance, and the next
+round starts from what is known. Where they do not, every model that is reported gets its certificate, and
+where one is above the tolerance, a snapshot is taken there. Minima that cannot be the best ones,
+whatever their errors are, need not hold. As long as the basis is poor, it may have led astray:
+after a single snapshot the global search is repeated.
 
 Every round's pieces of work have names of their own, and its snapshots are among them, so that an
 interrupted run goes on with the same digits.
@@ -38,12 +38,15 @@ POOR = 1e-3
 ROUNDS = 8
 """Rounds, after which the tolerance is given up."""
 
-AHEAD = 4
+AHEAD = 5
 """Snapshots between two rounds at most, each of one or more models."""
 
-PROBED = 3
-"""Models of which the errors are estimated on the way, those farthest from all snapshots; and of
-which a snapshot is taken at most."""
+MODELS = 6
+"""Models of which a snapshot is taken together, at most."""
+
+AIM = 0.1
+"""Error, over the tolerance, below which models need no snapshot on the way; derivatives of modes,
+and with them the parameters, are less exact than eigenvalues."""
 
 ERRORS = ("eigenvalue_error", "shape_error")
 """Names under which the estimates are kept with a solution."""
@@ -82,33 +85,38 @@ def certified_front(
     if not isinstance(model, ReducedModel):
         return work(checkpoint=checkpoint, expect=expect, known=None)
     model.restart()
+    done = 0
+
+    def counted(name: str, compute: Callable[[], Solutions]) -> Solutions:
+        nonlocal done
+        solutions = checkpoint(name, compute)
+        done += 1
+        return solutions
+
     front: Front | None = None
-    expected, at, error = 0, model.first, np.inf
+    taken = _take_some(problem, model, "first", model.first, None, counted)
     for number in range(1, ROUNDS + 1):
-        here = _Round(checkpoint, number)
-        known = front if error <= POOR else None
-        snapshots = _take_some(problem, model, at, known, here)
-        if not snapshots.count:
+        if not taken.added:
             break
-        base = expected + 2 * AHEAD
-
-        def more(pieces: int, base: int = base) -> None:
-            nonlocal expected
-            expected = base + pieces
-            expect(expected)
-
-        front = work(checkpoint=here, expect=more, known=known)
-        probed = here("probe", partial(_probe, model, front))
-        if _error(probed[0]) <= model.tolerance:
-            front = _with_errors(model, front, here)
-            needed = {_key(one): one for one in [*_of_the_front(front), *_rivals(problem, front)]}
-            probed = sorted(needed.values(), key=_error, reverse=True)[:PROBED]
-            if _error(probed[0]) <= model.tolerance:
-                return front
-        error, wanted = _error(probed[0]), _snap(model, probed)
-        if snapshots.full or not wanted:
+        here = _Round(counted, number)
+        front = work(
+            checkpoint=here,
+            expect=lambda pieces: expect(done + pieces),
+            known=front if taken.error <= POOR else None,
+        )
+        if taken.full:
             break
-        at = wanted
+        if not taken.enough:
+            taken = _take_some(problem, model, "ahead", _farthest(model, front), front, here)
+            if not taken.enough or taken.added:
+                continue
+        front = _with_errors(model, front, here)
+        needed = {_key(one): one for one in [*_of_the_front(front), *_rivals(problem, front)]}
+        wrong = [one for one in needed.values() if _error(one) > model.tolerance]
+        if not wrong:
+            return front
+        worst = _snap(sorted(wrong, key=_error, reverse=True)[:MODELS], 0.0)
+        taken = _take_some(problem, model, "worst", worst, front, here)
     if front is None:
         raise UnfinishedError("the model cannot be solved at the nominal parameters")
     return _with_errors(model, front, checkpoint)
@@ -163,66 +171,75 @@ def certificate_variables(
 class _Taken:
     """What taking snapshots has led to.
 
-    ``count`` of them were taken; ``full`` says that there is no room for more.
+    Attributes
+    ----------
+    error : the greatest relative error of an eigenvalue that the first of them found
+    added : whether they added anything to the basis
+    enough : whether the last one found nothing to add
+    full : whether there is no room for more
     """
 
-    count: int
-    full: bool = False
+    error: float
+    added: bool
+    enough: bool
+    full: bool
 
 
 def _take_some(
-    problem: UpdatingProblem, model: ReducedModel, at: Snap, front: Front | None, here: Checkpoint
+    problem: UpdatingProblem,
+    model: ReducedModel,
+    name: str,
+    at: Snap,
+    front: Front | None,
+    here: Checkpoint,
 ) -> _Taken:
     """Take a snapshot, and others where a front from which it goes on would need them next."""
+    error, added = np.inf, False
     for count in range(AHEAD):
         before = model.snapshots
-        taken = here(f"snapshot-{count + 1}", partial(_take, problem, model, at))
+        taken = here(f"snapshot-{name}-{count + 1}", partial(_take, problem, model, at))
         if not taken:
-            return _Taken(count)
+            return _Taken(error, added, enough=False, full=False)
         model.resume([*before, at])
-        full = int(taken[0].at.quantities["columns"][0]) >= model.capacity
-        if front is None or full:
-            return _Taken(count + 1, full)
-        probed = here(f"ahead-{count + 1}", partial(_probe, model, front))
-        wanted = _snap(model, probed)
-        if not wanted:
-            return _Taken(count + 1)
-        at = wanted
-    return _Taken(AHEAD)
+        found = {what: float(x[0]) for what, x in taken[0].at.quantities.items()}
+        error = found["error"] if count == 0 else error
+        if found["error"] < at.enough:
+            return _Taken(error, added, enough=True, full=False)
+        added = added or found["added"] > 0
+        full = found["columns"] >= model.capacity
+        if front is None or full or error > POOR or not found["added"]:
+            return _Taken(error, added, enough=False, full=full)
+        at = _farthest(model, front)
+    return _Taken(error, added, enough=False, full=False)
 
 
 def _take(problem: UpdatingProblem, model: ReducedModel, at: Snap) -> list[Solution]:
-    """Take a snapshot and keep its theta and the columns that the basis then has.
+    """Take a snapshot and keep the error that it found and how many columns it led to.
 
     Nothing is returned where the model cannot be solved there.
     """
+    before = model.columns if model.snapshots else 0
     try:
-        model.take(at)
+        error = model.take(at)
     except ModelError:
         return []
-    kept = {"columns": np.array([model.columns])}
-    theta = at.models[0][0]
+    found = {"error": error, "columns": model.columns, "added": model.columns - before}
+    kept = {name: np.array([float(value)]) for name, value in found.items()}
+    theta = at.models[0]
     return [begin(replace(infeasible(theta, len(problem.objectives)), quantities=kept))]
 
 
-def _snap(model: ReducedModel, probed: Sequence[Solution]) -> Snap | None:
-    """Return the snapshot that some models want, the worst ones first, of modes up to the last one.
-
-    None where all are within the tolerance, or where there are snapshots already.
-    """
-    there = {theta.tobytes() for one in model.snapshots for theta, _ in one.models}
-    wanted = [one for one in probed if _error(one) > model.tolerance and _key(one) not in there]
-    if not wanted:
-        return None
-    modes = max(int(_paired(one).max()) + 1 for one in wanted)
-    return Snap(np.array([one.at.theta for one in wanted]), modes)
+def _snap(solutions: Sequence[Solution], enough: float) -> Snap:
+    """Return the snapshot of some models, of modes up to the last one that is paired."""
+    modes = max(int(_paired(one).max()) + 1 for one in solutions)
+    return Snap(np.array([one.at.theta for one in solutions]), modes, enough)
 
 
-def _probe(model: ReducedModel, front: Front) -> list[Solution]:
-    """Return the models that are the farthest from all snapshots, the worst ones first."""
+def _farthest(model: ReducedModel, front: Front) -> Snap:
+    """Return the snapshot of the models that are the farthest from all others."""
     distinct = list({_key(one): one for one in _of_the_front(front)}.values())
     ranked = sorted(distinct, key=lambda one: model.distance(one.at.theta), reverse=True)
-    return sorted(_certified(model, ranked[:PROBED], quick=True), key=_error, reverse=True)
+    return _snap(ranked[:MODELS], AIM * model.tolerance)
 
 
 def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> Front:
@@ -244,16 +261,11 @@ def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> F
     )
 
 
-def _certified(
-    model: ReducedModel, solutions: Sequence[Solution], *, quick: bool = False
-) -> list[Solution]:
-    """Return solutions with the errors of the modes that are paired with measured ones.
-
-    None of these is missing unnoticed, unless the certificates are ``quick``.
-    """
+def _certified(model: ReducedModel, solutions: Sequence[Solution]) -> list[Solution]:
+    """Return solutions with the errors of the modes that are paired with measured ones."""
     paired = [np.unique(_paired(one), return_inverse=True) for one in solutions]
     asked = [(one.at.theta, wanted) for one, (wanted, _) in zip(solutions, paired, strict=True)]
-    certificates = model.certify(asked, quick=quick)
+    certificates = model.certify(asked)
     found = []
     for one, certificate, (_, place) in zip(solutions, certificates, paired, strict=True):
         errors = (certificate.eigenvalue[place], certificate.shape[place])

@@ -124,24 +124,32 @@ def extended(
         theta = np.tile(basis.theta, (X.shape[1], 1))
         return residuals(pencil, theta, np.full(X.shape[1], basis.sigma), X)
 
-    if not basis.columns:
-        return joined(pencil, basis, vectors, A(vectors), shortest, capacity)
     AX = A(vectors)
-    W = vectors - basis.combine(np.vstack([gram(block, AX) for block in basis.blocks]))
-    return joined(pencil, basis, W, A(W), shortest, capacity)
+    W = vectors
+    if basis.columns:
+        W = vectors - basis.combine(np.vstack([gram(block, AX) for block in basis.blocks]))
+        AX = A(W)
+    space = joined(pencil, basis, W, AX, shortest, capacity)
+    n, m = basis.columns, space.columns - basis.columns
+    return _kept(basis, space, np.vstack([np.zeros((n, m)), np.eye(m)])) if m else basis
 
 
 def joined(
-    pencil: Pencil, basis: Basis, W: Floats, AW: Floats, shortest: float, capacity: int
+    pencil: Pencil,
+    basis: Basis,
+    W: Floats,
+    AW: Floats,
+    shortest: float,
+    capacity: int | None = None,
 ) -> Basis:
-    """Return the basis with some vectors W (N, m), given A W, that are orthogonal to it in A.
+    """Return a space of the basis and some vectors W (N, m), given A W, that are orthogonal to it.
 
-    What is added is orthonormal in spite of rounding, and otherwise as in `extended`. Of the
+    What is added is orthonormal but for rounding in W, and otherwise as in `extended`. Of the
     projected matrices only the new rows and columns are computed.
     """
-    n = basis.columns
+    room = W.shape[1] if capacity is None else capacity - basis.columns
     squares, U = np.linalg.eigh(gram(W, AW))
-    there = np.flatnonzero(squares > shortest**2)[::-1][: capacity - n]
+    there = np.flatnonzero(squares > shortest**2)[::-1][:room]
     if not there.size:
         return basis
     W = combine(W, U[:, there] / np.sqrt(squares[there]))
@@ -150,14 +158,7 @@ def joined(
         _bordered(reduced, full.project(blocks, W))
         for full, reduced in ((pencil.K, basis.K), (pencil.M, basis.M))
     )
-    A = replace(basis, K=K, M=M).A
-    inside = A[:n, n:]
-    squares, U = np.linalg.eigh(A[n:, n:] - inside.T @ inside)
-    U /= np.sqrt(squares)
-    turn = np.vstack([-inside @ U, U])
-    W = combine_all(blocks, turn)
-    K, M = (_turned(one, n, turn) for one in (K, M))
-    return replace(basis, blocks=(*basis.blocks, W), K=K, M=M)
+    return replace(basis, blocks=blocks, K=K, M=M)
 
 
 def trimmed(basis: Basis, space: Basis, vectors: Floats, shortest: float, capacity: int) -> Basis:
@@ -165,15 +166,23 @@ def trimmed(basis: Basis, space: Basis, vectors: Floats, shortest: float, capaci
 
     ``vectors`` (columns of the space, m) are left out in part as in `extended`.
     """
-    n, known = basis.columns, len(basis.blocks)
+    n = basis.columns
     U, lengths, _ = np.linalg.svd(vectors[n:], full_matrices=False)
     U = U[:, lengths > shortest][:, : capacity - n]
-    if not U.size:
-        return basis
-    turn = np.vstack([np.zeros((n, U.shape[1])), U])
+    return _kept(basis, space, np.vstack([np.zeros((n, U.shape[1])), U])) if U.size else basis
+
+
+def _kept(basis: Basis, space: Basis, turn: Floats) -> Basis:
+    """Return the basis with ``turn`` (columns, m) of a space whose first columns it is.
+
+    What is added is orthonormal in spite of rounding.
+    """
+    n, A = basis.columns, space.A
+    turn[:n] -= A[:n] @ turn
+    squares, U = np.linalg.eigh(turn.T @ A @ turn)
+    turn = turn @ (U / np.sqrt(squares))
     K, M = (_turned(one, n, turn) for one in (space.K, space.M))
-    outside = replace(space, blocks=space.blocks[known:])
-    return replace(basis, blocks=(*basis.blocks, outside.combine(U)), K=K, M=M)
+    return replace(basis, blocks=(*basis.blocks, space.combine(turn)), K=K, M=M)
 
 
 def residuals(pencil: Pencil, thetas: Floats, lam: Floats, X: Floats) -> Floats:

@@ -136,7 +136,7 @@ def _with_solutions(
     unit = np.divide(1.0, np.sqrt(energy), out=np.zeros_like(energy), where=energy > 0)
     R *= unit
     Z *= unit
-    return factor.extend(pencil, space, Z, R, np.sqrt(SHARE), pencil.size)
+    return factor.extend(pencil, space, Z, R, np.sqrt(SHARE))
 
 
 def _judged(space: Basis, n: int, of: Asked) -> _Judged:

@@ -27,8 +27,9 @@ Sources: Sleijpen & Van der Vorst 1996, doi:10.1137/S0895479894270427 (correctio
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from functools import partial
 from typing import Protocol
 
 import numpy as np
@@ -54,18 +55,20 @@ STEPS = 30
 
 @dataclass(frozen=True)
 class Wanted:
-    """How exactly a basis is to know a model.
+    """How exactly a basis is to know models.
 
     Attributes
     ----------
     share : what is left over all that was lacking
     shortest : length of the directions that are too short to matter, in energy
     capacity : columns that the basis may have
+    enough : relative error of eigenvalues below which a model is left as it is
     """
 
     share: float
     shortest: float
     capacity: int
+    enough: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,90 +85,90 @@ class Factor:
         solutions: Floats,
         right: Floats,
         shortest: float,
-        capacity: int,
     ) -> Basis:
-        """Return a space with solutions (N, m) for residuals that are orthogonal to it."""
+        """Return a space with solutions (N, m) for residuals that are orthogonal to it.
+
+        Rounding may leave its columns a little less than orthonormal.
+        """
         if np.array_equal(space.theta, self.theta) and space.sigma == self.below.sigma:
-            return joined(pencil, space, solutions, right, shortest, capacity)
-        return extended(pencil, space, solutions, shortest, capacity)
+            return joined(pencil, space, solutions, right, shortest)
+        return extended(pencil, space, solutions, shortest, pencil.size)
 
 
-class _Sought(Protocol):
-    """Modes or derivatives of them, scaled by their energy, each at one of thetas (m, p)."""
+class _Found(Protocol):
+    """Modes or derivatives of them as a space has them, of unit energy, in columns."""
 
     @property
-    def thetas(self) -> Floats:
-        """Parameters of each, (m, p)."""
+    def Y(self) -> Floats:
+        """Their coordinates, (n, m)."""
 
-    def coordinates(self, space: Basis) -> Floats:
-        """Return what is sought as the reduced problem has it (n, m)."""
+    @property
+    def lam(self) -> Floats:
+        """The eigenvalue of the mode of each, (m,)."""
 
-    def residuals(self, space: Basis, some: Ints) -> Floats:
+    def residuals(self, some: Ints) -> Floats:
         """Return residuals r (N, some)."""
 
 
 @dataclass(frozen=True, eq=False)
 class _Modes:
+    """The lowest modes of several models, those of the first one first."""
+
     pencil: Pencil
-    models: Sequence[Floats]
-    count: int
+    space: Basis
+    thetas: Floats
+    Y: Floats
+    lam: Floats
 
-    @property
-    def thetas(self) -> Floats:
-        return np.repeat(self.models, self.count, axis=0)
+    def residuals(self, some: Ints) -> Floats:
+        X = self.space.combine(self.Y[:, some])
+        return residuals(self.pencil, self.thetas[some], self.lam[some], X)
 
-    def coordinates(self, space: Basis) -> Floats:
-        return self._reduced(space)[0]
 
-    def residuals(self, space: Basis, some: Ints) -> Floats:
-        Y, lam = self._reduced(space)
-        return residuals(self.pencil, self.thetas[some], lam[some], space.combine(Y[:, some]))
-
-    def _reduced(self, space: Basis) -> tuple[Floats, Floats]:
-        """Return modes (n, m) of unit energy, and their eigenvalues (m,)."""
-        found = [dense.decompose(space.K.at(at), space.M.at(at)) for at in self.models]
-        lam = np.concatenate([one.lam[: self.count] for one in found])
-        Y = np.hstack([one.Phi[:, : self.count] for one in found])
-        return Y / np.sqrt(lam - space.sigma), lam
+def _modes(pencil: Pencil, models: Sequence[Floats], count: int, space: Basis) -> _Modes:
+    found = [dense.decompose(space.K.at(at), space.M.at(at)) for at in models]
+    lam = np.concatenate([one.lam[:count] for one in found])
+    Y = np.hstack([one.Phi[:, :count] for one in found]) / np.sqrt(lam - space.sigma)
+    return _Modes(pencil, space, np.repeat(models, count, axis=0), Y, lam)
 
 
 @dataclass(frozen=True, eq=False)
 class _Derivatives:
+    """Derivatives of some modes by each parameter, over ``unit``, those of the first mode first."""
+
     pencil: Pencil
+    space: Basis
     theta: Floats
-    count: int
-    half_range: Floats
+    modes: Floats
+    Y: Floats
+    lam: Floats
+    dlam: Floats
+    unit: Floats
 
-    @property
-    def thetas(self) -> Floats:
-        return np.tile(self.theta, (self.count * self.theta.size, 1))
-
-    def coordinates(self, space: Basis) -> Floats:
-        return self._reduced(space)[0]
-
-    def residuals(self, space: Basis, some: Ints) -> Floats:
-        dY, Y, lam, dlam, unit = self._reduced(space)
-        dY, dlam, lam, unit = dY[:, some], dlam[some], lam[some], unit[some]
-        modes, of = np.unique(some // self.theta.size, return_inverse=True)
-        pencil, thetas = self.pencil, self.thetas[some]
-        R = pencil.M.each(thetas, space.combine(-dY * lam - Y[:, modes[of]] * (unit * dlam)))
-        R += pencil.K.each(thetas, space.combine(dY))
-        Phi, column = space.combine(Y[:, modes]), of * self.theta.size + some % self.theta.size
+    def residuals(self, some: Ints) -> Floats:
+        lam, dlam, unit, p = self.lam[some], self.dlam[some], self.unit[some], self.theta.size
+        modes, of = np.unique(some // p, return_inverse=True)
+        pencil, thetas = self.pencil, np.tile(self.theta, (some.size, 1))
+        dX, X = self.space.combine(self.Y[:, some]), self.space.combine(self.modes[:, modes])
+        R = pencil.M.each(thetas, -lam * dX - unit * dlam * X[:, of])
+        R += pencil.K.each(thetas, dX)
         for A, factor in ((pencil.K, unit), (pencil.M, -lam * unit)):
             if A.coefficients.exponents.any():
-                forces = A.derivatives_times(self.theta, Phi).reshape(len(Phi), -1)
-                R += forces[:, column] * factor
+                forces = A.derivatives_times(self.theta, X).reshape(len(X), -1)
+                R += forces[:, of * p + some % p] * factor
         return R
 
-    def _reduced(self, space: Basis) -> tuple[Floats, Floats, Floats, Floats, Floats]:
-        """Return derivatives (n, m) over their units, modes (n, count), lam, dlam, units (m,)."""
-        theta, count = self.theta, self.count
-        ritz = dense.decompose(space.K.at(theta), space.M.at(theta))
-        dlam, dY, _ = dense.nelson(space.K, space.M, theta, ritz, count)
-        lam = np.repeat(ritz.lam[:count], theta.size)
-        unit = np.tile(self.half_range, count) / np.sqrt(lam - space.sigma)
-        dY = dY[:, :count].reshape(space.columns, -1) * unit
-        return dY, ritz.Phi[:, :count], lam, dlam[:count].ravel(), unit
+
+def _derivatives(
+    pencil: Pencil, theta: Floats, count: int, half_range: Floats, space: Basis
+) -> _Derivatives:
+    ritz = dense.decompose(space.K.at(theta), space.M.at(theta))
+    dlam, dY, _ = dense.nelson(space.K, space.M, theta, ritz, count)
+    lam = np.repeat(ritz.lam[:count], theta.size)
+    unit = np.tile(half_range, count) / np.sqrt(lam - space.sigma)
+    dY = dY[:, :count].reshape(space.columns, -1) * unit
+    modes, dlam = ritz.Phi[:, :count], dlam[:count].ravel()
+    return _Derivatives(pencil, space, theta, modes, dY, lam, dlam, unit)
 
 
 def with_modes(
@@ -175,19 +178,24 @@ def with_modes(
     thetas: Sequence[Floats],
     count: int,
     wanted: Wanted,
-) -> Basis | None:
+) -> tuple[Basis, Floats] | None:
     """Return the basis with what the ``count`` lowest modes at some parameters lack in it.
 
-    None where that would take too many steps.
+    Returned as well are the relative errors (thetas,) that the eigenvalues had at the worst, as
+    the first step tells. None where it would take too many steps.
     """
     width = max(1, together(pencil.size) // count)
+    errors = []
     for first in range(0, len(thetas), width):
-        sought = _Modes(pencil, thetas[first : first + width], count)
-        found = _with(pencil, basis, factor, sought, np.arange(len(sought.thetas)), wanted)
+        some = thetas[first : first + width]
+        columns = np.arange(len(some) * count).reshape(-1, count)
+        sought = partial(_modes, pencil, some, count)
+        found = _with(pencil, basis, factor, sought, columns, wanted)
         if found is None:
             return None
-        basis = found
-    return basis
+        basis, lacking = found
+        errors.append(lacking)
+    return basis, np.concatenate(errors)
 
 
 def with_derivatives(
@@ -204,34 +212,51 @@ def with_derivatives(
     The modes themselves must be in it. Derivatives are over ``half_range`` (p,). They need not be
     exact to be of use.
     """
-    sought = _Derivatives(pencil, theta, count, half_range)
+    sought = partial(_derivatives, pencil, theta, count, half_range)
     columns, width = count * theta.size, together(pencil.size)
     for first in range(0, columns, width):
         some = np.arange(first, min(first + width, columns))
-        basis = _with(pencil, basis, factor, sought, some, wanted) or basis
+        found = _with(pencil, basis, factor, sought, some[None], wanted)
+        basis = found[0] if found else basis
     return basis
 
 
 def _with(
-    pencil: Pencil, basis: Basis, factor: Factor, sought: _Sought, columns: Ints, wanted: Wanted
-) -> Basis | None:
-    """Return the basis with some columns of what is sought, or None where that takes too long."""
-    space, active = basis, columns
-    total, last = np.zeros((2, len(sought.thetas)))
+    pencil: Pencil,
+    basis: Basis,
+    factor: Factor,
+    sought: Callable[[Basis], _Found],
+    columns: Ints,
+    wanted: Wanted,
+) -> tuple[Basis, Floats] | None:
+    """Return the basis with some of what is sought, or None where that takes too long.
+
+    Each row of ``columns`` (models, some) is of one model. Returned as well are the errors of
+    eigenvalues that the models had (models,).
+    """
+    space, active, errors = basis, columns.ravel(), None
+    found = sought(space)
+    total, last = np.zeros((2, found.lam.size))
     for _ in range(STEPS):
-        R = sought.residuals(space, active)
+        R = found.residuals(active)
         Z = factor.below.factor.solve(R)
         worth = np.einsum("nc,nc->c", R, Z)
-        space = factor.extend(pencil, space, Z, R, wanted.shortest, pencil.size)
+        space = factor.extend(pencil, space, Z, R, wanted.shortest)
+        before, found = found, sought(space)
+        if errors is None:
+            gain = (before.lam - found.lam) / (found.lam - space.sigma)
+            errors = np.maximum(gain[columns].max(axis=1), 0.0)
+            columns = columns[errors >= wanted.enough]
         total[active] += worth
         ratio = np.full(worth.shape, SLOWEST)
         np.divide(worth, last[active], out=ratio, where=last[active] > 0)
         left = worth * np.minimum(ratio, SLOWEST)
         last[active] = worth
         active = active[left > np.maximum(wanted.share * total[active], wanted.shortest**2)]
+        active = active[np.isin(active, columns)]
         if not active.size:
-            Y = sought.coordinates(space)[:, columns]
-            return trimmed(basis, space, Y, wanted.shortest, wanted.capacity)
+            Y = found.Y[:, columns.ravel()]
+            return trimmed(basis, space, Y, wanted.shortest, wanted.capacity), errors
     return None
 
 

@@ -56,23 +56,28 @@ MEMORY = 4.0
 class Snap:
     """Where a snapshot is to be taken, at one model or at several together.
 
+    Derivatives are those of the model of which the basis knows the least.
+
     Attributes
     ----------
     theta : (p,) parameters of the model, or (models, p)
-    modes : how many modes are wanted, of the first model with their derivatives
+    modes : how many modes are wanted
+    enough : relative error of eigenvalues below which a model is left as it is
     """
 
     theta: Floats
     modes: int
+    enough: float = 0.0
 
     @property
-    def models(self) -> list[tuple[Floats, bool]]:
-        """The parameters of each model and whether derivatives are wanted there."""
-        return [(theta, k == 0) for k, theta in enumerate(np.atleast_2d(self.theta))]
+    def models(self) -> list[Floats]:
+        """The parameters of each model."""
+        return list(np.atleast_2d(self.theta))
 
     def same(self, other: Snap) -> bool:
         """Return whether it is the same snapshot."""
-        return self.modes == other.modes and np.array_equal(self.theta, other.theta)
+        alike = self.modes == other.modes and self.enough == other.enough
+        return alike and np.array_equal(self.theta, other.theta)
 
 
 @dataclass(frozen=True)
@@ -85,12 +90,13 @@ class Complete:
 
 @dataclass(frozen=True)
 class _Taken:
-    """A snapshot and what it took."""
+    """A snapshot, what it took, and the error that it found."""
 
     what: Snap
     solved: int
     corrected: int
     factorisations: int
+    error: float
 
 
 @dataclass(frozen=True)
@@ -214,8 +220,12 @@ class ReducedModel:
         """Use these snapshots, which were counted before; they are computed when needed."""
         self._wanted = tuple(snapshots)
 
-    def take(self, what: Snap) -> None:
-        """Add a snapshot. Raises ModelError where the model has no modes there."""
+    def take(self, what: Snap) -> float:
+        """Add a snapshot and return the greatest relative error of an eigenvalue before it.
+
+        The error is an estimate, and infinite where the model had to be solved in full. Raises
+        ModelError where the model has no modes there.
+        """
         before = self._wanted
         self._wanted = (*before, what)
         try:
@@ -227,6 +237,7 @@ class ReducedModel:
             counts.eigenproblems += last.solved
             counts.corrected += last.corrected
             counts.factorisations += last.factorisations
+        return last.error
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
@@ -243,21 +254,15 @@ class ReducedModel:
     def distance(self, theta: Floats) -> float:
         """Return how far the nearest snapshot is, over the ranges of the parameters."""
         span = self.upper - self.lower
-        there = [at for one in self._wanted for at, _ in one.models]
+        there = [at for one in self._wanted for at in one.models]
         return float(min(np.linalg.norm((theta - at) / span) for at in there))
 
-    def certify(
-        self,
-        asked: Sequence[tuple[Floats, Ints]],
-        *,
-        quick: bool = False,
-    ) -> list[Certificate]:
+    def certify(self, asked: Sequence[tuple[Floats, Ints]]) -> list[Certificate]:
         """Return how wrong modes are at some parameters; see `Certificate`.
 
         ``asked`` are theta (p,) and the modes wanted there, counted from 0. Their errors are
         infinite where a mode below them is missing. That is looked for by a factorisation where it
-        is in doubt, and what it proves speaks for the other models nearby. ``quick`` certificates
-        do not look for missing modes, and extend the basis only once.
+        is in doubt, and what it proves speaks for the other models nearby.
         """
         space, before = self._ready().space, self.full.counts.factorisations
         started = time.perf_counter()
@@ -267,7 +272,7 @@ class ReducedModel:
         found: list[Certificate] = []
         for first in range(0, len(asked), width):
             some = asked[first : first + width]
-            models = [self._asked(space, *one, quick, proofs) for one in some]
+            models = [self._asked(space, *one, proofs) for one in some]
             there = [one for one in models if one is not None]
             known = iter(estimates(self.full.pencil, space.basis, space.factor, there))
             found += [
@@ -280,14 +285,14 @@ class ReducedModel:
         return found
 
     def _asked(
-        self, space: _Space, theta: Floats, wanted: Ints, quick: bool, proofs: list[Complete]
+        self, space: _Space, theta: Floats, wanted: Ints, proofs: list[Complete]
     ) -> Asked | None:
         """Return the Ritz pairs that a certificate is of; None where modes are missing."""
         basis = space.basis
         ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        if not quick and self._misses(basis, theta, ritz.lam, int(wanted.max()), proofs):
+        if self._misses(basis, theta, ritz.lam, int(wanted.max()), proofs):
             return None
-        near = quick or window.condition(basis.K, theta, space.factor.theta) <= NEAR
+        near = window.condition(basis.K, theta, space.factor.theta) <= NEAR
         return Asked(theta, wanted, ritz.lam[wanted], ritz.Phi[:, wanted], near)
 
     def _misses(
@@ -333,34 +338,33 @@ class ReducedModel:
         """Compute another snapshot: with the factor at hand, or with factors of its own."""
         taken = self._state.taken if self._state else ()
         before = self.full.counts.factorisations
-        rest, solved, corrected = what.models, 0, 0
-        if self._state:
-            space = self._state.space
-        else:
-            space, corrected = self._solved(None, (), *rest[0], what.modes)
-            rest, solved = rest[1:], 1
+        rest, solved, corrected, error = what.models, 0, 0, 0.0
+        space = self._state.space if self._state else None
+        if not space:
+            space, corrected = self._solved(None, (), rest.pop(0), what.modes)
+            solved, error = 1, np.inf
         while rest:
-            found = self._corrected(space, rest, what.modes)
+            found = self._corrected(space, rest, what)
             if found:
-                space, others = found
-                corrected += len(rest) - len(others)
-                rest = others
+                space, errors, rest = found
+                corrected += int((errors >= what.enough).sum())
+                error = max(error, float(errors.max()))
                 continue
             known, proofs = space.basis, space.proofs
             del space
             self._state = None  # its factor makes room for those of the snapshot
-            space, _ = self._solved(known, proofs, *rest[0], what.modes)
-            rest, solved = rest[1:], solved + 1
+            space, _ = self._solved(known, proofs, rest.pop(0), what.modes)
+            solved, error = solved + 1, np.inf
         cost = self.full.counts.factorisations - before
         sensed = np.hstack([self.full.selection @ block for block in space.basis.blocks])
-        self._state = _State((*taken, _Taken(what, solved, corrected, cost)), space, sensed)
+        last = _Taken(what, solved, corrected, cost, error)
+        self._state = _State((*taken, last), space, sensed)
 
     def _solved(
         self,
         known: Basis | None,
         proofs: tuple[Complete, ...],
         theta: Floats,
-        derivatives: bool,
         modes: int,
     ) -> tuple[_Space, int]:
         """Return the space with the modes of a full solution, and how many others came with it."""
@@ -372,39 +376,39 @@ class ReducedModel:
         solved = time.perf_counter()
         self.counts.full_time += solved - started
         factor = Factor(theta, one.below)
-        if derivatives:
-            basis = self._with_derivatives(basis, factor, theta, modes)
+        basis = self._with_derivatives(basis, factor, theta, modes)
         bounds = [] if known else self._bounds(basis, theta, one.below.sigma)
         basis = self._at_bounds(basis, factor, bounds)
         self.counts.corrected_time += time.perf_counter() - solved
         return _Space(basis, factor, (*proofs, Complete(theta, one.beyond))), len(bounds)
 
     def _corrected(
-        self, space: _Space, models: list[tuple[Floats, bool]], modes: int
-    ) -> tuple[_Space, list[tuple[Floats, bool]]] | None:
+        self, space: _Space, models: list[Floats], what: Snap
+    ) -> tuple[_Space, Floats, list[Floats]] | None:
         """Return the space with modes that need no factor of their own, and the models that do.
 
-        None where all do.
+        Returned as well are the errors that the models of these modes had. None where all models
+        need factors of their own.
         """
         started = time.perf_counter()
         basis, factor, proofs = space.basis, space.factor, list(space.proofs)
-        near = [self._is_near(basis, factor, theta, modes, proofs) for theta, _ in models]
-        here = [one for one, is_near in zip(models, near, strict=True) if is_near]
-        others = [one for one, is_near in zip(models, near, strict=True) if not is_near]
+        near = [self._is_near(basis, factor, theta, what.modes, proofs) for theta in models]
+        here = [theta for theta, is_near in zip(models, near, strict=True) if is_near]
+        others = [theta for theta, is_near in zip(models, near, strict=True) if not is_near]
         if not here:
             return None
         new = tuple(proofs[len(space.proofs) :])
-        count = modes + SPARE if new else modes  # all modes that a proof is of
-        wanted = Wanted(0.0, self._shortest, self.capacity)
-        thetas = [theta for theta, _ in here]
-        found = with_modes(self.full.pencil, basis, factor, thetas, count, wanted)
+        count = what.modes + SPARE if new else what.modes  # all modes that a proof is of
+        wanted = Wanted(0.0, self._shortest, self.capacity, what.enough)
+        found = with_modes(self.full.pencil, basis, factor, here, count, wanted)
         if found is None:
             return None
-        for theta, derivatives in here:
-            if derivatives:
-                found = self._with_derivatives(found, factor, theta, modes)
+        basis, errors = found
+        if errors.max() >= what.enough:
+            worst = here[int(errors.argmax())]
+            basis = self._with_derivatives(basis, factor, worst, what.modes)
         self.counts.corrected_time += time.perf_counter() - started
-        return _Space(found, factor, (*space.proofs, *new)), others
+        return _Space(basis, factor, (*space.proofs, *new)), errors, others
 
     def _is_near(
         self, basis: Basis, factor: Factor, theta: Floats, modes: int, proofs: list[Complete]
@@ -448,7 +452,8 @@ class ReducedModel:
         if not bounds or count < 1:
             return basis
         wanted = Wanted(SHARE, COARSE, capacity)
-        return with_modes(self.full.pencil, basis, factor, bounds, count, wanted) or basis
+        found = with_modes(self.full.pencil, basis, factor, bounds, count, wanted)
+        return found[0] if found else basis
 
     @property
     def _shortest(self) -> float:
