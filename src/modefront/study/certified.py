@@ -2,10 +2,10 @@ r"""The work of a study on a reduced model, until every reported model holds in 
 
 A round does all of the work in the basis at hand. Then snapshots are taken of those models that are
 the farthest from all others, as long as they lack more than a tenth of the tolerance, and the next
-round starts from what is known. Where they do not, every model that is reported gets its certificate, and
-where one is above the tolerance, a snapshot is taken there. Minima that cannot be the best ones,
-whatever their errors are, need not hold. As long as the basis is poor, it may have led astray:
-after a single snapshot the global search is repeated.
+round starts from what is known. Where they do not, every model that is reported gets its
+certificate, and where one is above the tolerance, a snapshot is taken there. Minima that cannot be
+the best ones, whatever their errors are, need not hold. As long as the basis is poor, it may have
+led astray: after a single snapshot the global search is repeated.
 
 Every round's pieces of work have names of their own, and its snapshots are among them, so that an
 interrupted run goes on with the same digits.
