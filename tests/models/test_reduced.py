@@ -246,6 +246,20 @@ def test_models_too_far_for_the_factor_are_solved_in_full_and_the_others_are_not
         assert model.modes(at, 6).lam == pytest.approx(full.modes(at, 6).lam, rel=1e-8)
 
 
+def test_what_takes_too_many_steps_is_solved_in_full_where_it_must_be_exact(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr("modefront.models.reduced.corrections.STEPS", 1)
+    full, corner = plate(), np.array([0.4, 2.5, 0.4])
+    model = reduced(full)
+    model.modes(np.ones(3), 8)
+    assert model.counts.eigenproblems == 1, "modes at the bounds are kept as far as they came"
+    assert model.columns > 12 + 3 * 10
+    model.take(Snap(corner, 8))
+    assert model.counts.eigenproblems == 2
+    assert model.modes(corner, 8).lam == pytest.approx(full.modes(corner, 8).lam, rel=1e-9)
+
+
 def test_the_order_of_computing_snapshots_changes_no_digit() -> None:
     full, thetas = plate(), [np.ones(3), np.array([0.5, 1.0, 2.0])]
     one, other = reduced(full), reduced(plate())
@@ -316,6 +330,8 @@ def test_a_mode_that_the_basis_misses_is_found_by_inertia() -> None:
     assert np.isfinite(first.eigenvalue).all()
     assert np.isinf(there.eigenvalue).all()
     assert model.counts.factorisations == 3
+    (alone,) = model.certify([(theta, np.arange(3))])
+    assert np.isinf(alone.eigenvalue).all()
     model.take(Snap(theta, 10))
     (known,) = model.certify([(theta, np.arange(3))])
     assert known.eigenvalue.max() < 1e-8
@@ -346,6 +362,23 @@ def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
         now, then = (full.modes(at, 8, derivatives=False).lam for at in (theta, one.theta))
         assert (now >= ratio * then * (1 - 1e-9)).all()
     assert window.lower_bound(basis.K, basis.M, np.array([1.0, -1.0, 1.0]), one.theta) == 0
+
+
+def test_an_estimate_that_does_not_settle_takes_a_factor_of_its_own(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    full = plate()
+    bounds = np.full(3, 0.05), np.full(3, 2.5)
+    model = ReducedModel(full, 10, np.ones(3), *bounds)
+    theta, wanted = np.array([1.0, 0.2, 2.4]), np.arange(6)
+    lam, exact = model.modes(theta, 6).lam, full.modes(theta, 6).lam
+    (settled,) = model.certify([(theta, wanted)])
+    factorisations = model.counts.factorisations
+    monkeypatch.setattr("modefront.models.reduced.certificate.STEPS", 1)
+    (own,) = model.certify([(theta, wanted)])
+    assert model.counts.factorisations == factorisations + 1
+    assert settled.eigenvalue == pytest.approx(lam / exact - 1, rel=0.3)
+    assert own.eigenvalue == pytest.approx(lam / exact - 1, rel=1e-3)
 
 
 def test_certificates_asked_for_together_are_sharper_than_alone() -> None:

@@ -16,7 +16,7 @@ c(theta)  coefficients of the terms
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -159,14 +159,9 @@ class SparseAffine:
 
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
-        stack, dof, starts = self._stack
-        dc, parts = self.coefficients.jacobian(theta), _parts(starts)
-        out = np.zeros((*vectors.shape, dc.shape[1]))
-        if dc.any():
-            products = times(stack, vectors)
-            for j, i in np.argwhere(dc != 0):
-                for rows in _blocks(parts[j], FEW):
-                    out[_place(dof[rows]), :, i] += dc[j, i] * products[rows]
+        out = np.zeros((*vectors.shape, self.coefficients.exponents.shape[1]))
+        for i, dof, rows in self._derivative_parts(theta, vectors):
+            out[_place(dof), :, i] += rows
         return out
 
     def derivative_rows(self, theta: Floats, vectors: Floats) -> scipy.sparse.csr_array:
@@ -175,18 +170,25 @@ class SparseAffine:
         The row of vector r and parameter i is r * parameters + i. A term that touches few
         degrees of freedom costs as little.
         """
-        stack, dof, starts = self._stack
-        products = times(stack, vectors)
-        dc = self.coefficients.jacobian(theta)
-        m, p = vectors.shape[1], dc.shape[1]
+        m, p = vectors.shape[1], self.coefficients.exponents.shape[1]
         rows, columns, values = [np.zeros(0, np.intp)], [np.zeros(0, np.intp)], [np.zeros(0)]
-        for j, i in np.argwhere(dc != 0):
-            part = slice(starts[j], starts[j + 1])
-            rows.append(np.repeat(np.arange(m) * p + i, starts[j + 1] - starts[j]))
-            columns.append(np.tile(dof[part], m))
-            values.append((dc[j, i] * products[part]).T.ravel())
+        for i, dof, some in self._derivative_parts(theta, vectors):
+            rows.append(np.repeat(np.arange(m) * p + i, dof.size))
+            columns.append(np.tile(dof, m))
+            values.append(some.T.ravel())
         entries = np.concatenate(rows), np.concatenate(columns)
         return scipy.sparse.csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
+
+    def _derivative_parts(
+        self, theta: Floats, vectors: Floats
+    ) -> Iterator[tuple[int, Ints, Floats]]:
+        """Yield, part by part, parameters i, degrees of freedom and their rows of dA/dtheta_i V."""
+        stack, dof, starts = self._stack
+        dc, parts = self.coefficients.jacobian(theta), _parts(starts)
+        products = times(stack, vectors) if dc.any() else vectors[:0]
+        for j, i in np.argwhere(dc != 0):
+            for rows in _blocks(parts[j], FEW):
+                yield int(i), dof[rows], dc[j, i] * products[rows]
 
     def each(self, thetas: Floats, vectors: Floats) -> Floats:
         """Return A(theta_k) v_k for every row of thetas (m, p) and column of vectors (N, m)."""

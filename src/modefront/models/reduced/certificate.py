@@ -12,7 +12,7 @@ without cancellation, s being the mode that x stands for; the error of its shape
 sum of the other :math:`c_j^2`. Both grow towards the errors in the full model as the space does.
 The first extension gives at least :math:`4 \kappa / (1 + \kappa)^2` of the error to leading order
 (Kantorovich), with :math:`\kappa` the condition of :math:`A^{-1} C`; others follow until they add
-little.
+little. Where they do not settle, A is that of the model itself.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ from modefront.models.reduced.basis import Basis, residuals
 from modefront.models.reduced.corrections import SLOWEST, Factor
 from modefront.modes import dense
 from modefront.modes.pencil import Pencil
+from modefront.modes.spectrum import Shifted
 
 NEAR = 9.8
 """Condition of K over that of the factor up to which the first extension is enough: a third of the
@@ -99,9 +100,12 @@ def estimates(
     """Return the certificates of some models. Errors of eigenvalues are over lam + s."""
     sigma, space = factor.below.sigma, basis
     nothing = [np.zeros(one.lam.shape) for one in asked]
-    found = [_Judged(z, z, one.lam, one.Y) for one, z in zip(asked, nothing, strict=True)]
+    first = [_Judged(z, z, one.lam, one.Y) for one, z in zip(asked, nothing, strict=True)]
+    found = first[:]
     left, added, pending = nothing[:], nothing[:], list(range(len(asked)))
     for _ in range(STEPS):
+        if not pending:
+            break
         space = _with_solutions(
             pencil, space, factor, [(asked[k].theta, found[k]) for k in pending]
         )
@@ -115,8 +119,12 @@ def estimates(
             if not (asked[k].near or (gain <= SETTLED * total).all()):
                 unsettled.append(k)
         pending = unsettled
-        if not pending:
-            break
+    for k in pending:
+        theta = asked[k].theta
+        A = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
+        own = Factor(theta, Shifted(sigma, A))
+        space = _with_solutions(pencil, basis, own, [(theta, first[k])])
+        found[k], left[k] = _judged(space, basis.columns, asked[k]), nothing[k]
     return [
         Certificate((one.eigenvalue + rest) / (of.lam - sigma), np.minimum(one.shape, 1.0))
         for one, rest, of in zip(found, left, asked, strict=True)

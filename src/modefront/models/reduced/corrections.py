@@ -43,7 +43,7 @@ from modefront.modes.spectrum import Shifted
 SLOWEST = 0.5
 """Ratio of steps at most that what is left is extrapolated with."""
 
-ENTRIES = 2**21
+ENTRIES = 2**19
 """Entries of the right-hand sides that are solved together, but for `FEWEST` columns."""
 
 FEWEST = 36
@@ -182,7 +182,7 @@ def with_modes(
     """Return the basis with what the ``count`` lowest modes at some parameters lack in it.
 
     Returned as well are the relative errors (thetas,) that the eigenvalues had at the worst, as
-    the first step tells. None where it would take too many steps.
+    the first step tells. None where exact modes would take too many steps.
     """
     width = max(1, together(pencil.size) // count)
     errors = []
@@ -191,10 +191,10 @@ def with_modes(
         columns = np.arange(len(some) * count).reshape(-1, count)
         sought = partial(_modes, pencil, some, count)
         found = _with(pencil, basis, factor, sought, columns, wanted)
-        if found is None:
+        if not (found.settled or wanted.share):
             return None
-        basis, lacking = found
-        errors.append(lacking)
+        basis = found.basis
+        errors.append(found.errors)
     return basis, np.concatenate(errors)
 
 
@@ -216,9 +216,24 @@ def with_derivatives(
     columns, width = count * theta.size, together(pencil.size)
     for first in range(0, columns, width):
         some = np.arange(first, min(first + width, columns))
-        found = _with(pencil, basis, factor, sought, some[None], wanted)
-        basis = found[0] if found else basis
+        basis = _with(pencil, basis, factor, sought, some[None], wanted).basis
     return basis
+
+
+@dataclass(frozen=True, eq=False)
+class _Known:
+    """A basis that knows more of some models.
+
+    Attributes
+    ----------
+    basis : the basis
+    errors : (models,) relative errors of their eigenvalues before
+    settled : whether nothing is left that matters
+    """
+
+    basis: Basis
+    errors: Floats
+    settled: bool
 
 
 def _with(
@@ -228,22 +243,21 @@ def _with(
     sought: Callable[[Basis], _Found],
     columns: Ints,
     wanted: Wanted,
-) -> tuple[Basis, Floats] | None:
-    """Return the basis with some of what is sought, or None where that takes too long.
+) -> _Known:
+    """Return the basis with some of what is sought.
 
-    Each row of ``columns`` (models, some) is of one model. Returned as well are the errors of
-    eigenvalues that the models had (models,).
+    Each row of ``columns`` (models, some) is of one model.
     """
-    space, active, errors = basis, columns.ravel(), None
+    space, active, errors = basis, columns.ravel(), np.zeros(0)
     found = sought(space)
     total, last = np.zeros((2, found.lam.size))
-    for _ in range(STEPS):
+    for step in range(STEPS):
         R = found.residuals(active)
         Z = factor.below.factor.solve(R)
         worth = np.einsum("nc,nc->c", R, Z)
         space = factor.extend(pencil, space, Z, R, wanted.shortest)
         before, found = found, sought(space)
-        if errors is None:
+        if step == 0:
             gain = (before.lam - found.lam) / (found.lam - space.sigma)
             errors = np.maximum(gain[columns].max(axis=1), 0.0)
             columns = columns[errors >= wanted.enough]
@@ -255,9 +269,10 @@ def _with(
         active = active[left > np.maximum(wanted.share * total[active], wanted.shortest**2)]
         active = active[np.isin(active, columns)]
         if not active.size:
-            Y = found.Y[:, columns.ravel()]
-            return trimmed(basis, space, Y, wanted.shortest, wanted.capacity), errors
-    return None
+            break
+    Y = found.Y[:, columns.ravel()]
+    kept = trimmed(basis, space, Y, wanted.shortest, wanted.capacity)
+    return _Known(kept, errors, not active.size)
 
 
 def together(size: int) -> int:
