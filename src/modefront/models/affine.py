@@ -105,6 +105,8 @@ class DenseAffine:
 
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
+        if not self.coefficients.exponents.any():
+            return np.zeros((*vectors.shape, self.coefficients.exponents.shape[1]))
         products = self.terms @ vectors
         return first_axis(self.coefficients.jacobian(theta).T, products).transpose(1, 2, 0)
 

@@ -69,8 +69,8 @@ def modes(
     if not derivatives:
         empty = np.zeros((count, 0)), np.zeros((phi.shape[0], count, 0))
         return Modes(lam[:count], phi, *empty, coincident=np.zeros(count, dtype=np.bool_))
-    dlam, dPhi, coincident = nelson(K, M, theta, found, count)
-    dphi = first_axis(sensors, dPhi[:, :count])
+    dlam, S, coincident = nelson(K, M, theta, found, count)
+    dphi = first_axis(sensors @ found.X, S[:, :count])
     return Modes(lam[:count], phi, dlam[:count], dphi, coincident[:count])
 
 
@@ -144,7 +144,10 @@ def _inverse_eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
 def nelson(
     K: DenseAffine, M: DenseAffine, theta: Floats, found: Decomposition, count: int
 ) -> tuple[Floats, Floats, Bools]:
-    """Return dlam (count, p), dPhi (N, count, p) and which modes coincide with another one."""
+    """Return dlam (count, p), S with dPhi = X S, and which modes coincide with another one.
+
+    X (N, N) are the eigenvectors, S is (N, count, p). Some modes more than asked for may come.
+    """
     lam, Phi = found.lam, found.Phi
     magnitude = np.abs(lam) + SHIFT * lam[-1]
     rounding = _ROUNDING * magnitude**2 / magnitude[0]
@@ -169,4 +172,4 @@ def nelson(
     denominator[: lam.size][same] = np.inf
     S /= -denominator[:, :, None]
     S[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi) / np.sqrt(found.mu[r, None])
-    return dlam, first_axis(found.X, S), coincident
+    return dlam, S, coincident

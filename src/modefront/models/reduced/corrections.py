@@ -163,10 +163,10 @@ def _derivatives(
     pencil: Pencil, theta: Floats, count: int, half_range: Floats, space: Basis
 ) -> _Derivatives:
     ritz = dense.decompose(space.K.at(theta), space.M.at(theta))
-    dlam, dY, _ = dense.nelson(space.K, space.M, theta, ritz, count)
+    dlam, S, _ = dense.nelson(space.K, space.M, theta, ritz, count)
     lam = np.repeat(ritz.lam[:count], theta.size)
     unit = np.tile(half_range, count) / np.sqrt(lam - space.sigma)
-    dY = dY[:, :count].reshape(space.columns, -1) * unit
+    dY = ritz.X @ S[:, :count].reshape(space.columns, -1) * unit
     modes, dlam = ritz.Phi[:, :count], dlam[:count].ravel()
     return _Derivatives(pencil, space, theta, modes, dY, lam, dlam, unit)
 
