@@ -117,7 +117,8 @@ def pareto_front(
     subproblems = len(lattice.counts) if lattice else 1
     if lattice and method in EVOLUTIONARY:
         subproblems = max(evaluations // population, 1)
-    expect(4 + 2 * n + len(given) + subproblems)
+    starts_again = 3 + n + len(given) if known else 0
+    expect(4 + 2 * n + len(given) + subproblems + starts_again)
 
     def again(name: str, solutions: Sequence[Solution]) -> Sequence[Solution]:
         """Return known solutions as starts, with the objectives that they have now."""
