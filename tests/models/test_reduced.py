@@ -21,6 +21,7 @@ from modefront.models.reduced import window
 from modefront.models.reduced.basis import snapshot
 from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.modes import derivatives as exact
+from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.sparse import lowest
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
@@ -379,6 +380,13 @@ def test_an_estimate_that_does_not_settle_takes_a_factor_of_its_own(
     assert model.counts.factorisations == factorisations + 1
     assert settled.eigenvalue == pytest.approx(lam / exact - 1, rel=0.3)
     assert own.eigenvalue == pytest.approx(lam / exact - 1, rel=1e-3)
+
+    def singular(*_: object) -> None:
+        raise SingularMatrixError("pivot of zero")
+
+    monkeypatch.setattr("modefront.modes.pencil.Pencil.factor", singular)
+    (unknown,) = model.certify([(theta, wanted)])
+    assert np.isinf(unknown.eigenvalue).all(), "no number is better than a wrong one"
 
 
 def test_certificates_asked_for_together_are_sharper_than_alone() -> None:

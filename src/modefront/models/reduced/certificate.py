@@ -26,6 +26,7 @@ from modefront._typing import Floats, Ints
 from modefront.models.reduced.basis import Basis, residuals
 from modefront.models.reduced.corrections import SLOWEST, Factor
 from modefront.modes import dense
+from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.pencil import Pencil
 from modefront.modes.spectrum import Shifted
 
@@ -52,7 +53,8 @@ class Certificate:
 
     Attributes
     ----------
-    eigenvalue : (modes,) relative errors of the eigenvalues; infinite where a mode is missing
+    eigenvalue : (modes,) relative errors of the eigenvalues; infinite where a mode is missing, or
+        where the estimate does not settle and the matrix is singular
     shape : (modes,) errors of the mode shapes in the norm of M, over their length
     """
 
@@ -121,7 +123,11 @@ def estimates(
         pending = unsettled
     for k in pending:
         theta = asked[k].theta
-        A = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
+        try:
+            A = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
+        except SingularMatrixError:
+            left[k] = np.full(left[k].shape, np.inf)
+            continue
         own = Factor(theta, Shifted(sigma, A))
         space = _with_solutions(pencil, basis, own, [(theta, first[k])])
         found[k], left[k] = _judged(space, basis.columns, asked[k]), nothing[k]
