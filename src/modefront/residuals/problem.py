@@ -44,21 +44,13 @@ from modefront.residuals.groups import (
     measured_shapes,
     members,
 )
-from modefront.solvers.problem import Evaluation, infeasible
+from modefront.solvers.problem import Evaluation, Residual, infeasible
 
 NEGLIGIBLE = 1e-9
 """Standard deviation, over the greatest one or the frequency, below which it is rounding."""
 
 Member = tuple[str, int, Scale]
 """A member of a group: frequency or shape, position of the measured mode, scale."""
-
-
-@dataclass(frozen=True)
-class Residual:
-    """A vector r (rows,) with its derivatives (rows, parameters)."""
-
-    r: Floats
-    dr: Floats
 
 
 @dataclass(frozen=True)
@@ -145,7 +137,7 @@ class UpdatingProblem:
             "paired_mode": pairs.index + 1.0,
             "coincident": modes.coincident[pairs.index].astype(float),
         }
-        return Evaluation(theta, J, dJ, H, quantities)
+        return Evaluation(theta, J, dJ, H, quantities, residuals if derivatives else ())
 
     def modes(self, theta: Floats, *, derivatives: bool = True) -> tuple[Modes, Pairs]:
         """Return the model's modes at ``theta`` and which of them belong to the measured ones."""

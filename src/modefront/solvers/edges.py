@@ -1,46 +1,29 @@
 r"""The edges of the front: of the models that are best in one objective, the best in the others.
 
-The minimiser of one objective need not be unique: several models may fit some measurements
-exactly, and mode shapes do not change when all stiffnesses are scaled. An edge is found
-lexicographically, as the limit of the minimisers of
-
-.. math:: J_i / c_i + \varepsilon \sum_{j \ne i} J_j / c_j, \qquad \varepsilon \to 0,
-
-(Ehrgott, *Multicriteria Optimization*, 2005, section 5.1), extrapolated from two of them: their
-distance from the limit is proportional to :math:`\varepsilon`. c are typical sizes of the
-objectives.
+Many starts are followed to lexicographic minima (`modefront.solvers.lexicographic`); the best of
+these is the edge. A model that any other work comes across and that is better in this order, is a
+start for another search.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.explore import Search, distinct, explore
+from modefront.solvers.lexicographic import EXACT, Lexicographic
 from modefront.solvers.problem import Problem
-from modefront.solvers.scalarisation import Linear, weighted
+from modefront.solvers.scalarisation import Linear
 from modefront.solvers.sqp import Options, Solution, begin, solve
-
-EXPLORE, COARSE, FINE = 1e-5, 1e-6, 1e-7
-"""Values of epsilon: while exploring, and the two from which the limit is extrapolated."""
-
-EXACT = 1e-10
-"""An objective below this share of its typical size is fitted exactly."""
-
-TIE = 1e-6
-"""Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal."""
 
 ATTEMPTS = 4
 """Starts from which the end of a flat valley is looked for, at most."""
 
-_LEARNING = Options(step=1e-8, reduction=1e-24)
-
-_KNOWN = Options(step=1e-8, reduction=1e-24, learn=False, iterations=30)
-"""What is learned is not exact enough where an objective does not change at all."""
+_TIGHT = Options(step=1e-8)
 
 
 @dataclass(frozen=True)
@@ -80,25 +63,32 @@ def edge(
     ``sizes`` are typical sizes of the objectives, shape (n,); ``starts`` are solved from first.
     """
     name = problem.objectives[objective]
-    programme = _programme(objective, EXPLORE, sizes)
+    order = Lexicographic(objective, sizes)
     found = checkpoint(
-        f"minima-{name}", lambda: explore(problem, programme, rng, search, starts=starts)
+        f"edge-{name}",
+        lambda: explore(problem, order, rng, search, starts=starts, options=_TIGHT),
     )
-    refined = checkpoint(
-        f"edge-{name}", lambda: [refine(problem, objective, sizes, one) for one in found]
-    )
-    minima: list[Solution] = []
-    for one in refined:
+    return ordered(problem, objective, sizes, found)
+
+
+def ordered(
+    problem: Problem, objective: int, sizes: Floats, found: Sequence[Solution]
+) -> Edge | None:
+    """Return the edge that the best of some minima of one objective is; None where there is none.
+
+    Minima that did not converge count where nothing better did.
+    """
+    if not found:
+        return None
+    order = Lexicographic(objective, sizes)
+    least = min(one.at.J[objective] for one in found)
+    equal = [one for one in found if one.at.J[objective] <= least + order.margin(least)]
+    best = min(equal, key=lambda one: float(order.others @ one.at.J))
+    minima = [best]
+    for one in sorted(found, key=lambda one: float(one.at.J[objective])):
         if distinct(minima, one, problem):
             minima.append(one)
-    if not minima:
-        return None
-    least = min(one.at.J[objective] for one in minima)
-    margin = TIE * max(least, EXACT * sizes[objective] / TIE)
-    equal = [one for one in minima if one.at.J[objective] <= least + margin]
-    others = np.arange(sizes.size) != objective
-    best = min(equal, key=lambda one: float((one.at.J / sizes)[others].sum()))
-    return Edge(best, [best, *(one for one in minima if one is not best)])
+    return Edge(best, minima)
 
 
 def near_best(
@@ -128,33 +118,3 @@ def near_best(
         if found.converged:
             return [found]
     return [best]
-
-
-def _programme(objective: int, epsilon: float, sizes: Floats) -> Linear:
-    w = np.full(sizes.size, epsilon)
-    w[objective] = 1.0
-    return weighted(w / sizes)
-
-
-def refine(problem: Problem, objective: int, sizes: Floats, start: Solution) -> Solution:
-    """Return the limit of the minimisers for epsilon to 0, by Richardson's extrapolation."""
-    coarse = _descend(problem, _programme(objective, COARSE, sizes), start)
-    fine = _descend(problem, _programme(objective, FINE, sizes), coarse)
-    theta = fine.at.theta + (fine.at.theta - coarse.at.theta) * FINE / (COARSE - FINE)
-    limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper))
-    better = limit.feasible and limit.J[objective] <= fine.at.J[objective]
-    return replace(
-        fine,
-        at=limit if better else fine.at,
-        learned=start.learned,
-        evaluations=start.evaluations + coarse.evaluations + fine.evaluations + 1,
-    )
-
-
-def _descend(problem: Problem, programme: Linear, start: Solution) -> Solution:
-    """Return the minimum with the known second derivatives if these suffice, else with learned."""
-    if start.at.H.any():
-        found = solve(problem, programme, start, _KNOWN)
-        if found.converged:
-            return found
-    return solve(problem, programme, start, _LEARNING)

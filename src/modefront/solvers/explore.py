@@ -10,7 +10,8 @@ starts,
 Where the objectives are too rugged for that within the limit of starts, CMA-ES (Hansen,
 arXiv:1604.00772) finds basins that no start fell into: it is run from a random start until it has
 found a basin, the gradient method goes to the bottom, and as long as a run finds a new minimum
-another one follows. All distinct minima are kept.
+another one follows. All distinct minima are kept, and so is what a search reached that ended
+without its tolerances met, where it is better than all minima.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 import numpy as np
 
@@ -53,56 +55,91 @@ class Search:
     spread: float = 0.05
 
 
+class LocalSearch(Protocol):
+    """What leads from a start to the minimum below it."""
+
+    def value(self, J: Floats, /) -> float:
+        """Return the number by which models are ordered."""
+
+    def solve(self, problem: Problem, start: Solution, options: Options, /) -> Solution:
+        """Return the minimum below a start."""
+
+
+@dataclass(frozen=True)
+class Descent:
+    """The search for a minimum of an unconstrained programme."""
+
+    programme: Scalarisation
+
+    def value(self, J: Floats) -> float:
+        """Return what is minimised."""
+        return self.programme.value(J)
+
+    def solve(self, problem: Problem, start: Solution, options: Options) -> Solution:
+        """Return the minimum below a start.
+
+        Where many parameters are held by few residuals, learned second derivatives may lead
+        astray: a search that they exhaust goes on without them.
+        """
+        found = solve(problem, self.programme, start, options)
+        if found.status is not Status.EXHAUSTED:
+            return found
+        again = solve(problem, self.programme, begin(found.at), replace(options, learn=False))
+        return replace(again, evaluations=found.evaluations + again.evaluations)
+
+
 def explore(
     problem: Problem,
-    programme: Scalarisation,
+    local: LocalSearch,
     rng: np.random.Generator,
     search: Search,
     *,
     starts: Sequence[Solution] = (),
     options: Options | None = None,
 ) -> list[Solution]:
-    """Return the distinct minima of an unconstrained programme, best first.
+    """Return the distinct minima that a local search leads to, best first.
 
     ``starts`` that are known to be good are solved from first, then the problem's own start, then
-    others until the rule is met. Empty where no search ended in a minimum.
+    others until the rule is met. Solutions that did not converge are among them where they are
+    better than all minima. Empty where the problem is defined at no start.
     """
     options = options or Options()
     minima: list[Solution] = []
+    unfinished: list[Solution] = []
 
     def follow(start: Solution) -> bool:
         """Go to the minimum below a start; say whether it is a new one."""
-        rough = solve(problem, programme, start, replace(options, step=NEAR / 4))
+        rough = local.solve(problem, start, replace(options, step=NEAR / 4))
         if not distinct(minima, rough, problem, NEAR):
             return False
-        found = solve(problem, programme, rough, options)
-        if found.status is Status.EXHAUSTED:
-            # Many parameters that few residuals hold: what is learned there leads astray.
-            found = solve(problem, programme, begin(found.at), replace(options, learn=False))
-        new = (
-            found.converged
-            and bool(np.isfinite(programme.value(found.at.J)))
-            and distinct(minima, found, problem)
-        )
+        found = local.solve(problem, rough, options)
+        if not found.at.feasible or not np.isfinite(local.value(found.at.J)):
+            return False
+        if not found.converged:
+            unfinished.append(found)
+            return False
+        new = distinct(minima, found, problem)
         if new:
             minima.append(found)
         return new
 
     for start in [*starts, begin(problem.evaluate(problem.start))]:
         follow(start)
-    least = 0 if starts else search.starts
+    fewest = 0 if starts else search.starts
     rugged = True
     for tried, theta in enumerate(latin_hypercube(problem, rng, search.limit)):
         N, w = tried + len(starts), len(minima)
-        if tried >= least and w * (N - 1) <= (w + 0.5) * (N - w - 2):
+        if tried >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2):
             rugged = False
             break
         follow(begin(problem.evaluate(theta)))
     for _ in range(search.evolutions if rugged else 0):
-        theta = evolve(problem, programme, rng, search)
+        theta = evolve(problem, local, rng, search)
         if not follow(begin(problem.evaluate(theta))):
             break
-    return sorted(minima, key=lambda one: programme.value(one.at.J))
+    least = min((local.value(one.at.J) for one in minima), default=np.inf)
+    ahead = [one for one in unfinished if local.value(one.at.J) < least]
+    return sorted([*minima, *ahead], key=lambda one: local.value(one.at.J))
 
 
 def latin_hypercube(problem: Problem, rng: np.random.Generator, limit: int) -> Iterator[Floats]:
@@ -116,7 +153,7 @@ def latin_hypercube(problem: Problem, rng: np.random.Generator, limit: int) -> I
 
 
 def evolve(
-    problem: Problem, programme: Scalarisation, rng: np.random.Generator, search: Search
+    problem: Problem, local: LocalSearch, rng: np.random.Generator, search: Search
 ) -> Floats:
     """Return the best parameters that one run of CMA-ES found, from a random start."""
     with warnings.catch_warnings():
@@ -145,7 +182,7 @@ def evolve(
         for u in asked:
             candidate = problem.lower + span * np.clip(u, 0, 1)
             J = problem.evaluate(candidate, derivatives=False).J
-            value = programme.value(J) if np.isfinite(J).all() else np.inf
+            value = local.value(J) if np.isfinite(J).all() else np.inf
             values.append(value)
             if value < best:
                 best, theta = value, candidate

@@ -23,7 +23,8 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.solvers.advance import simplex
 from modefront.solvers.checkpoint import Checkpoint
-from modefront.solvers.edges import EXACT, TIE, near_best
+from modefront.solvers.edges import near_best
+from modefront.solvers.lexicographic import EXACT, TIE
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import Payoff, payoff
 from modefront.solvers.problem import Problem

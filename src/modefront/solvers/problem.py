@@ -13,7 +13,7 @@ H         (n, p, p)  a part of their second derivatives that is known with the f
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Protocol
 
@@ -23,14 +23,28 @@ from modefront._typing import Floats
 
 
 @dataclass(frozen=True)
+class Residual:
+    """A vector r (rows,) with its derivatives (rows, p)."""
+
+    r: Floats
+    dr: Floats
+
+
+@dataclass(frozen=True)
 class Evaluation:
-    """The objectives at one point; ``quantities`` are what the problem wants kept with it."""
+    r"""The objectives at one point.
+
+    ``quantities`` are what the problem wants kept with it; ``residuals`` are the vectors r_i, one
+    an objective, of objectives that are sums of squares, :math:`J_i = \|r_i\|^2`. They are empty
+    where the objectives are no such sums, or no derivatives were asked for.
+    """
 
     theta: Floats
     J: Floats
     dJ: Floats
     H: Floats
     quantities: Mapping[str, Floats] = field(default_factory=dict)
+    residuals: Sequence[Residual] = ()
 
     @property
     def feasible(self) -> bool:

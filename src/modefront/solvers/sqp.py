@@ -61,7 +61,8 @@ FREE = 1e-4
 """Gradient, over the greatest curvature, below which a bound does not hold a variable."""
 
 PATIENCE = 30
-"""Iterations in which the violation of the constraints is to be halved, or there is no way."""
+"""Iterations in which the violation of the constraints is to be halved, from the worst of these, or
+there is no way."""
 
 NOISE = 1e-11
 """Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
@@ -150,7 +151,7 @@ def solve(
     trusted = bool(learned.any())
     radius, penalty = options.radius, PENALTY
     multipliers: Floats | None = None
-    escaped, proposed, before = False, np.inf, np.inf
+    escaped, proposed, worst = False, np.inf, np.inf
     farthest = max(1.0, FUNNEL * _length(programme.A @ start.at.J - programme.b))
     for count in range(options.iterations + 1):
         at = state.at
@@ -174,10 +175,11 @@ def solve(
         if _length(s) < 0.99 * radius:
             proposed = _length(s)
         violation = _length(c)
+        worst = max(worst, violation)
         if count % PATIENCE == 0:
-            if violation > max(options.constraint, 0.5 * before):
+            if violation > max(options.constraint, 0.5 * worst) and count > 0:
                 return Solution(at, state.learned, w, violation, Status.STALLED, count)
-            before = violation
+            worst = violation
         value = programme.value(at.J)
         still = _length(s) <= options.step or bool(abs(g @ s) <= options.reduction * abs(value))
         if still and violation <= options.constraint and not escaped:

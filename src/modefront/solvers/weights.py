@@ -18,8 +18,8 @@ from dataclasses import replace
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.edges import EXACT
-from modefront.solvers.explore import Search, explore
+from modefront.solvers.explore import Descent, Search, explore
+from modefront.solvers.lexicographic import EXACT
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import LogSum, weighted
 from modefront.solvers.sqp import Options, Solution, Status, solve
@@ -45,7 +45,7 @@ def optimal_minima(
     ``a`` (n,) counts the measured properties of each group, ``sizes`` (n,) are typical sizes of
     the objectives; ``starts`` are solved from first.
     """
-    found = explore(problem, LogSum(a), rng, search, starts=starts, options=_TIGHT)
+    found = explore(problem, Descent(LogSum(a)), rng, search, starts=starts, options=_TIGHT)
     return sorted(found, key=lambda one: not regular(one.at.J, sizes))
 
 

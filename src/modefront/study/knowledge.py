@@ -14,7 +14,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.advance import default_points
 from modefront.solvers.checkpoint import Checkpoint
 from modefront.solvers.curvature import SecondOrder, second_order
-from modefront.solvers.edges import EXACT, TIE
+from modefront.solvers.lexicographic import EXACT, TIE
 from modefront.solvers.evolutionary import EVOLUTIONARY
 from modefront.solvers.flat import Identifiable, identifiable_part, same
 from modefront.solvers.manifold import Extent, Manifold, equally_good

@@ -14,9 +14,10 @@ from modefront.errors import UnfinishedError
 from modefront.solvers.advance import default_points, simplex
 from modefront.solvers.checkpoint import Checkpoint, Solutions, compute_always
 from modefront.solvers.dominance import nondominated
-from modefront.solvers.edges import EXACT, Edge, edge, near_best, sample, typical_sizes
+from modefront.solvers.edges import Edge, edge, near_best, sample, typical_sizes
 from modefront.solvers.evolutionary import EVOLUTIONARY, evolve_front
-from modefront.solvers.explore import Search, distinct, explore
+from modefront.solvers.explore import Descent, Search, distinct, explore
+from modefront.solvers.lexicographic import EXACT
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import Payoff, payoff
 from modefront.solvers.pieces import Gap, gaps
@@ -149,7 +150,7 @@ def pareto_front(
         rng = generator(seed, label)
         before = [one for name, one in known.points if name == label] if known else []
         near = again(label, before) if known else bests
-        search_from = partial(explore, problem, weighted(w), rng, search, starts=near)
+        search_from = partial(explore, problem, Descent(weighted(w)), rng, search, starts=near)
         models += [(label, one) for one in checkpoint(label, search_from)[:1]]
     starts = [*(one for _, one in models), *bests]
     near = again("optimal-weights", known.optimal) if known else starts

@@ -20,7 +20,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.checkpoint import Solutions
-from modefront.solvers.problem import Evaluation
+from modefront.solvers.problem import Evaluation, Residual
 from modefront.solvers.sqp import Solution, Status
 
 PIECES = "pieces"
@@ -123,6 +123,8 @@ def _packed(solutions: Solutions) -> tuple[Any, Arrays]:
         parts |= {"learned": one.learned, "weights": one.weights}
         parts |= {} if one.beta is None else {"beta": one.beta}
         parts |= {f"quantity:{key}": value for key, value in at.quantities.items()}
+        parts |= {f"r:{k}": residual.r for k, residual in enumerate(at.residuals)}
+        parts |= {f"dr:{k}": residual.dr for k, residual in enumerate(at.residuals)}
         arrays |= {f"{i}:{key}": value for key, value in parts.items()}
         heads.append([one.violation, one.status.name, one.evaluations])
     return heads, arrays
@@ -133,7 +135,9 @@ def _unpacked(heads: Any, arrays: Arrays) -> Solutions:
     for i, (violation, status, evaluations) in enumerate(heads):
         own = {key.split(":", 1)[1]: a for key, a in arrays.items() if key.startswith(f"{i}:")}
         kept = {key[9:]: value for key, value in own.items() if key.startswith("quantity:")}
-        at = Evaluation(own["theta"], own["J"], own["dJ"], own["H"], kept)
+        rows = range(sum(key.startswith("r:") for key in own))
+        residuals = [Residual(own[f"r:{k}"], own[f"dr:{k}"]) for k in rows]
+        at = Evaluation(own["theta"], own["J"], own["dJ"], own["H"], kept, residuals)
         ended = (violation, Status[status], evaluations)
         solutions.append(Solution(at, own["learned"], own["weights"], *ended, own.get("beta")))
     return solutions

@@ -1,0 +1,249 @@
+r"""The lexicographic minimum below a start: least in one objective, then least in the others.
+
+The minimiser of :math:`J_i = \|r_i\|^2` need not be unique. Where parameters outnumber data, a
+manifold of models fits some measurements exactly; mode shapes do not change when all stiffnesses
+are scaled. On the manifold :math:`r_i` is constant, so the search has two steps:
+
+1. minimise :math:`J_i` to the end, which gives :math:`r_i^*`;
+2. minimise :math:`\sum_{j \ne i} J_j / c_j` subject to :math:`r_i(\theta) = r_i^*`.
+
+The constraints are the residuals themselves, not their sum of squares: the gradient of
+:math:`J_i` vanishes on the manifold, those of the residuals do not, and
+:mod:`modefront.solvers.sqp` moves along their null space and back to the manifold in the same step.
+A weight of 1e-5 on the other objectives in place of the constraints needs hundreds of iterations,
+as every step is as short as the manifold is curved.
+
+Residuals may be redundant (more rows than rank). With :math:`\partial r_i = U \Sigma V^T` at the
+start, the rows are combined to :math:`Q^T r_i`, Q being the columns of U that belong to singular
+values above `RANK`. Along a manifold Q turns; both steps are repeated until nothing is gained.
+
+Where the objectives are no sums of squares, step 2 is the limit of the minimisers of
+
+.. math:: J_i / c_i + \varepsilon \sum_{j \ne i} J_j / c_j, \qquad \varepsilon \to 0
+
+(Ehrgott, *Multicriteria Optimization*, 2005, section 5.1), extrapolated from two of them: their
+distance from the limit is proportional to :math:`\varepsilon`.
+
+========  =========  ===================================================
+symbol    shape      meaning
+========  =========  ===================================================
+c         (n,)       typical sizes of the objectives
+Q         (rows, k)  combinations of the residuals that parameters change
+========  =========  ===================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.solvers.problem import Evaluation, Problem, infeasible
+from modefront.solvers.scalarisation import Linear, weighted
+from modefront.solvers.sqp import Options, Solution, Status, begin, solve
+
+EXACT = 1e-10
+"""An objective below this share of its typical size is fitted exactly."""
+
+TIE = 1e-6
+"""Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal."""
+
+RANK = 1e-7
+"""Singular value of the residuals' derivatives, over the greatest, that counts as none."""
+
+REPEATS = 4
+"""How often both steps are repeated at most."""
+
+EXPLORE, COARSE, FINE = 1e-5, 1e-6, 1e-7
+"""Values of epsilon: for the value of a model, and the two from which a limit is extrapolated."""
+
+_TIGHT = Options(step=1e-8, reduction=1e-24)
+
+KNOWN = 30
+"""Iterations with the known second derivatives alone: what is learned is not exact enough where an
+objective does not change at all."""
+
+
+@dataclass(frozen=True)
+class Lexicographic:
+    """The search for the least in one objective, then the least in the others.
+
+    ``sizes`` (n,) are typical sizes of the objectives.
+    """
+
+    objective: int
+    sizes: Floats
+
+    @property
+    def others(self) -> Floats:
+        """Weights (n,) of the other objectives; zero for the first one."""
+        w = 1 / self.sizes
+        w[self.objective] = 0.0
+        return w
+
+    def value(self, J: Floats) -> float:
+        """Return a number that nearly orders models as the search does."""
+        return float(J[self.objective] / self.sizes[self.objective] + EXPLORE * (self.others @ J))
+
+    def margin(self, least: float) -> float:
+        """Return the difference from the least value within which values are equal."""
+        return max(TIE * least, EXACT * float(self.sizes[self.objective]))
+
+    def better(self, J: Floats, other: Floats) -> bool:
+        """Return whether objectives come before others in the order of the search."""
+        i = self.objective
+        margin = self.margin(float(min(J[i], other[i])))
+        if abs(J[i] - other[i]) > margin:
+            return bool(J[i] < other[i])
+        gain = float(self.others @ (other - J))
+        return gain > TIE * float(self.others @ other)
+
+    def solve(self, problem: Problem, start: Solution, options: Options) -> Solution:
+        """Return the lexicographic minimum below a start.
+
+        The tolerance of ``options`` for steps is kept; the rest is the search's own. A step of the
+        search that does not converge keeps what it reached and says so in the status.
+        """
+        rough = options.step > _TIGHT.step
+        tight = replace(_TIGHT, step=options.step, reduction=1e-14) if rough else _TIGHT
+        if not start.at.residuals:
+            found = solve(problem, self._with(EXPLORE), start, tight)
+            return found if rough or not found.at.feasible else self._limit(problem, found)
+        best = _least(problem, self._alone(), start, tight)
+        if not best.at.feasible or self.sizes.size == 1:
+            return best
+        for _ in range(1 if rough else REPEATS):
+            found = self._along(problem, best, tight)
+            if found is best or not self._accepts(found.at.J, best.at.J):
+                break
+            gained = self.better(found.at.J, best.at.J)
+            least = _least(problem, self._alone(), found, tight)
+            kept = found if self._accepts(found.at.J, least.at.J) else least
+            best = replace(kept, evaluations=least.evaluations)
+            if not gained:
+                break
+        return best
+
+    def _alone(self) -> Linear:
+        return weighted(np.eye(self.sizes.size)[self.objective] / self.sizes)
+
+    def _accepts(self, J: Floats, before: Floats) -> bool:
+        """Return whether the first objective is as good as before."""
+        i = self.objective
+        return bool(J[i] <= before[i] + self.margin(float(before[i])))
+
+    def _along(self, problem: Problem, start: Solution, options: Options) -> Solution:
+        """Return the best in the others on the manifold of minima; the start where it is none."""
+        i, n, p = self.objective, self.sizes.size, start.at.theta.size
+        residual = start.at.residuals[i]
+        U, sigma, _ = np.linalg.svd(
+            residual.dr * (problem.upper - problem.lower), full_matrices=False
+        )
+        Q = U[:, sigma > RANK * sigma[0]] if sigma.size and sigma[0] > 0 else U[:, :0]
+        if Q.shape[1] == p:
+            return start
+        held = Held(problem, i, Q)
+        k, root = Q.shape[1], float(np.sqrt(self.sizes[i]))
+        exact = start.at.J[i] <= EXACT * self.sizes[i]
+        aim = np.zeros(k) if exact else Q.T @ residual.r
+        A = np.hstack([np.eye(k), np.zeros((k, n - 1))]) / root
+        w = np.concatenate([np.zeros(k), np.delete(1 / self.sizes, i)])
+        first = begin(held.of(start.at))
+        learned = first.learned.copy()
+        learned[k:] = np.delete(start.learned, i, axis=0)
+        tight = replace(options, constraint=max(1e-9, 1e-2 * options.step), reduction=1e-16)
+        found = solve(held, Linear(w, A, aim / root), replace(first, learned=learned), tight)
+        known = start.learned.copy()
+        known[np.arange(n) != i] = found.learned[k:]
+        return replace(
+            start,
+            at=problem.evaluate(found.at.theta),
+            learned=known,
+            status=found.status,
+            violation=found.violation,
+            evaluations=start.evaluations + found.evaluations + 1,
+        )
+
+    def _limit(self, problem: Problem, start: Solution) -> Solution:
+        """Return the limit of the minimisers for epsilon to 0, by Richardson's extrapolation."""
+        coarse = _least(problem, self._with(COARSE), start, _TIGHT)
+        fine = _least(problem, self._with(FINE), coarse, _TIGHT)
+        theta = fine.at.theta + (fine.at.theta - coarse.at.theta) * FINE / (COARSE - FINE)
+        limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper))
+        i = self.objective
+        better = limit.feasible and limit.J[i] <= fine.at.J[i]
+        return replace(fine, at=limit if better else fine.at, evaluations=fine.evaluations + 1)
+
+    def _with(self, epsilon: float) -> Linear:
+        return weighted(np.eye(self.sizes.size)[self.objective] / self.sizes + epsilon * self.others)
+
+
+@dataclass(frozen=True)
+class Held:
+    """A problem whose first objectives are combined residuals Q^T r_i, followed by the other J."""
+
+    problem: Problem
+    objective: int
+    Q: Floats
+
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """Names of the rows and of the other objectives."""
+        names = self.problem.objectives
+        rows = [f"{names[self.objective]} {k + 1}" for k in range(self.Q.shape[1])]
+        return (*rows, *(name for i, name in enumerate(names) if i != self.objective))
+
+    @property
+    def lower(self) -> Floats:
+        """Lower bounds, shape (p,)."""
+        return self.problem.lower
+
+    @property
+    def upper(self) -> Floats:
+        """Upper bounds, shape (p,)."""
+        return self.problem.upper
+
+    @property
+    def start(self) -> Floats:
+        """The start of the problem itself, shape (p,)."""
+        return self.problem.start
+
+    @property
+    def counts(self) -> Mapping[str, int]:
+        """What the evaluations have cost so far, by name."""
+        return self.problem.counts
+
+    def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
+        """Return the residuals and the other objectives; derivatives are always there."""
+        del derivatives
+        return self.of(self.problem.evaluate(theta))
+
+    def of(self, at: Evaluation) -> Evaluation:
+        """Return the residuals and the other objectives from an evaluation of the problem."""
+        i, k, p = self.objective, self.Q.shape[1], at.theta.size
+        if not at.feasible:
+            return infeasible(at.theta, k + at.J.size - 1)
+        residual = at.residuals[i]
+        return Evaluation(
+            at.theta,
+            np.concatenate([self.Q.T @ residual.r, np.delete(at.J, i)]),
+            np.vstack([self.Q.T @ residual.dr, np.delete(at.dJ, i, axis=0)]),
+            np.concatenate([np.zeros((k, p, p)), np.delete(at.H, i, axis=0)]),
+        )
+
+
+def _least(problem: Problem, programme: Linear, start: Solution, options: Options) -> Solution:
+    """Return the minimum with the known second derivatives if these suffice, else with learned."""
+    spent = start.evaluations
+    best = start
+    if start.at.H.any():
+        best = solve(problem, programme, start, replace(options, learn=False, iterations=KNOWN))
+        spent += best.evaluations
+    if best is start or (not best.converged and best.status is not Status.INFEASIBLE):
+        found = solve(problem, programme, best, options)
+        spent += found.evaluations
+        best = found
+    learned = best.learned if best.learned.any() else start.learned
+    return replace(best, learned=learned, evaluations=spent)
