@@ -7,7 +7,7 @@ import pytest
 from problems import Derivatives, Known, box, many_minima
 
 from modefront._typing import Floats
-from modefront.solvers.explore import Search, explore
+from modefront.solvers.explore import Descent, Search, explore
 from modefront.solvers.manifold import Extent, equally_good, follow
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
@@ -78,7 +78,7 @@ def test_a_circle_that_the_bounds_cut_ends_on_them() -> None:
 
 def test_disjoint_curves_are_all_followed_and_none_twice() -> None:
     problem = of(two_circles, [-2, -2], [2, 2])
-    minima = explore(problem, ONE, np.random.default_rng(0), Search(starts=20))
+    minima = explore(problem, Descent(ONE), np.random.default_rng(0), Search(starts=20))
     assert len(minima) > 2
     found = equally_good(problem, ONE, [one.at for one in minima], h=0.03, limit=200)
     assert [one.extent for one in found] == [Extent.CLOSED] * 2
@@ -114,7 +114,7 @@ def test_a_sphere_within_narrow_bounds_ends_on_them() -> None:
 def test_isolated_minima_are_counted() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
     programme = weighted(np.array([1.0, 0.0]))
-    minima = explore(problem, programme, np.random.default_rng(0), Search())
+    minima = explore(problem, Descent(programme), np.random.default_rng(0), Search())
     found = equally_good(problem, programme, [one.at for one in minima])
     assert [one.extent for one in found] == [Extent.ISOLATED] * 4
     assert [one.dimension for one in found] == [0] * 4

@@ -29,7 +29,7 @@ from modefront._typing import Floats
 from modefront.solvers.advance import neighbours, simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.edges import edge, sample, typical_sizes
-from modefront.solvers.explore import Search, evolve, explore
+from modefront.solvers.explore import Descent, Search, evolve, explore
 from modefront.solvers.indicators import hypervolume, igd_plus, largest_gap
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import payoff
@@ -174,14 +174,18 @@ def test_an_exhausted_search_says_so() -> None:
 
 def test_all_minima_are_kept() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
-    found = explore(problem, weighted(np.array([1.0, 0.0])), np.random.default_rng(0), Search())
+    found = explore(
+        problem, Descent(weighted(np.array([1.0, 0.0]))), np.random.default_rng(0), Search()
+    )
     places = sorted(tuple(np.round(one.at.theta).astype(int).tolist()) for one in found)
     assert places == [(-1, -2), (-1, 2), (1, -2), (1, 2)]
 
 
 def test_the_evolution_strategy_finds_a_basin() -> None:
     problem = box(circles, [-5, -5], [5, 5])
-    theta = evolve(problem, weighted(np.array([1.0, 0.0])), np.random.default_rng(0), Search())
+    theta = evolve(
+        problem, Descent(weighted(np.array([1.0, 0.0]))), np.random.default_rng(0), Search()
+    )
     assert np.abs(theta).max() < 0.5
 
 
@@ -189,7 +193,7 @@ def test_the_evolution_strategy_is_left_to_rugged_objectives() -> None:
     def cost(limit: int, evolutions: int) -> int:
         problem = box(many_minima, [-4, -4], [4, 4])
         search = Search(starts=3, limit=limit, evolutions=evolutions)
-        explore(problem, weighted(np.array([1.0, 0.0])), np.random.default_rng(0), search)
+        explore(problem, Descent(weighted(np.array([1.0, 0.0]))), np.random.default_rng(0), search)
         return problem.counts["eigenproblems"]
 
     assert cost(60, 4) == cost(60, 0), "the starts met the rule"
@@ -200,7 +204,7 @@ def test_searches_are_repeated_exactly_with_the_same_seed() -> None:
     runs = []
     for _ in range(2):
         problem = box(many_minima, [-4, -4], [4, 4])
-        found = explore(problem, weighted(np.ones(2)), np.random.default_rng(5), Search())
+        found = explore(problem, Descent(weighted(np.ones(2))), np.random.default_rng(5), Search())
         runs.append([*(one.at.theta.tolist() for one in found), problem.counts["eigenproblems"]])
     assert runs[0] == runs[1]
 

@@ -10,14 +10,18 @@ TRADE = 1e-7
 """Loss in one objective, over the gain in another one, that counts as none: no proper trade-off."""
 
 
-def nondominated(J: Floats, tolerance: float = 1e-9) -> Bools:
+SAME = 1e-6
+"""Gain in an objective, over its range, that counts as none: solvers leave as much."""
+
+
+def nondominated(J: Floats, tolerance: float = SAME, scale: Floats | None = None) -> Bools:
     """Return which rows of J (points, n) no other row dominates, equation (4).
 
     A row dominates another one if it is nowhere greater and somewhere less. So that two results of
     the same optimum do not dominate each other by rounding, gains below ``tolerance`` times the
     range of an objective are none, and losses up to it neither where the gain is 1e7 times as
     great: next to an edge the loss in its own objective is small, but real. Rows that are not
-    finite are dominated.
+    finite are dominated. ``scale`` (n,) are the ranges; that of the rows unless they are given.
 
     >>> nondominated(np.array([[0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [0.0, 1.0]])).tolist()
     [True, True, False, True]
@@ -30,7 +34,7 @@ def nondominated(J: Floats, tolerance: float = 1e-9) -> Bools:
     out = finite.copy()
     if finite.any():
         J = J[finite]
-        scale = J.max(axis=0) - J.min(axis=0)
+        scale = J.max(axis=0) - J.min(axis=0) if scale is None else scale
         apart = (J[:, None] - J) / np.where(scale > 0, scale, 1.0)
         loss, gain = apart.max(axis=2), -apart.min(axis=2)
         dominates = (gain > tolerance) & (loss <= np.minimum(tolerance, TRADE * gain))

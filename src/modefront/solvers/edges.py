@@ -91,6 +91,14 @@ def ordered(
     return Edge(best, minima)
 
 
+def refined_from(
+    problem: Problem, objective: int, sizes: Floats, starts: Sequence[Solution]
+) -> list[Solution]:
+    """Return the lexicographic minimum of one objective below each start."""
+    order = Lexicographic(objective, sizes)
+    return [order.solve(problem, one, _TIGHT) for one in starts]
+
+
 def near_best(
     problem: Problem,
     best: Solution,

@@ -50,6 +50,9 @@ EXACT = 1e-10
 TIE = 1e-6
 """Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal."""
 
+CLEAR = 1e-3
+"""Gain in the other objectives, over them, that is more than a tie in the first one allows."""
+
 RANK = 1e-7
 """Singular value of the residuals' derivatives, over the greatest, that counts as none."""
 
@@ -99,6 +102,17 @@ class Lexicographic:
             return bool(J[i] < other[i])
         gain = float(self.others @ (other - J))
         return gain > TIE * float(self.others @ other)
+
+    def clearly_better(self, J: Floats, other: Floats) -> bool:
+        """Return whether objectives come before others by more than a tie among exact fits does.
+
+        Next to an exact fit, the others fall with the root of the first objective.
+        """
+        i = self.objective
+        margin = self.margin(float(min(J[i], other[i])))
+        if abs(J[i] - other[i]) > margin:
+            return bool(J[i] < other[i])
+        return bool(self.others @ J < (1 - CLEAR) * (self.others @ other))
 
     def solve(self, problem: Problem, start: Solution, options: Options) -> Solution:
         """Return the lexicographic minimum below a start.
@@ -177,7 +191,9 @@ class Lexicographic:
         return replace(fine, at=limit if better else fine.at, evaluations=fine.evaluations + 1)
 
     def _with(self, epsilon: float) -> Linear:
-        return weighted(np.eye(self.sizes.size)[self.objective] / self.sizes + epsilon * self.others)
+        return weighted(
+            np.eye(self.sizes.size)[self.objective] / self.sizes + epsilon * self.others
+        )
 
 
 @dataclass(frozen=True)

@@ -1,22 +1,25 @@
-r"""Where the pieces of a disconnected front of two objectives end.
+r"""Where the branches of a disconnected front of two objectives end.
 
-Between the last point :math:`a` of one piece and the first point :math:`b` of the next one (first
+Between the last point :math:`a` of one branch and the first point :math:`b` of the next one (first
 objective rising) the front has a gap. One of its ends is a minimum of an objective within its
-piece, the other one is either that too, or where its piece comes to the same level:
+branch, the other one is either that too, or where its branch comes to the same level:
 
-* the right piece starts at its own minimum of :math:`J_1`, if that lies to the right of a; the left
-  piece then ends at its minimum of :math:`J_2`, or, if that lies farther right, where its
-  :math:`J_1` reaches the start of the right piece (an end that itself is dominated);
-* otherwise the left piece ends at its minimum of :math:`J_2` and the right one starts at that
+* the right branch starts at its own minimum of :math:`J_1`, if that lies to the right of a; the
+  left branch then ends at its minimum of :math:`J_2`, or, if that lies farther right, where its
+  :math:`J_1` reaches the start of the right branch (an end that itself is dominated);
+* otherwise the left branch ends at its minimum of :math:`J_2` and the right one starts at that
   level.
 
-Points that the start of the right piece dominates do not count as the last one.
+Points that the start of the right branch dominates do not count as the last one. An end is sought
+from the point next to it, then from the points behind that one, and, where a level is too far away,
+by way of levels between. What did not converge, lies on the wrong side of its neighbour or is
+dominated by a known model is no end: it counts as unknown.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from itertools import pairwise
 
@@ -24,22 +27,46 @@ import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.solvers.checkpoint import Checkpoint, compute_always
+from modefront.solvers.dominance import SAME
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import level, weighted
-from modefront.solvers.sqp import Options, Solution, solve
-
-SAME = 1e-6
-"""Difference of an objective, over its range, that the solver may leave."""
+from modefront.solvers.sqp import Options, Solution, Status, solve
 
 _TIGHT = Options(reduction=1e-17)
 
 
+STARTS = 3
+"""Points of a branch from which its end is sought, at most."""
+
+LEVELS = (1, 2, 4)
+"""Numbers of steps in which a level is approached, one after another."""
+
+
 @dataclass(frozen=True)
 class Gap:
-    """A gap of the front: the end of the piece before it and the start of the piece behind it."""
+    """A gap of the front.
 
-    end: Solution
-    start: Solution
+    Attributes
+    ----------
+    last, first : the points of the front before the gap and behind it
+    end : where the branch before it ends; None where that is not known
+    start : where the branch behind it starts; None where that is not known
+    """
+
+    last: Solution
+    first: Solution
+    end: Solution | None
+    start: Solution | None
+
+    @property
+    def ends(self) -> list[Solution]:
+        """The end and the start, as far as they are known."""
+        return [one for one in (self.end, self.start) if one is not None]
+
+    @property
+    def middle(self) -> float:
+        """The first objective in the middle of the gap."""
+        return float((self.end or self.last).at.J[0] + (self.start or self.first).at.J[0]) / 2
 
 
 def gaps(
@@ -49,63 +76,100 @@ def gaps(
     scale: Floats,
     checkpoint: Checkpoint = compute_always,
     jumps: Sequence[tuple[Solution, Solution]] = (),
+    known: Floats | None = None,
 ) -> list[Gap]:
     """Return the gaps between points in their order along the front, of two objectives.
 
     ``optimal`` says which points are Pareto optimal among them; a gap is where some are not. At
-    ``jumps`` there may be gaps as well; points that the piece behind one dominates do not count.
+    ``jumps`` there may be gaps as well; points that the branch behind one dominates do not count.
+    ``known`` (models, 2) are objectives of other models, none of which may dominate an end.
     """
     kept = np.flatnonzero(optimal).tolist()
+    others = np.zeros((0, 2)) if known is None else known
     out = []
     for k, (a, b) in enumerate(pairwise(kept)):
         jump = any(points[a] is one and points[b] is other for one, other in jumps)
         if b > a + 1 or jump:
             before = [points[i] for i in kept[: k + 1]]
+            behind = [points[i] for i in kept[k + 1 :]]
             ends = checkpoint(
-                f"gap-{a + 1}-{b + 1}", partial(_ends, problem, before, points[b], scale)
+                f"gap-{a + 1}-{b + 1}", partial(_ends, problem, before, behind, scale, others)
             )
-            if not jump or _apart(ends[0], ends[1], points[b], scale):
-                out.append(Gap(*ends))
+            end, start = (one if one.converged else None for one in ends)
+            if not jump or _apart(end, start, points[b], scale):
+                out.append(Gap(points[a], points[b], end, start))
     return out
 
 
-def _apart(end: Solution, start: Solution, b: Solution, scale: Floats) -> bool:
+def _apart(end: Solution | None, start: Solution | None, b: Solution, scale: Floats) -> bool:
     """Return whether a gap that was found lies to the left of the point b behind it."""
+    if end is None or start is None:
+        return False
     left, right = ((start.at.J - end.at.J) / scale, (b.at.J - start.at.J) / scale)
-    before = left[0] >= -SAME and left[1] < -SAME and right[0] >= -SAME
-    return bool(end.converged and start.converged and before)
+    return bool(left[0] >= -SAME and left[1] < -SAME and right[0] >= -SAME)
 
 
 def _ends(
-    problem: Problem, before: Sequence[Solution], b: Solution, scale: Floats
+    problem: Problem,
+    before: Sequence[Solution],
+    behind: Sequence[Solution],
+    scale: Floats,
+    known: Floats,
 ) -> list[Solution]:
-    def minimum(objective: int, start: Solution) -> Solution:
-        return solve(problem, weighted(np.eye(2)[objective] / scale), start, _TIGHT)
+    """Return the end and the start; one that is not known has a status other than converged."""
+    b = behind[0]
 
-    def at_level(objective: int, of: Solution, start: Solution) -> Solution:
-        programme = level(1 - objective, objective, of.at.J[objective], scale)
-        return solve(problem, programme, start, _TIGHT)
+    def minimum(objective: int, of: Solution) -> Solution:
+        return solve(problem, weighted(np.eye(2)[objective] / scale), of, _TIGHT)
 
-    start, a = minimum(0, b), before[-1]
+    def at_level(objective: int, value: float, of: Solution) -> Solution:
+        found = of
+        for steps in LEVELS:
+            found = of
+            for share in np.arange(1, steps + 1) / steps:
+                goal = (1 - share) * of.at.J[objective] + share * value
+                found = solve(
+                    problem, level(1 - objective, objective, float(goal), scale), found, _TIGHT
+                )
+            if found.converged:
+                break
+        return found
+
+    def first_of(found: Iterable[Solution], next_to: Solution, objective: int) -> Solution:
+        """Return the first that can be the end, in an objective, of the branch of a point."""
+        last = replace(next_to, status=Status.STALLED)
+        for one in found:
+            ahead = (next_to.at.J - one.at.J)[objective] >= -SAME * scale[objective]
+            dominated = ((known - one.at.J) / scale < -SAME).all(axis=1).any()
+            if one.converged and ahead and not dominated:
+                return one
+            last = replace(one, status=Status.STALLED)
+        return last
+
+    start, a = first_of((minimum(0, one) for one in behind[:STARTS]), b, 0), before[-1]
     if start.converged:
         a = next((one for one in before[::-1] if (one.at.J < start.at.J).any()), a)
+    at = next(k for k, one in enumerate(before) if one is a)
+    near = before[at::-1][:STARTS]
+    own = first_of((minimum(1, one) for one in near), a, 1)
     if start.converged and start.at.J[0] >= a.at.J[0] and start.at.J[1] < a.at.J[1]:
-        end = minimum(1, a)
-        if not (end.converged and end.at.J[0] <= start.at.J[0]):
-            end = at_level(0, start, a)
-    else:
-        end = minimum(1, a)
-        start = at_level(1, end, b)
-    return [end, start]
+        if own.converged and own.at.J[0] <= start.at.J[0]:
+            return [own, start]
+        goal = float(start.at.J[0])
+        return [first_of((at_level(0, goal, one) for one in near), a, 1), start]
+    if not own.converged:
+        return [own, start]
+    goal = float(own.at.J[1])
+    return [own, first_of((at_level(1, goal, one) for one in behind[:STARTS]), b, 0)]
 
 
 def piece_numbers(J: Floats, optimal: Bools, gaps: Sequence[Gap]) -> Ints:
-    """Return the piece, from 1, that each row of J (points, 2) lies on; 0 for none.
+    """Return the branch, from 1, that each row of J (points, 2) lies on; 0 for none.
 
-    A point that no other point dominates lies on no piece if the start of a piece dominates it.
+    A point that no other point dominates lies on no branch if the start of a branch dominates it.
     """
-    ends = np.array([gap.end.at.J[0] for gap in gaps])
-    starts = np.array([gap.start.at.J for gap in gaps]).reshape(-1, 2)
-    piece = 1 + (J[:, :1] > (ends + starts[:, 0]) / 2).sum(axis=1)
+    middles = np.array([gap.middle for gap in gaps])
+    starts = np.array([gap.start.at.J for gap in gaps if gap.start]).reshape(-1, 2)
+    piece = 1 + (J[:, :1] > middles).sum(axis=1)
     below = np.all(starts <= J[:, None], axis=2) & np.any(starts < J[:, None], axis=2)
     return np.where(optimal & ~np.any(below, axis=1), piece, 0)

@@ -64,9 +64,10 @@ def pieces(points: Sequence[Solution], optimal: Bools, gaps: Sequence[Gap]) -> l
     number = piece_numbers(J, optimal, gaps)
     out = []
     for k in range(len(gaps) + 1):
-        first = [gaps[k - 1].start] if k else []
-        last = [gaps[k].end] if k < len(gaps) else []
-        out.append([*first, *(points[i] for i in np.flatnonzero(number == k + 1).tolist()), *last])
+        start = gaps[k - 1].start if k else None
+        end = gaps[k].end if k < len(gaps) else None
+        within = (points[i] for i in np.flatnonzero(number == k + 1).tolist())
+        out.append([one for one in (start, *within, end) if one is not None])
     return out
 
 

@@ -72,10 +72,13 @@ class Linear:
 class LogSum:
     """I = sum_i a_i ln J_i, equation (8): its stationary points have the weights w_i = a_i / J_i.
 
-    ``a`` counts the measured properties of each group.
+    With a ``floor`` b (n,), J_i + b_i stands for J_i: the weights a_i / (J_i + b_i) are bounded,
+    and there is a minimum also where a group can be fitted exactly. ``a`` (n,) counts the measured
+    properties of each group.
     """
 
     a: Floats
+    floor: Floats | float = 0.0
 
     @property
     def A(self) -> Floats:
@@ -90,15 +93,15 @@ class LogSum:
     def value(self, J: Floats) -> float:
         """Return I; minus infinity where an objective vanishes."""
         with np.errstate(divide="ignore"):
-            return float(self.a @ np.log(J))
+            return float(self.a @ np.log(J + self.floor))
 
     def gradient(self, J: Floats) -> Floats:
-        """Return a / J."""
-        return self.a / np.maximum(J, np.finfo(float).tiny)
+        """Return a / (J + b)."""
+        return self.a / np.maximum(J + self.floor, np.finfo(float).tiny)
 
     def hessian(self, J: Floats) -> Floats:
-        """Return -a / J**2 on the diagonal."""
-        return np.diag(-self.a / np.maximum(J, np.sqrt(np.finfo(float).tiny)) ** 2)
+        """Return -a / (J + b)**2 on the diagonal."""
+        return np.diag(-self.a / np.maximum(J + self.floor, np.sqrt(np.finfo(float).tiny)) ** 2)
 
 
 def weighted(w: Floats) -> Linear:

@@ -78,6 +78,7 @@ class Status(Enum):
     )
     EXHAUSTED = "the limit of iterations was reached: more iterations, or another start"
     SAMPLED = "the method has no tolerance: more evaluations, or normal-boundary intersection"
+    VISITED = "a model on the way of a search, no solution of its own"
     INFEASIBLE = "the model cannot be evaluated at the start: narrower bounds, or another start"
 
 

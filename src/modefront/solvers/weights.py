@@ -4,10 +4,23 @@ Optimal weights minimise :math:`I(\theta) = \sum_i a_i \ln J_i(\theta)`, equatio
 :math:`a_i` counts the measured properties of a group; the model then minimises
 :math:`\sum_i w_i J_i` with :math:`w_i = a_i / J_i`. Where a group can be fitted exactly, I falls to
 minus infinity there, which says nothing about the model: the minimum that is meant is the regular
-one, at which every :math:`J_i` is positive.
+one, at which every :math:`J_i` is positive. There may be none worth the name. A minimum is accepted
+only if
+
+* no objective vanishes at it,
+* no known model dominates it, and
+* I is nowhere less among the known regular models, which lie on the front or minimise the equally
+  weighted residuals.
+
+With more parameters than data, I often falls all the way along the front to the edge at which a
+group is fitted exactly. Noise puts an end to that: a group cannot be known better than its data.
+With :math:`b_i`, the objective that the errors of the data alone would cause, **bounded weights**
+minimise
+
+.. math:: \sum_i a_i \ln (J_i + b_i), \qquad w_i = \frac{a_i}{J_i + b_i} \le \frac{a_i}{b_i} .
 
 The iteration :math:`w_i \leftarrow a_i / J_i(\arg\min \sum w_i J_i)` has the same stationary points
-and serves as a check.
+as I and serves as a check.
 """
 
 from __future__ import annotations
@@ -18,8 +31,9 @@ from dataclasses import replace
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.solvers.dominance import nondominated
 from modefront.solvers.explore import Descent, Search, explore
-from modefront.solvers.lexicographic import EXACT
+from modefront.solvers.lexicographic import EXACT, TIE
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import LogSum, weighted
 from modefront.solvers.sqp import Options, Solution, Status, solve
@@ -35,18 +49,57 @@ def regular(J: Floats, sizes: Floats) -> bool:
 def optimal_minima(
     problem: Problem,
     a: Floats,
-    sizes: Floats,
     rng: np.random.Generator,
     search: Search,
     starts: Sequence[Solution],
+    floor: Floats | float = 0.0,
 ) -> list[Solution]:
-    """Return minima of I: regular ones, best first, then those at which an objective vanishes.
+    """Return minima of I, those at which an objective vanishes included, best first.
 
-    ``a`` (n,) counts the measured properties of each group, ``sizes`` (n,) are typical sizes of
-    the objectives; ``starts`` are solved from first.
+    ``a`` (n,) counts the measured properties of each group; ``starts`` are solved from first. With
+    a ``floor`` b (n,) the weights are bounded.
     """
-    found = explore(problem, Descent(LogSum(a)), rng, search, starts=starts, options=_TIGHT)
-    return sorted(found, key=lambda one: not regular(one.at.J, sizes))
+    return explore(problem, Descent(LogSum(a, floor)), rng, search, starts=starts, options=_TIGHT)
+
+
+def accepted(
+    minima: Sequence[Solution],
+    a: Floats,
+    sizes: Floats,
+    rivals: Sequence[Solution],
+    known: Floats,
+    scale: Floats,
+) -> list[Solution]:
+    """Return the minima of I that are regular and worth the name, best first; see the module.
+
+    ``rivals`` are models of the front and of weighted residuals, ``known`` (models, n) objectives
+    of all models that were evaluated, ``scale`` (n,) the ranges of the objectives.
+    """
+    programme = LogSum(a)
+    values = [programme.value(one.at.J) for one in rivals if regular(one.at.J, sizes)]
+    least = min(values, default=np.inf)
+    out = []
+    for one in minima:
+        rows = np.vstack([one.at.J, known])
+        if (
+            regular(one.at.J, sizes)
+            and programme.value(one.at.J) <= least + TIE * a.sum()
+            and nondominated(rows, scale=scale)[0]
+        ):
+            out.append(one)
+    return sorted(out, key=lambda one: programme.value(one.at.J))
+
+
+def least_along(points: Sequence[Solution], a: Floats, sizes: Floats) -> list[Solution]:
+    """Return the points of a front in their order next to which I is greater, or not regular."""
+    programme = LogSum(a)
+    values = [programme.value(one.at.J) if regular(one.at.J, sizes) else np.inf for one in points]
+    padded = [np.inf, *values, np.inf]
+    return [
+        one
+        for k, one in enumerate(points)
+        if np.isfinite(values[k]) and values[k] <= min(padded[k], padded[k + 2])
+    ]
 
 
 def iterate_weights(

@@ -26,7 +26,6 @@ from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.checkpoint import Checkpoint, Solutions
 from modefront.solvers.edges import Edge
-from modefront.solvers.pieces import Gap
 from modefront.solvers.problem import infeasible
 from modefront.solvers.scalarisation import LogSum
 from modefront.solvers.sqp import Solution, begin
@@ -257,7 +256,15 @@ def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> F
         edges=[Edge(known(edge.best), list(map(known, edge.minima))) for edge in front.edges],
         optimal=list(map(known, front.optimal)),
         iterated=known(front.iterated) if front.iterated else None,
-        gaps=[Gap(known(gap.end), known(gap.start)) for gap in front.gaps],
+        gaps=[
+            replace(
+                gap,
+                end=known(gap.end) if gap.end else None,
+                start=known(gap.start) if gap.start else None,
+            )
+            for gap in front.gaps
+        ],
+        known=np.zeros((0, front.known.shape[1])),  # what the search saw holds in its basis only
     )
 
 
@@ -282,7 +289,7 @@ def _of_the_front(front: Front) -> Iterator[Solution]:
     if front.iterated:
         yield front.iterated
     for gap in front.gaps:
-        yield from (gap.end, gap.start)
+        yield from gap.ends
 
 
 def _rivals(problem: UpdatingProblem, front: Front) -> Iterator[Solution]:

@@ -22,7 +22,7 @@ def with_neighbours(
     sizes: Floats,
 ) -> dict[str, Scatter]:
     """Return the scatter of points with the doubts that their neighbours raise."""
-    ends = [one.at.J for gap in front.gaps for one in (gap.end, gap.start)]
+    ends = [one.at.J for gap in front.gaps for one in gap.ends]
     out: dict[str, Scatter] = {}
     for point in in_order(points):
         label, at = point.label, point.solution.at

@@ -14,16 +14,16 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.advance import default_points
 from modefront.solvers.checkpoint import Checkpoint
 from modefront.solvers.curvature import SecondOrder, second_order
-from modefront.solvers.lexicographic import EXACT, TIE
 from modefront.solvers.evolutionary import EVOLUTIONARY
 from modefront.solvers.flat import Identifiable, identifiable_part, same
+from modefront.solvers.lexicographic import EXACT, TIE
 from modefront.solvers.manifold import Extent, Manifold, equally_good
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution, begin, solve
 from modefront.study.doubtful import with_neighbours
-from modefront.study.run import Front, Labelled, generator
+from modefront.study.run import OPTIMAL, Front, Labelled, generator
 from modefront.study.tables.identifiability import Identifiability
 from modefront.study.tables.uncertainty import Uncertainty
 from modefront.uncertainty.bootstrap import redraw
@@ -33,7 +33,6 @@ from modefront.uncertainty.noise import Noise, Source, noise
 from modefront.uncertainty.points import Point, Role, solve_again
 from modefront.uncertainty.scatter import Scatter
 
-OPTIMAL = "optimal-weights"
 PART = "identifiable-"
 """Beginning of the labels of points of the identifiable part of the front."""
 

@@ -18,8 +18,8 @@ from modefront.identifiability.words import enumeration, measured_thing, summary
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.manifold import Extent, Manifold
 from modefront.solvers.sqp import Solution
-from modefront.study.knowledge import OPTIMAL, PART, Knowledge
-from modefront.study.run import Front
+from modefront.study.knowledge import PART, Knowledge
+from modefront.study.run import OPTIMAL, Front
 from modefront.uncertainty.doubts import Doubt
 from modefront.uncertainty.prediction import linear
 

@@ -15,9 +15,8 @@ from modefront._typing import Floats
 from modefront.identifiability.words import enumeration
 from modefront.predict import Passage, PeakResponse, Prediction
 from modefront.study.asking import FAILED, Asking
-from modefront.study.knowledge import OPTIMAL
 from modefront.study.knowledge_variables import Variables, left_open
-from modefront.study.run import generator
+from modefront.study.run import OPTIMAL, generator
 from modefront.uncertainty.differences import Stencil, stencil
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.prediction import SUMMARY, TruncationError, draw, lognormal_std, summary

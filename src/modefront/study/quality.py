@@ -33,6 +33,8 @@ def indicators(front: Front) -> dict[str, float]:
     parts = pieces(along, optimal, front.gaps) if front.gaps else []
     branches = [np.array([(one.at.J - utopia) / scale for one in part]) for part in parts]
     gap = max(
-        largest_gap(part[(part <= REFERENCE).all(axis=1)]) for part in branches or [Y[optimal]]
+        largest_gap(part[(part <= REFERENCE).all(axis=1)])
+        for part in branches or [Y[optimal]]
+        if len(part)
     )
     return dict(zip(names, (hypervolume(Y[optimal]), igd_plus(Y[optimal], R), gap), strict=True))

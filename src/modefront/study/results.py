@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 
-from modefront._typing import Floats, Ints
+from modefront._typing import Bools, Floats, Ints
 from modefront.errors import Fault, InputError
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.dominance import nondominated
@@ -20,7 +20,7 @@ from modefront.solvers.sqp import Solution
 from modefront.study.certified import certificate_variables
 from modefront.study.knowledge import PART, Knowledge
 from modefront.study.knowledge_variables import Variables, known_variables
-from modefront.study.run import Front
+from modefront.study.run import BOUNDED, OPTIMAL, Front
 
 FILE = "results.nc"
 
@@ -47,16 +47,29 @@ def dataset(problem: UpdatingProblem, front: Front, knowledge: Knowledge) -> xr.
     solutions = [one for _, one in front.points]
     groups, n = list(problem.objectives), len(problem.objectives)
     J = _stack([one.at.J for one in solutions], n)
-    optimal = nondominated(J)
+    manifolds = [at.J for _, found in knowledge.manifolds for one in found for at in one.models]
+    optimal = _pareto(front, J, _stack(manifolds, n))
     a = problem.properties
     weights = np.full(J.shape, np.nan)
     for i, label in enumerate(labels):
         if not label.startswith((*UNWEIGHTED, PART)):
-            weights[i] = a / J[i] if label == "optimal-weights" else solutions[i].weights
+            weights[i] = solutions[i].weights
+            if label in (OPTIMAL, BOUNDED):
+                floor = front.floor if label == BOUNDED and front.floor is not None else 0.0
+                weights[i] = a / (J[i] + floor)
     point, mode = ("point", "mode"), ("point", "group")
     variables: Variables = {
         "label": (("point",), labels, "what the point is"),
-        "pareto": (("point",), optimal, "no other point dominates this one, equation (4)"),
+        "pareto": (
+            ("point",),
+            optimal,
+            "no model that is known to the run dominates this one, equation (4)",
+        ),
+        "dominated_among_front": (
+            ("point",),
+            _dominated_among_front(front, J),
+            "another point of the front dominates this one",
+        ),
         "theta": (("point", "parameter"), _thetas(solutions, problem), "parameter values"),
         "objective": (mode, J, "J_i"),
         "error": (mode, np.sqrt(J / a), "sqrt(J_i / a_i)"),
@@ -98,7 +111,7 @@ def dataset(problem: UpdatingProblem, front: Front, knowledge: Knowledge) -> xr.
     lower, upper = problem.lower, problem.upper
     variables["bounds"] = (("parameter", "bound"), np.column_stack([lower, upper]), "bounds")
     variables |= _minima(problem, front)
-    variables |= _ends(problem, front, J, optimal)
+    variables |= _ends(problem, front, J, nondominated(J)) | _lattice(front)
     variables |= known_variables(problem, front, knowledge)
     return xr.Dataset(
         {
@@ -148,6 +161,10 @@ def _ends(problem: UpdatingProblem, front: Front, J: Floats, optimal: np.ndarray
     if J.shape[1] != 2 or front.method != "nbi":
         return {}
     found = [one for gap in front.gaps for one in (gap.end, gap.start)]
+    p = len(problem.model.parameters)
+    unknown, nowhere = np.full(2, np.nan), np.full(p, np.nan)
+    thetas = [nowhere if one is None else one.at.theta for one in found]
+    objectives = [unknown if one is None else one.at.J for one in found]
     labels = [text for i in range(len(front.gaps)) for text in (f"end-{i + 1}", f"start-{i + 2}")]
     return {
         "piece": (
@@ -156,12 +173,61 @@ def _ends(problem: UpdatingProblem, front: Front, J: Floats, optimal: np.ndarray
             "piece of the front, from 1; 0 for points that lie in a gap",
         ),
         "end_label": (("end",), np.array(labels, dtype=str), "end or start of a piece at a gap"),
-        "end_theta": (("end", "parameter"), _thetas(found, problem), "parameter values"),
-        "end_objective": (("end", "group"), _stack([one.at.J for one in found], 2), "J_i"),
+        "end_theta": (
+            ("end", "parameter"),
+            _stack(thetas, p),
+            "parameter values; NaN where the end is not known",
+        ),
+        "end_objective": (
+            ("end", "group"),
+            _stack(objectives, 2),
+            "J_i; NaN where the end is not known",
+        ),
         "end_converged": (
             ("end",),
-            np.array([one.converged for one in found], dtype=bool),
-            "tolerances were met",
+            np.array([one is not None for one in found], dtype=bool),
+            "the end is known: tolerances were met, and no known model dominates it",
+        ),
+    }
+
+
+def _pareto(front: Front, J: Floats, others: Floats) -> Bools:
+    """Return which points (points, n) no known model dominates; ``others`` (models, n) are known.
+
+    All evaluated models are known, minima and ends of branches too. An end that another branch
+    dominates at the same level counts for the points next to it only.
+    """
+    minima = [one.at.J for edge in front.edges for one in edge.minima]
+    minima += [one.at.J for gap in front.gaps for one in gap.ends]
+    minima += [one.at.J for one in front.optimal]
+    n = J.shape[1]
+    known = np.vstack([J, front.known.reshape(-1, n), _stack(minima, n), others])
+    return nondominated(known, scale=front.scale)[: len(J)]
+
+
+def _dominated_among_front(front: Front, J: Floats) -> Bools:
+    """Return which points (points, n) another point of the front dominates; others do not count."""
+    on = np.array([label.startswith(f"{front.method}-") for label, _ in front.points])
+    out = np.zeros(len(J), dtype=bool)
+    if on.any():
+        out[: on.size][on] = ~nondominated(J[: on.size][on], scale=front.scale)
+    return out
+
+
+def _lattice(front: Front) -> Variables:
+    """Return the lattice of normal-boundary intersection and the point that each place led to."""
+    if not len(front.places):
+        return {}
+    return {
+        "lattice": (
+            ("place", "group"),
+            front.lattice,
+            "points of the simplex between the edges from which the front is projected",
+        ),
+        "lattice_label": (
+            ("place",),
+            np.array([f"{front.method}-{k + 1}" for k in front.places], dtype=str),
+            "label of the point that this place led to; places of the same model share one",
         ),
     }
 

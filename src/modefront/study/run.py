@@ -9,24 +9,38 @@ from functools import partial
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.errors import UnfinishedError
-from modefront.solvers.advance import default_points, simplex
+from modefront.solvers.advance import Simplex, default_points, simplex
+from modefront.solvers.archive import Archive
 from modefront.solvers.checkpoint import Checkpoint, Solutions, compute_always
 from modefront.solvers.dominance import nondominated
-from modefront.solvers.edges import Edge, edge, near_best, sample, typical_sizes
+from modefront.solvers.edges import (
+    Edge,
+    edge,
+    near_best,
+    ordered,
+    refined_from,
+    sample,
+    typical_sizes,
+)
 from modefront.solvers.evolutionary import EVOLUTIONARY, evolve_front
 from modefront.solvers.explore import Descent, Search, distinct, explore
-from modefront.solvers.lexicographic import EXACT
+from modefront.solvers.lexicographic import EXACT, Lexicographic
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import Payoff, payoff
 from modefront.solvers.pieces import Gap, gaps
 from modefront.solvers.problem import Problem
 from modefront.solvers.refine import refine
 from modefront.solvers.scalarisation import weighted
-from modefront.solvers.sqp import Solution
+from modefront.solvers.sqp import Solution, begin
 from modefront.solvers.sweep import weight_sweep
-from modefront.solvers.weights import iterate_weights, optimal_minima, regular
+from modefront.solvers.weights import (
+    accepted,
+    iterate_weights,
+    least_along,
+    optimal_minima,
+)
 
 Labelled = Sequence[tuple[str, Solution]]
 """Solutions with what they are called."""
@@ -38,6 +52,15 @@ MOVED = 0.1
 TURNS = 3
 """Refinements of a front at most, each with the gaps that were found by the one before."""
 
+AGAIN = 2
+"""Searches of the front at most, each with edges that are better than those of the one before."""
+
+COPY = 1e-5
+"""Distance of two points, over the ranges of the objectives, below which they are copies."""
+
+OPTIMAL, BOUNDED, EQUAL = "optimal-weights", "bounded-weights", "equal-weights"
+"""Labels of the models by optimal, bounded and equal weights."""
+
 
 @dataclass(frozen=True)
 class Front:
@@ -48,21 +71,35 @@ class Front:
     method : by which the front was found
     points : (label, solution) of the points along the front, then of the edges and weighted models
     edges : the edge of each objective with its other minima
-    optimal : all regular minima of the optimally weighted residuals, best first
+    optimal : all minima of the optimally weighted residuals that are accepted, best first
+    floor : (n,) bounds b of J in the bounded weights; None where there is no such model
     iterated : where the iteration of the weights arrived; None where it ran into a singularity
     exact : (n,) which objectives some model fits exactly
     target : utopia point and ranges over the edges, or None where the front is one point
-    gaps : gaps between the pieces of a front of two objectives
+    gaps : gaps between the branches of a front of two objectives
+    lattice : (places, n) lattice points of normal-boundary intersection
+    places : (places,) the point of the front, from 0, to which each of them led; -1 for none
+    known : (models, n) objectives of evaluated models that no evaluated model dominates
     """
 
     method: str
     points: Labelled
     edges: Sequence[Edge]
     optimal: Sequence[Solution]
+    floor: Floats | None
     iterated: Solution | None
     exact: tuple[bool, ...]
     target: Payoff | None
     gaps: Sequence[Gap]
+    lattice: Floats
+    places: Ints
+    known: Floats
+
+    @property
+    def reference(self) -> str:
+        """Label of the model that the data prefer: by optimal, else bounded, else equal weights."""
+        labels = [label for label, _ in self.points]
+        return next(label for label in (OPTIMAL, BOUNDED, EQUAL) if label in labels)
 
     @property
     def scale(self) -> Floats | None:
@@ -97,6 +134,7 @@ def pareto_front(
     search: Search | None = None,
     tolerance: float = 0.0,
     given: Sequence[tuple[str, Floats]] = (),
+    floor: Floats | None = None,
     checkpoint: Checkpoint = compute_always,
     expect: Callable[[int], None] = ignore,
     known: Front | None = None,
@@ -107,19 +145,22 @@ def pareto_front(
     the simplex of objectives (None: as `default_points` says); ``refined`` is the distance of
     neighbours above which NBI puts more points between them, two objectives only;
     ``population`` and ``evaluations`` are those of an evolutionary method; an edge may exceed the
-    least value of its objective by the share ``tolerance``; ``given`` are labelled weights (n,).
+    least value of its objective by the share ``tolerance``; ``given`` are labelled weights (n,);
+    ``floor`` (n,) is what errors of the data alone make of the objectives, for bounded weights.
     ``expect`` is told how many pieces of work there are. Minima are looked for near those of a
     front that is ``known``, of nearly the same problem, and nowhere else. Raises UnfinishedError
     where no edge can be found.
     """
     search = (search or Search()) if known is None else Search(0, 0, 0)
+    archive = Archive(problem)
+    problem, checkpoint = archive, archive.keeping(checkpoint)
     n = len(problem.objectives)
     lattice = simplex(n, (points or default_points(n)) - 1) if n > 1 else None
     subproblems = len(lattice.counts) if lattice else 1
     if lattice and method in EVOLUTIONARY:
         subproblems = max(evaluations // population, 1)
     starts_again = 3 + n + len(given) if known else 0
-    expect(4 + 2 * n + len(given) + subproblems + starts_again)
+    expect(4 + 3 * n + len(given) + subproblems + starts_again)
 
     def again(name: str, solutions: Sequence[Solution]) -> Sequence[Solution]:
         """Return known solutions as starts, with the objectives that they have now."""
@@ -141,69 +182,174 @@ def pareto_front(
         if found is None:
             raise UnfinishedError(f"no minimum of group '{name}' was found from any start")
         edges.append(found)
-    bests = [one.best for one in edges]
-    minima_of_one = [one for each in edges for one in each.minima]
-    least = np.array([one.best.at.J[i] for i, one in enumerate(edges)])
 
     models: list[tuple[str, Solution]] = []
-    for label, w in [*given, ("equal-weights", np.ones(n))]:
+    for label, w in [*given, (EQUAL, np.ones(n))]:
         rng = generator(seed, label)
         before = [one for name, one in known.points if name == label] if known else []
-        near = again(label, before) if known else bests
+        near = again(label, before) if known else [one.best for one in edges]
         search_from = partial(explore, problem, Descent(weighted(w)), rng, search, starts=near)
         models += [(label, one) for one in checkpoint(label, search_from)[:1]]
-    starts = [*(one for _, one in models), *bests]
-    near = again("optimal-weights", known.optimal) if known else starts
-    rng = generator(seed, "optimal-weights")
-    minima = checkpoint(
-        "optimal-weights", lambda: optimal_minima(problem, a, sizes, rng, search, near)
-    )
-    optimal = [one for one in minima if regular(one.at.J, sizes)]
-    models += [("optimal-weights", one) for one in optimal[:1]]
+    edges = _from_models(archive, edges, sizes, [one for _, one in models], checkpoint)
+
+    front = _Along([], [], None, np.zeros((0, n)), np.zeros(0, dtype=np.intp))
+    for turn in range(AGAIN):
+        named = partial(_renamed, checkpoint, f"-again-{turn}" if turn else "")
+        bests = [one.best for one in edges]
+        if tolerance > 0:
+            starts = [*(one for _, one in models), *bests]
+            bests = [
+                named(
+                    f"near-{name}", partial(near_best, problem, one, i, tolerance, sizes, starts)
+                )[0]
+                for i, (name, one) in enumerate(zip(problem.objectives, bests, strict=True))
+            ]
+        minima_of_one = [one for each in edges for one in each.minima]
+        target = payoff(bests, sizes, minima_of_one) if n > 1 else None
+        if target is None or lattice is None:
+            break
+        if method in EVOLUTIONARY:
+            rng = generator(seed, method)
+            along = evolve_front(problem, method, population, evaluations, rng, named)
+            front = replace(front, target=target, points=along)
+        elif method == "weights":
+            along = weight_sweep(problem, bests, target.scale, lattice, named)
+            front = replace(front, target=target, points=along)
+        else:
+            before = _before(problem, known, bests) if known else []
+            before = [one for one in front.points if one.beta is not None] or before
+            along = nbi(problem, bests, target, lattice, named, minima_of_one, before=before)
+            front = _without_copies(lattice, along, target)
+            if n == 2:
+                front = _branches(archive, front, target, refined, named)
+        better = _from_archive(archive, edges, sizes, named)
+        if all(one is other for one, other in zip(better, edges, strict=True)):
+            break
+        edges = better
+    target = front.target if front.target is not None else target
+
+    rivals = [*(one for _, one in models), *front.points]
+    near = [*(one for _, one in models), *bests, *least_along(front.points, a, sizes)]
+    if known and known.optimal:
+        near = list(again(OPTIMAL, known.optimal))
+    rng = generator(seed, OPTIMAL)
+    minima = checkpoint(OPTIMAL, lambda: optimal_minima(problem, a, rng, search, near))
+    scale = target.scale if target else sizes
+    optimal = accepted(minima, a, sizes, rivals, archive.J, scale)
+    models += [(OPTIMAL, one) for one in optimal[:1]]
+    if not optimal and floor is not None:
+        rng = generator(seed, BOUNDED)
+        bounded = checkpoint(BOUNDED, lambda: optimal_minima(problem, a, rng, search, near, floor))
+        models += [(BOUNDED, one) for one in bounded[:1]]
     if known and known.iterated:
         (first,) = again("iterated-weights", [known.iterated])
     else:
-        first = starts[0]
+        first = next((one for label, one in models if label == EQUAL), bests[0])
     iterated = checkpoint(
         "iterated-weights",
         lambda: [one for one in [iterate_weights(problem, a, sizes, first)] if one],
     )
-
-    if tolerance > 0:
-        found_before = [*optimal, *starts]
-        ends = [
-            checkpoint(
-                f"near-{name}", partial(near_best, problem, one, i, tolerance, sizes, found_before)
-            )
-            for i, (name, one) in enumerate(zip(problem.objectives, bests, strict=True))
-        ]
-        bests = [found[0] for found in ends]
-    target = payoff(bests, sizes, minima_of_one) if n > 1 else None
-    along: Sequence[Solution] = []
-    breaks: list[Gap] = []
-    if target is not None and lattice is not None:
-        if method in EVOLUTIONARY:
-            rng = generator(seed, method)
-            along = evolve_front(problem, method, population, evaluations, rng, checkpoint)
-        elif method == "weights":
-            along = weight_sweep(problem, bests, target.scale, lattice, checkpoint)
-        else:
-            before = _before(problem, known, bests) if known else []
-            along = nbi(problem, bests, target, lattice, checkpoint, minima_of_one, before=before)
-            if n == 2:
-                along, breaks = _pieces(problem, target, along, refined, checkpoint)
-    labelled = [(f"{method}-{i + 1}", one) for i, one in enumerate(along)]
+    labelled = [(f"{method}-{i + 1}", one) for i, one in enumerate(front.points)]
     labelled += [(f"edge-{name}", one) for name, one in zip(problem.objectives, bests, strict=True)]
+    least = np.array([one.best.at.J[i] for i, one in enumerate(edges)])
     return Front(
         method,
         labelled + models,
         edges,
         optimal,
+        floor if any(label == BOUNDED for label, _ in models) else None,
         iterated[0] if iterated else None,
         tuple(bool(x) for x in least <= EXACT * sizes),
         target,
-        breaks,
+        front.gaps,
+        front.lattice,
+        front.places,
+        archive.J,
     )
+
+
+@dataclass(frozen=True)
+class _Along:
+    """The points of a front, its gaps, and the lattice points that led to them; see `Front`."""
+
+    points: Sequence[Solution]
+    gaps: Sequence[Gap]
+    target: Payoff | None
+    lattice: Floats
+    places: Ints
+
+
+def _from_models(
+    archive: Archive,
+    edges: Sequence[Edge],
+    sizes: Floats,
+    models: Sequence[Solution],
+    checkpoint: Checkpoint,
+) -> list[Edge]:
+    """Return the edges, with the minima to which weighted models lead among the others."""
+    out = []
+    for i, (name, known) in enumerate(zip(archive.objectives, edges, strict=True)):
+        search = partial(refined_from, archive, i, sizes, models)
+        found = ordered(
+            archive, i, sizes, [*known.minima, *checkpoint(f"edge-{name}-from", search)]
+        )
+        out.append(found or known)
+    return out
+
+
+def _from_archive(
+    archive: Archive, edges: Sequence[Edge], sizes: Floats, checkpoint: Checkpoint
+) -> list[Edge]:
+    """Return the edges, searched again from evaluated models that come before them."""
+    out = []
+    for i, (name, known) in enumerate(zip(archive.objectives, edges, strict=True)):
+        order = Lexicographic(i, sizes)
+        before = [k for k, J in enumerate(archive.J) if order.clearly_better(J, known.best.at.J)]
+        if not before:
+            out.append(known)
+            continue
+        first = min(before, key=lambda k: order.value(archive.J[k]))
+        start = partial(_begin, archive, archive.theta[first])
+        search = partial(_refined_again, archive, i, sizes, start)
+        found = ordered(
+            archive, i, sizes, [*known.minima, *checkpoint(f"edge-{name}-known", search)]
+        )
+        better = found and order.better(found.best.at.J, known.best.at.J)
+        out.append(found if found and better else known)
+    return out
+
+
+def _begin(problem: Problem, theta: Floats) -> Solution:
+    return begin(problem.evaluate(theta))
+
+
+def _refined_again(
+    problem: Problem, objective: int, sizes: Floats, start: Callable[[], Solution]
+) -> list[Solution]:
+    return refined_from(problem, objective, sizes, [start()])
+
+
+def _without_copies(lattice: Simplex, along: Sequence[Solution], target: Payoff) -> _Along:
+    """Return the points of a front, each once, with the lattice points that led to them.
+
+    Points beyond the lattice belong to none of its points.
+    """
+    kept: list[Solution] = []
+    places = []
+    for one in along:
+        J = one.at.J
+        same = [k for k, other in enumerate(kept) if _copies(J, other.at.J, target.scale)]
+        places.append(same[0] if same else len(kept))
+        if not same:
+            kept.append(one)
+        elif one.converged and not kept[same[0]].converged:
+            kept[same[0]] = one
+    size = len(lattice.counts)
+    return _Along(kept, [], target, lattice.beta, np.array(places[:size], dtype=np.intp))
+
+
+def _copies(J: Floats, other: Floats, scale: Floats) -> bool:
+    return bool((np.abs(J - other) <= COPY * scale).all())
 
 
 def _before(problem: Problem, known: Front, bests: Sequence[Solution]) -> list[Solution]:
@@ -214,26 +360,32 @@ def _before(problem: Problem, known: Front, bests: Sequence[Solution]) -> list[S
     return [one for _, one in known.points if one.beta is not None]
 
 
-def _pieces(
-    problem: Problem,
+def _branches(
+    archive: Archive,
+    front: _Along,
     target: Payoff,
-    along: Sequence[Solution],
     refined: float | None,
     checkpoint: Checkpoint,
-) -> tuple[Sequence[Solution], list[Gap]]:
-    """Return the points of a front of two objectives, refined where wanted, and its gaps."""
+) -> _Along:
+    """Return a front of two objectives, refined where wanted, with its gaps."""
+    along = front.points
     optimal = nondominated(np.array([one.at.J for one in along]))
-    breaks = gaps(problem, along, optimal, target.scale, checkpoint)
+    known = archive.J.copy()
+    breaks = gaps(archive, along, optimal, target.scale, checkpoint, known=known)
     if refined is None:
-        return along, breaks
+        return replace(front, gaps=breaks)
     for turn in range(TURNS):
         again = partial(_renamed, checkpoint, f"-turn-{turn + 1}")
-        along, jumps = refine(problem, target, along, optimal, breaks, refined, again)
+        along, jumps = refine(archive, target, along, optimal, breaks, refined, again)
         optimal = nondominated(np.array([one.at.J for one in along]))
-        before, breaks = len(breaks), gaps(problem, along, optimal, target.scale, again, jumps)
+        before = len(breaks)
+        breaks = gaps(archive, along, optimal, target.scale, again, jumps, known)
         if len(breaks) == before:
             break
-    return along, breaks
+    places = [
+        next(k for k, one in enumerate(along) if one is front.points[i]) for i in front.places
+    ]
+    return replace(front, points=along, gaps=breaks, places=np.array(places, dtype=np.intp))
 
 
 def _renamed(

@@ -58,21 +58,25 @@ class Posterior:
         return self.axes @ self.axes.T
 
 
-def laplace(problem: Problem, point: SecondOrder, a: Floats) -> Posterior | None:
+def laplace(
+    problem: Problem, point: SecondOrder, a: Floats, floor: Floats | float = 0.0
+) -> Posterior | None:
     """Return the posterior around a minimum of sum a ln J; ``a`` (n,) counts the properties.
 
-    None where the point is no regular minimum: an objective vanishes, or the curvature is not
-    positive in all directions that residuals determine.
+    With a ``floor`` b (n,), J + b stands for J, as in bounded weights. None where the point is no
+    regular minimum: an objective vanishes, or the curvature is not positive in all directions that
+    residuals determine.
     """
     at = point.at
-    if not (at.J > 0).all():
+    J = at.J + floor
+    if not (J > 0).all():
         return None
-    w = a / at.J
+    w = a / J
     span = problem.upper - problem.lower
     held = held_at_bounds(problem, point, w)
     Q, free = spaces(problem, point, w, held)
     B = span[:, None] * Q
-    second = np.tensordot(w, point.H, axes=1) - at.dJ.T @ ((a / at.J**2)[:, None] * at.dJ)
+    second = np.tensordot(w, point.H, axes=1) - at.dJ.T @ ((a / J**2)[:, None] * at.dJ)
     half = B.T @ second @ B / 2
     lam, V = np.linalg.eigh(half)
     if lam.size and lam[0] <= 0:

@@ -10,6 +10,7 @@ from modefront.study.reader import Table, describe, has_name, is_number, repeate
 
 RESERVED = (
     *("nbi-", "edge-", "minima-", "gap-", "equal-weights", "optimal-weights"),
+    *("bounded-weights",),
     *("iterated-weights", "sample", "identifiable-", "manifold-", "second-", "bootstrap-"),
     *("predict-", "weights-", "spea2", "nsga2", "known-", "snapshot", "certificates", "probe"),
 )
