@@ -37,6 +37,9 @@ class Known:
             return infeasible(theta, len(self.objectives))
         return Evaluation(theta, J, dJ, H) if derivatives else Evaluation(theta, J, 0 * dJ, 0 * H)
 
+    def on_branch(self, branch: tuple[int, ...]) -> "Known":
+        return self
+
 
 def box(
     function: Callable[[Floats], Derivatives], lower: list[float], upper: list[float], n: int = 2

@@ -26,7 +26,7 @@ properties is one for a frequency and :math:`N_0` (mean over data sets) for a sh
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -36,7 +36,7 @@ from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.base import Model
 from modefront.modes.result import Modes
-from modefront.pairing.match import Pairing, Pairs, match, modes_needed
+from modefront.pairing.match import Pairing, Pairs, match, mean_mac, modes_needed
 from modefront.residuals.groups import (
     Group,
     Scale,
@@ -58,7 +58,8 @@ class UpdatingProblem:
     """Objectives of a model, measured data and groups; see `modefront.solvers.problem.Problem`.
 
     ``lower``, ``upper`` and ``start`` are the bounds and the nominal values of the parameters.
-    Raises ValueError for a group without members.
+    ``pairs`` are the model modes, from 0, that are paired with the measured ones whatever their MAC
+    is; None where they are matched. Raises ValueError for a group without members.
     """
 
     model: Model
@@ -68,6 +69,7 @@ class UpdatingProblem:
     upper: Floats
     start: Floats
     pairing: Pairing = field(default_factory=Pairing)
+    pairs: tuple[int, ...] | None = None
 
     def __post_init__(self) -> None:
         for group, row in zip(self.groups, self.members, strict=True):
@@ -137,12 +139,21 @@ class UpdatingProblem:
             "paired_mode": pairs.index + 1.0,
             "coincident": modes.coincident[pairs.index].astype(float),
         }
-        return Evaluation(theta, J, dJ, H, quantities, residuals if derivatives else ())
+        branch = tuple(pairs.index.tolist())
+        return Evaluation(theta, J, dJ, H, quantities, residuals if derivatives else (), branch)
+
+    def on_branch(self, branch: tuple[int, ...]) -> UpdatingProblem:
+        """Return the problem with these pairs of modes at all parameters."""
+        return replace(self, pairs=branch)
 
     def modes(self, theta: Floats, *, derivatives: bool = True) -> tuple[Modes, Pairs]:
         """Return the model's modes at ``theta`` and which of them belong to the measured ones."""
         count = modes_needed(self.pairing, self.data, self.model.size)
         modes = self.model.modes(theta, count, derivatives=derivatives)
+        if self.pairs is not None:
+            index = np.array(self.pairs, dtype=np.intp)
+            mac = mean_mac(self.data, modes.phi)[np.arange(index.size), index]
+            return modes, Pairs(index, mac)
         return modes, match(self.pairing, self.data, modes.frequency, modes.phi)
 
     def residuals(self, theta: Floats) -> tuple[Residual, ...]:
@@ -174,17 +185,17 @@ class UpdatingProblem:
             square = 0.0
             for kind, r, scale in row:
                 if kind == "frequency":
-                    weight, measured = self._weighted_frequencies[r, scale]
+                    weight, measured = self.weighted_frequencies[r, scale]
                     parts, error = [weight * measured], eigenvalue[r] / 2
                 else:
-                    parts = [psi for _, _, psi in self._weighted_shapes[r, scale]]
+                    parts = [psi for _, _, psi in self.weighted_shapes[r, scale]]
                     error = shape[r]
                 square += error**2 * sum(part @ part for part in parts)
             out.append(np.sqrt(square))
         return np.array(out)
 
     def _frequency(self, modes: Modes, pairs: Pairs, r: int, scale: Scale) -> Residual:
-        weight, measured = self._weighted_frequencies[r, scale]
+        weight, measured = self.weighted_frequencies[r, scale]
         q = pairs.index[r]
         return Residual(
             (modes.frequency[q] - measured) * weight, weight[:, None] * modes.dfrequency[q]
@@ -196,12 +207,12 @@ class UpdatingProblem:
         return _stack(
             [
                 _misfit(psi, weight * phi[at], weight[:, None] * dphi[at])
-                for at, weight, psi in self._weighted_shapes[r, scale]
+                for at, weight, psi in self.weighted_shapes[r, scale]
             ]
         )
 
     @cached_property
-    def _weighted_frequencies(self) -> dict[tuple[int, Scale], tuple[Floats, Floats]]:
+    def weighted_frequencies(self) -> dict[tuple[int, Scale], tuple[Floats, Floats]]:
         """Weights (sets,) of the residuals of each frequency, and the measured values."""
         out = {}
         for r, scale in self._chosen("frequency"):
@@ -213,7 +224,7 @@ class UpdatingProblem:
         return out
 
     @cached_property
-    def _weighted_shapes(self) -> dict[tuple[int, Scale], list[tuple[Ints, Floats, Floats]]]:
+    def weighted_shapes(self) -> dict[tuple[int, Scale], list[tuple[Ints, Floats, Floats]]]:
         """Sensors, weights and weighted measured components of each shape, for each data set."""
         out: dict[tuple[int, Scale], list[tuple[Ints, Floats, Floats]]] = {}
         for r, scale in self._chosen("shape"):

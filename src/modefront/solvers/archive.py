@@ -70,6 +70,10 @@ class Archive:
         self.add(at.theta, at.J)
         return at
 
+    def on_branch(self, branch: tuple[int, ...]) -> Problem:
+        """Return the problem of one smooth piece; its evaluations are not remembered."""
+        return self.problem.on_branch(branch)
+
     def add(self, theta: Floats, J: Floats) -> None:
         """Keep a model, unless another one is nowhere worse, and drop those that it dominates."""
         if not np.isfinite(J).all() or (self.J <= J).all(axis=1).any():

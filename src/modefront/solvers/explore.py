@@ -108,8 +108,21 @@ def explore(
     unfinished: list[Solution] = []
 
     def follow(start: Solution) -> bool:
-        """Go to the minimum below a start; say whether it is a new one."""
-        rough = local.solve(problem, start, replace(options, step=NEAR / 4))
+        """Go to the minima below a start; say whether one is new.
+
+        Where the way down leaves the smooth piece of the objectives on which it began, the minimum
+        of that piece is another start.
+        """
+        near = replace(options, step=NEAR / 4)
+        rough = local.solve(problem, start, near)
+        new = finish(rough)
+        if rough.at.branch != start.at.branch:
+            on_branch = local.solve(problem.on_branch(start.at.branch), start, near)
+            new |= finish(local.solve(problem, begin(problem.evaluate(on_branch.at.theta)), near))
+        return new
+
+    def finish(rough: Solution) -> bool:
+        """Go on to the minimum near a half-finished search; say whether it is a new one."""
         if not distinct(minima, rough, problem, NEAR):
             return False
         found = local.solve(problem, rough, options)

@@ -41,12 +41,14 @@ class Identifiable:
     Attributes
     ----------
     flat : (n,) how many points of the whole front lie in the flat part at each edge, besides it
+    uncut : (n,) likewise, where the end of the flat part was not found, so that it is not cut
     ends : where the part ends, one solution an objective
     target : the simplex between them; None where the part is one point
     points : along it; empty where it is one point
     """
 
     flat: Ints
+    uncut: Ints
     ends: Sequence[Solution]
     target: Payoff | None
     points: Sequence[Solution]
@@ -86,10 +88,9 @@ def identifiable_part(
     divisions: int,
     checkpoint: Checkpoint,
 ) -> Identifiable | None:
-    """Return the part of a front that is not flat; None where nothing is flat, or
-    where the flat part has no end that can be found.
+    """Return the part of a front that is not flat; None where nothing is flat.
 
-    ``points`` lie along the whole front, ``edges`` are its edges, ``known`` are solutions to start
+    A flat part of which the end is not found is not cut, and counted. ``points`` lie along the whole front, ``edges`` are its edges, ``known`` are solutions to start
     from; ``divisions`` are the steps along each edge of the simplex.
     """
     n = len(edges)
@@ -104,12 +105,12 @@ def identifiable_part(
         cut = partial(near_best, problem, edges[i], i, tolerance, sizes, known)
         (ends[i],) = checkpoint(name, cut)
     moved = [not same(one, edge) for one, edge in zip(ends, edges, strict=True)]
-    flat = np.where(moved, flat, 0)
+    flat, uncut = np.where(moved, flat, 0), np.where(moved, 0, flat)
     if not flat.any():
-        return None
+        return Identifiable(flat, uncut, ends, None, [])
     target = payoff(ends, sizes)
     if target is None:
-        return Identifiable(flat, ends, None, [])
+        return Identifiable(flat, uncut, ends, None, [])
     floor = np.where(flat > 0, (1 - TIE) * target.utopia, 0.0)
     along = nbi(
         problem,
@@ -120,4 +121,4 @@ def identifiable_part(
         floor=floor,
     )
     above = [one for one in along if (floor <= one.at.J).all()]
-    return Identifiable(flat, ends, target, above)
+    return Identifiable(flat, uncut, ends, target, above)

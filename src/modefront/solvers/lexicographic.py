@@ -236,6 +236,10 @@ class Held:
         del derivatives
         return self.of(self.problem.evaluate(theta))
 
+    def on_branch(self, branch: tuple[int, ...]) -> Problem:
+        """Return the problem of one smooth piece of the objectives."""
+        return replace(self, problem=self.problem.on_branch(branch))
+
     def of(self, at: Evaluation) -> Evaluation:
         """Return the residuals and the other objectives from an evaluation of the problem."""
         i, k, p = self.objective, self.Q.shape[1], at.theta.size
@@ -247,6 +251,7 @@ class Held:
             np.concatenate([self.Q.T @ residual.r, np.delete(at.J, i)]),
             np.vstack([self.Q.T @ residual.dr, np.delete(at.dJ, i, axis=0)]),
             np.concatenate([np.zeros((k, p, p)), np.delete(at.H, i, axis=0)]),
+            branch=at.branch,
         )
 
 

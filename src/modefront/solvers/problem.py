@@ -36,7 +36,8 @@ class Evaluation:
 
     ``quantities`` are what the problem wants kept with it; ``residuals`` are the vectors r_i, one
     an objective, of objectives that are sums of squares, :math:`J_i = \|r_i\|^2`. They are empty
-    where the objectives are no such sums, or no derivatives were asked for.
+    where the objectives are no such sums, or no derivatives were asked for. ``branch`` tells the
+    smooth piece of the objectives on which the point lies, where they jump from one to another.
     """
 
     theta: Floats
@@ -45,6 +46,7 @@ class Evaluation:
     H: Floats
     quantities: Mapping[str, Floats] = field(default_factory=dict)
     residuals: Sequence[Residual] = ()
+    branch: tuple[int, ...] = ()
 
     @property
     def feasible(self) -> bool:
@@ -91,3 +93,6 @@ class Problem(Protocol):
 
         Without derivatives, ``dJ`` and ``H`` are zero.
         """
+
+    def on_branch(self, branch: tuple[int, ...]) -> Problem:
+        """Return the problem of one smooth piece of the objectives, wherever it is evaluated."""

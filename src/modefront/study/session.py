@@ -27,6 +27,7 @@ from modefront.study.store import PIECES, Store
 from modefront.study.tables.identifiability import Identifiability
 from modefront.study.tables.settings import Pareto
 from modefront.study.tables.uncertainty import Uncertainty
+from modefront.uncertainty.noise import noise_floor
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -183,6 +184,7 @@ class _Session:
             seed=self.seed,
             search=self.search,
             given=self.given,
+            floor=self._noise_floor(),
         )
         front = certified_front(
             problem, work, store, lambda pieces: self.expect(pieces + self.later)
@@ -207,6 +209,14 @@ class _Session:
         data = predicted_around(predicted(data, asking), asking, near)
         data.attrs |= self._attributes(front)
         return data
+
+    def _noise_floor(self) -> Floats | None:
+        """Return what errors of the data make of the objectives; None where one is not known."""
+        source = self.uncertainty.of(self.problem.data)
+        if source is None:
+            return None
+        floor = noise_floor(self.problem, source)
+        return floor if (floor > 0).all() else None
 
     def _attributes(self, front: Front) -> dict[str, str | int | float]:
         """Return what else is known: version, seed, cost, and remarks on what was found."""

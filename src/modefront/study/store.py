@@ -126,18 +126,19 @@ def _packed(solutions: Solutions) -> tuple[Any, Arrays]:
         parts |= {f"r:{k}": residual.r for k, residual in enumerate(at.residuals)}
         parts |= {f"dr:{k}": residual.dr for k, residual in enumerate(at.residuals)}
         arrays |= {f"{i}:{key}": value for key, value in parts.items()}
-        heads.append([one.violation, one.status.name, one.evaluations])
+        heads.append([one.violation, one.status.name, one.evaluations, list(at.branch)])
     return heads, arrays
 
 
 def _unpacked(heads: Any, arrays: Arrays) -> Solutions:
     solutions = []
-    for i, (violation, status, evaluations) in enumerate(heads):
+    for i, (violation, status, evaluations, branch) in enumerate(heads):
         own = {key.split(":", 1)[1]: a for key, a in arrays.items() if key.startswith(f"{i}:")}
         kept = {key[9:]: value for key, value in own.items() if key.startswith("quantity:")}
         rows = range(sum(key.startswith("r:") for key in own))
         residuals = [Residual(own[f"r:{k}"], own[f"dr:{k}"]) for k in rows]
-        at = Evaluation(own["theta"], own["J"], own["dJ"], own["H"], kept, residuals)
+        values = (own["theta"], own["J"], own["dJ"], own["H"])
+        at = Evaluation(*values, kept, residuals, tuple(branch))
         ended = (violation, Status[status], evaluations)
         solutions.append(Solution(at, own["learned"], own["weights"], *ended, own.get("beta")))
     return solutions

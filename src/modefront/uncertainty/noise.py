@@ -71,6 +71,49 @@ def noise(problem: UpdatingProblem, theta: Floats, source: Source) -> Noise:
     return (_from_std if source == "std" else _from_sets)(problem, modes, pairs)
 
 
+def noise_floor(problem: UpdatingProblem, source: Source) -> Floats:
+    r"""Return the objectives (n,) that errors of the data alone would cause, of a perfect model.
+
+    They are sums of the variances of the residuals: :math:`\sigma^2` over the same units, or, from
+    several data sets, the variance of single sets about their mean. A group of which no error is
+    known has 0.
+    """
+    out = np.zeros(len(problem.groups))
+    for i, row in enumerate(problem.members):
+        for kind, r, scale in row:
+            part = _frequency_floor if kind == "frequency" else _shape_floor
+            out[i] += part(problem, r, scale, source)
+    return out
+
+
+def _frequency_floor(problem: UpdatingProblem, r: int, scale: Scale, source: Source) -> float:
+    weight, measured = problem.weighted_frequencies[r, scale]
+    if source == "std":
+        std = problem.data.frequency_std[np.isfinite(problem.data.frequency[:, r]), r]
+        return float(((weight * np.where(std > 0, std, 0.0)) ** 2).sum())
+    if measured.size < 2:
+        return 0.0
+    return float((weight**2).sum() * measured.var(ddof=1))
+
+
+def _shape_floor(problem: UpdatingProblem, r: int, scale: Scale, source: Source) -> float:
+    data, parts = problem.data, problem.weighted_shapes[r, scale]
+    seen = np.isfinite(data.shape[:, r])
+    sets = np.flatnonzero(seen.any(axis=1))
+    if source == "std":
+        stds = [data.shape_std[k, r, seen[k]] for k in sets]
+        pairs = zip(parts, stds, strict=True)
+        return float(sum(((w * np.where(s > 0, s, 0.0)) ** 2).sum() for (_, w, _), s in pairs))
+    common = seen[sets].all(axis=0)
+    if sets.size < 2 or not common.any():
+        return 0.0
+    # Shapes of any scale and sign: each is brought to the first by least squares.
+    values = data.shape[sets, r][:, common]
+    factor = (values @ values[0]) / (values**2).sum(axis=1)
+    spread = (factor[:, None] * values).var(axis=0, ddof=1).sum() / (values[0] @ values[0])
+    return float(spread * np.mean([psi @ psi for _, _, psi in parts]) * sets.size)
+
+
 def _from_std(problem: UpdatingProblem, modes: Modes, pairs: Pairs) -> Noise:
     data = problem.data
     K, R, S = data.shape.shape
