@@ -2,8 +2,8 @@ r"""Global minima: many starts and an evolution strategy explore, a gradient met
 
 Starts on a Latin hypercube are followed to their minima by `modefront.solvers.sqp`, a few
 evaluations with derivatives each, until the minima found leave less than half a minimum to be
-expected (Boender & Rinnooy Kan 1987, doi:10.1007/BF02591684): with w distinct minima after N
-starts,
+expected (Boender & Rinnooy Kan 1987, doi:10.1007/BF02591684): with w minima of different values
+after N starts,
 
 .. math:: \frac{w (N - 1)}{N - w - 2} \le w + \tfrac12 .
 
@@ -30,6 +30,9 @@ from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 
 DISTINCT = 1e-3
 """Distance of two minima, over the ranges of the parameters, above which they are two."""
+
+EQUAL = 1e-6
+"""Difference of the values of two minima, over them, below which they are as good."""
 
 NEAR = 2e-2
 """Distance of a half-finished search from a minimum below which it is on its way there."""
@@ -61,19 +64,31 @@ class LocalSearch(Protocol):
     def value(self, J: Floats, /) -> float:
         """Return the number by which models are ordered."""
 
+    def equal(self, J: Floats, other: Floats, /) -> bool:
+        """Return whether two minima with these objectives are as good as each other."""
+
     def solve(self, problem: Problem, start: Solution, options: Options, /) -> Solution:
         """Return the minimum below a start."""
 
 
 @dataclass(frozen=True)
 class Descent:
-    """The search for a minimum of an unconstrained programme."""
+    """The search for a minimum of an unconstrained programme.
+
+    Values below ``negligible`` differ in nothing.
+    """
 
     programme: Scalarisation
+    negligible: float = 0.0
 
     def value(self, J: Floats) -> float:
         """Return what is minimised."""
         return self.programme.value(J)
+
+    def equal(self, J: Floats, other: Floats) -> bool:
+        """Return whether two values differ by rounding only."""
+        one, two = self.value(J), self.value(other)
+        return abs(one - two) <= max(EQUAL * max(abs(one), abs(two)), self.negligible)
 
     def solve(self, problem: Problem, start: Solution, options: Options) -> Solution:
         """Return the minimum below a start.
@@ -141,7 +156,7 @@ def explore(
     fewest = 0 if starts else search.starts
     rugged = True
     for tried, theta in enumerate(latin_hypercube(problem, rng, search.limit)):
-        N, w = tried + len(starts), len(minima)
+        N, w = tried + len(starts), _different(minima, local)
         if tried >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2):
             rugged = False
             break
@@ -153,6 +168,19 @@ def explore(
     least = min((local.value(one.at.J) for one in minima), default=np.inf)
     ahead = [one for one in unfinished if local.value(one.at.J) < least]
     return sorted([*minima, *ahead], key=lambda one: local.value(one.at.J))
+
+
+def _different(minima: Sequence[Solution], local: LocalSearch) -> int:
+    """Return how many minima there are, those that are as good as each other counted once.
+
+    Where parameters outnumber data, equal minima form a manifold, of which every start finds
+    another one.
+    """
+    kept: list[Solution] = []
+    for one in minima:
+        if not any(local.equal(one.at.J, other.at.J) for other in kept):
+            kept.append(one)
+    return len(kept)
 
 
 def latin_hypercube(problem: Problem, rng: np.random.Generator, limit: int) -> Iterator[Floats]:

@@ -90,8 +90,9 @@ def identifiable_part(
 ) -> Identifiable | None:
     """Return the part of a front that is not flat; None where nothing is flat.
 
-    A flat part of which the end is not found is not cut, and counted. ``points`` lie along the whole front, ``edges`` are its edges, ``known`` are solutions to start
-    from; ``divisions`` are the steps along each edge of the simplex.
+    A flat part of which the end is not found is not cut, and counted. ``points`` lie along the
+    whole front, ``edges`` are its edges, ``known`` are solutions to start from; ``divisions`` are
+    the steps along each edge of the simplex.
     """
     n = len(edges)
     least = np.array([one.at.J[i] for i, one in enumerate(edges)])

@@ -40,7 +40,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.problem import Evaluation, Problem, infeasible
+from modefront.solvers.problem import Evaluation, Problem, Residual, infeasible
 from modefront.solvers.scalarisation import Linear, weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 
@@ -100,8 +100,22 @@ class Lexicographic:
         margin = self.margin(float(min(J[i], other[i])))
         if abs(J[i] - other[i]) > margin:
             return bool(J[i] < other[i])
-        gain = float(self.others @ (other - J))
-        return gain > TIE * float(self.others @ other)
+        rest, before = float(self.others @ J), float(self.others @ other)
+        return before - rest > max(TIE * before, EXACT)
+
+    def equal(self, J: Floats, other: Floats) -> bool:
+        """Return whether neither objectives nor others come first."""
+        return not (self.better(J, other) or self.better(other, J))
+
+    def is_open(self, problem: Problem, at: Evaluation) -> bool:
+        """Return whether some change of parameters leaves all residuals of the first objective."""
+        return bool(at.residuals) and self._changing(problem, at).shape[1] < at.theta.size
+
+    def _changing(self, problem: Problem, at: Evaluation) -> Floats:
+        """Return Q."""
+        dr = at.residuals[self.objective].dr * (problem.upper - problem.lower)
+        U, sigma, _ = np.linalg.svd(dr, full_matrices=False)
+        return np.asarray(U[:, sigma > RANK * sigma.max(initial=np.finfo(float).tiny)])
 
     def clearly_better(self, J: Floats, other: Floats) -> bool:
         """Return whether objectives come before others by more than a tie among exact fits does.
@@ -130,12 +144,14 @@ class Lexicographic:
             return best
         for _ in range(1 if rough else REPEATS):
             found = self._along(problem, best, tight)
-            if found is best or not self._accepts(found.at.J, best.at.J):
+            if found is best:
                 break
-            gained = self.better(found.at.J, best.at.J)
             least = _least(problem, self._alone(), found, tight)
             kept = found if self._accepts(found.at.J, least.at.J) else least
-            best = replace(kept, evaluations=least.evaluations)
+            if not self._accepts(kept.at.J, best.at.J):
+                return replace(best, evaluations=least.evaluations)
+            gained = self.better(kept.at.J, best.at.J)
+            best = replace(kept, status=found.status, evaluations=least.evaluations)
             if not gained:
                 break
         return best
@@ -150,14 +166,10 @@ class Lexicographic:
 
     def _along(self, problem: Problem, start: Solution, options: Options) -> Solution:
         """Return the best in the others on the manifold of minima; the start where it is none."""
-        i, n, p = self.objective, self.sizes.size, start.at.theta.size
-        residual = start.at.residuals[i]
-        U, sigma, _ = np.linalg.svd(
-            residual.dr * (problem.upper - problem.lower), full_matrices=False
-        )
-        Q = U[:, sigma > RANK * sigma[0]] if sigma.size and sigma[0] > 0 else U[:, :0]
-        if Q.shape[1] == p:
+        i, n = self.objective, self.sizes.size
+        if not self.is_open(problem, start.at):
             return start
+        residual, Q = start.at.residuals[i], self._changing(problem, start.at)
         held = Held(problem, i, Q)
         k, root = Q.shape[1], float(np.sqrt(self.sizes[i]))
         exact = start.at.J[i] <= EXACT * self.sizes[i]
@@ -245,12 +257,13 @@ class Held:
         i, k, p = self.objective, self.Q.shape[1], at.theta.size
         if not at.feasible:
             return infeasible(at.theta, k + at.J.size - 1)
-        residual = at.residuals[i]
+        residual, nothing = at.residuals[i], Residual(np.zeros(0), np.zeros((0, p)))
         return Evaluation(
             at.theta,
             np.concatenate([self.Q.T @ residual.r, np.delete(at.J, i)]),
             np.vstack([self.Q.T @ residual.dr, np.delete(at.dJ, i, axis=0)]),
             np.concatenate([np.zeros((k, p, p)), np.delete(at.H, i, axis=0)]),
+            residuals=[*[nothing] * k, *(x for j, x in enumerate(at.residuals) if j != i)],
             branch=at.branch,
         )
 

@@ -38,7 +38,7 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Floats
-from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.problem import Evaluation, Problem, Residual
 from modefront.solvers.qp import solve_qp
 from modefront.solvers.scalarisation import Scalarisation
 
@@ -63,6 +63,13 @@ FREE = 1e-4
 PATIENCE = 30
 """Iterations in which the violation of the constraints is to be halved, from the worst of these, or
 there is no way."""
+
+CORRECTIONS, POOR, CUT = 2, 0.5, 1e-4
+"""Corrections of a step at most; share of the predicted reduction below which a step is corrected;
+least singular value, over the greatest, along which it is."""
+
+SLOW = 10
+"""Iterations after which a solution counts as slow, and its steps are corrected."""
 
 NOISE = 1e-11
 """Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
@@ -152,7 +159,7 @@ def solve(
     trusted = bool(learned.any())
     radius, penalty = options.radius, PENALTY
     multipliers: Floats | None = None
-    escaped, proposed, worst = False, np.inf, np.inf
+    escaped, proposed, worst, failed = False, np.inf, np.inf, 0
     farthest = max(1.0, FUNNEL * _length(programme.A @ start.at.J - programme.b))
     for count in range(options.iterations + 1):
         at = state.at
@@ -206,12 +213,22 @@ def solve(
         if not new.feasible:
             radius = _length(s) / 4
             continue
-        c_new = programme.A @ new.J - programme.b
-        if _length(c_new) > farthest:
+
+        merit = _Merit(programme, multipliers, penalty)
+        actual = merit.at(at) - merit.at(new)
+        rows = _Rows(programme, w, penalty, span)
+        for _ in range(CORRECTIONS):
+            if not at.residuals or count < SLOW or failed > 1 or actual > POOR * predicted:
+                break
+            theta = rows.corrected(problem, at, s, new)
+            corrected = None if theta is None else problem.evaluate(theta)
+            if corrected is None or not merit.at(corrected) < merit.at(new):
+                failed += 1
+                break
+            new, actual, failed = corrected, merit.at(at) - merit.at(corrected), 0
+        if _length(programme.A @ new.J - programme.b) > farthest:
             radius = _length(s) / 4
             continue
-        actual = value - programme.value(new.J) + multipliers @ (c - c_new)
-        actual += 0.5 * penalty * (c @ c - c_new @ c_new)
         unsaid = 0.5 * w @ (state.learned @ (s * span) @ (s * span)) * (1 if trusted else -1)
         if abs(actual - predicted - unsaid) < SWITCH * abs(actual - predicted):
             trusted = not trusted
@@ -226,6 +243,61 @@ def solve(
         elif ratio > 0.7 and _length(s) > 0.9 * radius:
             radius = min(2 * radius, 1.0)
     return Solution(state.at, state.learned, w, violation, Status.EXHAUSTED, options.iterations)
+
+
+@dataclass(frozen=True)
+class _Merit:
+    """The augmented Lagrangian."""
+
+    programme: Scalarisation
+    multipliers: Floats
+    penalty: float
+
+    def at(self, point: Evaluation) -> float:
+        """Return its value; infinite where the objectives are not defined."""
+        if not point.feasible:
+            return np.inf
+        c = self.programme.A @ point.J - self.programme.b
+        return float(
+            self.programme.value(point.J) + self.multipliers @ c + 0.5 * self.penalty * (c @ c)
+        )
+
+
+@dataclass(frozen=True)
+class _Rows:
+    """The residuals of the objectives, times the roots of their weights, and the constraints."""
+
+    programme: Scalarisation
+    w: Floats
+    penalty: float
+    span: Floats
+
+    def corrected(
+        self, problem: Problem, at: Evaluation, s: Floats, new: Evaluation
+    ) -> Floats | None:
+        """Return parameters near a new point whose rows are as they were predicted for the step.
+
+        The correction is the shortest one, within the bounds; None where none is of any use.
+        """
+        before, after = self._of(at), self._of(new)
+        miss = after.r - (before.r + before.dr @ s)
+        taken = (new.theta - at.theta) / self.span
+        free = (new.theta > problem.lower) & (new.theta < problem.upper)
+        free |= np.abs(s) == 0
+        step = np.zeros(s.size)
+        step[free] = np.linalg.lstsq(after.dr[:, free], -miss, rcond=CUT)[0]
+        if _length(step) > _length(taken):
+            return None
+        return np.clip(new.theta + step * self.span, problem.lower, problem.upper)
+
+    def _of(self, at: Evaluation) -> Residual:
+        roots = np.sqrt(np.maximum(self.w, 0.0))
+        A, hold = self.programme.A, np.sqrt(self.penalty)
+        pairs = list(zip(roots.tolist(), at.residuals, strict=True))
+        return Residual(
+            np.concatenate([*(x * own.r for x, own in pairs), hold * (A @ at.J)]),
+            np.vstack([*(x * own.dr for x, own in pairs), hold * (A @ at.dJ)]) * self.span,
+        )
 
 
 def _length(s: Floats) -> float:

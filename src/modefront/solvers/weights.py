@@ -32,7 +32,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.dominance import nondominated
-from modefront.solvers.explore import Descent, Search, explore
+from modefront.solvers.explore import EQUAL, Descent, Search, explore
 from modefront.solvers.lexicographic import EXACT, TIE
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import LogSum, weighted
@@ -59,7 +59,14 @@ def optimal_minima(
     ``a`` (n,) counts the measured properties of each group; ``starts`` are solved from first. With
     a ``floor`` b (n,) the weights are bounded.
     """
-    return explore(problem, Descent(LogSum(a, floor)), rng, search, starts=starts, options=_TIGHT)
+    return explore(
+        problem,
+        Descent(LogSum(a, floor), EQUAL * a.sum()),
+        rng,
+        search,
+        starts=starts,
+        options=_TIGHT,
+    )
 
 
 def accepted(

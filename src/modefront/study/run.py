@@ -188,7 +188,14 @@ def pareto_front(
         rng = generator(seed, label)
         before = [one for name, one in known.points if name == label] if known else []
         near = again(label, before) if known else [one.best for one in edges]
-        search_from = partial(explore, problem, Descent(weighted(w)), rng, search, starts=near)
+        search_from = partial(
+            explore,
+            problem,
+            Descent(weighted(w), EXACT * float(w @ sizes)),
+            rng,
+            search,
+            starts=near,
+        )
         models += [(label, one) for one in checkpoint(label, search_from)[:1]]
     edges = _from_models(archive, edges, sizes, [one for _, one in models], checkpoint)
 
@@ -286,9 +293,15 @@ def _from_models(
     models: Sequence[Solution],
     checkpoint: Checkpoint,
 ) -> list[Edge]:
-    """Return the edges, with the minima to which weighted models lead among the others."""
+    """Return the edges, with the minima to which weighted models lead among the others.
+
+    These are sought where the minima of an objective form a manifold, of which others are only met.
+    """
     out = []
     for i, (name, known) in enumerate(zip(archive.objectives, edges, strict=True)):
+        if not Lexicographic(i, sizes).is_open(archive, known.best.at):
+            out.append(known)
+            continue
         search = partial(refined_from, archive, i, sizes, models)
         found = ordered(
             archive, i, sizes, [*known.minima, *checkpoint(f"edge-{name}-from", search)]
