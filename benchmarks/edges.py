@@ -70,6 +70,7 @@ class Line:
     front: dict[str, float] = field(default_factory=dict)
     dominated: dict[str, float] = field(default_factory=dict)
     better: list[tuple[str, float, Known]] = field(default_factory=list)
+    behind: dict[str, float] = field(default_factory=dict)
     solved: int = 0
     seconds: float = 0.0
     failure: str = ""
@@ -122,6 +123,7 @@ def compare(case: Case, data: xr.Dataset, found: Reference, equation: Equation) 
         else:
             line.edges[f"edge-{name} missing"] = np.inf
     _weighted(line, labels, J, known)
+    line.behind = behind(case, dict(zip(labels, J, strict=True)), found)
     polished: list[Known] = []
     points = [k for k, label in enumerate(labels) if label.startswith("nbi-") and pareto[k]]
     for k in points:
@@ -139,6 +141,27 @@ def compare(case: Case, data: xr.Dataset, found: Reference, equation: Equation) 
             line.better.append((f"{labels[k]}*", beaten.max(), everything[int(beaten.argmax())]))
     line.front = {name: x for name, x in line.front.items() if x > WORSE / 2}
     return line
+
+
+def behind(case: Case, J: dict[str, Floats], found: Reference) -> dict[str, float]:
+    """Return where the independent optimiser is worse than modefront by more than 0.2 %."""
+    out = {}
+    for i, name in enumerate(case.problem.objectives):
+        own = J.get(f"edge-{name}")
+        if own is not None:
+            least = found.least(i)
+            value = max(own[i], least)
+            more = (least - own[i]) / max(own[i], found.floor[i])
+            if value <= found.floor[i] or more <= WORSE:
+                others = float(found.others(i, own))
+                second = found.edge(i, max(value * (1 + WORSE), found.floor[i]))[0] - others
+                more = second / max(others, float(found.others(i, found.floor)))
+            out[f"edge-{name}"] = more
+    if "equal-weights" in J:
+        own_sum = float(J["equal-weights"].sum())
+        least = found.weighted(np.ones(found.sizes.size))[0]
+        out["equal-weights"] = (least - own_sum) / max(own_sum, float(found.floor.max()))
+    return {name: x for name, x in out.items() if x > WORSE}
 
 
 def _edge(line: Line, i: int, name: str, J: Floats, known: Reference) -> None:
@@ -198,7 +221,11 @@ def key(case: Case, starts: int) -> str:
     parts += [case.problem.lower, case.problem.upper]
     digest = hashlib.sha256(repr((starts, case.problem.groups)).encode())
     for part in parts:
-        digest.update(np.ascontiguousarray(np.round(part / max(np.abs(part).max(), 1e-300), 6) + 0.0).tobytes())
+        digest.update(
+            np.ascontiguousarray(
+                np.round(part / max(np.abs(part).max(), 1e-300), 6) + 0.0
+            ).tobytes()
+        )
     return digest.hexdigest()[:16]
 
 
@@ -284,7 +311,7 @@ def measured(case: Case, found: Reference, points: int, limit: int) -> Line:
                 seed=1,
                 identifiability=mf.Identifiability(flat=0.0, models=0),
             )
-    except Exception as error:  # noqa: BLE001
+    except Exception as error:
         text = str(error).replace("\n", " ")
         return Line(case, failure=f"{type(error).__name__}: {text}")
     seconds = time.process_time() - began
@@ -329,6 +356,10 @@ def summary(lines: list[Line]) -> str:
     for what in ("edges", "weighted", "front"):
         bad = [line.case.name for line in done if not line.worst(what) <= WORSE]
         rows.append(f"{what} worse by more than 0.2 %: {len(bad)} of {len(done)}: {' '.join(bad)}")
+    behind = [f"{line.case.name}:{name}" for line in done for name in line.behind]
+    rows.append(
+        f"independent optimiser worse by more than 0.2 %: {len(behind)}: {' '.join(behind)}"
+    )
     count = sum(len(line.dominated) for line in done)
     rows.append(f"points called Pareto optimal that are dominated by more than 0.2 %: {count}")
     if done:
@@ -346,9 +377,16 @@ def details(line: Line) -> str:
         "weighted": line.weighted,
         "front": line.front,
         "dominated": line.dominated,
+        "behind": line.behind,
         "solved": line.solved,
         "better": [
-            {"than": than, "by": by, "J": one.J.tolist(), "theta": one.theta.tolist(), "from": one.label}
+            {
+                "than": than,
+                "by": by,
+                "J": one.J.tolist(),
+                "theta": one.theta.tolist(),
+                "from": one.label,
+            }
             for than, by, one in line.better
         ],
     }

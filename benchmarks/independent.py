@@ -37,6 +37,7 @@ from scipy.optimize import linear_sum_assignment, lsq_linear, minimize
 from updating_problems import Affine, Case
 
 from modefront._typing import Floats, Ints
+from modefront.residuals.groups import Members
 
 EXACT = 1e-10
 """An objective below this share of its typical size is fitted exactly."""
@@ -101,19 +102,19 @@ class Equation:
     def sizes(self) -> Floats:
         """Typical sizes of the objectives: medians over random parameters."""
         rng = np.random.default_rng(0)
-        J = np.array([self.J(self.lower + self.span * rng.random(self.span.size)) for _ in range(16)])
+        J = np.array(
+            [self.J(self.lower + self.span * rng.random(self.span.size)) for _ in range(16)]
+        )
         return np.maximum(np.median(J[np.isfinite(J).all(axis=1)], axis=0), np.finfo(float).tiny)
 
     @cached_property
     def _groups(self) -> list[tuple[list[int], list[int]]]:
         modes = range(1, len(self.case.problem.data.modes) + 1)
-        return [
-            tuple(
-                [m - 1 for m in (modes if chosen == "all" else chosen)]
-                for chosen in (group.frequency, group.shape)
-            )
-            for group in self.case.problem.groups
-        ]  # type: ignore[misc]
+
+        def positions(chosen: Members) -> list[int]:
+            return [m - 1 for m in (modes if chosen == "all" else chosen)]
+
+        return [(positions(x.frequency), positions(x.shape)) for x in self.case.problem.groups]
 
     def J(self, theta: Floats) -> Floats:
         """Return the objectives, infinite where the stiffness matrix is not positive definite."""
@@ -331,7 +332,8 @@ def _sum(w: Floats) -> Callable[[list[Part]], tuple[float, Floats]]:
     def function(parts: list[Part]) -> tuple[float, Floats]:
         value = sum(float(s * (x.r @ x.r)) for s, x in zip(w, parts, strict=True))
         slope = sum(
-            (2 * s * (x.r @ x.dr) for s, x in zip(w, parts, strict=True)), np.zeros(parts[0].dr.shape[1])
+            (2 * s * (x.r @ x.dr) for s, x in zip(w, parts, strict=True)),
+            np.zeros(parts[0].dr.shape[1]),
         )
         return value, slope
 
@@ -447,7 +449,7 @@ class Reference:
         J = self.J
         best: tuple[float, Known] | None = None
         for one in self.known:
-            if one.label != "logarithmic" or not (one.J > self.floor).all():
+            if one.label != "logarithmic" or not (self.floor < one.J).all():
                 continue
             if (dominance(J, one.J, self.floor) > 0.002).any():
                 continue
@@ -462,80 +464,100 @@ def dominance(J: Floats, point: Floats, floor: Floats) -> Floats:
 
     It is 0 for rows that are worse in any objective by more than rounding.
     """
-    worse = (J > point * (1 + 1e-9) + 1e-2 * floor).any(axis=1)
+    worse = (point * (1 + 1e-9) + 1e-2 * floor < J).any(axis=1)
     gain = ((point - J) / np.maximum(point, floor)).max(axis=1)
     out: Floats = np.where(worse, 0.0, np.maximum(gain, 0.0))
     return out
 
 
-def reference(equation: Equation, starts: int = 8, seed: int = 0) -> Reference:
-    """Return all that is found of a problem from the nominal model and from random starts."""
-    rng, n = np.random.default_rng(seed), len(equation.case.problem.groups)
-    lower, span, c = equation.lower, equation.span, equation.sizes
-    known: list[Known] = []
+@dataclass
+class _Collection:
+    """Models of an equation that were found so far."""
 
-    def add(theta: Floats | None, label: str) -> None:
+    equation: Equation
+    known: list[Known] = field(default_factory=list)
+
+    def add(self, theta: Floats | None, label: str) -> None:
+        """Add a model, if it is one."""
         if theta is not None:
-            J = equation.J(theta)
+            J = self.equation.J(theta)
             if np.isfinite(J).all():
-                known.append(Known(theta, J, label))
+                self.known.append(Known(theta, J, label))
 
-    def best(w: Floats, count: int) -> list[Floats]:
-        """Return the best of the known models in a weighted sum, far from one another."""
+    def best(self, w: Floats, count: int) -> list[Floats]:
+        """Return the best models in a weighted sum that are far from one another."""
         out: list[Floats] = []
-        for one in sorted(known, key=lambda one: float(one.J @ w)):
-            if all(np.abs((one.theta - x) / span).max() > 1e-3 for x in out):
+        for one in sorted(self.known, key=lambda one: float(one.J @ w)):
+            if all(np.abs((one.theta - x) / self.equation.span).max() > 1e-3 for x in out):
                 out.append(one.theta)
             if len(out) == count:
                 break
         return out
 
-    nominal = equation.case.problem.start
-    random = [lower + span * rng.random(span.size) for _ in range(starts)]
-    weights = _weights(n) / c
-    equal = np.ones(n)
-    for theta in [nominal, equation.case.true, *random]:
-        add(least_squares(equation, 1 / c, theta), "weighted")
-    add(least_squares(equation, equal, best(equal, 1)[0]), "weighted")
+
+def reference(equation: Equation, starts: int = 4, seed: int = 0) -> Reference:
+    """Return all that is found of a problem from the nominal model and from random starts."""
+    found = _started(equation, starts, seed)
+    n, c = equation.sizes.size, equation.sizes
+    weights, equal = _weights(n) / c, np.ones(n)
+    found.add(least_squares(equation, equal, found.best(equal, 1)[0]), "weighted")
     for ordered in (weights, weights[::-1]):
         for w in ordered:
-            add(least_squares(equation, w, best(w, 1)[0], 30), "weighted")
+            found.add(least_squares(equation, w, found.best(w, 1)[0], 30), "weighted")
     for i in range(n):
-        unit = np.eye(n)[i] / c
-        for theta in [nominal, *random[:2], *best(unit, 2)]:
-            add(least_squares(equation, unit, theta, 60, 1e-11), f"least-{i}")
-        follow(equation, i, best, add)
+        _edge(found, i, starts, seed)
     for w in [equal, 1 / c]:
-        theta = best(w, 1)[0]
-        add(programme(equation, _sum(w / max(w @ equation.J(theta), 1e-12)), [], theta), "weighted")
-    balanced = [w for w in weights if 0.99e-2 < w.max() * c[w.argmax()] < 1.01e2]
-    logs = [int(np.argmin([one.J @ w for one in known])) for w in [equal, *balanced]]
-    for k in sorted(set(logs))[:5]:
-        add(logarithmic(equation, known[k].theta), "logarithmic")
-    return Reference(known, c, equation.a)
+        theta = found.best(w, 1)[0]
+        scaled = w / max(float(w @ equation.J(theta)), 1e-12)
+        found.add(programme(equation, _sum(scaled), [], theta), "weighted")
+    shares = weights * c
+    balanced = weights[shares.max(axis=1) / shares.min(axis=1) < 101]
+    near = [int(np.argmin([one.J @ w for one in found.known])) for w in [equal, *balanced]]
+    for k in sorted(set(near))[:5]:
+        found.add(logarithmic(equation, found.known[k].theta), "logarithmic")
+    return Reference(found.known, c, equation.a)
 
 
-def follow(
-    equation: Equation,
-    i: int,
-    best: Callable[[Floats, int], list[Floats]],
-    add: Callable[[Floats | None, str], None],
-) -> None:
-    """Add models at the edge of a group: by continuation of epsilon, and at equal residuals."""
-    c = equation.sizes
-    n = c.size
-    for theta in best(np.where(np.arange(n) == i, 1.0, 1e-6) / c, 2):
+def edge_reference(equation: Equation, i: int, starts: int = 4, seed: int = 0) -> Reference:
+    """Return what is found of the edge of one group only."""
+    found = _started(equation, starts, seed)
+    _edge(found, i, starts, seed)
+    return Reference(found.known, equation.sizes, equation.a)
+
+
+def _started(equation: Equation, starts: int, seed: int) -> _Collection:
+    """Return minima of the sum of J over their sizes, from many starts."""
+    found = _Collection(equation)
+    nominal = equation.case.problem.start
+    for theta in [nominal, equation.case.true, *_random(equation, starts, seed)]:
+        found.add(least_squares(equation, 1 / equation.sizes, theta), "weighted")
+    return found
+
+
+def _random(equation: Equation, starts: int, seed: int) -> list[Floats]:
+    rng = np.random.default_rng(seed)
+    return [equation.lower + equation.span * rng.random(equation.span.size) for _ in range(starts)]
+
+
+def _edge(found: _Collection, i: int, starts: int, seed: int) -> None:
+    """Add minima of J_i, and models at its edge: by epsilon, and at equal residuals."""
+    equation, c = found.equation, found.equation.sizes
+    unit = np.eye(c.size)[i] / c
+    nearly = np.where(np.arange(c.size) == i, 1.0, 1e-6) / c
+    nominal = equation.case.problem.start
+    for theta in [nominal, *_random(equation, starts, seed)[:2], *found.best(unit, 2)]:
+        found.add(least_squares(equation, unit, theta, 60, 1e-11), f"least-{i}")
+    for theta in found.best(nearly, 2):
         for epsilon in EPSILON:
-            w = np.where(np.arange(n) == i, 1.0, epsilon) / c
+            w = np.where(np.arange(c.size) == i, 1.0, epsilon) / c
             theta = least_squares(equation, w, theta, 25, 1e-10)
-            add(theta, f"edge-{i}")
-    for theta in best(np.where(np.arange(n) == i, 1.0, 1e-6) / c, 2):
+            found.add(theta, f"edge-{i}")
+    for theta in found.best(nearly, 2):
         for rank in RANKS:
-            found = equal_residuals(equation, i, theta, rank, c)
-            add(found, f"edge-{i}")
-            if found is not None:
-                unit = np.eye(n)[i] / c
-                add(least_squares(equation, unit, found, 20, 1e-12), f"edge-{i}")
+            equal = equal_residuals(equation, i, theta, rank, c)
+            found.add(equal, f"edge-{i}")
+            if equal is not None:
+                found.add(least_squares(equation, unit, equal, 20, 1e-12), f"edge-{i}")
 
 
 def _weights(n: int) -> Floats:
@@ -568,6 +590,6 @@ def better(
             found.append(Known(at, J, "bounded"))
     found.sort(key=lambda one: float(one.J[k]))
     J = np.array([one.J for one in [*found, *near]])
-    held = (J <= point * (1 + TIE) + 1e-2 * floor)[:, :k].all(axis=1)
+    held = (point * (1 + TIE) + 1e-2 * floor >= J)[:, :k].all(axis=1)
     gain = np.where(held, (point[k] - J[:, k]) / max(point[k], floor[k]), 0.0)
     return max(0.0, float(gain.max())), [[*found, *near][int(gain.argmax())], *found]

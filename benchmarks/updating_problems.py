@@ -177,7 +177,14 @@ def _shear_chain(
 
 
 def _within(
-    text: str, K: Floats, M: Floats, dofs: Ints, modes: int, rng: np.random.Generator, *, alpha: bool
+    text: str,
+    K: Floats,
+    M: Floats,
+    dofs: Ints,
+    modes: int,
+    rng: np.random.Generator,
+    *,
+    alpha: bool,
 ) -> _Structure:
     """Return a structure with bounds 0.5 to 2 of its factors, or -0.5 to 1 of their changes."""
     p = len(K) - 1
@@ -283,7 +290,9 @@ def _terms(path: Path, count: int) -> tuple[Floats, Floats, Ints, Floats, Floats
         mass = np.zeros(dense.shape)
         mass[0] = M.toarray()
         return dense, mass, sensors, found["lb"], found["ub"]
-    modes = [scipy.sparse.linalg.eigsh(A, count, M, sigma=0.0, v0=np.ones(size))[1] for A in changed]
+    modes = [
+        scipy.sparse.linalg.eigsh(A, count, M, sigma=0.0, v0=np.ones(size))[1] for A in changed
+    ]
     U, s, _ = scipy.linalg.svd(np.hstack(modes), full_matrices=False)
     V = U[:, s > 1e-4 * s[0]]
     V, _ = scipy.linalg.qr(V, mode="economic")
