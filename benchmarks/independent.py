@@ -18,7 +18,7 @@ least           min J_i, from many starts
 edge            min sum of the other J_j / c_j subject to r_i = r_i*, where r_i* is the residual at
                 a minimum of J_i: only as many combinations of its rows as are independent there
 weighted        min sum w_j J_j, each from the one before it and from the starts
-logarithmic     min sum a_j ln J_j from the weighted models
+logarithmic     min sum a_j ln J_j from the weighted models, by weighted sums with w = a / J
 bounded         min J_k subject to J_j <= given values
 ==============  ==================================================================================
 
@@ -381,18 +381,25 @@ def bounded(
     return programme(equation, _sum(w), [("ineq", slack)], theta, iterations)
 
 
-def logarithmic(equation: Equation, theta: Floats) -> Floats:
-    """Return a minimum of sum a ln J, or where J of a group falls to 0."""
+def logarithmic(equation: Equation, theta: Floats, turns: int = 100) -> tuple[Floats, bool]:
+    r"""Return where sum a ln J has gone down to from a model, and whether it is a minimum.
+
+    As the logarithm is concave, :math:`\sum a J / J_0` is above it and touches it at
+    :math:`J_0`: whatever makes the former less makes the latter less, too.
+    """
     a = equation.a / equation.a.sum()
     floor = EXACT * equation.sizes
-
-    def function(parts: list[Part]) -> tuple[float, Floats]:
-        J = np.array([x.r @ x.r for x in parts])
-        dJ = np.array([2 * x.r @ x.dr for x in parts])
-        safe = np.maximum(J, 1e-4 * floor)
-        return float(a @ np.log(safe / equation.sizes)), (a / safe) @ dJ
-
-    return programme(equation, function, [], theta, 150)
+    J, small = equation.J(theta), 0
+    for _ in range(turns):
+        if not np.isfinite(J).all() or (floor > J).any():
+            return theta, False
+        theta = least_squares(equation, a / J, theta, 8, 1e-13)
+        after = equation.J(theta)
+        gain = float(a @ np.log(J / np.maximum(after, 1e-300)))
+        J, small = after, small + 1 if gain < 1e-8 else 0
+        if small >= 3:
+            return theta, bool((floor < J).all())
+    return theta, False
 
 
 # ---- all references of a problem -------------------------------------------------------------
@@ -514,7 +521,8 @@ def reference(equation: Equation, starts: int = 4, seed: int = 0) -> Reference:
     balanced = weights[shares.max(axis=1) / shares.min(axis=1) < 101]
     near = [int(np.argmin([one.J @ w for one in found.known])) for w in [equal, *balanced]]
     for k in sorted(set(near))[:5]:
-        found.add(logarithmic(equation, found.known[k].theta), "logarithmic")
+        theta, regular = logarithmic(equation, found.known[k].theta)
+        found.add(theta, "logarithmic" if regular else "weighted")
     return Reference(found.known, c, equation.a)
 
 
