@@ -22,7 +22,6 @@ needs no certificates, and its eigenproblems are small.
 from __future__ import annotations
 
 import zlib
-from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -128,16 +127,16 @@ def make(kind: str, seed: int, folder: Path = FOLDER) -> Case:
 
 
 def chain_case(
-    storeys: int, modes: int, seed: int, *, exact: bool = False, floors: Sequence[int] | None = None
+    storeys: int, modes: int, seed: int, *, grouping: str = "kinds", exact: bool = False
 ) -> Case:
-    """Return a chain with a stiffness a storey, frequencies in a group and shapes in another one.
+    """Return a chain with a stiffness a storey that is measured at every second floor.
 
-    It is measured at every second floor, or at ``floors`` counted from 0.
+    ``grouping`` is ``"kinds"``, frequencies and shapes, ``"modes"``, lower and higher ones, or
+    ``"three"``, frequencies, lower and higher shapes.
     """
     rng = np.random.default_rng([zlib.crc32(b"given chain"), storeys, modes, seed])
-    dofs = np.arange(1, storeys, 2) if floors is None else np.array(floors)
-    structure = _shear_chain(storeys, modes, dofs, rng, masses=0)
-    return _measured("given", seed, structure, rng, exact=exact, grouping="kinds")
+    structure = _shear_chain(storeys, modes, np.arange(1, storeys, 2), rng, masses=0)
+    return _measured("given", seed, structure, rng, exact=exact, grouping=grouping)
 
 
 # ---- structures ------------------------------------------------------------------------------
