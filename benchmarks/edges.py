@@ -12,8 +12,9 @@ edges       worst relative excess of an edge: of J_i over the least J_i known, a
             small or an exact fit, of the sum of the others (over their typical sizes) over the
             least known at no greater J_i
 weighted    worst relative excess of sum w J of a weighted model; optimal weights: of the mean
-            exp(sum a ln J / sum a) over the best regular minimum known, or of any known model that
-            dominates them
+            exp(sum a ln J / sum a) over the best regular minimum known, or share by which a known
+            model dominates them; missing where a regular minimum is known at which the mean is
+            not above that of equal weights and of the front, and none is reported
 front       worst relative excess of the last J_k of a point over the least at no greater others
 dominated   points called Pareto optimal that a known model dominates by more than 0.2 %
 solved      eigenproblems that modefront solved
@@ -193,22 +194,35 @@ def _weighted(line: Line, labels: list[str], J: Floats, known: Reference) -> Non
             line.better.append(("equal-weights", excess, model))
     else:
         line.weighted["equal-weights missing"] = np.inf
-    regular = known.regular()
+    regular, along = known.regular(), _least_regular(labels, J, known)
     if "optimal-weights" in labels:
         own = J[labels.index("optimal-weights")]
         share = dominance(known.J, own, known.floor)
         excess, model = float(share.max()), known.known[int(share.argmax())]
-        if regular is not None:
-            mean = float(known.a @ np.log(np.maximum(own, known.floor))) - regular[0]
-            more = float(np.expm1(mean / known.a.sum()))
-            if more > excess:
-                excess, model = more, regular[1]
+        value = float(known.a @ np.log(np.maximum(own, known.floor)))
+        least = min(along, np.inf if regular is None else regular[0])
+        more = float(np.expm1((value - least) / known.a.sum()))
+        if more > excess:
+            excess, model = more, model if regular is None else regular[1]
         line.weighted["optimal-weights"] = excess
         if excess > WORSE:
             line.better.append(("optimal-weights", excess, model))
-    elif regular is not None:
+    elif regular is not None and regular[0] <= along + 1e-6 * known.a.sum():
         line.weighted["optimal-weights missing"] = np.inf
         line.better.append(("optimal-weights missing", np.inf, regular[1]))
+
+
+def _least_regular(labels: list[str], J: Floats, known: Reference) -> float:
+    """Return the least sum a ln J of equal weights and of the front where no group fits exactly.
+
+    A minimum of that sum above it is none worth the name.
+    """
+    values = [
+        float(known.a @ np.log(row))
+        for label, row in zip(labels, J, strict=True)
+        if label.startswith(("nbi-", "equal-weights")) and (known.floor < row).all()
+    ]
+    return min(values, default=np.inf)
 
 
 # ---- cache -----------------------------------------------------------------------------------
