@@ -132,7 +132,8 @@ def compare(case: Case, data: xr.Dataset, found: Reference, equation: Equation) 
         polished += models
         line.front[labels[k]] = share
         if share > WORSE:
-            line.better.append((labels[k], share, models[0]))
+            of_range = (J[k, -1] - models[0].J[-1]) / np.ptp(J[pareto][:, -1])
+            line.better.append((f"{labels[k]} ({of_range:.0e} of the range)", share, models[0]))
     everything = [*found.known, *polished]
     JJ = np.array([one.J for one in everything])
     for k in np.flatnonzero(pareto):

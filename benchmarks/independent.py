@@ -42,8 +42,15 @@ from modefront.residuals.groups import Members
 EXACT = 1e-10
 """An objective below this share of its typical size is fitted exactly."""
 
-TIE = 1e-6
-"""Share by which an objective may exceed another one and still be as small."""
+TIE = 1e-8
+"""Share by which an objective may exceed another one and still be as small.
+
+Along a valley the others fall with the root of what the first one gives: 1e-6 of it may be worth
+half a percent of them.
+"""
+
+ROUNDING = 1e-14
+"""The same of exact fits, over the typical size of the objective."""
 
 RANKS = (1e-3, 1e-5, 1e-7)
 """Singular values, over the greatest, above which rows of residuals are held; each is tried."""
@@ -430,7 +437,7 @@ class Reference:
     def edge(self, i: int, value: float) -> tuple[float, Known]:
         """Return the least sum of the others where J_i is not above ``value``, and the model."""
         J = self.J
-        tied = J[:, i] <= value * (1 + TIE) + 1e-2 * self.floor[i]
+        tied = J[:, i] <= value * (1 + TIE) + ROUNDING * self.sizes[i]
         others = self.others(i, J)
         k = int(np.argmin(np.where(tied, others, np.inf)))
         return float(others[k]) if tied[k] else np.inf, self.known[k]
@@ -471,7 +478,7 @@ def dominance(J: Floats, point: Floats, floor: Floats) -> Floats:
 
     It is 0 for rows that are worse in any objective by more than rounding.
     """
-    worse = (point * (1 + 1e-9) + 1e-2 * floor < J).any(axis=1)
+    worse = (point * (1 + TIE) + ROUNDING / EXACT * floor < J).any(axis=1)
     gain = ((point - J) / np.maximum(point, floor)).max(axis=1)
     out: Floats = np.where(worse, 0.0, np.maximum(gain, 0.0))
     return out
@@ -598,6 +605,6 @@ def better(
             found.append(Known(at, J, "bounded"))
     found.sort(key=lambda one: float(one.J[k]))
     J = np.array([one.J for one in [*found, *near]])
-    held = (point * (1 + TIE) + 1e-2 * floor >= J)[:, :k].all(axis=1)
+    held = (point * (1 + TIE) + ROUNDING / EXACT * floor >= J)[:, :k].all(axis=1)
     gain = np.where(held, (point[k] - J[:, k]) / max(point[k], floor[k]), 0.0)
     return max(0.0, float(gain.max())), [[*found, *near][int(gain.argmax())], *found]
