@@ -41,6 +41,7 @@ from types import FrameType
 import numpy as np
 import xarray as xr
 from independent import (
+    SEED,
     Equation,
     Known,
     Reference,
@@ -323,7 +324,7 @@ def measured(case: Case, found: Reference, points: int, limit: int) -> Line:
             data = mf.solve(
                 case.problem,
                 points=points,
-                seed=1,
+                seed=SEED,
                 identifiability=mf.Identifiability(flat=0.0, models=0),
             )
     except Exception as error:
@@ -355,7 +356,7 @@ def study() -> str:
     case = chain_case(18, 4, 0)
     began = time.process_time()
     try:
-        data = mf.solve(case.problem, points=20, seed=1)
+        data = mf.solve(case.problem, points=20, seed=SEED)
     except mf.UnfinishedError as error:
         return f"18 storeys, 4 modes: {error}"
     return (

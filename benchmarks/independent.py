@@ -1,6 +1,7 @@
 r"""An independent optimiser of updating problems, to measure modefront's results against.
 
-Nothing of modefront's modes, pairs, residuals or solvers is used. Equation (1) of Christodoulou
+Nothing of modefront's modes, pairs, residuals or solvers is used, but for the typical sizes of the
+objectives, which are part of the question. Equation (1) of Christodoulou
 et al. (2008, doi:10.1016/j.cma.2008.04.010) is evaluated from dense matrices with LAPACK's
 complete spectrum, and derivatives are sums over all modes,
 
@@ -38,6 +39,11 @@ from updating_problems import Affine, Case
 
 from modefront._typing import Floats, Ints
 from modefront.residuals.groups import Members
+from modefront.solvers.edges import sample
+from modefront.study.run import generator
+
+SEED = 1
+"""Seed of the runs of modefront."""
 
 EXACT = 1e-10
 """An objective below this share of its typical size is fitted exactly."""
@@ -107,11 +113,13 @@ class Equation:
 
     @cached_property
     def sizes(self) -> Floats:
-        """Typical sizes of the objectives: medians over random parameters."""
-        rng = np.random.default_rng(0)
-        J = np.array(
-            [self.J(self.lower + self.span * rng.random(self.span.size)) for _ in range(16)]
-        )
+        """Typical sizes of the objectives: medians over random parameters.
+
+        The parameters are those of modefront: of three groups, the sum of two over these sizes
+        says what the best in the others is.
+        """
+        thetas = [one.at.theta for one in sample(self.case.problem, generator(SEED, "sample"))]
+        J = np.array([self.J(theta) for theta in thetas])
         return np.maximum(np.median(J[np.isfinite(J).all(axis=1)], axis=0), np.finfo(float).tiny)
 
     @cached_property
@@ -567,6 +575,7 @@ def _edge(found: _Collection, i: int, starts: int, seed: int) -> None:
             w = np.where(np.arange(c.size) == i, 1.0, epsilon) / c
             theta = least_squares(equation, w, theta, 25, 1e-10)
             found.add(theta, f"edge-{i}")
+        found.add(least_squares(equation, unit, theta, 20, 1e-12), f"edge-{i}")
     for theta in found.best(nearly, 2):
         for rank in RANKS:
             equal = equal_residuals(equation, i, theta, rank, c)
