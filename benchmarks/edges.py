@@ -50,7 +50,8 @@ from independent import (
     dominance,
     reference,
 )
-from updating_problems import FOLDER, KINDS, Case, available, chain_case, make
+from smu import FOLDER
+from updating_problems import KINDS, Case, available, chain_case, make
 
 import modefront as mf
 from modefront._typing import Floats
@@ -137,7 +138,7 @@ def compare(case: Case, data: xr.Dataset, found: Reference, equation: Equation) 
             line.better.append((f"{labels[k]} ({of_range:.0e} of the range)", share, models[0]))
     everything = [*found.known, *polished]
     JJ = np.array([one.J for one in everything])
-    for k in np.flatnonzero(pareto):
+    for k in map(int, np.flatnonzero(pareto)):
         beaten = dominance(JJ, J[k], found.floor)
         if beaten.max() > WORSE:
             line.dominated[f"{labels[k]}*"] = float(beaten.max())
