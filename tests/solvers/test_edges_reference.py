@@ -70,7 +70,7 @@ def assert_as_good(key: Key, i: int) -> None:
     least = known.least(i)
     assert best.J[i] <= max(least * (1 + WORSE), known.floor[i])
     own = float(known.others(i, best.J))
-    others, _ = known.edge(i, best.J[i])
+    others, _ = known.edge(i, max(best.J[i], least))
     assert own <= others * (1 + WORSE) + float(known.others(i, known.floor))
     np.testing.assert_allclose(best.J, equation(key).J(best.theta), rtol=1e-6, atol=1e-16)
 
