@@ -73,12 +73,13 @@ class LogSum:
     """I = sum_i a_i ln J_i, equation (8): its stationary points have the weights w_i = a_i / J_i.
 
     With a ``floor`` b (n,), J_i + b_i stands for J_i: the weights a_i / (J_i + b_i) are bounded,
-    and there is a minimum also where a group can be fitted exactly. ``a`` (n,) counts the measured
-    properties of each group.
+    and there is a minimum also where a group can be fitted exactly. Where some J_i + b_i is below
+    ``vanishing`` (n,), I is minus infinity. ``a`` (n,) counts the measured properties of each group.
     """
 
     a: Floats
     floor: Floats | float = 0.0
+    vanishing: Floats | float = 0.0
 
     @property
     def A(self) -> Floats:
@@ -92,8 +93,9 @@ class LogSum:
 
     def value(self, J: Floats) -> float:
         """Return I; minus infinity where an objective vanishes."""
-        with np.errstate(divide="ignore"):
-            return float(self.a @ np.log(J + self.floor))
+        if (J + self.floor <= self.vanishing).any():
+            return -np.inf
+        return float(self.a @ np.log(J + self.floor))
 
     def gradient(self, J: Floats) -> Floats:
         """Return a / (J + b)."""

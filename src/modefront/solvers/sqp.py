@@ -83,6 +83,7 @@ class Status(Enum):
         "no step improves it further: the constraints cannot be met from there, the objectives are "
         "not smooth, or bounds conflict"
     )
+    UNBOUNDED = "what is minimised falls without bound: an objective vanishes"
     EXHAUSTED = "the limit of iterations was reached: more iterations, or another start"
     SAMPLED = "the method has no tolerance: more evaluations, or normal-boundary intersection"
     VISITED = "a model on the way of a search, no solution of its own"
@@ -189,6 +190,8 @@ def solve(
                 return Solution(at, state.learned, w, violation, Status.STALLED, count)
             worst = violation
         value = programme.value(at.J)
+        if value == -np.inf:
+            return Solution(at, state.learned, w, violation, Status.UNBOUNDED, count)
         still = _length(s) <= options.step or bool(abs(g @ s) <= options.reduction * abs(value))
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(B, g + multipliers @ dc, dc, lo, hi)

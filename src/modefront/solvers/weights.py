@@ -49,19 +49,23 @@ def regular(J: Floats, sizes: Floats) -> bool:
 def optimal_minima(
     problem: Problem,
     a: Floats,
+    sizes: Floats,
     rng: np.random.Generator,
     search: Search,
     starts: Sequence[Solution],
     floor: Floats | float = 0.0,
 ) -> list[Solution]:
-    """Return minima of I, those at which an objective vanishes included, best first.
+    """Return minima of I, best first; searches on which an objective vanishes are given up.
 
-    ``a`` (n,) counts the measured properties of each group; ``starts`` are solved from first. With
-    a ``floor`` b (n,) the weights are bounded.
+    ``a`` (n,) counts the measured properties of each group, ``sizes`` (n,) are typical sizes of
+    the objectives; ``starts`` are solved from first. With a ``floor`` b (n,) the weights are
+    bounded.
     """
+    bounded = bool(np.any(np.asarray(floor) > 0))
+    programme = LogSum(a, floor, 0.0 if bounded else EXACT * sizes)
     return explore(
         problem,
-        Descent(LogSum(a, floor), EQUAL * a.sum()),
+        Descent(programme, EQUAL * a.sum()),
         rng,
         search,
         starts=starts,

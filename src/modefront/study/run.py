@@ -240,13 +240,15 @@ def pareto_front(
     if known and known.optimal:
         near = list(again(OPTIMAL, known.optimal))
     rng = generator(seed, OPTIMAL)
-    minima = checkpoint(OPTIMAL, lambda: optimal_minima(problem, a, rng, search, near))
+    minima = checkpoint(OPTIMAL, lambda: optimal_minima(problem, a, sizes, rng, search, near))
     scale = target.scale if target else sizes
     optimal = accepted(minima, a, sizes, rivals, archive.J, scale)
     models += [(OPTIMAL, one) for one in optimal[:1]]
     if not optimal and floor is not None:
         rng = generator(seed, BOUNDED)
-        bounded = checkpoint(BOUNDED, lambda: optimal_minima(problem, a, rng, search, near, floor))
+        bounded = checkpoint(
+            BOUNDED, lambda: optimal_minima(problem, a, sizes, rng, search, near, floor)
+        )
         models += [(BOUNDED, one) for one in bounded[:1]]
     if known and known.iterated:
         (first,) = again("iterated-weights", [known.iterated])
