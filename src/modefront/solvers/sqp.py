@@ -164,7 +164,9 @@ def solve(
     farthest = max(1.0, FUNNEL * _length(programme.A @ start.at.J - programme.b))
     for count in range(options.iterations + 1):
         at = state.at
-        df, A = programme.gradient(at.J), programme.A
+        value, df, A = programme.value(at.J), programme.gradient(at.J), programme.A
+        if value == -np.inf:
+            return Solution(at, state.learned, df, 0.0, Status.UNBOUNDED, count)
         c = A @ at.J - programme.b
         dJ = at.dJ * span
         g, dc = df @ dJ, A @ dJ
@@ -189,9 +191,6 @@ def solve(
             if violation > max(options.constraint, 0.5 * worst) and count > 0:
                 return Solution(at, state.learned, w, violation, Status.STALLED, count)
             worst = violation
-        value = programme.value(at.J)
-        if value == -np.inf:
-            return Solution(at, state.learned, w, violation, Status.UNBOUNDED, count)
         still = _length(s) <= options.step or bool(abs(g @ s) <= options.reduction * abs(value))
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(B, g + multipliers @ dc, dc, lo, hi)
