@@ -25,6 +25,9 @@ import scipy.linalg
 
 from modefront._typing import Bools, Floats
 
+LEAST = 1e-100
+"""An objective below which the derivatives of its logarithm change no more: no overflow."""
+
 
 class Scalarisation(Protocol):
     """A function of the objectives and linear constraints on them."""
@@ -94,11 +97,11 @@ class LogSum:
 
     def gradient(self, J: Floats) -> Floats:
         """Return a / J."""
-        return self.a / np.maximum(J, np.finfo(float).tiny)
+        return self.a / np.maximum(J, LEAST)
 
     def hessian(self, J: Floats) -> Floats:
         """Return -a / J**2 on the diagonal."""
-        return np.diag(-self.a / np.maximum(J, np.sqrt(np.finfo(float).tiny)) ** 2)
+        return np.diag(-self.a / np.maximum(J, LEAST) ** 2)
 
 
 def weighted(w: Floats) -> Linear:

@@ -12,6 +12,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.errors import UnfinishedError
 from modefront.solvers.advance import default_points, simplex
+from modefront.solvers.basins import explore_between
 from modefront.solvers.checkpoint import Checkpoint, Solutions, compute_always
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.edges import EXACT, Edge, edge, near_best, sample, typical_sizes
@@ -189,6 +190,11 @@ def pareto_front(
         else:
             before = _before(problem, known, bests) if known else []
             along = nbi(problem, bests, target, lattice, checkpoint, minima_of_one, before=before)
+            rng = generator(seed, "between")
+            found_by = [*(one.minima for one in edges), optimal, [one for _, one in models]]
+            along = explore_between(
+                problem, target, along, found_by, lattice, rng, search, checkpoint
+            )
             if n == 2:
                 along, breaks = _pieces(problem, target, along, refined, checkpoint)
     labelled = [(f"{method}-{i + 1}", one) for i, one in enumerate(along)]
