@@ -104,6 +104,36 @@ class LogSum:
         return np.diag(-self.a / np.maximum(J, LEAST) ** 2)
 
 
+@dataclass(frozen=True)
+class Squares:
+    """f = sum_i w_i (J_i - goal_i)**2 / 2: the greatest differences count most."""
+
+    w: Floats
+    goal: Floats
+
+    @property
+    def A(self) -> Floats:
+        """No constraints."""
+        return np.zeros((0, self.w.size))
+
+    @property
+    def b(self) -> Floats:
+        """No constraints."""
+        return np.zeros(0)
+
+    def value(self, J: Floats) -> float:
+        """Return f."""
+        return float(self.w @ (J - self.goal) ** 2 / 2)
+
+    def gradient(self, J: Floats) -> Floats:
+        """Return w (J - goal)."""
+        return np.asarray(self.w * (J - self.goal))
+
+    def hessian(self, J: Floats) -> Floats:
+        """Return w on the diagonal, whatever J is."""
+        return np.diag(np.broadcast_to(self.w, J.shape))
+
+
 def weighted(w: Floats) -> Linear:
     """Return min w^T J."""
     return Linear(w, np.zeros((0, w.size)), np.zeros(0))
