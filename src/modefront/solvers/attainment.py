@@ -87,7 +87,8 @@ def active_bounds(shares: Floats) -> Bools:
 class Attainment:
     """The programmes of three and more objectives.
 
-    ``thetas`` (n, p) are the corners of the simplex; below ``floor`` (n,), if there is one, no more is wanted.
+    ``thetas`` (n, p) are the corners of the simplex; below ``floor`` (n,), if there is one, no more
+    is wanted.
     """
 
     target: Payoff

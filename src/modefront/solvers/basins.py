@@ -48,6 +48,7 @@ from modefront.solvers.explore import NEAR, Search
 from modefront.solvers.nbi import Projection
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 
 MINIMA = 5
@@ -69,11 +70,12 @@ objectives; one of more."""
 POPULATION = 60
 """Models that survive a generation, besides the best one of each point of the lattice."""
 
-OFFSPRING, JUMPS, FOLLOWED = 40, 6, 3
+OFFSPRING, JUMPS, FOLLOWED = 40, 4, 3
 """Models of a generation: children of two others; models that jump from a survivor and then are
-followed to the bottom of their basin; survivors that are so followed."""
+followed to the bottom of their basin; survivors that are so followed. From the least of each
+objective one more jumps, and is followed to the minimum of that objective."""
 
-QUIET, PROGRESS = 8, 5e-4
+QUIET, PROGRESS = 15, 5e-4
 """Generations over which the mean excess has to fall by so much for the evolution to go on."""
 
 EFFORT = 100
@@ -90,6 +92,9 @@ SPACING = 0.2
 
 CROWD = 4
 """Points besides the lattice at most, for one step of it."""
+
+OTHERS = 1e-2
+"""Weight of the other objectives, in units of the ranges, where the least of one is looked for."""
 
 _ROUGH = Options(step=NEAR / 4, iterations=8)
 
@@ -267,17 +272,27 @@ class _Between:
                 return True
         return False
 
-    def follow(self, theta: Floats) -> Solution:
-        """Return what the programme through a model comes to."""
+    def progress(self, models: Models, excess: Floats) -> float:
+        """Return the mean excess of the best models plus that of the least of each objective."""
+        least = (models.J.min(axis=0) - self.target.utopia) / self.target.scale
+        return float(excess.min(axis=0).mean() + least.mean())
+
+    def follow(self, theta: Floats, objective: int | None) -> Solution:
+        """Return what the programme through a model comes to, or that of one objective."""
         at = self.problem.evaluate(theta)
         start = begin(at)
         if not at.feasible:
             return start
-        found = solve(self.problem, self.target.subproblem(self.place(at.J)), start, _ROUGH)
+        if objective is None:
+            programme = self.target.subproblem(self.place(at.J))
+        else:
+            own = np.arange(at.J.size) == objective
+            programme = weighted(np.where(own, 1.0, OTHERS) / self.target.scale)
+        found = solve(self.problem, programme, start, _ROUGH)
         return replace(found, evaluations=found.evaluations + 1)
 
-    def _followed(self, starts: Sequence[Floats]) -> list[Solution]:
-        return [self.follow(theta) for theta in starts]
+    def _followed(self, starts: Sequence[tuple[Floats, int | None]]) -> list[Solution]:
+        return [self.follow(theta, objective) for theta, objective in starts]
 
     def probes(self, points: Sequence[Solution], rng: np.random.Generator) -> Sequence[Solution]:
         """Return where programmes between the edges end from random starts."""
@@ -304,7 +319,7 @@ class _Between:
         excess = partial(place_on_normals, self.target, finer.beta)
         models = models.joined(models)
         models = models[survivors(models, excess(models.J))]
-        progress, spent, generation = [float(excess(models.J).min(axis=0).mean())], 0, 0
+        progress, spent, generation = [self.progress(models, excess(models.J))], 0, 0
         while spent < evaluations:
             generation += 1
             u = (models.theta - lower) / span
@@ -322,16 +337,19 @@ class _Between:
             bases, others = (u[rng.choice(best, JUMPS)] for _ in range(2))
             mixed = np.where(rng.uniform(size=bases.shape) < 0.5, bases, others)
             bases = np.where(rng.uniform(size=(JUMPS, 1)) < 0.5, bases, mixed)
-            starts = [*(lower + span * np.clip(jumped(bases, rng), 0, 1))]
+            least = u[models.J.argmin(axis=0)]
+            jumps = lower + span * np.clip(jumped(np.concatenate([bases, least]), rng), 0, 1)
             rest = np.flatnonzero(~models.followed)
             rest = np.concatenate([np.intersect1d(rest, best), np.setdiff1d(rest, best)])
-            starts += [*models.theta[rest[:FOLLOWED]]]
+            along = [*jumps[:JUMPS], *models.theta[rest[:FOLLOWED]]]
+            starts: list[tuple[Floats, int | None]] = [(theta, None) for theta in along]
+            starts += [(theta, i) for i, theta in enumerate(jumps[JUMPS:])]
             models.followed[rest[:FOLLOWED]] = True
             ends = self.checkpoint(f"{name}-followed", partial(self._followed, starts))
             models = models.joined(models_of([one for one in ends if one.at.feasible]))
             models = models[survivors(models, excess(models.J))]
             spent += len(thetas) + sum(one.evaluations for one in ends)
-            progress.append(float(excess(models.J).min(axis=0).mean()))
+            progress.append(self.progress(models, excess(models.J)))
             if generation > QUIET and progress[-1 - QUIET] - progress[-1] < PROGRESS:
                 break
         return models

@@ -19,7 +19,7 @@ from modefront.solvers.edges import EXACT, Edge, edge, near_best, sample, typica
 from modefront.solvers.evolutionary import EVOLUTIONARY, evolve_front
 from modefront.solvers.explore import Search, distinct, explore
 from modefront.solvers.nbi import nbi
-from modefront.solvers.payoff import Payoff, payoff
+from modefront.solvers.payoff import Payoff, corners, payoff
 from modefront.solvers.pieces import Gap, gaps
 from modefront.solvers.problem import Problem
 from modefront.solvers.refine import refine
@@ -178,6 +178,8 @@ def pareto_front(
             for i, (name, one) in enumerate(zip(problem.objectives, bests, strict=True))
         ]
         bests = [found[0] for found in ends]
+    if n > 2:
+        minima_of_one += corners(problem, bests, sizes, minima_of_one, checkpoint)
     target = payoff(bests, sizes, minima_of_one) if n > 1 else None
     along: Sequence[Solution] = []
     breaks: list[Gap] = []
