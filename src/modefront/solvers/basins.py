@@ -52,7 +52,8 @@ from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 
 MINIMA = 5
-"""Distinct minima of one programme from which on the search is known not to have found them all."""
+"""Minima of one programme with different objectives, from which on the search is known not to have
+found them all."""
 
 DOUBTFUL = 2
 """Points that did not converge, from which on the objectives count as rugged."""
@@ -224,7 +225,7 @@ def explore_between(
         return list(points)
     between = _Between(problem, target, lattice, checkpoint)
     known = [*points, *(one for found in minima for one in found)]
-    many = max((len(found) for found in minima), default=0) >= MINIMA
+    many = max((_different(found, target.scale) for found in minima), default=0) >= MINIMA
     doubtful = sum(not one.converged for one in points) >= DOUBTFUL
     if not (many or doubtful):
         probes = between.probes(points, rng)
@@ -234,6 +235,16 @@ def explore_between(
     models = between.evolved(models_of(known), rng, EFFORT * search.limit)
     better = between.competed(points, models)
     return between.with_others(better, models)
+
+
+def _different(found: Sequence[Solution], scale: Floats) -> int:
+    """Return how many minima differ in their objectives: those of one valley do not."""
+    kept: list[Floats] = []
+    for one in found:
+        y = one.at.J / scale
+        if all(np.abs(y - other).max() > AHEAD for other in kept):
+            kept.append(y)
+    return len(kept)
 
 
 @dataclass(frozen=True)

@@ -26,7 +26,7 @@ import scipy.linalg
 from modefront._typing import Bools, Floats
 
 LEAST = 1e-100
-"""An objective below which the derivatives of its logarithm change no more: no overflow."""
+"""An objective below which its logarithm and the derivatives change no more: no overflow."""
 
 
 class Scalarisation(Protocol):
@@ -91,9 +91,8 @@ class LogSum:
         return np.zeros(0)
 
     def value(self, J: Floats) -> float:
-        """Return I; minus infinity where an objective vanishes."""
-        with np.errstate(divide="ignore"):
-            return float(self.a @ np.log(J))
+        """Return I, with objectives that vanish at `LEAST`."""
+        return float(self.a @ np.log(np.maximum(J, LEAST)))
 
     def gradient(self, J: Floats) -> Floats:
         """Return a / J."""
