@@ -415,7 +415,7 @@ def main() -> None:
     parser.add_argument("--only", nargs="*", help="names that begin so")
     chosen = parser.parse_args()
     print(
-        "problem               seed evaluations points called behind farthest  truth modefront  others"
+        "problem               seed evaluations points called behind farthest  truth modefront"
     )
     for case in cases():
         if chosen.only and not case.name.startswith(tuple(chosen.only)):
