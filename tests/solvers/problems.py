@@ -37,7 +37,7 @@ class Known:
             return infeasible(theta, len(self.objectives))
         return Evaluation(theta, J, dJ, H) if derivatives else Evaluation(theta, J, 0 * dJ, 0 * H)
 
-    def on_branch(self, branch: tuple[int, ...]) -> "Known":
+    def on_branch(self, branch: tuple[int, ...]) -> Known:
         return self
 
 

@@ -253,8 +253,8 @@ def test_a_disconnected_front_keeps_dominated_points_and_ends_its_pieces() -> No
     assert not optimal.all()
     assert all(one.converged for one in front)
     (gap,) = gaps(problem, front, optimal, np.ptp(J, axis=0))
-    assert gap.end.converged
-    assert gap.start.converged
+    assert gap.end is not None
+    assert gap.start is not None
     # The first piece ends at its minimum of J2, the second one begins where it undercuts that.
     x = np.linspace(0, 0.651, 1_000_001)
     f = 1 - x - np.sin(4 * np.pi * x) / 4

@@ -168,6 +168,8 @@ def advance(
             return True
         if place in fixed or (place, source, renewed[source]) in tried:
             return False
+        if not few and min(place) < 0:
+            return False
         other = origin[place] != origin[source]
         return not solved[place].converged or (solved[source].converged and other)
 

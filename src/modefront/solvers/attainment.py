@@ -87,7 +87,8 @@ def active_bounds(shares: Floats) -> Bools:
 class Attainment:
     """The programmes of three and more objectives.
 
-    ``thetas`` (n, p) are the edges; below ``floor`` (n,), if there is one, no more is wanted.
+    ``thetas`` (n, p) are the corners of the simplex; below ``floor`` (n,), if there is one, no more
+    is wanted.
     """
 
     target: Payoff
@@ -135,19 +136,30 @@ class Attainment:
 
         From an edge, where derivatives often vanish, it is sought from between the edges too.
         """
-        found = replace(self._solve(problem, beta, start), beta=beta)
+        found = replace(self._checked(self._solve(problem, beta, start), beta), beta=beta)
         span = problem.upper - problem.lower
         if (np.abs(self.thetas - start.at.theta) > EDGE * span).any(axis=1).all():
             return found
         share = np.maximum(beta, 0.0) / np.maximum(beta, 0.0).sum()
         theta = np.clip(share @ self.thetas, problem.lower, problem.upper)
-        other = self._solve(problem, beta, begin(problem.evaluate(theta)))
+        other = self._checked(self._solve(problem, beta, begin(problem.evaluate(theta))), beta)
         evaluations = found.evaluations + other.evaluations + 1
         key = (not found.converged, self.value(beta, found.at.J))
         better = (not other.converged, self.value(beta, other.at.J)) < key
         return replace(other if better else found, beta=beta, evaluations=evaluations)
 
     solve_again = solve
+
+    def _checked(self, found: Solution, beta: Floats) -> Solution:
+        """Return a solution; stalled where an objective that is least already holds the bound.
+
+        There, beyond the simplex, all other objectives may be anything: it is weakly optimal.
+        """
+        if not found.at.feasible or beta.min() >= 0:
+            return found
+        c, y = self.excess(beta, found.at.J), (found.at.J - self.target.utopia) / self.scale
+        weak = bool(((c >= c.max() - MET) & (y <= MET)).any())
+        return replace(found, status=Status.STALLED) if weak else found
 
     def _solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         if not start.at.feasible:

@@ -92,7 +92,8 @@ def programmes(
     """Return the programmes of the points of a simplex between edges; see `nbi`."""
     if len(edges) == 2:
         return Projection(target)
-    return Attainment(target, np.array([edge.at.theta for edge in edges]), floor)
+    corners = target.worst or edges
+    return Attainment(target, np.array([corner.at.theta for corner in corners]), floor)
 
 
 def nbi(

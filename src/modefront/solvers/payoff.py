@@ -4,19 +4,31 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.dominance import nondominated
-from modefront.solvers.scalarisation import Linear, boundary
-from modefront.solvers.sqp import Solution
+from modefront.solvers.problem import Problem
+from modefront.solvers.scalarisation import Linear, Squares, boundary
+from modefront.solvers.sqp import Options, Solution, begin, solve
 
 POINT = 1e-10
 """Range of an objective over the edges, over its typical size, below which it is no range."""
 
 FLAT = 1e-2
 """Least singular value of Phi, over the greatest one, below which the simplex is flat."""
+
+ATTEMPTS = 3
+"""Known models from which a corner is looked for."""
+
+LAST = 1e-6
+"""Weight of the objective that is worst at a corner, where the others have 1."""
+
+_COARSE = Options(step=1e-4, reduction=1e-6, iterations=30)
+"""A corner only says how far an objective goes."""
 
 
 @dataclass(frozen=True)
@@ -59,15 +71,47 @@ def payoff(
     objective and best in all others, with the ranges over all ``minima``, which need not be
     attained.
     """
-    P = _simplex(edges)
-    scale = np.maximum(P.max(axis=1), POINT * sizes)
-    if len(edges) == 2 or _solid(P / scale[:, None]):
+    if len(edges) == 2 or _solid(edges, sizes):
         return spanned(edges, (), sizes)
     known = [*edges, *minima]
     optimal = nondominated(np.array([one.at.J for one in known]))
     kept = [known[k] for k in np.flatnonzero(optimal).tolist()]
     worst = [max(kept, key=lambda one: float(one.at.J[i])) for i in range(len(edges))]
     return spanned(edges, worst, sizes)
+
+
+def corners(
+    problem: Problem,
+    edges: Sequence[Solution],
+    sizes: Floats,
+    known: Sequence[Solution],
+    checkpoint: Checkpoint = compute_always,
+) -> list[Solution]:
+    """Return, for each objective, a model that is as near as can be to the least of all others.
+
+    None are looked for where the simplex between the edges has a volume. Else several objectives
+    share a best model, all edges may be the same one, and only the corners tell how far each
+    objective goes. They are solved from the best of the ``known`` models and the first guess.
+    """
+    n = len(edges)
+    if n == 2 or _solid(edges, sizes):
+        return []
+    utopia = np.array([one.at.J[i] for i, one in enumerate(edges)])
+    out = []
+    for i, name in enumerate(problem.objectives):
+        w = np.where(np.arange(n) == i, LAST, 1.0) / sizes**2
+        search = partial(_corner, problem, Squares(w, utopia), [*edges, *known])
+        out.append(checkpoint(f"corner-{name}", search)[0])
+    return out
+
+
+def _corner(problem: Problem, programme: Squares, known: Sequence[Solution]) -> list[Solution]:
+    """Return the best minimum found from the best of the known models and from the first guess."""
+    best = sorted(known, key=lambda one: programme.value(one.at.J))[:ATTEMPTS]
+    starts = [begin(problem.evaluate(problem.start)), *best]
+    found = [solve(problem, programme, start, _COARSE) for start in starts]
+    feasible = [one for one in found if one.at.feasible]
+    return [min(feasible, key=lambda one: programme.value(one.at.J))]
 
 
 def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats) -> Payoff | None:
@@ -90,7 +134,9 @@ def _simplex(edges: Sequence[Solution]) -> Floats:
     return np.asarray(J - np.diag(J)[:, None])
 
 
-def _solid(Phi: Floats) -> bool:
+def _solid(edges: Sequence[Solution], sizes: Floats) -> bool:
     """Return whether a simplex has a volume, compared with the lengths of its edges."""
-    sigma = np.linalg.svd(Phi, compute_uv=False)
+    P = _simplex(edges)
+    scale = np.maximum(P.max(axis=1), POINT * sizes)
+    sigma = np.linalg.svd(P / scale[:, None], compute_uv=False)
     return bool(sigma[-1] > FLAT * sigma[0])

@@ -25,6 +25,9 @@ import scipy.linalg
 
 from modefront._typing import Bools, Floats
 
+LEAST = 1e-100
+"""An objective below which its logarithm and the derivatives change no more: no overflow."""
+
 
 class Scalarisation(Protocol):
     """A function of the objectives and linear constraints on them."""
@@ -73,8 +76,9 @@ class LogSum:
     """I = sum_i a_i ln J_i, equation (8): its stationary points have the weights w_i = a_i / J_i.
 
     With a ``floor`` b (n,), J_i + b_i stands for J_i: the weights a_i / (J_i + b_i) are bounded,
-    and there is a minimum also where a group can be fitted exactly. Where some J_i + b_i is below
-    ``vanishing`` (n,), I is minus infinity. ``a`` (n,) counts the measured properties of each group.
+    and there is a minimum also where a group can be fitted exactly. Where some J_i + b_i is not
+    above ``vanishing`` (n,), I is minus infinity. ``a`` (n,) counts the measured properties of
+    each group.
     """
 
     a: Floats
@@ -95,15 +99,45 @@ class LogSum:
         """Return I; minus infinity where an objective vanishes."""
         if (J + self.floor <= self.vanishing).any():
             return -np.inf
-        return float(self.a @ np.log(J + self.floor))
+        return float(self.a @ np.log(np.maximum(J + self.floor, LEAST)))
 
     def gradient(self, J: Floats) -> Floats:
         """Return a / (J + b)."""
-        return self.a / np.maximum(J + self.floor, np.finfo(float).tiny)
+        return self.a / np.maximum(J + self.floor, LEAST)
 
     def hessian(self, J: Floats) -> Floats:
         """Return -a / (J + b)**2 on the diagonal."""
-        return np.diag(-self.a / np.maximum(J + self.floor, np.sqrt(np.finfo(float).tiny)) ** 2)
+        return np.diag(-self.a / np.maximum(J + self.floor, LEAST) ** 2)
+
+
+@dataclass(frozen=True)
+class Squares:
+    """f = sum_i w_i (J_i - goal_i)**2 / 2: the greatest differences count most."""
+
+    w: Floats
+    goal: Floats
+
+    @property
+    def A(self) -> Floats:
+        """No constraints."""
+        return np.zeros((0, self.w.size))
+
+    @property
+    def b(self) -> Floats:
+        """No constraints."""
+        return np.zeros(0)
+
+    def value(self, J: Floats) -> float:
+        """Return f."""
+        return float(self.w @ (J - self.goal) ** 2 / 2)
+
+    def gradient(self, J: Floats) -> Floats:
+        """Return w (J - goal)."""
+        return np.asarray(self.w * (J - self.goal))
+
+    def hessian(self, J: Floats) -> Floats:
+        """Return w on the diagonal, whatever J is."""
+        return np.diag(np.broadcast_to(self.w, J.shape))
 
 
 def weighted(w: Floats) -> Linear:

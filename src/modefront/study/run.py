@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import zlib
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import partial
 
 import numpy as np
@@ -13,6 +13,7 @@ from modefront._typing import Floats, Ints
 from modefront.errors import UnfinishedError
 from modefront.solvers.advance import Simplex, default_points, simplex
 from modefront.solvers.archive import Archive
+from modefront.solvers.basins import explore_between
 from modefront.solvers.checkpoint import Checkpoint, Solutions, compute_always
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.edges import (
@@ -28,7 +29,7 @@ from modefront.solvers.evolutionary import EVOLUTIONARY, evolve_front
 from modefront.solvers.explore import Descent, Search, distinct, explore
 from modefront.solvers.lexicographic import EXACT, Lexicographic
 from modefront.solvers.nbi import nbi
-from modefront.solvers.payoff import Payoff, payoff
+from modefront.solvers.payoff import Payoff, corners, payoff
 from modefront.solvers.pieces import Gap, gaps
 from modefront.solvers.problem import Problem
 from modefront.solvers.refine import refine
@@ -72,7 +73,6 @@ class Front:
     points : (label, solution) of the points along the front, then of the edges and weighted models
     edges : the edge of each objective with its other minima
     optimal : all minima of the optimally weighted residuals that are accepted, best first
-    floor : (n,) bounds b of J in the bounded weights; None where there is no such model
     iterated : where the iteration of the weights arrived; None where it ran into a singularity
     exact : (n,) which objectives some model fits exactly
     target : utopia point and ranges over the edges, or None where the front is one point
@@ -80,20 +80,21 @@ class Front:
     lattice : (places, n) lattice points of normal-boundary intersection
     places : (places,) the point of the front, from 0, to which each of them led; -1 for none
     known : (models, n) objectives of evaluated models that no evaluated model dominates
+    floor : (n,) bounds b of J in the bounded weights; None where there is no such model
     """
 
     method: str
     points: Labelled
     edges: Sequence[Edge]
     optimal: Sequence[Solution]
-    floor: Floats | None
     iterated: Solution | None
     exact: tuple[bool, ...]
     target: Payoff | None
     gaps: Sequence[Gap]
-    lattice: Floats
-    places: Ints
-    known: Floats
+    lattice: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    places: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    known: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    floor: Floats | None = None
 
     @property
     def reference(self) -> str:
@@ -212,6 +213,8 @@ def pareto_front(
                 for i, (name, one) in enumerate(zip(problem.objectives, bests, strict=True))
             ]
         minima_of_one = [one for each in edges for one in each.minima]
+        if n > 2:
+            minima_of_one += corners(problem, bests, sizes, minima_of_one, named)
         target = payoff(bests, sizes, minima_of_one) if n > 1 else None
         if target is None or lattice is None:
             break
@@ -225,8 +228,11 @@ def pareto_front(
         else:
             before = _before(problem, known, bests) if known else []
             before = [one for one in front.points if one.beta is not None] or before
-            along = nbi(problem, bests, target, lattice, named, minima_of_one, before=before)
-            front = _without_copies(lattice, along, target)
+            solved = nbi(problem, bests, target, lattice, named, minima_of_one, before=before)
+            rng = generator(seed, "between")
+            found_by = [*(one.minima for one in edges), [one for _, one in models]]
+            along = explore_between(problem, target, solved, found_by, lattice, rng, search, named)
+            front = _without_copies(lattice, solved, along, target)
             if n == 2:
                 front = _branches(archive, front, target, refined, named)
         better = _from_archive(archive, edges, sizes, named)
@@ -266,7 +272,6 @@ def pareto_front(
         labelled + models,
         edges,
         optimal,
-        floor if any(label == BOUNDED for label, _ in models) else None,
         iterated[0] if iterated else None,
         tuple(bool(x) for x in least <= EXACT * sizes),
         target,
@@ -274,6 +279,7 @@ def pareto_front(
         front.lattice,
         front.places,
         archive.J,
+        floor if any(label == BOUNDED for label, _ in models) else None,
     )
 
 
@@ -344,27 +350,41 @@ def _refined_again(
     return refined_from(problem, objective, sizes, [start()])
 
 
-def _without_copies(lattice: Simplex, along: Sequence[Solution], target: Payoff) -> _Along:
+def _without_copies(
+    lattice: Simplex, solved: Sequence[Solution], along: Sequence[Solution], target: Payoff
+) -> _Along:
     """Return the points of a front, each once, with the lattice points that led to them.
 
-    Points beyond the lattice belong to none of its points.
+    ``solved`` are the solutions of the lattice points in their order, others after them; ``along``
+    are the points of the front, of which some have taken the places of these.
     """
     kept: list[Solution] = []
-    places = []
+    position = []
     for one in along:
-        J = one.at.J
-        same = [k for k, other in enumerate(kept) if _copies(J, other.at.J, target.scale)]
-        places.append(same[0] if same else len(kept))
-        if not same:
+        copies = (k for k, other in enumerate(kept) if _copies(one, other, target.scale))
+        k = next(copies, len(kept))
+        position.append(k)
+        if k == len(kept):
             kept.append(one)
-        elif one.converged and not kept[same[0]].converged:
-            kept[same[0]] = one
-    size = len(lattice.counts)
-    return _Along(kept, [], target, lattice.beta, np.array(places[:size], dtype=np.intp))
+        elif one.converged and not kept[k].converged:
+            kept[k] = one
+    places = []
+    for before in solved[: len(lattice.counts)]:
+        same = (k for k, one in enumerate(along) if one is before or _of_place(one, before))
+        k = next(same, -1)
+        places.append(position[k] if k >= 0 else -1)
+    return _Along(kept, [], target, lattice.beta, np.array(places, dtype=np.intp))
 
 
-def _copies(J: Floats, other: Floats, scale: Floats) -> bool:
-    return bool((np.abs(J - other) <= COPY * scale).all())
+def _of_place(one: Solution, other: Solution) -> bool:
+    """Return whether two solutions are of the same point of the simplex."""
+    if one.beta is None or other.beta is None:
+        return False
+    return np.array_equal(one.beta, other.beta)
+
+
+def _copies(one: Solution, other: Solution, scale: Floats) -> bool:
+    return bool((np.abs(one.at.J - other.at.J) <= COPY * scale).all())
 
 
 def _before(problem: Problem, known: Front, bests: Sequence[Solution]) -> list[Solution]:

@@ -1,0 +1,455 @@
+r"""Fronts with many basins: an evolution between the edges, polished by the gradient programmes.
+
+Normal-boundary intersection goes from neighbour to neighbour and keeps to the basins of the models
+that it starts from. Where the objectives have many basins, the best ones between the edges are
+others. That this is so shows in the minima that the search for the edges has found without coming
+to an end, in points that did not converge, and in a few probes: programmes of the simplex solved
+from random starts, of which none may end in front of a point that is known.
+
+Then a population of models evolves (Deb et al. 2002, doi:10.1109/4235.996017: simulated binary
+crossover, polynomial mutation, ranks of dominance and crowding), which begins with all models that
+are known, and of which in every generation some are followed along the normal, as one point of
+normal-boundary intersection, to the bottom of their basin (a memetic algorithm). It ends as soon
+as the front hardly moves. Its progress is measured on the points :math:`\Phi \beta_k` of a lattice
+by
+
+.. math:: t_k = \min_{\theta \text{ known}} \max_i \frac{y_i(\theta) - (\Phi \beta_k)_i}{r_i},
+
+the place on the normal from which on all points are dominated by a known model. A point of the
+front that is so dominated is solved again from the model that dominates it, and from its
+neighbours; models that lead to no point of the lattice and dominate one, or lie between points,
+are points of the front of their own.
+
+========  ========  ==========================================================
+symbol    shape     meaning
+========  ========  ==========================================================
+y         (n,)      :math:`(J - J^*) / scale`
+Phi       (n, n)    pay-off matrix, one column an edge, in units of the scale
+r         (n,)      :math:`\Phi e`, the normal towards greater objectives
+beta_k    (n,)      point of the lattice on the simplex between the edges
+t_k       ()        least excess over the simplex of all known models
+========  ========  ==========================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import partial
+
+import numpy as np
+
+from modefront._typing import Bools, Floats, Ints
+from modefront.solvers.advance import BETTER, Simplex, simplex
+from modefront.solvers.attainment import Attainment
+from modefront.solvers.checkpoint import Checkpoint, compute_always
+from modefront.solvers.dominance import nondominated
+from modefront.solvers.explore import NEAR, Search
+from modefront.solvers.nbi import Projection
+from modefront.solvers.payoff import Payoff
+from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.scalarisation import weighted
+from modefront.solvers.sqp import Options, Solution, Status, begin, solve
+
+MINIMA = 5
+"""Minima of one programme with different objectives, from which on the search is known not to have
+found them all."""
+
+DOUBTFUL = 2
+"""Points that did not converge, from which on the objectives count as rugged."""
+
+PROBES = 3
+"""Points between the edges that are solved again from random starts, to see where these end."""
+
+AHEAD = 1e-3
+"""Lead of a model over a point, in units of the ranges, that is worth a search from there."""
+
+FINER = 4
+"""Steps of the lattice on which progress is measured for one step along the front, of two
+objectives; one of more."""
+
+POPULATION = 60
+"""Models that survive a generation, besides the best one of each point of the lattice."""
+
+OFFSPRING, JUMPS, FOLLOWED = 40, 4, 3
+"""Models of a generation: children of two others; models that jump from a survivor and then are
+followed to the bottom of their basin; survivors that are so followed. From the least of each
+objective one more jumps, and is followed to the minimum of that objective."""
+
+QUIET, PROGRESS = 15, 5e-4
+"""Generations over which the mean excess has to fall by so much for the evolution to go on."""
+
+EFFORT = 100
+"""Evaluations of the evolution at most, for each local search that a programme is allowed."""
+
+CROSSOVER, MUTATION = 15.0, 20.0
+"""Indices of the distributions of simulated binary crossover and of polynomial mutation."""
+
+ROUNDS = 4
+"""Times at most that all models compete for all points."""
+
+SPACING = 0.2
+"""Distance of points of the front besides the lattice, in its steps, at least."""
+
+CROWD = 4
+"""Points besides the lattice at most, for one step of it."""
+
+OTHERS = 1e-2
+"""Weight of the other objectives, in units of the ranges, where the least of one is looked for."""
+
+_ROUGH = Options(step=NEAR / 4, iterations=8)
+
+
+@dataclass(frozen=True)
+class Models:
+    """Models theta (m, p) with their objectives J (m, n), and which need not be followed (m,)."""
+
+    theta: Floats
+    J: Floats
+    followed: Bools
+
+    def __getitem__(self, rows: Ints | Bools) -> Models:
+        return Models(self.theta[rows], self.J[rows], self.followed[rows])
+
+    def joined(self, other: Models) -> Models:
+        """Return these models and others, each only once."""
+        theta = np.concatenate([self.theta, other.theta])
+        J = np.concatenate([self.J, other.J])
+        followed = np.concatenate([self.followed, other.followed])
+        _, first = np.unique(theta, axis=0, return_index=True)
+        first = np.sort(first[np.isfinite(J[first]).all(axis=1)])
+        return Models(theta[first], J[first], followed[first])
+
+
+def models_of(solutions: Sequence[Solution]) -> Models:
+    """Return the models of solutions."""
+    theta = np.array([one.at.theta for one in solutions])
+    J = np.array([one.at.J for one in solutions])
+    followed = np.array([one.status is not Status.EXHAUSTED for one in solutions])
+    return Models(theta, J, followed)
+
+
+def place_on_normals(target: Payoff, beta: Floats, J: Floats) -> Floats:
+    """Return the excess of each row of J (m, n) over each point beta (k, n), shape (m, k)."""
+    y = (J - target.utopia) / target.scale
+    r = target.Phi.sum(axis=1)
+    out: Floats = ((y[:, None] - beta @ target.Phi.T) / r).max(axis=2)
+    return out
+
+
+def ranks(J: Floats) -> Ints:
+    """Return the rank of dominance of each row of J (m, n): 0 where no other dominates it."""
+    rank = np.full(len(J), -1)
+    left, level = np.arange(len(J)), 0
+    while left.size:
+        best = nondominated(J[left], 0.0)
+        if not best.any():
+            best[:] = True
+        rank[left[best]] = level
+        left, level = left[~best], level + 1
+    return rank
+
+
+def crowding(J: Floats) -> Floats:
+    """Return the distance of the neighbours of each row of J (m, n), summed over objectives."""
+    out = np.zeros(len(J))
+    span = np.maximum(np.ptp(J, axis=0), np.finfo(float).tiny)
+    for i in range(J.shape[1]):
+        order = np.argsort(J[:, i], kind="stable")
+        padded = np.concatenate([[-np.inf], J[order, i], [np.inf]])
+        out[order] += (padded[2:] - padded[:-2]) / span[i]
+    return out
+
+
+def survivors(models: Models, excess: Floats) -> Ints:
+    """Return which models survive: by rank and crowding, and the best of each point."""
+    rank = ranks(models.J)
+    distance = np.zeros(len(rank))
+    for k in range(int(rank.max()) + 1):
+        distance[rank == k] = crowding(models.J[rank == k])
+    order = np.lexsort((-distance, rank))
+    return np.unique(np.concatenate([order[:POPULATION], excess.argmin(axis=0)]))
+
+
+def crossed(u: Floats, v: Floats, rng: np.random.Generator) -> Floats:
+    """Return one child (m, p) of each pair of parents by simulated binary crossover."""
+    share, half = rng.uniform(size=u.shape), 1 / (CROSSOVER + 1)
+    spread = np.where(share <= 0.5, (2 * share) ** half, (2 - 2 * share) ** -half)
+    spread = np.where(rng.uniform(size=u.shape) < 0.5, spread, 1.0)
+    swapped = rng.uniform(size=u.shape) < 0.5
+    return ((u + v) + np.where(swapped, -spread, spread) * (u - v)) / 2
+
+
+def mutated(u: Floats, rng: np.random.Generator) -> Floats:
+    """Return models by polynomial mutation of one parameter each, in the mean."""
+    share, half = rng.uniform(size=u.shape), 1 / (MUTATION + 1)
+    step = np.where(share < 0.5, (2 * share) ** half - 1, 1 - (2 - 2 * share) ** half)
+    return u + np.where(rng.uniform(size=u.shape) < 1 / u.shape[1], step, 0.0)
+
+
+def jumped(u: Floats, rng: np.random.Generator) -> Floats:
+    """Return models of which a few parameters, one at least, have gone anywhere near or far."""
+    m, p = u.shape
+    on = rng.uniform(size=u.shape) < 1 / p
+    on[np.arange(m), rng.integers(p, size=m)] = True
+    width = 10.0 ** rng.uniform(-1.5, 0, size=(m, 1))
+    return u + np.where(on, width * rng.uniform(-1, 1, size=u.shape), 0.0)
+
+
+def chosen(models: Models, count: int, rng: np.random.Generator) -> Ints:
+    """Return parents, each the better of two by rank and crowding."""
+    rank, distance = ranks(models.J), crowding(models.J)
+    pairs = rng.integers(len(rank), size=(2, count))
+    better = np.lexsort((-distance[pairs], rank[pairs]), axis=0)[0]
+    return np.asarray(pairs[better, np.arange(count)])
+
+
+def explore_between(
+    problem: Problem,
+    target: Payoff,
+    points: Sequence[Solution],
+    minima: Sequence[Sequence[Solution]],
+    lattice: Simplex,
+    rng: np.random.Generator,
+    search: Search,
+    checkpoint: Checkpoint = compute_always,
+) -> list[Solution]:
+    """Return the points of a front by `nbi`, better ones in their places, and others besides.
+
+    ``minima`` are what each programme solved so far has found. Where nothing tells of other
+    basins, the points are returned as they are, at the price of a few evaluations; so they are
+    where the search allows no starts. Of two objectives, the points are in their order along the
+    front, and models that are ahead of some point or lie between points are points as well.
+    """
+    if search.limit == 0 or len(points) < len(target.scale):
+        return list(points)
+    between = _Between(problem, target, lattice, checkpoint)
+    known = [*points, *(one for found in minima for one in found)]
+    many = max((_different(found, target.scale) for found in minima), default=0) >= MINIMA
+    doubtful = sum(not one.converged for one in points) >= DOUBTFUL
+    if not (many or doubtful):
+        probes = between.probes(points, rng)
+        if not between.ahead(probes, models_of(known)):
+            return list(points)
+        known += probes
+    models = between.evolved(models_of(known), rng, EFFORT * search.limit)
+    better = between.competed(points, models)
+    return between.with_others(better, models)
+
+
+def _different(found: Sequence[Solution], scale: Floats) -> int:
+    """Return how many minima differ in their objectives: those of one valley do not."""
+    kept: list[Floats] = []
+    for one in found:
+        y = one.at.J / scale
+        if all(np.abs(y - other).max() > AHEAD for other in kept):
+            kept.append(y)
+    return len(kept)
+
+
+@dataclass(frozen=True)
+class _Between:
+    """The work on one front."""
+
+    problem: Problem
+    target: Payoff
+    lattice: Simplex
+    checkpoint: Checkpoint
+
+    @property
+    def programmes(self) -> Projection | Attainment:
+        """The programmes of the points of the simplex."""
+        n = self.target.utopia.size
+        return Projection(self.target) if n == 2 else Attainment(self.target, np.zeros((0, 0)))
+
+    def place(self, J: Floats) -> Floats:
+        """Return the point of the simplex from which J (n,) is projected, or the nearest to it."""
+        beta = np.maximum(self.target.place(J), 0.0)
+        return np.asarray(beta / beta.sum())
+
+    def own_place(self, one: Solution) -> Floats:
+        """Return the point of the plane that a point of the front belongs to."""
+        return self.target.place(one.at.J) if one.beta is None else one.beta
+
+    def excess(self, one: Solution, J: Floats) -> Floats:
+        """Return the excess of models J (m, n) on the normal of a point of the front, (m,)."""
+        return place_on_normals(self.target, self.own_place(one)[None], J)[:, 0]
+
+    def ahead(self, probes: Sequence[Solution], known: Models) -> bool:
+        """Return whether a probe is ahead of all known models where it was to come to."""
+        for one in probes:
+            own = self.excess(one, one.at.J[None]).min()
+            if self.excess(one, known.J).min() > own + AHEAD:
+                return True
+        return False
+
+    def progress(self, models: Models, excess: Floats) -> float:
+        """Return the mean excess of the best models plus that of the least of each objective."""
+        least = (models.J.min(axis=0) - self.target.utopia) / self.target.scale
+        return float(excess.min(axis=0).mean() + least.mean())
+
+    def follow(self, theta: Floats, objective: int | None) -> Solution:
+        """Return what the programme through a model comes to, or that of one objective."""
+        at = self.problem.evaluate(theta)
+        start = begin(at)
+        if not at.feasible:
+            return start
+        if objective is None:
+            programme = self.target.subproblem(self.place(at.J))
+        else:
+            own = np.arange(at.J.size) == objective
+            programme = weighted(np.where(own, 1.0, OTHERS) / self.target.scale)
+        found = solve(self.problem, programme, start, _ROUGH)
+        return replace(found, evaluations=found.evaluations + 1)
+
+    def _followed(self, starts: Sequence[tuple[Floats, int | None]]) -> list[Solution]:
+        return [self.follow(theta, objective) for theta, objective in starts]
+
+    def probes(self, points: Sequence[Solution], rng: np.random.Generator) -> Sequence[Solution]:
+        """Return where programmes between the edges end from random starts."""
+        span = self.problem.upper - self.problem.lower
+        thetas = self.problem.lower + span * rng.uniform(size=(PROBES, span.size))
+        chosen = np.linspace(0, len(points) - 1, PROBES + 2)[1:-1].astype(int)
+        betas = [self.own_place(points[k]) for k in chosen.tolist()]
+
+        def compute() -> list[Solution]:
+            starts = [begin(self.problem.evaluate(theta)) for theta in thetas]
+            found = [
+                solve(self.problem, self.target.subproblem(beta), start, _ROUGH)
+                for beta, start in zip(betas, starts, strict=True)
+            ]
+            return [replace(one, beta=beta) for one, beta in zip(found, betas, strict=True)]
+
+        return [one for one in self.checkpoint("between-probes", compute) if one.at.feasible]
+
+    def evolved(self, models: Models, rng: np.random.Generator, evaluations: int) -> Models:
+        """Return the population in which the evolution ends, with all that was followed."""
+        lower, span = self.problem.lower, self.problem.upper - self.problem.lower
+        n = self.target.utopia.size
+        finer = simplex(n, self.lattice.divisions * (FINER if n == 2 else 1))
+        excess = partial(place_on_normals, self.target, finer.beta)
+        models = models.joined(models)
+        models = models[survivors(models, excess(models.J))]
+        progress, spent, generation = [self.progress(models, excess(models.J))], 0, 0
+        while spent < evaluations:
+            generation += 1
+            u = (models.theta - lower) / span
+            mothers, fathers = (u[chosen(models, OFFSPRING, rng)] for _ in range(2))
+            children = crossed(mothers, fathers, rng)
+            whole = np.where(rng.uniform(size=mothers.shape) < 0.5, mothers, fathers)
+            children[::4] = whole[::4]
+            thetas = lower + span * np.clip(mutated(children, rng), 0, 1)
+            name = f"nbi-between-{generation}"
+            (kept,) = self.checkpoint(name, partial(_evaluated, self.problem, thetas))
+            models = models.joined(_sampled(kept))
+            models = models[survivors(models, excess(models.J))]
+            best = np.unique(excess(models.J).argmin(axis=0))
+            u = (models.theta - lower) / span
+            bases, others = (u[rng.choice(best, JUMPS)] for _ in range(2))
+            mixed = np.where(rng.uniform(size=bases.shape) < 0.5, bases, others)
+            bases = np.where(rng.uniform(size=(JUMPS, 1)) < 0.5, bases, mixed)
+            least = u[models.J.argmin(axis=0)]
+            jumps = lower + span * np.clip(jumped(np.concatenate([bases, least]), rng), 0, 1)
+            rest = np.flatnonzero(~models.followed)
+            rest = np.concatenate([np.intersect1d(rest, best), np.setdiff1d(rest, best)])
+            along = [*jumps[:JUMPS], *models.theta[rest[:FOLLOWED]]]
+            starts: list[tuple[Floats, int | None]] = [(theta, None) for theta in along]
+            starts += [(theta, i) for i, theta in enumerate(jumps[JUMPS:])]
+            models.followed[rest[:FOLLOWED]] = True
+            ends = self.checkpoint(f"{name}-followed", partial(self._followed, starts))
+            models = models.joined(models_of([one for one in ends if one.at.feasible]))
+            models = models[survivors(models, excess(models.J))]
+            spent += len(thetas) + sum(one.evaluations for one in ends)
+            progress.append(self.progress(models, excess(models.J)))
+            if generation > QUIET and progress[-1 - QUIET] - progress[-1] < PROGRESS:
+                break
+        return models
+
+    def competed(self, points: Sequence[Solution], models: Models) -> list[Solution]:
+        """Return the points, each solved again from a model that is ahead of it, if any is."""
+        current = list(points)
+        tried: set[tuple[int, bytes]] = set()
+        for turn in range(ROUNDS):
+            everything = models.joined(models_of([one for one in current if one.at.feasible]))
+            starts = {}
+            for k, one in enumerate(current):
+                if one.beta is None:
+                    continue
+                excess = self.excess(one, everything.J)
+                best = int(excess.argmin())
+                own = self.excess(one, one.at.J[None])[0] if one.at.feasible else np.inf
+                key = (k, everything.theta[best].tobytes())
+                if (excess[best] < own - AHEAD / 10 or not one.converged) and key not in tried:
+                    tried.add(key)
+                    starts[k] = everything.theta[best]
+            if not starts:
+                break
+            again = partial(self._again, current, starts)
+            found = self.checkpoint(f"nbi-between-again-{turn + 1}", again)
+            for k, one in zip(starts, found, strict=True):
+                if self._better(one, current[k]):
+                    current[k] = one
+        return current
+
+    def _again(self, points: Sequence[Solution], starts: dict[int, Floats]) -> list[Solution]:
+        return [
+            self.programmes.solve_again(
+                self.problem, self.own_place(points[k]), begin(self.problem.evaluate(theta))
+            )
+            for k, theta in starts.items()
+        ]
+
+    def _better(self, found: Solution, known: Solution) -> bool:
+        """Return whether a solution of the same programme is better than one that is known."""
+        if found.converged != known.converged:
+            return found.converged
+        own, other = self.excess(known, np.array([found.at.J, known.at.J]))
+        return bool(own < other - BETTER)
+
+    def with_others(self, points: Sequence[Solution], models: Models) -> list[Solution]:
+        """Return the points and, of two objectives in their order, optimal models besides them."""
+        others = self.checkpoint("nbi-between-others", partial(self._others, points, models))
+        out = [*points, *others]
+        if self.target.utopia.size > 2:
+            return out
+        return sorted(out, key=lambda one: -float(self.target.place(one.at.J)[0]))
+
+    def _others(self, points: Sequence[Solution], models: Models) -> list[Solution]:
+        """Return optimal models that lie apart from the points, the farthest first."""
+        spacing = SPACING / self.lattice.divisions
+        optimal = nondominated(np.concatenate([models.J, [one.at.J for one in points]]))
+        left = models[optimal[: len(models.J)]]
+        known = np.array([one.at.J for one in points if one.at.feasible]) / self.target.scale
+        out: list[Solution] = []
+        while len(left.J) and len(out) < CROWD * self.lattice.divisions:
+            away = np.abs(left.J[:, None] / self.target.scale - known).max(axis=2).min(axis=1)
+            farthest = int(away.argmax())
+            if away[farthest] < spacing:
+                break
+            out.append(self._bottom(left.theta[farthest]))
+            new = np.array([left.J[farthest], out[-1].at.J]) / self.target.scale
+            known = np.concatenate([known, new])
+            left = left[np.arange(len(left.J)) != farthest]
+        return out
+
+    def _bottom(self, theta: Floats) -> Solution:
+        """Return the solution of the programme through a model, or the model if it is no better."""
+        start = begin(self.problem.evaluate(theta))
+        beta = self.target.place(start.at.J)
+        found = self.programmes.solve_again(self.problem, beta, start)
+        own, other = place_on_normals(self.target, beta[None], np.array([found.at.J, start.at.J]))
+        if own[0] <= other[0] + BETTER:
+            return found
+        return replace(start, status=Status.STALLED, beta=beta)
+
+
+def _evaluated(problem: Problem, thetas: Floats) -> list[Solution]:
+    """Return the evaluations of models theta (m, p), packed into one."""
+    J = [problem.evaluate(theta, derivatives=False).J for theta in thetas]
+    none = np.zeros(0)
+    at = Evaluation(thetas, np.array(J), none, none)
+    return [Solution(at, none, none, 0.0, Status.SAMPLED, len(thetas))]
+
+
+def _sampled(kept: Solution) -> Models:
+    return Models(kept.at.theta, kept.at.J, np.zeros(len(kept.at.J), dtype=np.bool_))

@@ -1,0 +1,214 @@
+"""Fronts of rugged problems and of four and more objectives, beside true ones and an evolution."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from problems import Derivatives, Known, box, circles, concave
+
+from modefront._typing import Floats
+from modefront.solvers.advance import simplex
+from modefront.solvers.basins import explore_between, ranks
+from modefront.solvers.checkpoint import Checkpoint, Solutions, compute_always
+from modefront.solvers.dominance import nondominated
+from modefront.solvers.evolutionary import evolve_front
+from modefront.solvers.explore import Search
+from modefront.solvers.indicators import hypervolume, igd_plus
+from modefront.solvers.scalarisation import LogSum, Squares
+from modefront.study.run import Front, pareto_front
+
+FEW = Search(starts=4, limit=12, evolutions=0)
+
+CENTRES = np.array([[-0.9, 0.5, -0.6, 0.8], [0.6, -0.8, 0.7, -0.5]])
+
+
+def waves(u: Floats) -> Floats:
+    return np.asarray(u**2 + np.sin(4 * u) ** 2)
+
+
+def rastrigin(theta: Floats) -> Derivatives:
+    """Squares of the residuals u and sin 4u, for u = theta - c with two centres c."""
+    u = theta - CENTRES
+    dJ = 2 * u + 4 * np.sin(8 * u)
+    H = np.array([np.diag(2 + 32 * np.cos(4 * one) ** 2) for one in u])
+    return waves(u).sum(axis=1), dJ, H
+
+
+def rastrigin_front() -> Floats:
+    """Return the true front: the sum over parameters of the fronts of each."""
+    x = np.linspace(-2, 2, 4001)
+    total = np.zeros((1, 2))
+    for c in CENTRES.T:
+        own = np.column_stack([waves(x - c[0]), waves(x - c[1])])
+        total = (total[:, None] + best(own)[None]).reshape(-1, 2)
+        total = best(total)
+    return total
+
+
+def best(J: Floats, cell: float = 0.01) -> Floats:
+    """Return the non-dominated rows of J (m, 2), one a cell."""
+    J = J[np.lexsort((J[:, 1], J[:, 0]))]
+    J = J[J[:, 1] < np.minimum.accumulate(np.concatenate([[np.inf], J[:-1, 1]]))]
+    new = (np.diff(np.floor(J / cell), axis=0) != 0).any(axis=1)
+    return np.asarray(J[np.concatenate([[True], new])])
+
+
+def objectives(front: Front) -> Floats:
+    return np.array([one.at.J for _, one in front.points])
+
+
+def counted(problem: Known, kept: dict[str, Solutions]) -> Checkpoint:
+    """Return a checkpoint that keeps what is computed by name."""
+
+    def checkpoint(name: str, compute: Callable[[], Solutions]) -> Solutions:
+        if name not in kept:
+            kept[name] = compute()
+        return kept[name]
+
+    return checkpoint
+
+
+def test_a_rugged_front_is_not_behind_an_evolution_with_as_many_evaluations() -> None:
+    problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
+    front = pareto_front(problem, np.array([4.0, 4.0]), points=12, seed=1, search=FEW)
+    spent = problem.counts["eigenproblems"]
+    truth = rastrigin_front()
+    utopia, scale = truth.min(axis=0), np.ptp(truth, axis=0)
+    J = (objectives(front) - utopia) / scale
+    for seed in range(2):
+        rng = np.random.default_rng(seed)
+        other = evolve_front(problem, "nsga2", 40, spent, rng)
+        J_other = (np.array([one.at.J for one in other]) - utopia) / scale
+        assert hypervolume(J) >= hypervolume(J_other)
+    assert hypervolume(J) >= 0.98 * hypervolume((truth - utopia) / scale)
+    called = [
+        row
+        for row, optimal, (label, one) in zip(J, nondominated(J), front.points, strict=True)
+        if optimal and one.converged and label.startswith("nbi")
+    ]
+    R = (truth - utopia) / scale
+    behind = sum((row - R).min(axis=1).max() > 0.01 for row in called)
+    assert len(called) >= 12
+    assert behind <= len(called) / 20
+
+
+def test_an_evolution_that_is_continued_evaluates_nothing_again() -> None:
+    kept: dict[str, Solutions] = {}
+    fronts = []
+    search = Search(starts=4, limit=8, evolutions=0)
+    for _ in range(2):
+        problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
+        checkpoint = counted(problem, kept)
+        fronts.append(
+            pareto_front(
+                problem, np.ones(2), points=6, seed=3, search=search, checkpoint=checkpoint
+            )
+        )
+    assert any(name.startswith("nbi-between-") for name in kept)
+    assert problem.counts["eigenproblems"] == 0
+    assert objectives(fronts[0]).tolist() == objectives(fronts[1]).tolist()
+
+
+@pytest.mark.parametrize("function", [circles, concave])
+def test_smooth_fronts_cost_a_few_probes(function: Callable[[Floats], Derivatives]) -> None:
+    problem = box(function, [-2, -2], [2, 2])
+    kept: dict[str, Solutions] = {}
+    front = pareto_front(
+        problem, np.ones(2), points=10, seed=1, search=FEW, checkpoint=counted(problem, kept)
+    )
+    assert not any(name.startswith("nbi-between-") for name in kept)
+    assert sum(label.startswith("nbi") for label, _ in front.points) == 10
+    probes = sum(1 + one.evaluations for one in kept["between-probes"])
+    assert 3 <= probes <= 30
+
+
+def test_no_starts_mean_no_exploration() -> None:
+    problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
+    front = pareto_front(problem, np.ones(2), points=4, seed=1, search=FEW)
+    assert front.target is not None
+    points = [one for label, one in front.points if label.startswith("nbi")]
+    before = problem.counts["eigenproblems"]
+    none = Search(0, 0, 0)
+    rng = np.random.default_rng(0)
+    same = explore_between(
+        problem, front.target, points, [], simplex(2, 3), rng, none, compute_always
+    )
+    assert all(one is other for one, other in zip(same, points, strict=True))
+    assert problem.counts["eigenproblems"] == before
+
+
+def test_ranks_are_those_of_dominance() -> None:
+    J = np.array([[0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [2.0, 2.0], [0.5, 2.0]])
+    assert ranks(J).tolist() == [0, 0, 1, 2, 1]
+
+
+# ---- four and more objectives ------------------------------------------------------------------
+
+
+def product_front(n: int, *, linear: bool) -> Callable[[Floats], Derivatives]:
+    """DTLZ1 without waves, or DTLZ2 (Deb et al. 2002), and one distance variable.
+
+    The front, where the last parameter is 1/2, is the simplex sum J = 1, or the sphere of radius 1.
+    """
+
+    def function(theta: Floats) -> Derivatives:
+        x, z = theta[:-1], theta[-1] - 0.5
+        half = np.pi / 2
+        if linear:
+            c, s, dc, ds = x, 1 - x, np.ones(n - 1), -np.ones(n - 1)
+        else:
+            c, s = np.cos(half * x), np.sin(half * x)
+            dc, ds = -half * s, half * c
+        f, df = np.empty(n), np.zeros((n, n))
+        for i in range(n):
+            m = n - 1 - i
+            factors, slopes = list(c[:m]), list(dc[:m])
+            if i > 0:
+                factors.append(s[m])
+                slopes.append(ds[m])
+            f[i] = np.prod(factors)
+            for j, slope in enumerate(slopes):
+                df[i, j] = slope * np.prod(factors[:j] + factors[j + 1 :])
+        g = 1 + z**2
+        df *= g
+        df[:, -1] = 2 * z * f
+        return g * f, df, np.zeros((n, n, n))
+
+    return function
+
+
+@pytest.mark.parametrize(("n", "linear"), [(4, True), (4, False), (5, False)])
+def test_fronts_of_four_and_five_objectives_whose_edges_coincide(n: int, linear: bool) -> None:
+    problem = box(product_front(n, linear=linear), [0.0] * n, [1.0] * n, n)
+    front = pareto_front(problem, np.ones(n), points=3, seed=1, search=FEW)
+    J = np.array(
+        [one.at.J for label, one in front.points if label.startswith("nbi") and one.converged]
+    )
+    size = J.sum(axis=1) if linear else np.linalg.norm(J, axis=1)
+    assert size == pytest.approx(1, abs=1e-5)
+    assert len(J) >= n + n * (n - 1) // 2
+    # The corners are there, and the front between them.
+    assert (J.max(axis=0) > 0.99).all()
+    R = np.random.default_rng(0).dirichlet(np.ones(n), 1000)
+    R = R if linear else np.sqrt(R)
+    assert igd_plus(J, R) <= 0.25
+
+
+# ---- programmes --------------------------------------------------------------------------------
+
+
+def test_squares_have_their_derivatives() -> None:
+    f = Squares(np.array([1.0, 3.0]), np.array([0.5, -1.0]))
+    J, h = np.array([2.0, 0.7]), 1e-6
+    slopes = [(f.value(J + h * e) - f.value(J - h * e)) / (2 * h) for e in np.eye(2)]
+    assert f.gradient(J) == pytest.approx(slopes, rel=1e-8)
+    assert f.hessian(J).tolist() == [[1.0, 0.0], [0.0, 3.0]]
+
+
+def test_the_logarithm_of_an_objective_that_vanishes_has_finite_derivatives() -> None:
+    f = LogSum(np.array([3.0, 9.0]))
+    J = np.array([0.0, 1e-300])
+    assert np.isfinite(f.gradient(J)).all()
+    assert np.isfinite(f.hessian(J)).all()
