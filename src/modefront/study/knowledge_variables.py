@@ -7,14 +7,23 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from modefront._typing import Bools, Floats
-from modefront.identifiability.collinearity import cosines, index, pairs
+from modefront.identifiability.collinearity import cosines, index
 from modefront.identifiability.combinations import (
     Combination,
     combinations_at,
+    gram,
     optimal_weights,
-    relative_unit,
+    without_effect,
 )
-from modefront.identifiability.words import enumeration, measured_thing, summary
+from modefront.identifiability.scale import scale_at
+from modefront.identifiability.words import (
+    PARTS,
+    alike_in_words,
+    enumeration,
+    measured_thing,
+    no_effect_in_words,
+    summary,
+)
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.manifold import Extent, Manifold
 from modefront.solvers.sqp import Solution
