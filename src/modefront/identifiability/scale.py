@@ -149,8 +149,9 @@ def _dense(
 
 
 def _dense_at(matrix: DenseAffine | SparseAffine, theta: Floats) -> Floats:
-    at = matrix.at(theta)
-    return at.toarray() if scipy.sparse.issparse(at) else np.asarray(at)
+    if isinstance(matrix, DenseAffine):
+        return matrix.at(theta)
+    return np.asarray(matrix.at(theta).toarray())
 
 
 def _sparse(model: MatrixModel, stiffness: SparseAffine, theta: Floats, shift: float) -> Floats:
@@ -175,7 +176,7 @@ def _sparse(model: MatrixModel, stiffness: SparseAffine, theta: Floats, shift: f
 
 
 def _definite(model: MatrixModel, theta: Floats, shift: float) -> Factorisation | None:
-    """Return the factor of K, or of K + shift M where K is singular; None where it is indefinite."""
+    """Return the factor of K, or of K + shift M where K is singular; None if it is indefinite."""
     K, M = model.pencil.K.at(theta).data, model.pencil.M.at(theta).data
     sigma = -shift if model.floating and model.is_singular(theta) else 0.0
     try:
