@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
+from itertools import combinations as combinations_of
 
 import numpy as np
 
@@ -227,29 +228,46 @@ def sparse_basis(
     """Return a basis of the span of the columns of N (p, d) that can be said simply.
 
     First single parameters; then those of the directions ``whole`` (p,) that are in the span, by
-    default the scaling of all other parameters together; the rest has as many zeros as
-    elimination makes. ``holds`` tells whether a simple direction is not determined indeed.
+    default the scaling of all other parameters together; then pairs of parameters; the rest has
+    as many zeros as elimination makes. ``holds`` tells whether a simple direction is not
+    determined indeed.
     """
     p, d = N.shape
     Q = np.linalg.qr(N)[0]
-    alone = [j for j in range(p) if np.linalg.norm(Q[j]) > 1 - SAME**2 / 2]
-    alone = [j for j in alone if holds(np.eye(p)[j])]
+    outside = np.eye(p) - Q @ Q.T
+    alone = [j for j in range(p) if outside[j, j] <= SAME**2 and holds(np.eye(p)[j])]
     basis = [np.eye(p)[j] for j in alone]
     for direction in [np.ones(p)] if whole is None else whole:
         others = direction.copy()
         others[alone] = 0.0
-        outside = others - Q @ (Q.T @ others)
-        size = np.linalg.norm(others)
-        if size == 0 or np.linalg.norm(outside) > SAME * size or not holds(others):
-            continue
-        longer = [*basis, others / size]
-        if np.linalg.matrix_rank(np.array(longer), tol=SAME) == len(longer):
-            basis = longer
-    known = np.array(basis).reshape(-1, p).T
-    if known.size:
-        rest = Q - known @ np.linalg.lstsq(known, Q, rcond=None)[0]
-        Q = np.linalg.svd(rest, full_matrices=False)[0][:, : d - known.shape[1]]
-    return np.column_stack([known, _eliminate(Q.T).T])
+        size = float(np.linalg.norm(others))
+        if size > 0 and np.linalg.norm(outside @ others) <= SAME * size and holds(others):
+            basis = _longer(basis, others / size)
+    for v in _pairs_within(outside, alone):
+        if len(basis) < d and holds(v):
+            basis = _longer(basis, v)
+    for row in sorted(_eliminate(Q.T), key=lambda row: int((np.abs(row) > SAME).sum())):
+        basis = _longer(basis, row / np.linalg.norm(row)) if len(basis) < d else basis
+    return np.array(basis).T
+
+
+def _longer(basis: list[Floats], v: Floats) -> list[Floats]:
+    """Return a basis with another direction of length 1, if that does not depend on it."""
+    longer = [*basis, v]
+    return longer if np.linalg.matrix_rank(np.array(longer), tol=SAME) == len(longer) else basis
+
+
+def _pairs_within(outside: Floats, alone: Sequence[int]) -> list[Floats]:
+    """Return the directions of two parameters that a projector (p, p) takes to nothing."""
+    p, out = len(outside), []
+    others = [j for j in range(p) if j not in alone]
+    for i, j in combinations_of(others, 2):
+        lam, V = np.linalg.eigh(outside[np.ix_([i, j], [i, j])])
+        if lam[0] <= SAME**2:
+            v = np.zeros(p)
+            v[[i, j]] = V[:, 0] * np.sign(V[np.argmax(np.abs(V[:, 0])), 0])
+            out.append(v)
+    return out
 
 
 def _eliminate(rows: Floats) -> Floats:

@@ -30,8 +30,9 @@ step began. How far a manifold is followed depends on its dimension d.
 * Curves and surfaces (d = 1, 2) are covered. New points grow from points by steps of length h until
   every step from every point arrives next to a known one (a packing, as in Henderson 2002,
   International Journal of Bifurcation and Chaos 12, 451-476). A step that would leave the bounds
-  ends on them, and one that starts at a bound and would cross it goes along it. On a surface, h is
-  no less than what the number of models allows.
+  ends on them, and one that starts at a bound and would cross it goes along it. A surface has half
+  of the models that are wanted, and h is no less than these allow; if they do not cover it, it is
+  treated like what follows, from all of its points.
 * A covering of more dimensions takes a number of points that grows like :math:`h^{-d}`. What is
   wanted of them is how far each parameter can go: :math:`\max \pm u_j` on the manifold, from the
   best point that is known, by steps that are best on the tangents,
@@ -94,6 +95,9 @@ EQUAL = 1e-6
 
 ARRIVED = 1e-8
 """Correction in u below which a point lies on the manifold."""
+
+SAME_MINIMUM = 1e-5
+"""Distance in u below which two isolated minima are the same."""
 
 SAME_PLACE = 1e-9
 """Distance in u below which a variable is at its bound, or does not move."""
@@ -170,8 +174,8 @@ class _Chart:
 class _Ground:
     """What is the same everywhere on a manifold.
 
-    ``top`` is the greatest eigenvalue of B_0; ``held`` are variables that stay at a bound;
-    ``exact`` says that B is taken and not B_0.
+    ``top`` is the greatest eigenvalue of B_0; ``held`` are variables that stay at a bound, or that
+    are ``idle``; ``exact`` says that B is taken and not B_0.
     """
 
     problem: Problem
@@ -180,8 +184,14 @@ class _Ground:
     size: float
     top: float
     held: Bools
+    idle: Bools
     dimension: int
     exact: bool
+
+    def away(self, u: Floats, at: Evaluation) -> Floats:
+        """Return the way from u to another point, but for idle variables."""
+        goal = (at.theta - self.problem.lower) / (self.problem.upper - self.problem.lower)
+        return np.where(self.idle, 0.0, goal - u)
 
     def slope(self, at: Evaluation) -> Floats:
         """Return g."""
@@ -289,6 +299,7 @@ def equally_good(
     limit: int = 100,
     evaluations: int | None = None,
     known: Sequence[Manifold] = (),
+    idle: Bools | None = None,
 ) -> list[Manifold]:
     """Return the manifolds through minima of a programme without constraints.
 
@@ -296,21 +307,27 @@ def equally_good(
     none. ``h`` is the distance of neighbouring models over the ranges of the parameters,
     ``limit`` the number of models of one manifold at most, and ``evaluations`` how many are made
     in all, ten times as many where nothing is said. One that is among the ``known`` manifolds, of
-    other programmes, is not followed again. Minima for which no evaluation is left are manifolds
-    of one model.
+    other programmes, is not followed again. Parameters that are ``idle`` (p,), without effect on
+    any objective, are left where they are. Minima for which no evaluation is left are manifolds of
+    one model.
     """
     meter = _Metered(problem, SPEND * limit if evaluations is None else evaluations)
-    span = problem.upper - problem.lower
+    still = np.zeros(problem.lower.size, dtype=bool) if idle is None else idle
+    span = np.where(still, np.inf, problem.upper - problem.lower)
     out: list[Manifold] = []
     plain: int | None = None
     for at in minima:
         before = meter.spent
-        own = [k for k, one in enumerate(out) if one.dimension and _distance(one, at, span) <= h]
+        own = [
+            k
+            for k, one in enumerate(out)
+            if _distance(one, at, span) <= (h if one.dimension else SAME_MINIMUM)
+        ]
         if own:
             out[own[0]] = replace(out[own[0]], minima=out[own[0]].minima + 1)
             continue
         try:
-            ground, first = _begin(meter, programme, at, plain)
+            ground, first = _begin(meter, programme, at, still, plain)
         except _SpentError:
             out.append(Manifold(0, [at], Extent.SPENT, meter.spent - before))
             continue
@@ -346,11 +363,10 @@ def _on_one_of(
 
     It has the same dimension, and all of its models are as good.
     """
-    span = ground.problem.upper - ground.problem.lower
     for k, one in enumerate(manifolds):
         if not one.dimension or one.dimension != ground.dimension:
             continue
-        away = [float(np.linalg.norm((first.at.theta - x.theta) / span)) for x in one.models]
+        away = [float(np.linalg.norm(ground.away(first.u, x))) for x in one.models]
         try:
             if all(map(ground.as_good, one.models)) and _reaches(
                 ground, first, one.models[int(np.argmin(away))], h
@@ -366,10 +382,15 @@ def _follow(ground: _Ground, first: _Chart, h: float, limit: int) -> Manifold:
     if ground.dimension == 0:
         return Manifold(0, [first.at], Extent.ISOLATED)
     if ground.dimension > COVERED:
-        charts, extent = _span(ground, first, limit)
+        charts, extent = _span(ground, [first], limit)
     else:
-        least = limit ** (-1 / 2) if ground.dimension == COVERED else 0.0
-        charts, extent = _cover(ground, first, max(h, least), limit)
+        surface = ground.dimension == COVERED
+        covering = max(limit // 2, 1) if surface else limit
+        charts, extent = _cover(
+            ground, first, max(h, covering ** (-1 / 2)) if surface else h, covering
+        )
+        if surface and extent is Extent.CUT:
+            charts, extent = _span(ground, charts, limit)
     if len(charts) == 1 and extent not in (Extent.CUT, Extent.SPENT):
         return Manifold(0, [first.at], Extent.ISOLATED)  # flat to second order, or held by bounds
     return Manifold(ground.dimension, [chart.at for chart in charts], extent)
@@ -405,10 +426,10 @@ def _cover(ground: _Ground, first: _Chart, h: float, limit: int) -> tuple[list[_
     return charts, Extent.SPENT if spent else Extent.CUT if cut else extent
 
 
-def _span(ground: _Ground, first: _Chart, limit: int) -> tuple[list[_Chart], Extent]:
-    """Return the points of a manifold at which parameters go the farthest, after its start."""
-    charts = [first]
-    for j in np.flatnonzero(np.abs(first.T).max(axis=1) > SAME_PLACE).tolist():
+def _span(ground: _Ground, known: list[_Chart], limit: int) -> tuple[list[_Chart], Extent]:
+    """Return known points of a manifold and, after them, those where parameters go the farthest."""
+    charts = list(known)
+    for j in np.flatnonzero(np.abs(charts[0].T).max(axis=1) > SAME_PLACE).tolist():
         for sign in (1.0, -1.0):
             if len(charts) >= limit:
                 return charts, Extent.CUT
@@ -430,7 +451,8 @@ def _farthest(ground: _Ground, chart: _Chart, j: int, sign: float) -> _Chart:
     for _ in range(WALK):
         step = _best_step(chart, aim, length)
         gain = float(aim @ step)
-        if gain < min(GAIN, length / 2):
+        to_bound = (1 - sign) / 2 + sign * chart.u[j] + gain >= 1 - SAME_PLACE
+        if gain <= SAME_PLACE or (gain < min(GAIN, length / 2) and not to_bound):
             break
         found = _land(ground, chart, chart.u + step)
         if found is not None and aim @ (found.u - chart.u) >= gain / 2:
@@ -465,9 +487,8 @@ def _land(ground: _Ground, chart: _Chart, u: Floats) -> _Chart | None:
 
 def _reaches(ground: _Ground, chart: _Chart, at: Evaluation, h: float) -> bool:
     """Return whether a walk along the manifold from a chart arrives next to a point on it."""
-    goal = (at.theta - ground.problem.lower) / (ground.problem.upper - ground.problem.lower)
     for _ in range(WALK):
-        away = goal - chart.u
+        away = ground.away(chart.u, at)
         distance = float(np.linalg.norm(away))
         if distance <= h:
             return True
@@ -476,7 +497,7 @@ def _reaches(ground: _Ground, chart: _Chart, at: Evaluation, h: float) -> bool:
         if size < AHEAD * distance:
             return False
         found = _land(ground, chart, np.clip(chart.u + step * min(1.0, FAR / size), 0, 1))
-        if found is None or np.linalg.norm(goal - found.u) >= distance:
+        if found is None or np.linalg.norm(ground.away(found.u, at)) >= distance:
             return False
         chart = found
     return False
@@ -489,22 +510,24 @@ class _Outcome(Enum):
 
 
 def _begin(
-    problem: Problem, programme: Scalarisation, at: Evaluation, plain: int | None = None
+    problem: Problem, programme: Scalarisation, at: Evaluation, idle: Bools, plain: int | None
 ) -> tuple[_Ground, _Chart]:
     """Return the ground of the manifold through a minimum, and the minimum as a chart.
 
-    Variables that the slope presses against a bound are held there. B is not looked at where B_0
-    has a null space of the dimension ``plain``, for which it was that of B at another minimum.
+    Variables that the slope presses against a bound are held there, and those that are ``idle``
+    where they are. B is not looked at where B_0 has a null space of the dimension ``plain``, for
+    which it was that of B at another minimum.
     """
     w = programme.gradient(at.J)
     size = float(np.abs(w) @ np.abs(at.J))
     u = (at.theta - problem.lower) / (problem.upper - problem.lower)
     none = np.zeros(u.size, dtype=bool)
-    ground = _Ground(problem, programme, programme.value(at.J), size, 0.0, none, 0, exact=False)
+    value = programme.value(at.J)
+    ground = _Ground(problem, programme, value, size, 0.0, none, idle, 0, exact=False)
     top = float(np.linalg.eigvalsh(ground.known(at))[-1])
     slope = ground.slope(at)
     pressed = np.abs(slope) > EQUAL * np.sqrt(top * size) + ARRIVED * top
-    held = pressed & np.where(slope > 0, u <= 0, u >= 1)
+    held = idle | (pressed & np.where(slope > 0, u <= 0, u >= 1))
     ground = replace(ground, top=top, held=held)
     still = ground.unchanging(at)
     B = None if still.shape[1] == plain else ground.whole(at)

@@ -156,8 +156,9 @@ def _undetermined(problem: UpdatingProblem, at: Evaluation, scale: Scale) -> lis
             )
             continue
         out += [
-            f"the data {degree} this combination of relative changes "
-            f"({one.share:.0e} of the best one): {in_words(one, names)}"
+            f"the data {degree} this combination of relative changes"
+            f"{f' ({one.share:.0e} of the best one)' if one.share > NONE else ''}: "
+            f"{in_words(one, names)}"
             for one in some
         ]
     return out + alike_in_words(gram(at, weights, scale), names, idle)

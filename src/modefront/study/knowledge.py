@@ -10,6 +10,8 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
+from modefront.identifiability.combinations import without_effect
+from modefront.identifiability.scale import scale_at
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.advance import default_points
 from modefront.solvers.checkpoint import Checkpoint
@@ -297,7 +299,13 @@ def _manifolds(
 ) -> list[Solution]:
     """Return equally good models as solutions, with what is known of their manifold."""
     out = []
-    found = equally_good(problem, programme, minima, h=how.step, limit=how.models, known=known)
+    p = problem.start.size
+    idle = np.ones(p, dtype=bool)
+    for at in minima:
+        idle &= np.isin(np.arange(p), without_effect(problem, at, scale_at(problem, at.theta)))
+    found = equally_good(
+        *(problem, programme, minima), h=how.step, limit=how.models, known=known, idle=idle
+    )
     for number, one in enumerate(found):
         kind = [number, one.dimension, list(Extent).index(one.extent), one.evaluations, one.minima]
         kind.append(-1 if one.twin is None else one.twin)

@@ -46,6 +46,9 @@ ALL = "all data"
 FEW = 10
 """Points that are named one by one in a sentence."""
 
+VARIED = 1e-3
+"""Change of a parameter along a manifold, over its range, from which it is named."""
+
 AT_BOUND = 1e-9
 """Distance from a bound, over the range, up to which a parameter is at it."""
 
@@ -290,7 +293,7 @@ def _far(problem: UpdatingProblem, theta: Floats) -> str:
     names, span = problem.model.parameters, problem.upper - problem.lower
     least, most = theta.min(axis=0), theta.max(axis=0)
     share = (most - least) / span
-    varied = np.flatnonzero(share > AT_BOUND)
+    varied = np.flatnonzero(share > VARIED)
     all_the_way = np.flatnonzero(share >= 1 - AT_BOUND)
     parts = []
     if all_the_way.size > PARTS:
