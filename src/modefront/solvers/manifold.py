@@ -427,41 +427,48 @@ def _cover(ground: _Ground, first: _Chart, h: float, limit: int) -> tuple[list[_
 
 
 def _span(ground: _Ground, known: list[_Chart], limit: int) -> tuple[list[_Chart], Extent]:
-    """Return known points of a manifold and, after them, those where parameters go the farthest."""
-    charts = list(known)
+    """Return known points of a manifold and, after them, those where parameters go the farthest.
+
+    As far as there may be more, they are points that were passed on the way.
+    """
+    charts, passed = list(known), list[_Chart]()
     for j in np.flatnonzero(np.abs(charts[0].T).max(axis=1) > SAME_PLACE).tolist():
         for sign in (1.0, -1.0):
             if len(charts) >= limit:
                 return charts, Extent.CUT
             start = max(charts, key=lambda one: sign * one.u[j])
-            try:
-                end = _farthest(ground, start, j, sign)
-            except _SpentError:
-                return charts, Extent.SPENT
-            if end is not start:
-                charts.append(end)
-    return charts, Extent.SPANNED
+            walk, spent = _walk(ground, start, j, sign)
+            charts += walk[-1:]
+            passed += walk[:-1]
+            if spent:
+                return [*charts, *passed][:limit], Extent.SPENT
+    return [*charts, *passed][:limit], Extent.SPANNED
 
 
-def _farthest(ground: _Ground, chart: _Chart, j: int, sign: float) -> _Chart:
-    """Return the point to which a walk leads that increases sign * u_j."""
+def _walk(ground: _Ground, chart: _Chart, j: int, sign: float) -> tuple[list[_Chart], bool]:
+    """Return the points after ``chart`` on a walk that increases sign * u_j as far as it can.
+
+    Also whether the evaluations were spent before.
+    """
     aim = np.zeros(chart.u.size)
     aim[j] = sign
-    length = FAR
-    for _ in range(WALK):
+    length, walk = FAR, list[_Chart]()
+    while len(walk) < WALK and length >= FAR / 2**HALVINGS:
         step = _best_step(chart, aim, length)
         gain = float(aim @ step)
         to_bound = (1 - sign) / 2 + sign * chart.u[j] + gain >= 1 - SAME_PLACE
         if gain <= SAME_PLACE or (gain < min(GAIN, length / 2) and not to_bound):
             break
-        found = _land(ground, chart, chart.u + step)
+        try:
+            found = _land(ground, chart, chart.u + step)
+        except _SpentError:
+            return walk, True
         if found is not None and aim @ (found.u - chart.u) >= gain / 2:
             chart = found
+            walk.append(found)
         else:
             length /= 2
-            if length < FAR / 2**HALVINGS:
-                break
-    return chart
+    return walk, False
 
 
 def _best_step(chart: _Chart, aim: Floats, length: float) -> Floats:
