@@ -49,13 +49,16 @@ from modefront.modes.factorisation import Factorisation, SingularMatrixError
 from modefront.residuals.problem import UpdatingProblem
 
 STEPS = 12
-"""Steps of the power iteration, after which an eigenvalue is known to a few per cent."""
+"""Steps of the power iteration, after which the greatest eigenvalue is known to a tenth."""
 
 WHOLE = 1e-6
 """What is left of a matrix, over all of it, where a combination of parameters scales it."""
 
 RANK = 1e-6
 """Singular value of the derivatives of K and M, over the greatest, below which they depend."""
+
+RIGID = 1e-3
+"""Frequency over the greatest one below which a measured mode is one of a rigid body."""
 
 SHIFT = 1e-3
 """Share of the least measured eigenvalue that is added to a K with rigid-body modes, times M."""
@@ -99,15 +102,17 @@ def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
     positive = problem.lower > 0
     if model is None:
         return Scale(theta, span, positive)
-    least = problem.data.mean_frequency.min(initial=np.inf, where=_measured(problem))
-    shift = SHIFT * (2 * np.pi * least) ** 2 if np.isfinite(least) else 0.0
-    per_K, per_M = _of_stiffness(model, theta, shift), _of_mass(model.mass, theta)
+    per_K, per_M = _of_stiffness(model, theta, _shift(problem)), _of_mass(model.mass, theta)
     unit = 1 / np.maximum(np.maximum(per_K, per_M), 1 / span)
     return Scale(theta, unit, positive, whole_scalings(model, theta, unit))
 
 
-def _measured(problem: UpdatingProblem) -> Bools:
-    return np.isfinite(problem.data.mean_frequency)
+def _shift(problem: UpdatingProblem) -> float:
+    """Return an eigenvalue far below those that are measured, but for rigid-body modes."""
+    f = problem.data.mean_frequency
+    f = f[np.isfinite(f)]
+    elastic = f[f > RIGID * f.max(initial=0.0)]
+    return SHIFT * (2 * np.pi * float(elastic.min())) ** 2 if elastic.size else 0.0
 
 
 def _matrices(model: Model) -> MatrixModel | None:
