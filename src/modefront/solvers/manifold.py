@@ -114,7 +114,10 @@ FAR = 0.25
 GAIN = 1e-2
 """Share of its range by which a parameter has to go on, lest it counts as at its end."""
 
-WALK = 12
+FAITHFUL = 0.8
+"""What a step gains over what it gains along the tangents, above which the next one is longer."""
+
+WALK = 16
 """Steps of a walk at most."""
 
 SPEND = 10
@@ -432,16 +435,20 @@ def _span(ground: _Ground, known: list[_Chart], limit: int) -> tuple[list[_Chart
     As far as there may be more, they are points that were passed on the way.
     """
     charts, passed = list(known), list[_Chart]()
-    for j in np.flatnonzero(np.abs(charts[0].T).max(axis=1) > SAME_PLACE).tolist():
-        for sign in (1.0, -1.0):
-            if len(charts) >= limit:
-                return charts, Extent.CUT
-            start = max(charts, key=lambda one: sign * one.u[j])
-            walk, spent = _walk(ground, start, j, sign)
-            charts += walk[-1:]
-            passed += walk[:-1]
-            if spent:
-                return [*charts, *passed][:limit], Extent.SPENT
+    ends: dict[tuple[int, float], _Chart] = {}
+    ways = [(j, sign) for j in np.flatnonzero(~ground.held).tolist() for sign in (1.0, -1.0)]
+    for j, sign in [*ways, *ways]:  # what other parameters led to may go on
+        if len(charts) >= limit:
+            return charts, Extent.CUT
+        start = max(charts, key=lambda one: sign * one.u[j])
+        if start is ends.get((j, sign)):
+            continue
+        walk, spent = _walk(ground, start, j, sign)
+        ends[j, sign] = [start, *walk][-1]
+        charts += walk[-1:]
+        passed += walk[:-1]
+        if spent:
+            return [*charts, *passed][:limit], Extent.SPENT
     return [*charts, *passed][:limit], Extent.SPANNED
 
 
@@ -453,7 +460,7 @@ def _walk(ground: _Ground, chart: _Chart, j: int, sign: float) -> tuple[list[_Ch
     aim = np.zeros(chart.u.size)
     aim[j] = sign
     length, walk = FAR, list[_Chart]()
-    while len(walk) < WALK and length >= FAR / 2**HALVINGS:
+    for _ in range(WALK):
         step = _best_step(chart, aim, length)
         gain = float(aim @ step)
         to_bound = (1 - sign) / 2 + sign * chart.u[j] + gain >= 1 - SAME_PLACE
@@ -463,11 +470,15 @@ def _walk(ground: _Ground, chart: _Chart, j: int, sign: float) -> tuple[list[_Ch
             found = _land(ground, chart, chart.u + step)
         except _SpentError:
             return walk, True
-        if found is not None and aim @ (found.u - chart.u) >= gain / 2:
+        share = 0.0 if found is None else float(aim @ (found.u - chart.u)) / gain
+        if found is not None and share >= AHEAD:
             chart = found
             walk.append(found)
-        else:
+            length = min(2 * length, FAR) if share > FAITHFUL else length
+        elif length > FAR / 2**HALVINGS:
             length /= 2
+        else:
+            break
     return walk, False
 
 
