@@ -319,8 +319,9 @@ def equally_good(
     span = np.where(still, np.inf, problem.upper - problem.lower)
     out: list[Manifold] = []
     plain: int | None = None
-    for at in minima:
-        before = meter.spent
+    waiting = list(minima)
+    while waiting:
+        at, before = waiting.pop(0), meter.spent
         own = [
             k
             for k, one in enumerate(out)
@@ -341,9 +342,12 @@ def equally_good(
             out[on] = replace(out[on], minima=out[on].minima + 1, evaluations=spent)
             continue
         twin = _on_one_of(ground, first, known, h)
+        others = waiting
+        if twin is None and ground.dimension > COVERED:  # a covered one comes next to its minima
+            waiting = [one for one in others if not _joined(ground, first, one, h)]
         found = _follow(ground, first, h, limit) if twin is None else known[twin]
-        spent = meter.spent - before
-        out.append(replace(found, evaluations=spent, minima=1, twin=twin))
+        count, spent = 1 + len(others) - len(waiting), meter.spent - before
+        out.append(replace(found, evaluations=spent, minima=count, twin=twin))
     return out
 
 
@@ -357,6 +361,14 @@ def follow(
 def _distance(manifold: Manifold, at: Evaluation, span: Floats) -> float:
     """Return the distance of the nearest model of a manifold, over the ranges."""
     return min(float(np.linalg.norm((at.theta - one.theta) / span)) for one in manifold.models)
+
+
+def _joined(ground: _Ground, first: _Chart, at: Evaluation, h: float) -> bool:
+    """Return whether a walk from a point of a manifold leads to another minimum."""
+    try:
+        return ground.as_good(at) and _reaches(ground, first, at, h)
+    except _SpentError:
+        return False
 
 
 def _on_one_of(
