@@ -4,11 +4,12 @@ from collections.abc import Callable, Sequence
 
 import numpy as np
 import pytest
+import scipy.optimize
 from problems import Derivatives, Known, box, many_minima
 
 from modefront._typing import Floats
 from modefront.solvers.explore import Descent, Search, explore
-from modefront.solvers.manifold import Extent, equally_good, follow
+from modefront.solvers.manifold import Extent, Manifold, equally_good, follow
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 
@@ -249,3 +250,161 @@ def test_a_curve_that_ends_where_the_model_does_is_lost() -> None:
     found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
     assert found.extent is Extent.LOST
     assert thetas(found.models)[:, 0].min() < 0.25
+
+
+def hyperplane(theta: Floats) -> Derivatives:
+    """Two residuals of six parameters: a manifold of dimension 4 that is flat."""
+    A = np.array([[1.0, 1, 1, 1, 1, 1], [1.0, -1, 0, 0, 0.5, 0]])
+    return squares(A @ theta - np.array([3.0, 0.25]), A)
+
+
+def bent(theta: Floats) -> Derivatives:
+    """A sphere in five dimensions."""
+    return squares(np.array([theta @ theta - 0.81]), 2 * theta[None])
+
+
+def extents_by_slsqp(
+    residuals: Callable[[Floats], Floats], start: Floats, lower: Floats, upper: Floats
+) -> Floats:
+    """How far each parameter goes where residuals vanish, (2, p), by another method."""
+    out = np.zeros((2, start.size))
+    for j in range(start.size):
+        for row, sign in enumerate((1.0, -1.0)):
+            found = scipy.optimize.minimize(
+                lambda x, j=j, sign=sign: sign * x[j],
+                start,
+                method="SLSQP",
+                bounds=list(zip(lower, upper, strict=True)),
+                constraints={"type": "eq", "fun": residuals},
+                options={"maxiter": 300, "ftol": 1e-12},
+            )
+            assert np.abs(residuals(found.x)).max() < 1e-6
+            out[row, j] = found.x[j]
+    return out
+
+
+@pytest.mark.parametrize(
+    ("function", "start", "lower", "upper", "dimension"),
+    [
+        (hyperplane, [0.6, 0.5, 0.4, 0.5, 0.3, 0.7], [0.0] * 6, [0.9, 1, 1, 0.8, 1, 1], 4),
+        (bent, [0.6, 0.4, -0.4, 0.2, -0.3], [-1.0, -0.2, -1, -1, -1], [1.0, 1, 1, 1, 0.5], 4),
+    ],
+)
+def test_of_many_dimensions_each_parameter_is_followed_as_far_as_it_goes(
+    function: Callable[[Floats], Derivatives],
+    start: list[float],
+    lower: list[float],
+    upper: list[float],
+    dimension: int,
+) -> None:
+    problem = of(function, lower, upper)
+    theta = np.array(start)
+    if function is hyperplane:
+        A = np.array([[1.0, 1, 1, 1, 1, 1], [1.0, -1, 0, 0, 0.5, 0]])
+        theta = theta + np.linalg.pinv(A) @ (np.array([3.0, 0.25]) - A @ theta)
+    found = follow(problem, ONE, problem.evaluate(theta), h=0.05, limit=100)
+    assert (found.dimension, found.extent) == (dimension, Extent.SPANNED)
+    there = thetas(found.models)
+    assert max(one.J[0] for one in found.models) < 1e-14
+
+    def residuals(x: Floats) -> Floats:
+        if function is hyperplane:
+            return A @ x - np.array([3.0, 0.25])
+        return np.array([x @ x - 0.81])
+
+    # An extremum on the sphere is flat: a walk ends where a step of H gains less than 1 %.
+    expected = extents_by_slsqp(residuals, theta, problem.lower, problem.upper)
+    reached = np.array([there.min(axis=0), there.max(axis=0)])
+    assert np.abs(reached - expected).max() < 0.02 * np.ptp([lower, upper])
+    assert (reached[0] >= expected[0] - 1e-6).all()
+    assert (reached[1] <= expected[1] + 1e-6).all()
+    assert problem.counts["eigenproblems"] == found.evaluations + 1 < 400
+
+
+def test_a_manifold_is_followed_once_from_wherever_its_minima_lie() -> None:
+    """Twenty minima of one manifold of dimension 4, all over it."""
+    problem = of(hyperplane, [0] * 6, [1] * 6)
+    A = np.array([[1.0, 1, 1, 1, 1, 1], [1.0, -1, 0, 0, 0.5, 0]])
+    rng = np.random.default_rng(0)
+    minima: list[Evaluation] = []
+    while len(minima) < 20:
+        theta = rng.uniform(size=6)
+        theta = theta + np.linalg.pinv(A) @ (np.array([3.0, 0.25]) - A @ theta)
+        if (theta >= 0).all() and (theta <= 1).all():
+            minima.append(problem.evaluate(theta))
+    before = problem.counts["eigenproblems"]
+    (found,) = equally_good(problem, ONE, minima)
+    assert (found.dimension, found.minima) == (4, 20)
+    assert found.evaluations == problem.counts["eigenproblems"] - before < 300
+
+
+def test_another_programme_shares_a_manifold_that_is_as_good_for_it() -> None:
+    """Two objectives, both of x + y only; a third one, of x alone, has another manifold."""
+
+    def three(theta: Floats) -> Derivatives:
+        parts = [np.array([1.0, 1, 0]), np.array([2.0, 2, 0]), np.array([1.0, 0, 0])]
+        r = [theta[0] + theta[1] - 1, 2 * (theta[0] + theta[1] - 1), theta[0] - 0.5]
+        J = np.square(r)
+        dJ = np.array([2 * a * d for a, d in zip(r, parts, strict=True)])
+        return J, dJ, np.array([2 * np.outer(d, d) for d in parts])
+
+    problem = box(three, [0, 0, 0], [1, 1, 1], 3)
+    at = problem.evaluate(np.array([0.4, 0.6, 0.5]))
+    idle = np.array([False, False, True])
+    known: list[Manifold] = []
+    for weights in np.eye(3)[:2]:
+        known += equally_good(problem, weighted(weights), [at], known=known, idle=idle)
+    assert [one.twin for one in known] == [None, 0]
+    assert known[1].models == known[0].models
+    assert known[1].evaluations < 10 < known[0].evaluations
+    assert thetas(known[0].models)[:, 2].tolist() == [0.5] * len(known[0].models)
+    other = problem.evaluate(np.array([0.5, 0.5, 0.5]))
+    (last,) = equally_good(problem, weighted(np.eye(3)[2]), [other], known=known, idle=idle)
+    assert last.twin is None
+
+
+def test_minima_that_differ_in_idle_parameters_are_one() -> None:
+    def valley(theta: Floats) -> Derivatives:
+        return squares(np.array([theta[0] - 0.5]), np.array([[1.0, 0]]))
+
+    problem = of(valley, [0, 0], [1, 1])
+    minima = [problem.evaluate(np.array([0.5, y])) for y in (0.1, 0.5, 0.9)]
+    (found,) = equally_good(problem, ONE, minima, idle=np.array([False, True]))
+    assert (found.extent, found.minima, len(found.models)) == (Extent.ISOLATED, 3, 1)
+
+
+def test_a_model_from_which_all_steps_leave_the_bounds_is_no_curve() -> None:
+    def line(theta: Floats) -> Derivatives:
+        return squares(np.array([theta.sum()]), np.ones((1, 2)))
+
+    problem = of(line, [0, 0], [1, 1])
+    found = follow(problem, ONE, problem.evaluate(np.zeros(2)), h=0.05, limit=50)
+    assert (found.dimension, found.extent, len(found.models)) == (0, Extent.ISOLATED, 1)
+
+
+def test_no_more_evaluations_than_allowed() -> None:
+    problem = of(hyperplane, [0] * 6, [1] * 6)
+    A = np.array([[1.0, 1, 1, 1, 1, 1], [1.0, -1, 0, 0, 0.5, 0]])
+    theta = np.linalg.pinv(A) @ np.array([3.0, 0.25])
+    start = problem.evaluate(theta)
+    before = problem.counts["eigenproblems"]
+    first, second = equally_good(
+        problem, ONE, [start, problem.evaluate(0.1 * theta)], evaluations=21
+    )
+    assert problem.counts["eigenproblems"] - before == 21 + 1
+    assert (first.extent, first.dimension) == (Extent.SPENT, 4)
+    assert len(first.models) > 2
+    assert (second.extent, len(second.models)) == (Extent.SPENT, 1)
+
+
+def test_a_surface_that_is_too_large_to_cover_is_spanned() -> None:
+    def plane(theta: Floats) -> Derivatives:
+        return squares(np.array([theta.sum() - 1.5]), np.ones((1, 3)))
+
+    problem = of(plane, [0, 0, 0], [1, 1, 1])
+    found = follow(problem, ONE, problem.evaluate(np.full(3, 0.5)), h=0.02, limit=20)
+    assert (found.dimension, found.extent) == (2, Extent.SPANNED)
+    theta = thetas(found.models)
+    assert len(theta) <= 20
+    assert theta.min(axis=0) == pytest.approx(np.zeros(3), abs=1e-8)
+    assert theta.max(axis=0) == pytest.approx(np.ones(3), abs=1e-8)

@@ -38,7 +38,8 @@ def init(directory: Path, example: str) -> None:
 
 @cli.command()
 @click.argument("study", type=click.Path(path_type=Path))
-def check(study: Path) -> None:
+@click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
+def check(study: Path, every: bool) -> None:
     """Say all that is wrong with STUDY, and prove its derivatives."""
     from modefront.cli.show import print_findings
     from modefront.study.check import check as check_study
@@ -46,7 +47,7 @@ def check(study: Path) -> None:
 
     loaded = load(study)
     findings = check_study(loaded)
-    print_findings(loaded, findings)
+    print_findings(loaded, findings, every=every)
     if not findings.sound:
         raise UnfinishedError("the derivatives differ from finite differences")
 
@@ -97,7 +98,8 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
 @click.option("--figures", is_flag=True, help="Draw predictions along the front, into DIRECTORY.")
-def show(directory: Path, form: str, figures: bool) -> None:
+@click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
+def show(directory: Path, form: str, figures: bool, every: bool) -> None:
     """Print the results in DIRECTORY."""
     from modefront.cli.show import as_json, print_results
     from modefront.study.results import read
@@ -112,7 +114,7 @@ def show(directory: Path, form: str, figures: bool) -> None:
     if form == "json":
         click.echo(as_json(data))
     else:
-        print_results(data)
+        print_results(data, every=every)
 
 
 @cli.command()

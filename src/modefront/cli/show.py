@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
@@ -25,8 +26,24 @@ def _print(screen: Console, text: str) -> None:
     screen.print(text, markup=False, soft_wrap=True)
 
 
-def print_findings(study: Study, findings: Findings) -> None:
-    """Print what a check found."""
+MOST = 10
+"""Findings that are printed, at most, unless all are asked for."""
+
+
+def digest(findings: Sequence[str], where: str, most: int | None = MOST) -> list[str]:
+    """Return the first of some findings, and how many more there are and where they are to be seen.
+
+    >>> digest(["a", "b", "c"], "see FILE", 2)
+    ['a', 'b', 'and 1 more finding: see FILE']
+    """
+    rest = 0 if most is None else len(findings) - most
+    if rest <= 0:
+        return list(findings)
+    return [*findings[:most], f"and {rest} more finding{'s' * (rest > 1)}: {where}"]
+
+
+def print_findings(study: Study, findings: Findings, *, every: bool = False) -> None:
+    """Print what a check found, with the ten first findings or ``every`` one."""
     screen = console()
     problem = study.problem
     _print(screen, f"{study.file}: {study.name}")
@@ -59,10 +76,10 @@ def print_findings(study: Study, findings: Findings) -> None:
         screen,
         f"derivatives {verdict} finite differences (relative {findings.derivative_error:.1e})",
     )
-    for line in findings.determined:
+    said = [*findings.determined[-1:], *(f"warning: {one}" for one in findings.warnings)]
+    said += findings.determined[:-1]
+    for line in digest(said, f"modefront check --all {study.file}", None if every else MOST):
         _print(screen, line)
-    for warning in findings.warnings:
-        _print(screen, f"warning: {warning}")
     if not findings.warnings:
         _print(screen, "no warnings")
 
@@ -81,13 +98,16 @@ def print_summary(data: xr.Dataset, folder: Path, counts: Counts) -> None:
             f"{data.attrs['model_evaluations']} eigenproblems in all, {cost:.1f} a point",
         )
         _print(screen, f"  {in_numbers(data)}")
-    for line in [*remarks(data), *cost_lines(counts)]:
+    for line in [*remarks(data, f"modefront show --all {folder}"), *cost_lines(counts)]:
         _print(screen, f"  {line}")
     _print(screen, f"next: modefront show {folder}")
 
 
-def remarks(data: xr.Dataset) -> list[str]:
-    """Return in words what is particular about the results."""
+def remarks(data: xr.Dataset, where: str | None = None) -> list[str]:
+    """Return in words what is particular about the results.
+
+    Where it is said ``where`` to see all findings, there are ten of them at most.
+    """
     out = []
     labels = data["label"].values.tolist()
     groups = data["group"].values.tolist()
@@ -145,7 +165,8 @@ def remarks(data: xr.Dataset) -> list[str]:
             f"{data.attrs['front_evaluations']} evaluations were spent, and its points do not "
             "count as converged"
         )
-    return [*out, *data["finding"].values.tolist()]
+    findings = data["finding"].values.tolist()
+    return [*out, *(findings if where is None else digest(findings, where))]
 
 
 def in_numbers(data: xr.Dataset) -> str:
@@ -205,8 +226,8 @@ def _at_bounds(data: xr.Dataset) -> str:
     )
 
 
-def print_results(data: xr.Dataset) -> None:
-    """Print all results as tables."""
+def print_results(data: xr.Dataset, *, every: bool = False) -> None:
+    """Print all results as tables, with the ten first findings or ``every`` one."""
     screen = console()
     names = [safe(name) for name in data["parameter"].values]
     groups = [safe(name) for name in data["group"].values]
@@ -270,7 +291,7 @@ def print_results(data: xr.Dataset) -> None:
         screen.print(predicted)
         for line in notes:
             _print(screen, line)
-    for line in remarks(data):
+    for line in remarks(data, None if every else "modefront show --all"):
         _print(screen, line)
     if front_points(data).size:
         _print(screen, in_numbers(data))

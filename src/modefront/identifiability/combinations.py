@@ -1,14 +1,18 @@
 r"""Which combinations of parameters the data determine.
 
-The Jacobian of the weighted residuals with respect to relative changes of the parameters,
+The Jacobian of the weighted residuals with respect to changes of the parameters in their units
+:math:`s` (`modefront.identifiability.scale`),
 
-.. math:: G = \big[\sqrt{w_i}\, \partial r_i / \partial \ln|\theta|\big]_i ,
+.. math:: G = \big[\sqrt{w_i}\, s_j\, \partial r_i / \partial \theta_j\big]_{ij} ,
 
 has singular values :math:`\sigma_k` and right singular vectors :math:`v_k`. A direction v with a
-small :math:`\sigma` hardly changes any residual: the data do not determine it. (Where a value is
-zero, changes are relative to the range.) What is known of the second derivatives is
-:math:`H_i = 2\, \partial r_i^T \partial r_i`; so G also follows from them, up to a rotation of its
-rows that changes neither :math:`\sigma` nor v, to half of the digits.
+small :math:`\sigma` hardly changes any residual: the data do not determine it. What is known of the
+second derivatives is :math:`H_i = 2\, \partial r_i^T \partial r_i`; so G also follows from them, up
+to a rotation of its rows that changes neither :math:`\sigma` nor v, to half of the digits.
+
+A change of the residuals by 1e-9 of the measured values, for a whole unit of a parameter, is the
+rounding of derivatives: what is below it is no change (`rounding`). A column of G below it belongs
+to a parameter without effect.
 """
 
 from __future__ import annotations
@@ -17,12 +21,19 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Bools, Floats
+from modefront.identifiability.scale import Scale, scale_at
 from modefront.residuals.problem import UpdatingProblem
-from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.problem import Evaluation
 
 WEAK = 1e-2
 """Singular value over the greatest one, below which a combination is weakly determined."""
+
+ROUNDING = 1e-9
+"""Change of residuals over the measured values, for a unit of a parameter, that is rounding."""
+
+ELSEWHERE = 2
+"""Models at which a group is tried that does not change at the nominal one."""
 
 NONE = 1e-7
 """Singular value over the greatest one, below which a combination is not determined at all."""
@@ -34,7 +45,7 @@ class Combination:
 
     Attributes
     ----------
-    direction : (parameters,) relative changes of the parameters, of length 1
+    direction : (parameters,) changes of the parameters in their units, of length 1
     sensitivity : change of the residuals for a unit change along it
     share : that over the greatest of all combinations, 0 to 1
     """
@@ -49,37 +60,87 @@ def combinations(
     theta: Floats,
     group: int | None = None,
     weights: Floats | None = None,
+    scale: Scale | None = None,
 ) -> list[Combination]:
     """Return orthogonal combinations of the parameters at ``theta``, best determined first.
 
     ``group`` counts from 0; None takes the residuals of all groups together, each times the root
-    of its weight (groups,), by default 1. Raises ModelError where the model has no modes there.
+    of its weight (groups,), by default 1. ``scale`` is that at ``theta``, if it is known. Raises
+    ModelError where the model has no modes there.
     """
     residuals = problem.residuals(theta)
-    roots = np.sqrt(np.ones(len(residuals)) if weights is None else weights)
-    chosen = range(len(residuals)) if group is None else [group]
+    w = np.ones(len(residuals)) if weights is None else weights
+    roots, chosen = np.sqrt(w), range(len(residuals)) if group is None else [group]
     G = np.concatenate([roots[i] * residuals[i].dr for i in chosen])
-    return decompose(G * relative_unit(problem, theta))
+    unit = (scale or scale_at(problem, theta)).unit
+    return decompose(G * unit, rounding(problem, group, w))
 
 
 def combinations_at(
-    problem: Problem, at: Evaluation, group: int | None = None, weights: Floats | None = None
+    problem: UpdatingProblem,
+    at: Evaluation,
+    group: int | None = None,
+    weights: Floats | None = None,
+    scale: Scale | None = None,
 ) -> list[Combination]:
     """Return the same from an evaluation with derivatives, without another one."""
     w = np.ones(len(at.J)) if weights is None else weights
-    H = at.H[group] if group is not None else np.tensordot(w, at.H, axes=1)
-    unit = relative_unit(problem, at.theta)
-    lam, V = np.linalg.eigh(H / 2 * np.outer(unit, unit))
-    return decompose(np.sqrt(np.maximum(lam, 0.0))[:, None] * V.T)
+    lam, V = np.linalg.eigh(gram(at, w, scale or scale_at(problem, at.theta), group))
+    return decompose(np.sqrt(np.maximum(lam, 0.0))[:, None] * V.T, rounding(problem, group, w))
 
 
-def relative_unit(problem: Problem, theta: Floats) -> Floats:
-    """Return what changes of the parameters are relative to, shape (parameters,)."""
-    return np.where(theta != 0, np.abs(theta), problem.upper - problem.lower)
+def gram(at: Evaluation, weights: Floats, scale: Scale, group: int | None = None) -> Floats:
+    """Return G^T G, shape (parameters, parameters), of one group alone or of all with weights."""
+    H = at.H[group] if group is not None else np.tensordot(weights, at.H, axes=1)
+    return np.asarray(H / 2 * np.outer(scale.unit, scale.unit))
 
 
-def decompose(G: Floats) -> list[Combination]:
+def rounding(problem: UpdatingProblem, group: int | None, weights: Floats) -> float:
+    """Return the length of a column of G below which it is rounding; see `combinations`."""
+    size = sizes(problem)
+    return ROUNDING * float(size[group] if group is not None else np.sqrt(weights @ size**2))
+
+
+def sizes(problem: UpdatingProblem) -> Floats:
+    """Return the length of the measured values of each group as they enter residuals, (groups,)."""
+    modes = len(problem.data.modes)
+    return problem.margins(np.full(modes, 2.0), np.ones(modes))
+
+
+def without_effect(problem: UpdatingProblem, at: Evaluation, scale: Scale) -> list[int]:
+    """Return the parameters with which no residual of any group changes, from 0."""
+    return np.flatnonzero(~_changed(problem, at, scale).any(axis=0)).tolist()
+
+
+def _changed(problem: UpdatingProblem, at: Evaluation, scale: Scale) -> Bools:
+    """Return which groups change with which parameters, by more than rounding, (groups, p)."""
+    length = np.sqrt(np.einsum("ijj->ij", at.H) / 2) * scale.unit
+    return np.asarray(length > ROUNDING * sizes(problem)[:, None])
+
+
+def unchanged_groups(problem: UpdatingProblem) -> list[int]:
+    """Return the groups that no parameter changes, from 0.
+
+    Where nothing changes at the nominal parameters, other ones within the bounds are looked at:
+    a derivative may vanish for symmetry.
+    """
+    at = problem.evaluate(problem.start)
+    if not at.feasible:
+        return []
+    still = ~_changed(problem, at, scale_at(problem, at.theta)).any(axis=1)
+    u = np.random.default_rng(0).uniform(size=(ELSEWHERE if still.any() else 0, at.theta.size))
+    for theta in problem.lower + u * (problem.upper - problem.lower):
+        other = problem.evaluate(theta)
+        if other.feasible:
+            moved = np.abs(np.sqrt(other.J) - np.sqrt(at.J)) > ROUNDING * sizes(problem)
+            still &= ~moved & ~_changed(problem, other, scale_at(problem, theta)).any(axis=1)
+    return np.flatnonzero(still).tolist()
+
+
+def decompose(G: Floats, least: float = 0.0) -> list[Combination]:
     """Return the combinations that a Jacobian (rows, parameters) determines, best first.
+
+    Singular values up to ``least`` are rounding.
 
     >>> [round(one.share, 3) for one in decompose(np.array([[3.0, 0.0], [0.0, 1.5]]))]
     [1.0, 0.5]
@@ -87,10 +148,10 @@ def decompose(G: Floats) -> list[Combination]:
     p = G.shape[1]
     padded = np.vstack([G, np.zeros((max(0, p - len(G)), p))])
     _, sigma, Vt = np.linalg.svd(padded, full_matrices=False)
-    top = sigma[0] if sigma[0] > 0 else 1.0
+    share = np.where(sigma > least, sigma, 0.0) / (sigma[0] if sigma[0] > 0 else 1.0)
     return [
-        Combination(v * np.sign(v[np.argmax(np.abs(v))]), float(s), float(s / top))
-        for s, v in zip(sigma, Vt, strict=True)
+        Combination(v * np.sign(v[np.argmax(np.abs(v))]), float(s), float(part))
+        for s, part, v in zip(sigma, share, Vt, strict=True)
     ]
 
 

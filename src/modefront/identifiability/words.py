@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
+from itertools import combinations as combinations_of
 
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.identifiability.collinearity import pairs
 from modefront.identifiability.combinations import NONE, WEAK, Combination
+from modefront.identifiability.scale import Scale
 from modefront.residuals.groups import Group
 
 SAME = 1e-3
@@ -15,6 +18,12 @@ SAME = 1e-3
 
 PARTS = 5
 """Parameters that a combination of many names, at most."""
+
+NAMED = 20
+"""Parameters that change alike, at most, that are named one by one."""
+
+TOGETHER = 3
+"""Parameters alike of which pairs are named, at most."""
 
 SHOWN = 3
 """Directions that are not determined, at most, that a sentence names one by one."""
@@ -42,24 +51,106 @@ def determined(combinations: Sequence[Combination]) -> tuple[int, int]:
 
 
 def summary(
-    subject: str, thing: str, combinations: Sequence[Combination], names: Sequence[str]
+    subject: str,
+    thing: str,
+    combinations: Sequence[Combination],
+    names: Sequence[str],
+    scale: Scale | None = None,
+    idle: Sequence[int] = (),
 ) -> str:
     """Return one sentence of what a group of data determines.
 
-    ``subject`` are the data in the plural, ``thing`` is what does not change.
+    ``subject`` are the data in the plural, ``thing`` is what does not change; ``idle`` are
+    parameters without effect on any data, which are left out. Without a ``scale``, changes are
+    relative to the parameters.
     """
     rank, weak = determined(combinations)
-    p = len(names)
+    p = len(names) - len(idle)
     text = f"{subject} determine {rank} of {p} combination{'s' * (p > 1)} of parameters"
+    text += " that have an effect" if idle else ""
     if weak:
         text += f", {weak} of them hardly (below {100 * WEAK:g} % of the best): "
         hardly = [one for one in combinations if NONE < one.share < WEAK]
         text += _listed([in_words(one, names) for one in hardly[::-1]])
-    if rank == p:
+    if rank >= p:
         return text
-    free = np.array([one.direction for one in combinations if one.share <= NONE]).T
-    said = _listed([direction_in_words(v, names) for v in sparse_basis(free).T])
+    said = _listed(free_in_words(combinations, names, scale, idle))
     return f"{text}; {said}: no {thing} changes"
+
+
+def free_in_words(
+    combinations: Sequence[Combination],
+    names: Sequence[str],
+    scale: Scale | None = None,
+    idle: Sequence[int] = (),
+) -> list[str]:
+    """Return the combinations that are not determined, each as text; see `summary`."""
+    scale = scale or _relative(len(names))
+    free = np.array([one.direction for one in combinations if one.share <= NONE]).T
+    free[list(idle)] = 0.0
+    lam, V = np.linalg.eigh(free.T @ free)
+    kept = free @ V[:, lam > 0.5]  # parameters without effect are directions of their own
+    if not kept.size:
+        return []
+    whole = [one.change / scale.unit for one in scale.scalings]
+    whole.append(scale.theta / scale.unit)
+    shares = np.array([one.share for one in combinations])
+    V = np.array([one.direction for one in combinations])
+
+    def holds(v: Floats) -> bool:
+        return bool(np.linalg.norm(shares * (V @ v)) <= 3 * NONE * np.linalg.norm(v))
+
+    return [direction_in_words(v, names, scale) for v in sparse_basis(kept, whole, holds).T]
+
+
+def _relative(p: int) -> Scale:
+    """Return the scale of changes that are relative to positive parameters."""
+    return Scale(np.ones(p), np.ones(p), np.ones(p, dtype=bool))
+
+
+def no_effect_in_words(idle: Sequence[int], names: Sequence[str]) -> list[str]:
+    """Return the sentence on parameters without effect, if there are any."""
+    if not idle:
+        return []
+    one = len(idle) == 1
+    named = enumeration([names[i] for i in idle]) if len(idle) <= NAMED else f"{len(idle)} of them"
+    return [
+        f"{named} {'has' if one else 'have'} no effect: no residual changes with "
+        f"{'it' if one else 'any of them'}; keep {'it' if one else 'them'} at the nominal value"
+        f"{'' if one else 's'}, or measure what {'it changes' if one else 'they change'}"
+    ]
+
+
+def alike_in_words(gram: Floats, names: Sequence[str], idle: Sequence[int] = ()) -> list[str]:
+    """Return sentences on parameters that act nearly alike, from G^T G; those ``idle`` are none.
+
+    Sets of more than `TOGETHER` parameters of which every two are alike are said at once.
+    """
+    alike = {(i, j): value for i, j, value in pairs(gram) if not {i, j} & set(idle)}
+    sets: list[list[int]] = []
+    for pair in alike:
+        if not any(set(pair) <= set(one) for one in sets):
+            sets.append(list(pair))
+            for k in range(len(names)):
+                if all((min(i, k), max(i, k)) in alike for i in sets[-1]):
+                    sets[-1].append(k)
+    out = []
+    for one in sets:
+        own = {pair: value for pair, value in alike.items() if set(pair) <= set(one)}
+        if len(one) > TOGETHER:
+            worst = min(own.values())
+            named = [names[i] for i in sorted(one)]
+            said = enumeration(named) if len(one) <= NAMED else f"{len(one)} parameters"
+            out.append(
+                f"{said} all act nearly alike on the residuals (collinearity index {worst:.2g} of "
+                "two of them at least)"
+            )
+            alike = {pair: value for pair, value in alike.items() if pair not in own}
+    return out + [
+        f"{names[i]} and {names[j]} act nearly alike on the residuals "
+        f"(collinearity index {value:.2g})"
+        for (i, j), value in alike.items()
+    ]
 
 
 def _listed(directions: Sequence[str]) -> str:
@@ -67,39 +158,60 @@ def _listed(directions: Sequence[str]) -> str:
     return "; ".join(directions[:SHOWN]) + more
 
 
-def direction_in_words(v: Floats, names: Sequence[str]) -> str:
-    """Return how parameters can be changed along a direction of relative changes.
+def direction_in_words(v: Floats, names: Sequence[str], scale: Scale | None = None) -> str:
+    """Return how parameters can be changed along a direction, in units of a scale.
 
     >>> direction_in_words(np.array([0.5, 0.5, 0.0]), ("k1", "k2", "m"))
     'k1 and k2 can be scaled together'
     >>> direction_in_words(np.array([1.0, 0.0, -0.25]), ("k1", "k2", "m"))
     'k1 and m can be changed by powers in the ratio 1 : -0.25'
     """
-    v = v / v[np.argmax(np.abs(v))]
+    scale = scale or _relative(len(names))
+    v = v / np.abs(v).max()
     members = np.flatnonzero(np.abs(v) > SAME).tolist()
-    if len(members) > PARTS:
-        return _of_many(v, members, names)
-    named = enumeration([names[i] for i in members])
     if len(members) == 1:
-        return f"{named} can be changed alone"
-    if (np.abs(v[members] - 1) <= SAME).all():
-        return f"{named} can be scaled together"
-    return f"{named} can be changed by powers in the ratio " + " : ".join(
-        f"{v[i]:.3g}" for i in members
-    )
+        return f"{names[members[0]]} can be changed alone"
+    amounts = (v * scale.unit)[members]
+    theta = scale.theta[members]
+    powers = amounts / np.where(theta == 0, np.inf, theta)
+    if _equal(powers):
+        return f"{_named(members, powers, names)} can be scaled together"
+    positive = bool(scale.positive[members].all())
+    kind, ratio = ("powers", powers) if positive else ("amounts", amounts)
+    ratio = ratio / ratio[np.argmax(np.abs(ratio))]
+    if kind == "amounts" and _equal(ratio):
+        how = "equal amounts"
+    elif len(members) > PARTS:
+        how = f"{kind} in a fixed ratio"
+    else:
+        how = f"{kind} in the ratio " + " : ".join(f"{x:.3g}" for x in ratio)
+    return f"{_named(members, ratio, names)} can be changed by {how}" + _meaning(v, scale)
 
 
-def _of_many(v: Floats, members: Sequence[int], names: Sequence[str]) -> str:
-    """Return the same of more parameters than are named."""
-    if (np.abs(v[members] - 1) <= SAME).all():
-        if len(members) == len(names):
-            return f"all {len(names)} parameters can be scaled together"
-        return f"{enumeration([names[i] for i in members])} can be scaled together"
-    most = sorted(np.argsort(-np.abs(v), kind="stable")[:PARTS].tolist())
-    return (
-        f"{len(members)} parameters, most of all {enumeration([names[i] for i in most])}, "
-        "can be changed by powers in a fixed ratio"
-    )
+def _equal(ratio: Floats) -> bool:
+    """Return whether all parts are the same, and not 0."""
+    return bool((ratio != 0).all() and np.ptp(ratio) <= SAME * np.abs(ratio).max())
+
+
+def _named(members: Sequence[int], ratio: Floats, names: Sequence[str]) -> str:
+    """Return the names of parameters that change in a ratio, or of those that change the most."""
+    if len(members) > PARTS and _equal(ratio) and len(members) == len(names):
+        return f"all {len(names)} parameters"
+    if len(members) <= PARTS or (_equal(ratio) and len(members) <= NAMED):
+        return enumeration([names[i] for i in members])
+    most = sorted(np.argsort(-np.abs(ratio), kind="stable")[:PARTS].tolist())
+    named = enumeration([names[members[i]] for i in most])
+    return f"{len(members)} parameters, {'among them' if _equal(ratio) else 'most of all'} {named},"
+
+
+def _meaning(v: Floats, scale: Scale) -> str:
+    """Return what a direction means to the structure, where it scales a matrix as a whole."""
+    for one in scale.scalings:
+        whole = one.change / scale.unit
+        along = v * (whole @ v) / (v @ v)
+        if np.linalg.norm(whole - along) <= SAME * np.linalg.norm(whole):
+            return f", which scales the {one.of} as a whole"
+    return ""
 
 
 def enumeration(names: Sequence[str]) -> str:
@@ -108,27 +220,54 @@ def enumeration(names: Sequence[str]) -> str:
     return f"{', '.join(first)} and {last}" if first else last
 
 
-def sparse_basis(N: Floats) -> Floats:
+def sparse_basis(
+    N: Floats,
+    whole: Sequence[Floats] | None = None,
+    holds: Callable[[Floats], bool] = lambda _: True,
+) -> Floats:
     """Return a basis of the span of the columns of N (p, d) that can be said simply.
 
-    First single parameters; then, if it is in the span, the scaling of all others together; the
-    rest has as many zeros as elimination makes.
+    First single parameters; then those of the directions ``whole`` (p,) that are in the span, by
+    default the scaling of all other parameters together; then pairs of parameters; the rest has
+    as many zeros as elimination makes. ``holds`` tells whether a simple direction is not
+    determined indeed.
     """
     p, d = N.shape
     Q = np.linalg.qr(N)[0]
-    alone = [j for j in range(p) if np.linalg.norm(Q[j]) > 1 - SAME**2 / 2]
+    outside = np.eye(p) - Q @ Q.T
+    alone = [j for j in range(p) if outside[j, j] <= SAME**2 and holds(np.eye(p)[j])]
     basis = [np.eye(p)[j] for j in alone]
-    others = np.setdiff1d(np.arange(p), alone)
-    ones = np.zeros(p)
-    ones[others] = 1.0
-    outside = ones - Q @ (Q.T @ ones)
-    if len(basis) < d and np.linalg.norm(outside) <= SAME * np.linalg.norm(ones):
-        basis.append(ones)
-    known = np.array(basis).reshape(-1, p).T
-    if known.size:
-        rest = Q - known @ np.linalg.lstsq(known, Q, rcond=None)[0]
-        Q = np.linalg.svd(rest, full_matrices=False)[0][:, : d - known.shape[1]]
-    return np.column_stack([known, _eliminate(Q.T).T])
+    for direction in [np.ones(p)] if whole is None else whole:
+        others = direction.copy()
+        others[alone] = 0.0
+        size = float(np.linalg.norm(others))
+        if size > 0 and np.linalg.norm(outside @ others) <= SAME * size and holds(others):
+            basis = _longer(basis, others / size)
+    for v in _pairs_within(outside, alone):
+        if len(basis) < d and holds(v):
+            basis = _longer(basis, v)
+    for row in sorted(_eliminate(Q.T), key=lambda row: int((np.abs(row) > SAME).sum())):
+        basis = _longer(basis, row / np.linalg.norm(row)) if len(basis) < d else basis
+    return np.array(basis).T
+
+
+def _longer(basis: list[Floats], v: Floats) -> list[Floats]:
+    """Return a basis with another direction of length 1, if that does not depend on it."""
+    longer = [*basis, v]
+    return longer if np.linalg.matrix_rank(np.array(longer), tol=SAME) == len(longer) else basis
+
+
+def _pairs_within(outside: Floats, alone: Sequence[int]) -> list[Floats]:
+    """Return the directions of two parameters that a projector (p, p) takes to nothing."""
+    p, out = len(outside), []
+    others = [j for j in range(p) if j not in alone]
+    for i, j in combinations_of(others, 2):
+        lam, V = np.linalg.eigh(outside[np.ix_([i, j], [i, j])])
+        if lam[0] <= SAME**2:
+            v = np.zeros(p)
+            v[[i, j]] = V[:, 0] * np.sign(V[np.argmax(np.abs(V[:, 0])), 0])
+            out.append(v)
+    return out
 
 
 def _eliminate(rows: Floats) -> Floats:

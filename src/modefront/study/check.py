@@ -2,23 +2,35 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.errors import ModelError
-from modefront.identifiability.collinearity import pairs
+from modefront.errors import Fault, InputError, ModelError
 from modefront.identifiability.combinations import (
     NONE,
     WEAK,
+    Combination,
     combinations,
+    gram,
     optimal_weights,
-    relative_unit,
+    unchanged_groups,
+    without_effect,
 )
-from modefront.identifiability.words import in_words, measured_thing, summary
+from modefront.identifiability.scale import Scale, scale_at
+from modefront.identifiability.words import (
+    SHOWN,
+    alike_in_words,
+    in_words,
+    measured_thing,
+    no_effect_in_words,
+    summary,
+)
 from modefront.models.reduced.model import ReducedModel
 from modefront.residuals.problem import UpdatingProblem
+from modefront.solvers.problem import Evaluation
 from modefront.study.file import Study
 
 AGREEMENT = 1e-5
@@ -52,10 +64,15 @@ class Findings:
 
 
 def check(study: Study) -> Findings:
-    """Compare derivatives with finite differences and look for what the data cannot determine."""
+    """Compare derivatives with finite differences and look for what the data cannot determine.
+
+    Raises InputError where no parameter changes a group.
+    """
     problem = study.problem
+    refuse_unchanged_groups(problem, str(study.file))
     at = problem.evaluate(problem.start)
-    warnings = _undetermined(problem, optimal_weights(problem.properties, at.J))
+    scale = scale_at(problem, problem.start)
+    warnings = _undetermined(problem, at, scale)
     for r, coincident in zip(problem.data.modes, at.quantities["coincident"], strict=True):
         if coincident:
             warnings.append(
@@ -76,40 +93,80 @@ def check(study: Study) -> Findings:
     return Findings(derivative_error(problem), determined(problem), tuple(warnings))
 
 
+def refuse_unchanged_groups(problem: UpdatingProblem, file: str) -> None:
+    """Raise InputError where no parameter changes a group: its minimum would be made of rounding.
+
+    A model that is not defined at the nominal parameters is not judged.
+    """
+    faults = [
+        Fault(
+            file,
+            f"[[group]] '{problem.objectives[i]}'",
+            "residuals that a parameter changes",
+            "none: no parameter changes them within its bounds, so there is nothing to update; "
+            "remove the group, or give it other members or the model other parameters"
+            + _single_sensors(problem, i),
+        )
+        for i in unchanged_groups(problem)
+    ]
+    if faults:
+        raise InputError(faults)
+
+
+def _single_sensors(problem: UpdatingProblem, i: int) -> str:
+    """Return what there is to say of a group whose shapes were measured at one sensor only."""
+    count = np.isfinite(problem.data.shape).sum(axis=2).max(axis=0)
+    alone = all(kind == "shape" and count[r] == 1 for kind, r, _ in problem.members[i])
+    return " (a shape that is measured at a single sensor fits any model)" if alone else ""
+
+
 def determined(problem: UpdatingProblem) -> tuple[str, ...]:
     """Return what each group, and all together, determine at the nominal parameters."""
     names, groups = problem.model.parameters, problem.groups
-    J = problem.evaluate(problem.start).J
-    out = [
-        summary(group.name, measured_thing([group]), combinations(problem, problem.start, i), names)
-        for i, group in enumerate(groups)
-    ]
+    at, scale = problem.evaluate(problem.start), scale_at(problem, problem.start)
+    idle = without_effect(problem, at, scale)
+    out = []
+    for i, group in enumerate(groups):
+        found = combinations(problem, problem.start, i, scale=scale)
+        out.append(summary(group.name, measured_thing([group]), found, names, scale, idle))
     if len(groups) > 1:
-        weights = optimal_weights(problem.properties, J)
-        found = combinations(problem, problem.start, weights=weights)
-        out.append(summary("all data together", measured_thing(groups), found, names))
+        weights = optimal_weights(problem.properties, at.J)
+        found = combinations(problem, problem.start, weights=weights, scale=scale)
+        thing = measured_thing(groups)
+        out.append(summary("all data together", thing, found, names, scale, idle))
     return tuple(out)
 
 
-def _undetermined(problem: UpdatingProblem, weights: Floats) -> list[str]:
-    """Warn of combinations that all data together do not determine, and of parameters alike."""
+def _undetermined(problem: UpdatingProblem, at: Evaluation, scale: Scale) -> list[str]:
+    """Warn of parameters without effect, of what all data leave open, and of parameters alike."""
     names = problem.model.parameters
-    out = []
-    for combination in combinations(problem, problem.start, weights=weights):
-        if combination.share < WEAK:
-            degree = "do not determine" if combination.share <= NONE else "hardly determine"
+    weights = optimal_weights(problem.properties, at.J)
+    idle = without_effect(problem, at, scale)
+    out = no_effect_in_words(idle, names)
+    found = combinations(problem, problem.start, weights=weights, scale=scale)
+    weak = [one for one in found if one.share < WEAK and not _is_of(idle, one)]
+    for degree, some in (
+        ("do not determine", [one for one in weak if one.share <= NONE]),
+        ("hardly determine", [one for one in weak if one.share > NONE]),
+    ):
+        if len(some) > SHOWN:
             out.append(
-                f"the data {degree} this combination of relative changes "
-                f"({combination.share:.0e} of the best one): {in_words(combination, names)}"
+                f"the data {degree} {len(some)} of {len(names) - len(idle)} combinations of "
+                "parameters: take fewer parameters, or measure more"
             )
-    H = np.tensordot(weights, problem.evaluate(problem.start).H, axes=1) / 2
-    unit = relative_unit(problem, problem.start)
-    for i, j, index in pairs(H * np.outer(unit, unit)):
-        out.append(
-            f"{names[i]} and {names[j]} act nearly alike on the residuals "
-            f"(collinearity index {index:.2g})"
-        )
-    return out
+            continue
+        out += [
+            f"the data {degree} this combination of relative changes"
+            f"{f' ({one.share:.0e} of the best one)' if one.share > NONE else ''}: "
+            f"{in_words(one, names)}"
+            for one in some
+        ]
+    return out + alike_in_words(gram(at, weights, scale), names, idle)
+
+
+def _is_of(idle: Sequence[int], one: Combination) -> bool:
+    """Return whether a combination is one of parameters without effect."""
+    return bool(np.linalg.norm(one.direction[list(idle)]) > np.sqrt(0.5))
 
 
 def derivative_error(problem: UpdatingProblem) -> float:

@@ -10,6 +10,8 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
+from modefront.identifiability.combinations import without_effect
+from modefront.identifiability.scale import scale_at
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.advance import default_points
 from modefront.solvers.checkpoint import Checkpoint
@@ -46,7 +48,8 @@ class Knowledge:
     points : labelled points of the identifiable part of the front and its ends
     identifiable : that part; None where nothing is flat
     tolerance : the share within which objectives count as the same in a flat part
-    manifolds : of equally good models, by group or method
+    manifolds : of equally good models, by group or method; ``twin`` of one is a position in what
+        `followed` returns
     source : where the uncertainty of the data is taken from; None where it is not known
     scatter : of the points by that uncertainty, by label
     slopes : derivatives of predicted quantities at points, by label and quantity
@@ -105,7 +108,8 @@ def learn(
     manifolds: list[tuple[str, Sequence[Manifold]]] = []
     if identifiability.models > 0:
         for i, (name, programme, minima) in enumerate(_equal_minima(problem, front, a, sizes)):
-            sample = partial(_manifolds, problem, programme, minima, identifiability)
+            before = [one for _, one in followed(manifolds)]
+            sample = partial(_manifolds, problem, programme, minima, identifiability, before)
             packed = checkpoint(f"manifold-{i + 1}-{name}", sample)
             manifolds.append((name, _unpack_manifolds(packed)))
 
@@ -278,30 +282,48 @@ def _unpack_local(packed: Solution, n: int) -> Local:
     return SecondOrder(at, at.H + packed.learned, slopes), own
 
 
+def followed(
+    manifolds: Sequence[tuple[str, Sequence[Manifold]]],
+) -> list[tuple[str, Manifold]]:
+    """Return the manifolds that are not the same as one before, with their group or method."""
+    return [(name, one) for name, some in manifolds for one in some if one.twin is None]
+
+
 def _manifolds(
     problem: UpdatingProblem,
     programme: Scalarisation,
     minima: Sequence[Evaluation],
     how: Identifiability,
+    known: Sequence[Manifold],
 ) -> list[Solution]:
-    """Return equally good models as solutions, with the number and kind of their manifold."""
+    """Return equally good models as solutions, with what is known of their manifold."""
     out = []
-    found = equally_good(problem, programme, minima, h=how.step, limit=how.models)
-    for number, manifold in enumerate(found):
-        kind = [number, manifold.dimension, list(Extent).index(manifold.extent)]
-        for at in manifold.models:
+    p = problem.start.size
+    idle = np.ones(p, dtype=bool)
+    for at in minima:
+        idle &= np.isin(np.arange(p), without_effect(problem, at, scale_at(problem, at.theta)))
+    found = equally_good(
+        *(problem, programme, minima), h=how.step, limit=how.models, known=known, idle=idle
+    )
+    for number, one in enumerate(found):
+        kind = [number, one.dimension, list(Extent).index(one.extent), one.evaluations, one.minima]
+        kind.append(-1 if one.twin is None else one.twin)
+        for at in one.models:
             kept = {**at.quantities, "manifold": np.array(kind, dtype=float)}
             out.append(begin(replace(at, quantities=kept)))
     return out
 
 
 def _unpack_manifolds(packed: Sequence[Solution]) -> list[Manifold]:
-    numbers = [int(one.at.quantities["manifold"][0]) for one in packed]
+    kinds = [one.at.quantities["manifold"].astype(int).tolist() for one in packed]
     out = []
-    for number in sorted(set(numbers)):
-        models = [one.at for one, i in zip(packed, numbers, strict=True) if i == number]
-        _, dimension, extent = models[0].quantities["manifold"].astype(int).tolist()
-        out.append(Manifold(dimension, models, list(Extent)[extent]))
+    for number in sorted({kind[0] for kind in kinds}):
+        own = [i for i, kind in enumerate(kinds) if kind[0] == number]
+        _, dimension, extent, evaluations, minima, twin = kinds[own[0]]
+        models = [packed[i].at for i in own]
+        known = None if twin < 0 else twin
+        kind = list(Extent)[extent]
+        out.append(Manifold(dimension, models, kind, evaluations, minima, known))
     return out
 
 

@@ -7,18 +7,28 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from modefront._typing import Bools, Floats
-from modefront.identifiability.collinearity import cosines, index, pairs
+from modefront.identifiability.collinearity import cosines, index
 from modefront.identifiability.combinations import (
     Combination,
     combinations_at,
+    gram,
     optimal_weights,
-    relative_unit,
+    without_effect,
 )
-from modefront.identifiability.words import enumeration, measured_thing, summary
+from modefront.identifiability.scale import scale_at
+from modefront.identifiability.words import (
+    PARTS,
+    alike_in_words,
+    determined,
+    enumeration,
+    measured_thing,
+    no_effect_in_words,
+    summary,
+)
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.manifold import Extent, Manifold
 from modefront.solvers.sqp import Solution
-from modefront.study.knowledge import PART, Knowledge
+from modefront.study.knowledge import PART, Knowledge, followed
 from modefront.study.run import OPTIMAL, Front
 from modefront.uncertainty.doubts import Doubt
 from modefront.uncertainty.prediction import linear
@@ -26,9 +36,18 @@ from modefront.uncertainty.prediction import linear
 Variables = dict[str, tuple[tuple[str, ...], object, str]]
 """Name: dimensions, values, meaning."""
 
+Finding = tuple[int, str]
+"""A sentence, and where it belongs among the others: the least is the most important."""
+
+IDLE, ALL_DATA, MANIFOLD, FLAT, OF_GROUP, SPENT, ALIKE, SCATTER, DOUBTFUL, DETERMINED = range(10)
+"""Parameters without effect, what all data leave open, ... what is determined in full."""
+
 ALL = "all data"
 FEW = 10
 """Points that are named one by one in a sentence."""
+
+VARIED = 1e-3
+"""Change of a parameter along a manifold, over its range, from which it is named."""
 
 AT_BOUND = 1e-9
 """Distance from a bound, over the range, up to which a parameter is at it."""
@@ -36,9 +55,11 @@ AT_BOUND = 1e-9
 
 def known_variables(problem: UpdatingProblem, front: Front, knowledge: Knowledge) -> Variables:
     """Return the variables; ``front`` holds all points, those of ``knowledge`` too."""
-    out, said = _identifiability(problem, front)
-    out |= _bounds(problem, front)
+    out: Variables = {}
+    said: list[Finding] = []
     for found, more in (
+        _identifiability(problem, front),
+        (_bounds(problem, front), []),
         _flat(problem, front, knowledge),
         _manifolds(problem, knowledge),
         _scatter(problem, front, knowledge),
@@ -47,39 +68,46 @@ def known_variables(problem: UpdatingProblem, front: Front, knowledge: Knowledge
     ):
         out |= found
         said += more
-    out["finding"] = (("finding",), np.array(said, dtype=str), "what is not determined, in words")
+    texts = [text for _, text in sorted(said, key=lambda one: one[0])]
+    meaning = "what is not determined, in words, the most important first"
+    out["finding"] = (("finding",), np.array(texts, dtype=str), meaning)
     return out
 
 
-def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables, list[str]]:
+def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables, list[Finding]]:
     """Return combinations at the optimally weighted model, else at each edge for its own group."""
     names, groups = problem.model.parameters, problem.groups
     labels = dict(front.points)
+    edges = [f"edge-{name}" for name in problem.objectives]
     places = [OPTIMAL] if OPTIMAL in labels else []
-    rows: list[tuple[str, str, Combination]] = []
-    said = []
-    for place in [*places, *(f"edge-{name}" for name in problem.objectives)]:
+    rows: list[tuple[str, str, Combination, Floats]] = []
+    said: list[Finding] = []
+    effects = np.zeros((len(names), len(names)))
+    for place in [*places, *edges]:
         at = labels[place].at
         weights = optimal_weights(problem.properties, at.J)
-        at_edge = place != OPTIMAL
+        scale = scale_at(problem, at.theta)
+        idle = without_effect(problem, at, scale)
+        main = place == (places or edges)[0]
+        if main:
+            said += [(IDLE, f"at {place}: {text}") for text in no_effect_in_words(idle, names)]
         for i in [*range(len(groups)), None] if len(groups) > 1 else [0]:
             of = ALL if i is None else groups[i].name
-            found = combinations_at(problem, at, i, weights)
-            rows += [(place, of, one) for one in found]
-            if not at_edge or (not places and (i is None or place == f"edge-{of}")):
+            found = combinations_at(problem, at, i, weights, scale)
+            rows += [(place, of, one, scale.unit) for one in found]
+            if place == OPTIMAL or (main and i is None) or (not places and place == f"edge-{of}"):
                 thing = measured_thing(groups if i is None else [groups[i]])
-                said.append(f"at {place}: {summary(of, thing, found, names)}")
-    place = (places or [f"edge-{problem.objectives[0]}"])[0]
-    at = labels[place].at
-    unit = relative_unit(problem, at.theta)
-    weights = optimal_weights(problem.properties, at.J)
-    gram = np.tensordot(weights, at.H, axes=1) / 2 * np.outer(unit, unit)
-    said += [
-        f"at {place}: {names[i]} and {names[j]} act nearly alike on the residuals "
-        f"(collinearity index {value:.2g})"
-        for i, j, value in pairs(gram)
-    ]
-    meaning = "combination of parameters: relative changes, length 1"
+                text = f"at {place}: {summary(of, thing, found, names, scale, idle)}"
+                full = determined(found) == (len(names) - len(idle), 0)
+                said.append((DETERMINED if full else ALL_DATA if i is None else OF_GROUP, text))
+        if main:
+            effects = gram(at, weights, scale)
+            effects[idle] = effects[:, idle] = 0.0
+            alike = alike_in_words(effects, names, idle)
+            said += [(ALIKE, f"at {place}: {text}") for text in alike]
+    place = (places or edges)[0]
+    active = [j for j in range(len(names)) if effects[j, j] > 0]
+    meaning = "combination of parameters: changes in units of combination_unit, length 1"
     return {
         "combination_at": (("combination",), [row[0] for row in rows], "point where it was found"),
         "combination_of": (("combination",), [row[1] for row in rows], "group, or all data"),
@@ -87,6 +115,12 @@ def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables,
             ("combination", "parameter"),
             np.array([row[2].direction for row in rows]),
             meaning,
+        ),
+        "combination_unit": (
+            ("combination", "parameter"),
+            np.array([row[3] for row in rows]),
+            "change of each parameter by which some stiffness or mass is lost to first order, or "
+            "its range, if that is less",
         ),
         "combination_sensitivity": (
             ("combination",),
@@ -96,17 +130,19 @@ def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables,
         "combination_share": (
             ("combination",),
             [row[2].share for row in rows],
-            "that over the greatest one of the same data",
+            "that over the greatest one of the same data; 0 where it is rounding",
         ),
         "collinearity": (
             ("parameter", "parameter_other"),
-            cosines(gram),
-            f"cosines between the effects of parameters on all weighted residuals at {place}",
+            cosines(effects),
+            f"cosines between the effects of parameters on all weighted residuals at {place}; "
+            "0 for parameters without effect",
         ),
         "collinearity_index": (
             (),
-            index(gram),
-            "1 / root of the least eigenvalue of these; infinite where some effects depend",
+            index(effects, active) if active else np.nan,
+            "1 / root of the least eigenvalue of these; infinite where some effects depend; of "
+            "the parameters that have an effect",
         ),
     }, said
 
@@ -122,7 +158,7 @@ def _bounds(problem: UpdatingProblem, front: Front) -> Variables:
 
 def _flat(
     problem: UpdatingProblem, front: Front, knowledge: Knowledge
-) -> tuple[Variables, list[str]]:
+) -> tuple[Variables, list[Finding]]:
     part = [
         "whole" if label.startswith("nbi-") else "identifiable" if label.startswith(PART) else ""
         for label, _ in front.points
@@ -149,10 +185,10 @@ def _flat(
             "whole: the front between the edges; identifiable: the front without flat parts",
         ),
         "flat": (("group",), flat, "points in the flat part at the edge of the group, besides it"),
-    }, said
+    }, [(FLAT, text) for text in said]
 
 
-def _manifolds(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variables, list[str]]:
+def _manifolds(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variables, list[Finding]]:
     names = problem.model.parameters
     rows = [
         (of, number, manifold, at)
@@ -160,12 +196,7 @@ def _manifolds(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variable
         for number, manifold in enumerate(manifolds, start=1)
         for at in manifold.models
     ]
-    said = []
-    for of, manifolds in knowledge.manifolds:
-        isolated = sum(one.extent is Extent.ISOLATED for one in manifolds)
-        if isolated > 1:
-            said.append(f"{isolated} separate models fit {of} equally well")
-        said += [_extent(of, one, names) for one in manifolds if one.extent != Extent.ISOLATED]
+    said = _separate(knowledge) + _connected(problem, knowledge)
     p, n = len(names), len(problem.objectives)
     return {
         "equal_of": (
@@ -202,29 +233,89 @@ def _manifolds(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variable
     }, said
 
 
-def _extent(of: str, manifold: Manifold, names: Sequence[str]) -> str:
-    theta = np.array([one.theta for one in manifold.models])
-    kinds = {1: "a curve", 2: "a surface"}
-    kind = kinds.get(manifold.dimension, f"a manifold of dimension {manifold.dimension}")
-    varied = [
-        f"{name} from {least:.3g} to {most:.3g}"
-        for name, least, most in zip(names, theta.min(axis=0), theta.max(axis=0), strict=True)
-        if most - least > AT_BOUND * max(abs(most), abs(least))
-    ]
+def _separate(knowledge: Knowledge) -> list[Finding]:
+    """Return what there is to say of isolated models that are equally good."""
+    said: list[Finding] = []
+    for of, manifolds in knowledge.manifolds:
+        isolated = sum(one.extent is Extent.ISOLATED for one in manifolds)
+        if isolated > 1:
+            said.append((MANIFOLD, f"{isolated} separate models fit {of} equally well"))
+        left = sum(one.extent is Extent.SPENT and len(one.models) == 1 for one in manifolds)
+        if left:
+            spent = sum(one.evaluations for one in manifolds)
+            said.append(
+                (
+                    SPENT,
+                    f"{left} more model{'s fit' if left > 1 else ' fits'} {of} equally well: what "
+                    f"is connected to {'them' if left > 1 else 'it'} is not known, as the "
+                    f"{spent} eigenproblems that [identifiability] models allows were spent before",
+                )
+            )
+    return said
+
+
+def _connected(problem: UpdatingProblem, knowledge: Knowledge) -> list[Finding]:
+    """Return what there is to say of manifolds, those of one group and dimension at once."""
+    known = followed(knowledge.manifolds)
+    shared: dict[int, list[str]] = {k: [of] for k, (of, _) in enumerate(known)}
+    for of, manifolds in knowledge.manifolds:
+        for one in manifolds:
+            if one.twin is not None and of not in shared[one.twin]:
+                shared[one.twin].append(of)
+    alike: dict[tuple[str, int], list[Manifold]] = {}
+    for k, (_, one) in enumerate(known):
+        if len(one.models) > 1:
+            alike.setdefault((enumeration(shared[k]), one.dimension), []).append(one)
+    return [(MANIFOLD, _extent(problem, of, some)) for (of, _), some in alike.items()]
+
+
+KINDS = {1: "curve", 2: "surface"}
+
+
+def _extent(problem: UpdatingProblem, of: str, manifolds: Sequence[Manifold]) -> str:
+    """Return how far manifolds of one dimension go, of several the greatest."""
+    one = max(manifolds, key=lambda one: len(one.models))
+    kind = KINDS.get(one.dimension, "manifold")
+    spent = f"{one.evaluations} eigenproblem{'s' * (one.evaluations != 1)}"
+    found = f"{len(one.models)} of them, by {spent}, {one.extent.value}"
+    more = "" if one.dimension in KINDS else f" of dimension {one.dimension}"
+    far = _far(problem, np.array([at.theta for at in one.models]))
+    if len(manifolds) == 1:
+        return f"a {kind}{more} of models fits {of} equally well ({found}): {far}"
     return (
-        f"{kind} of models fits {of} equally well ({len(theta)} of them, "
-        f"{manifold.extent.value}): {', '.join(varied)}"
+        f"{len(manifolds)} separate {kind}s{more} of models fit {of} equally well; "
+        f"on the greatest ({found}): {far}"
     )
+
+
+def _far(problem: UpdatingProblem, theta: Floats) -> str:
+    """Return how far parameters go among models (models, p), those that go the farthest first."""
+    names, span = problem.model.parameters, problem.upper - problem.lower
+    least, most = theta.min(axis=0), theta.max(axis=0)
+    share = (most - least) / span
+    varied = np.flatnonzero(share > VARIED)
+    all_the_way = np.flatnonzero(share >= 1 - AT_BOUND)
+    parts = []
+    if all_the_way.size > PARTS:
+        count = f"all {len(names)}" if all_the_way.size == len(names) else str(all_the_way.size)
+        parts.append(f"{count} parameters from bound to bound")
+        varied = np.setdiff1d(varied, all_the_way)
+    named = varied if varied.size <= PARTS else varied[np.argsort(-share[varied], kind="stable")]
+    parts += [f"{names[j]} from {least[j]:.3g} to {most[j]:.3g}" for j in named[:PARTS].tolist()]
+    if varied.size > PARTS:
+        parts.append(f"and {varied.size - PARTS} more (equal_theta)")
+    return ", ".join(parts)
 
 
 def _scatter(
     problem: UpdatingProblem, front: Front, knowledge: Knowledge
-) -> tuple[Variables, list[str]]:
+) -> tuple[Variables, list[Finding]]:
     if knowledge.source is None:
         data = problem.data
         given = np.isfinite(data.frequency_std).any() or np.isfinite(data.shape_std).any()
         used = (data.frequency_std > 0).any() or (data.shape_std > 0).any()
-        return {}, ["no standard deviation is above 0: none is used"] if given and not used else []
+        unused = (SCATTER, "no standard deviation is above 0: none is used")
+        return {}, [unused] if given and not used else []
     labels = [label for label, _ in front.points]
     m, n, p = len(labels), len(problem.objectives), len(problem.model.parameters)
     r = len(problem.data.modes)
@@ -243,21 +334,21 @@ def _scatter(
                 values[i] = np.sqrt(np.diag(linear(found.covariance, slopes[name])))
     why = {"std": "their standard deviations", "sets": "the scatter of the data sets"}
     by = f"by errors of the data, from {why[knowledge.source]}"
-    said = [f"uncertainty of the data is taken from {why[knowledge.source]}"]
+    said = [(SCATTER, f"uncertainty of the data is taken from {why[knowledge.source]}")]
     unknown = _without_std(problem) if knowledge.source == "std" else 0
     if unknown:
-        said.append(
-            f"{unknown} measured values have no standard deviation above 0: they count as exact"
-        )
+        text = f"{unknown} measured values have no standard deviation above 0: they count as exact"
+        said.append((SCATTER, text))
     missing = [label for label in labels if label not in knowledge.scatter]
     if missing:
-        said.append(f"no scatter is known at {', '.join(missing)}")
+        said.append((DOUBTFUL, f"no scatter is known at {_places(missing, m)}"))
     known = [(label, knowledge.scatter[label]) for label in labels if label in knowledge.scatter]
     for doubt in Doubt:
         there = [label for label, one in known if doubt in one.doubts]
         if there:
-            where = ", ".join(there) if len(there) <= FEW else f"{len(there)} of {m} points"
-            said.append(f"the linearised scatter is doubtful at {where}: {doubt.value}")
+            where = _places(there, m)
+            text = f"the linearised scatter is doubtful at {where}: {doubt.value}"
+            said.append((DOUBTFUL, text))
     doubts = {label: ", ".join(doubt.name.lower() for doubt in one.doubts) for label, one in known}
     return {
         "theta_std": (
@@ -295,6 +386,11 @@ def _scatter(
     }, said
 
 
+def _places(labels: Sequence[str], points: int) -> str:
+    """Return the labels of points, or how many of them there are."""
+    return ", ".join(labels) if len(labels) <= FEW else f"{len(labels)} of {points} points"
+
+
 def _without_std(problem: UpdatingProblem) -> int:
     data = problem.data
     return int(
@@ -314,7 +410,7 @@ def left_open(free: Floats) -> Bools:
     return out
 
 
-def _posterior(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variables, list[str]]:
+def _posterior(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variables, list[Finding]]:
     found = knowledge.posterior
     if found is None:
         return {}, []
@@ -346,12 +442,12 @@ def _posterior(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variable
             np.sqrt(np.diag(linear(found.covariance, slopes["mac"]))),
             "standard deviation of the MAC likewise",
         ),
-    }, said
+    }, [(SCATTER, text) for text in said]
 
 
 def _replicates(
     problem: UpdatingProblem, front: Front, knowledge: Knowledge
-) -> tuple[Variables, list[str]]:
+) -> tuple[Variables, list[Finding]]:
     if not knowledge.replicates:
         return {}, []
     p, n = len(problem.model.parameters), len(problem.objectives)
@@ -376,7 +472,7 @@ def _replicates(
             _spread(J),
             "standard deviation of J over the data drawn again",
         ),
-    }, said
+    }, [(SCATTER, text) for text in said]
 
 
 def _stacked(

@@ -19,6 +19,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.asking import Asking
 from modefront.study.certified import certificate_attributes, certified_front, certified_points
+from modefront.study.check import refuse_unchanged_groups
 from modefront.study.file import Study
 from modefront.study.knowledge import learn
 from modefront.study.quality import indicators
@@ -61,7 +62,7 @@ def solve(
     The arguments are those of the study file, and ``refined``, for two groups, the distance of
     neighbours on the front above which there are to be more points between them, in units of the
     ranges of the objectives; ``predictions`` are made with every model. Raises UnfinishedError
-    where no minimum of a group can be found.
+    where no minimum of a group can be found, InputError where no parameter changes a group.
     """
     session = _Session(
         problem,
@@ -89,7 +90,8 @@ def run(
 
     Pieces of work that an earlier run of the same inputs has left there are not done again;
     ``fresh`` sets them aside; ``refined`` is that of `solve`. Raises InputError where the folder
-    cannot be written to and UnfinishedError where the work cannot be done.
+    cannot be written to or no parameter changes a group, and UnfinishedError where the work cannot
+    be done.
     """
     from modefront.study.predictions import pieces_of
     from modefront.study.results import FILE, write
@@ -160,9 +162,11 @@ class _Session:
     def results(self) -> xr.Dataset:
         """Do the work and return all that it finds.
 
+        Raises InputError where no parameter changes a group.
         Dense problems of a hundred unknowns are slower on several threads of the BLAS than on one.
         """
         with threadpool_limits(1, user_api="blas"):
+            refuse_unchanged_groups(self.problem, str(self.file))
             return self._results()
 
     def _results(self) -> xr.Dataset:

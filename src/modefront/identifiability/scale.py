@@ -1,0 +1,257 @@
+r"""The scale in which changes of parameters are large or small.
+
+Changes over :math:`|\theta|` say nothing where a parameter is a difference from a nominal value,
+:math:`K = K_0 + \sum_j \alpha_j K_j` with :math:`\alpha` around 0. What a change does to the
+matrices does not depend on how they are parametrised. The unit :math:`s_j` of a parameter is the
+change by which, to first order,
+
+* some motion loses all of its stiffness: the greatest eigenvalue of
+  :math:`s_j\, \partial K/\partial\theta_j` with respect to :math:`K` has modulus 1; or
+* some degree of freedom loses all of its mass: the greatest relative change of an entry on the
+  diagonal of M is 1; or
+* the whole range between its bounds is gone through,
+
+whichever is the least. In a chain of springs :math:`k_i = \theta_i k_{0i}` it is
+:math:`s_i = \theta_i`, with :math:`k_i = (1 + \alpha_i) k_{0i}` it is
+:math:`s_i = 1 + \alpha_i`, and in N/m it is :math:`k_i`. Where a member is not the only one
+that carries a motion, as in most frames, the bounds say how much it may change. Of models without
+matrices, only the range is known.
+
+A combination of parameters that scales all of K or all of M is looked for in the same matrices:
+:math:`\sum_j y_j\, \partial K / \partial \theta_j = K` at
+:math:`\sum_j y_j\, \partial M / \partial \theta_j = 0`, and so on. Mode shapes do not change along
+it, and it deserves its name.
+
+========  ==========  ====================================================
+symbol    shape       meaning
+========  ==========  ====================================================
+s         (p,)        units
+dK, dM    (p, N, N)   derivatives of the matrices with respect to theta
+y         (p,)        change of theta that scales a matrix as a whole
+========  ==========  ====================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+import scipy.sparse
+
+from modefront._typing import Bools, Floats
+from modefront.models.affine import DenseAffine, SparseAffine
+from modefront.models.base import Model
+from modefront.models.matrices import MatrixModel
+from modefront.models.reduced.model import ReducedModel
+from modefront.modes.factorisation import Factorisation, SingularMatrixError
+from modefront.residuals.problem import UpdatingProblem
+
+STEPS = 12
+"""Steps of the power iteration, after which the greatest eigenvalue is known to a tenth."""
+
+WHOLE = 1e-6
+"""What is left of a matrix, over all of it, where a combination of parameters scales it."""
+
+RANK = 1e-6
+"""Singular value of the derivatives of K and M, over the greatest, below which they depend."""
+
+RIGID = 1e-3
+"""Frequency over the greatest one below which a measured mode is one of a rigid body."""
+
+SHIFT = 1e-3
+"""Share of the least measured eigenvalue that is added to a K with rigid-body modes, times M."""
+
+
+@dataclass(frozen=True)
+class Scaling:
+    """A change of the parameters that scales matrices as a whole.
+
+    Attributes
+    ----------
+    of : "stiffness matrix", "mass matrix", or both
+    change : (p,) change of theta for a factor of e, to first order
+    """
+
+    of: str
+    change: Floats
+
+
+@dataclass(frozen=True)
+class Scale:
+    """What changes of the parameters are compared with at one model.
+
+    Attributes
+    ----------
+    theta : (p,) parameters there
+    unit : (p,) s
+    positive : (p,) which parameters are above 0 in all of their range
+    scalings : changes that scale matrices as a whole
+    """
+
+    theta: Floats
+    unit: Floats
+    positive: Bools
+    scalings: Sequence[Scaling] = ()
+
+
+def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
+    """Return the scale of a problem at ``theta``, shape (parameters,)."""
+    span, model = problem.upper - problem.lower, _matrices(problem.model)
+    positive = problem.lower > 0
+    if model is None:
+        return Scale(theta, span, positive)
+    per_K, per_M = _of_stiffness(model, theta, _shift(problem)), _of_mass(model.mass, theta)
+    unit = 1 / np.maximum(np.maximum(per_K, per_M), 1 / span)
+    return Scale(theta, unit, positive, whole_scalings(model, theta, unit))
+
+
+def _shift(problem: UpdatingProblem) -> float:
+    """Return an eigenvalue far below those that are measured, but for rigid-body modes."""
+    f = problem.data.mean_frequency
+    f = f[np.isfinite(f)]
+    elastic = f[f > RIGID * f.max(initial=0.0)]
+    return SHIFT * (2 * np.pi * float(elastic.min())) ** 2 if elastic.size else 0.0
+
+
+def _matrices(model: Model) -> MatrixModel | None:
+    """Return the matrices of a model, in full; None where it has none."""
+    full = model.full if isinstance(model, ReducedModel) else model
+    return full if isinstance(full, MatrixModel) else None
+
+
+def _of_stiffness(model: MatrixModel, theta: Floats, shift: float) -> Floats:
+    """Return the greatest |eigenvalue| of dK_j with respect to K, (p,); 0 where K is indefinite.
+
+    Where the structure can move as a rigid body, K + shift M takes the place of K.
+    """
+    if isinstance(model.stiffness, DenseAffine):
+        return _dense(model.stiffness, model.mass, theta, shift)
+    return _sparse(model, model.stiffness, theta, shift)
+
+
+def _dense(
+    stiffness: DenseAffine, mass: DenseAffine | SparseAffine, theta: Floats, shift: float
+) -> Floats:
+    K = stiffness.at(theta)
+    d = 1 / np.sqrt(np.maximum(np.diag(K), np.finfo(float).tiny))
+    lam = scipy.linalg.eigvalsh(K * np.outer(d, d), check_finite=False)
+    if lam[0] <= 1e-13 * lam.size * lam[-1]:
+        K = K + shift * _dense_at(mass, theta)
+    try:
+        L = scipy.linalg.cholesky(K, lower=True, check_finite=False)
+    except np.linalg.LinAlgError:
+        return np.zeros(theta.size)
+    dc = stiffness.coefficients.jacobian(theta)
+    out = np.zeros(theta.size)
+    for j, column in enumerate(dc.T):
+        dK = np.tensordot(column, stiffness.terms, axes=1)
+        half = scipy.linalg.solve_triangular(L, dK, lower=True, check_finite=False)
+        whole = scipy.linalg.solve_triangular(L, half.T, lower=True, check_finite=False)
+        out[j] = np.abs(np.linalg.eigvalsh((whole + whole.T) / 2)).max(initial=0.0)
+    return out
+
+
+def _dense_at(matrix: DenseAffine | SparseAffine, theta: Floats) -> Floats:
+    if isinstance(matrix, DenseAffine):
+        return matrix.at(theta)
+    return np.asarray(matrix.at(theta).toarray())
+
+
+def _sparse(model: MatrixModel, stiffness: SparseAffine, theta: Floats, shift: float) -> Floats:
+    """Return the same by power iteration in the norm of K, from one motion for all parameters."""
+    factor = _definite(model, theta, shift)
+    if factor is None:
+        return np.zeros(theta.size)
+    start = np.random.default_rng(0).standard_normal((stiffness.size, 1))
+    forces = stiffness.derivatives_times(theta, start)[:, 0]
+    out = np.zeros(theta.size)
+    for j, force in enumerate(forces.T):
+        x, f = np.zeros(force.shape), force
+        for _ in range(STEPS if force.any() else 0):
+            x = factor.solve(f[:, None])[:, 0]
+            energy = float(x @ f)  # of x in the norm of K, squared
+            if energy <= 0:
+                break
+            x = x / np.sqrt(energy)
+            f = stiffness.derivatives_times(theta, x[:, None])[:, 0, j]
+            out[j] = np.sqrt(max(float(f @ factor.solve(f[:, None])[:, 0]), 0.0))
+    return out
+
+
+def _definite(model: MatrixModel, theta: Floats, shift: float) -> Factorisation | None:
+    """Return the factor of K, or of K + shift M where K is singular; None if it is indefinite."""
+    K, M = model.pencil.K.at(theta).data, model.pencil.M.at(theta).data
+    sigma = -shift if model.floating and model.is_singular(theta) else 0.0
+    try:
+        factor = model.pencil.factor(K, M, sigma)
+    except SingularMatrixError:
+        return None
+    return factor if factor.negative == 0 else None
+
+
+def _of_mass(mass: DenseAffine | SparseAffine, theta: Floats) -> Floats:
+    """Return the greatest relative change of an entry on the diagonal of M, (p,)."""
+    diagonals = _diagonals(mass)  # (N, terms)
+    M = diagonals @ mass.coefficients.values(theta)
+    dM = np.abs(diagonals @ mass.coefficients.jacobian(theta))
+    there = np.abs(M) > 0
+    return np.asarray((dM[there] / np.abs(M[there])[:, None]).max(axis=0, initial=0.0))
+
+
+def _diagonals(matrix: DenseAffine | SparseAffine) -> Floats:
+    """Return the diagonal of each term as a column, (N, terms)."""
+    if isinstance(matrix, DenseAffine):
+        return np.asarray(np.einsum("tii->it", matrix.terms))
+    row = np.repeat(np.arange(matrix.size), np.diff(matrix.indptr))
+    on = np.flatnonzero(row == matrix.indices)
+    out = np.zeros((matrix.size, matrix.terms.shape[1]))
+    out[row[on]] = matrix.terms[on].toarray()
+    return out
+
+
+def whole_scalings(model: MatrixModel, theta: Floats, unit: Floats) -> list[Scaling]:
+    """Return the changes of the parameters that scale K, M, or both as a whole, if there are any.
+
+    Of several that do, it is the one nearest to theta, which scales all parameters; distances are
+    in units, shape (parameters,).
+    """
+    (RK, K), (RM, M) = (_rows(matrix, theta) for matrix in (model.stiffness, model.mass))
+    both = np.vstack([RK, RM])
+    wanted = {
+        "stiffness matrix": (K, 0 * M),
+        "mass matrix": (0 * K, M),
+        "stiffness matrix and the mass matrix": (K, M),
+    }
+    out = []
+    for of, parts in wanted.items():
+        b = np.concatenate(parts)
+        y = theta + unit * np.linalg.lstsq(both * unit, b - both @ theta, rcond=RANK)[0]
+        if np.linalg.norm(both @ y - b) <= WHOLE * np.linalg.norm(b):
+            out.append(Scaling(of, y))
+    return out
+
+
+def _rows(matrix: DenseAffine | SparseAffine, theta: Floats) -> tuple[Floats, Floats]:
+    """Return R dA/dtheta and R A, where R keeps all lengths of what the terms of A span.
+
+    Entries count over the roots of those on the diagonal, whatever their units are.
+    """
+    c, dc = matrix.coefficients.values(theta), matrix.coefficients.jacobian(theta)
+    d = np.abs(_diagonals(matrix) @ c)
+    d = 1 / np.sqrt(np.where(d > 0, d, d.max(initial=0.0) or 1.0))
+    if isinstance(matrix, DenseAffine):
+        T = (matrix.terms * np.outer(d, d)).reshape(len(matrix.terms), -1).T
+        gram = T.T @ T
+    else:
+        row = np.repeat(np.arange(matrix.size), np.diff(matrix.indptr))
+        weights = scipy.sparse.diags_array(d[row] * d[matrix.indices])
+        sparse = weights @ matrix.terms
+        gram = (sparse.T @ sparse).toarray()
+    length = np.sqrt(np.diag(gram))
+    over = np.where(length > 0, length, 1.0)
+    lam, V = np.linalg.eigh(gram / np.outer(over, over))
+    R = np.sqrt(np.maximum(lam, 0.0))[:, None] * V.T * length
+    size = float(np.linalg.norm(R @ c)) or 1.0
+    return R @ dc / size, R @ c / size
