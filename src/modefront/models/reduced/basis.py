@@ -46,12 +46,14 @@ class Snapshot:
     ----------
     theta : where it was taken
     beyond : eigenvalues below it were proved to be all among the modes
+    proved : how many there are
     modes : (N, modes) of unit energy
     below : the factor of K + s M, which is positive definite
     """
 
     theta: Floats
     beyond: float
+    proved: int
     modes: Floats
     below: Shifted
 
@@ -100,7 +102,8 @@ def snapshot(pencil: Pencil, theta: Floats, count: int) -> Snapshot:
     """
     found = lowest(pencil, theta, count)
     below, above = found.factors
-    return Snapshot(theta, above.sigma, found.Phi / np.sqrt(found.lam - below.sigma), below)
+    modes = found.Phi / np.sqrt(found.lam - below.sigma)
+    return Snapshot(theta, above.sigma, found.proved, modes, below)
 
 
 def empty(pencil: Pencil, first: Snapshot) -> Basis:

@@ -15,7 +15,13 @@ from modefront.models.matrices import MatrixModel
 from modefront.models.ports import Ports, Transfer
 from modefront.models.reduced import window
 from modefront.models.reduced.basis import Basis, empty, extended, snapshot
-from modefront.models.reduced.certificate import NEAR, Asked, Certificate, estimates, missing
+from modefront.models.reduced.certificate import (
+    Asked,
+    Certificate,
+    estimates,
+    missing,
+    own_estimate,
+)
 from modefront.models.reduced.corrections import (
     Factor,
     Wanted,
@@ -26,6 +32,7 @@ from modefront.models.reduced.corrections import (
 from modefront.modes import dense
 from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.result import Modes
+from modefront.modes.spectrum import Shifted
 
 SHORTEST = 0.1
 """Length of the shortest direction of the basis, over the square root of the tolerance."""
@@ -82,10 +89,11 @@ class Snap:
 
 @dataclass(frozen=True)
 class Complete:
-    """The proof that at ``theta`` no modes below an eigenvalue are missing in the basis."""
+    """The proof that at ``theta`` as many modes as ``count`` are below an eigenvalue."""
 
     theta: Floats
     beyond: float
+    count: int
 
 
 @dataclass(frozen=True)
@@ -257,43 +265,68 @@ class ReducedModel:
         there = [at for one in self._wanted for at in one.models]
         return float(min(np.linalg.norm((theta - at) / span) for at in there))
 
-    def certify(self, asked: Sequence[tuple[Floats, Ints]]) -> list[Certificate]:
+    def certify(self, asked: Sequence[tuple[Floats, Ints]], lowest: int = 0) -> list[Certificate]:
         """Return how wrong modes are at some parameters; see `Certificate`.
 
         ``asked`` are theta (p,) and the modes wanted there, counted from 0. Their errors are
-        infinite where a mode below them is missing. That is looked for by a factorisation where it
-        is in doubt, and what it proves speaks for the other models nearby.
+        infinite where one of the ``lowest`` modes, or a mode below the wanted ones, is missing.
+        That is looked for by a factorisation where it is in doubt, and what it proves speaks for
+        the other models nearby.
         """
         space, before = self._ready().space, self.full.counts.factorisations
         started = time.perf_counter()
         proofs = list(space.proofs)
-        most = max((wanted.size for _, wanted in asked), default=1)
-        width = max(1, together(self.size) // most)
+        counts = [max(lowest, int(wanted.max()) + 1) for _, wanted in asked]
+        width = max(1, together(self.size) // (max(counts, default=1) + 1))
         found: list[Certificate] = []
         for first in range(0, len(asked), width):
-            some = asked[first : first + width]
-            models = [self._asked(space, *one, proofs) for one in some]
-            there = [one for one in models if one is not None]
-            known = iter(estimates(self.full.pencil, space.basis, space.factor, there))
-            found += [
-                missing(wanted.size) if one is None else next(known)
-                for (_, wanted), one in zip(some, models, strict=True)
-            ]
+            some = range(first, min(first + width, len(asked)))
+            found += self._certified(space, [(*asked[k], counts[k]) for k in some], proofs)
         self.counts.certificates += len(asked)
         self.counts.factorisations += self.full.counts.factorisations - before
         self.counts.certificate_time += time.perf_counter() - started
         return found
 
-    def _asked(
-        self, space: _Space, theta: Floats, wanted: Ints, proofs: list[Complete]
-    ) -> Asked | None:
-        """Return the Ritz pairs that a certificate is of; None where modes are missing."""
-        basis = space.basis
-        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        if self._misses(basis, theta, ritz.lam, int(wanted.max()), proofs):
-            return None
-        near = window.condition(basis.K, theta, space.factor.theta) <= NEAR
-        return Asked(theta, wanted, ritz.lam[wanted], ritz.Phi[:, wanted], near)
+    def _certified(
+        self, space: _Space, some: Sequence[tuple[Floats, Ints, int]], proofs: list[Complete]
+    ) -> list[Certificate]:
+        """Return the certificates of some models, with the factor at hand where that will do."""
+        pencil, sensors = self.full.pencil, self.full.selection
+        found: dict[int, Certificate] = {}
+        shared: dict[int, Asked] = {}
+        for k, (theta, wanted, count) in enumerate(some):
+            near = _near(space, theta, wanted, count, proofs)
+            if near is None:
+                found[k] = self._certified_alone(space, theta, wanted, count, proofs)
+            else:
+                shared[k] = near
+        known = estimates(pencil, sensors, space.basis, space.factor, list(shared.values()))
+        for k, one in zip(shared, known, strict=True):
+            found[k] = one or self._certified_alone(space, *some[k], proofs)
+        return [found[k] for k in range(len(some))]
+
+    def _certified_alone(
+        self, space: _Space, theta: Floats, wanted: Ints, count: int, proofs: list[Complete]
+    ) -> Certificate:
+        """Return the certificate of a model with its own factor, which proves modes complete."""
+        basis, pencil = space.basis, self.full.pencil
+        try:
+            ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        except ModelError:
+            return missing(wanted.size)
+        gap = window.level(ritz.lam, count, basis.sigma, np.inf)
+        if gap is None:
+            return missing(wanted.size)
+        below, sigma = gap
+        try:
+            factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
+        except SingularMatrixError:
+            return missing(wanted.size)
+        if factor.negative != below:
+            return missing(wanted.size)
+        proofs.append(Complete(theta, sigma, below))
+        asked = Asked(theta, wanted, ritz.lam[:below], ritz.Phi[:, :below], below, sigma)
+        return own_estimate(pencil, self.full.selection, basis, asked, Shifted(sigma, factor))
 
     def _misses(
         self, basis: Basis, theta: Floats, lam: Floats, last: int, proofs: list[Complete]
@@ -312,7 +345,7 @@ class ReducedModel:
             return True
         if factor.negative != below:
             return True
-        proofs.append(Complete(theta, sigma))
+        proofs.append(Complete(theta, sigma, below))
         return False
 
     def _in_full(self, theta: Floats, count: int, derivatives: bool) -> Modes:
@@ -380,7 +413,9 @@ class ReducedModel:
         bounds = [] if known else self._bounds(basis, theta, one.below.sigma)
         basis = self._at_bounds(basis, factor, bounds)
         self.counts.corrected_time += time.perf_counter() - solved
-        return _Space(basis, factor, (*proofs, Complete(theta, one.beyond))), len(bounds)
+        return _Space(basis, factor, (*proofs, Complete(theta, one.beyond, one.proved))), len(
+            bounds
+        )
 
     def _corrected(
         self, space: _Space, models: list[Floats], what: Snap
@@ -466,6 +501,32 @@ def _knows(basis: Basis, proofs: Sequence[Complete], theta: Floats, lam: float) 
     return basis.semidefinite and any(
         window.lower_bound(K, M, theta, one.theta) * one.beyond > lam for one in proofs
     )
+
+
+def _near(
+    space: _Space, theta: Floats, wanted: Ints, count: int, proofs: Sequence[Complete]
+) -> Asked | None:
+    """Return what the factor at hand may judge; None where modes may be missing without proof."""
+    basis, factor = space.basis, space.factor
+    if not basis.semidefinite:
+        return None
+    try:
+        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+    except ModelError:
+        return None
+    K, M, shift = basis.K, basis.M, factor.below.sigma
+    bounds = window.bounds(K, M, theta, factor.theta, shift)
+    found: Asked | None = None
+    for one in proofs:
+        most = window.lower_bound(K, M, theta, one.theta) * one.beyond
+        gap = window.level(ritz.lam, count, shift, most)
+        proved = int((ritz.lam < most).sum()) == one.count
+        if gap and (found is None or (proved, gap[1]) > (found.proved, found.sigma)):
+            below, sigma = gap
+            some = below + int(not proved)
+            Y = ritz.Phi[:, :some]
+            found = Asked(theta, wanted, ritz.lam[:some], Y, below, sigma, bounds, proved)
+    return found
 
 
 def _begins(wanted: Sequence[Snap], taken: Sequence[_Taken]) -> bool:
