@@ -38,6 +38,10 @@ from modefront.modes.sparse import lowest
 from modefront.modes.spectrum import Shifted
 
 
+UNSOUND = 0.1
+"""Energy of a direction that should have the energy 1, below which it is rounding."""
+
+
 @dataclass(frozen=True, eq=False)
 class Snapshot:
     """What one full eigensolution gives.
@@ -183,7 +187,10 @@ def _kept(basis: Basis, space: Basis, turn: Floats) -> Basis:
     n, A = basis.columns, space.A
     turn[:n] -= A[:n] @ turn
     squares, U = np.linalg.eigh(turn.T @ A @ turn)
-    turn = turn @ (U / np.sqrt(squares))
+    there = squares > UNSOUND
+    if not there.any():
+        return basis
+    turn = turn @ (U[:, there] / np.sqrt(squares[there]))
     K, M = (_turned(one, n, turn) for one in (space.K, space.M))
     return replace(basis, blocks=(*basis.blocks, space.combine(turn)), K=K, M=M)
 

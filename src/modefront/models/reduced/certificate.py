@@ -54,6 +54,7 @@ from modefront.modes import dense
 from modefront.modes.pencil import Pencil
 from modefront.modes.products import combine, gram, times
 from modefront.modes.spectrum import Shifted
+from modefront.modes.subspace import orthonormal
 
 FOUND = 1 / 3
 """Share of the error that an estimate has to have found."""
@@ -84,9 +85,6 @@ LARGE = 0.05
 
 NOTHING = 1e-15
 """Relative error of an eigenvalue that is rounding, and needs no proof."""
-
-LOST = 1e-10
-"""Square of what a normalised direction adds to a space below which it is left out."""
 
 ROUNDING = 100.0
 """Error of a projection over the rounding of the full matrices above which it is an error."""
@@ -159,8 +157,9 @@ class _Judged:
 
 @dataclass(frozen=True, eq=False)
 class _Solutions:
-    """Solutions Z (N, m) for the residuals R (N, m) of some modes."""
+    """Solutions Z (N, m) for the residuals R (N, m) of some modes X (N, m)."""
 
+    X: Floats
     R: Floats
     Z: Floats
 
@@ -180,6 +179,7 @@ def estimates(
     zeros = [np.zeros(one.lam.shape) for one in asked]
     found = [_Judged(z, z, one.lam, one.Y) for one, z in zip(asked, zeros, strict=True)]
     out: list[Certificate | None] = [None] * len(asked)
+    rounding = zeros[:]
     pending = [k for k, one in enumerate(asked) if _steps(one, shift) <= STEPS]
     for step in range(1, STEPS + 1):
         if not pending:
@@ -192,6 +192,9 @@ def estimates(
         for k, one in zip(pending, solved, strict=True):
             of = asked[k]
             proof = _Proof(of, shift, found[k].eigenvalue, gram(one.R, one.Z), step)
+            if step == 1:
+                off = np.abs(np.einsum("nc,nc->c", one.X, one.R))
+                rounding[k] = _rounding(pencil.K.at(of.theta), one.X, off)[: of.below]
             try:
                 K, M = space.K.at(of.theta), space.M.at(of.theta)
                 found[k] = _judged(K, M, basis.columns, of.lam, of.Y)
@@ -200,7 +203,7 @@ def estimates(
             if not proof.is_leading(found[k].eigenvalue):
                 continue
             if proof.holds(found[k]):
-                out[k] = _certificate(proof, found[k], seen)
+                out[k] = _certificate(proof, found[k], seen, rounding[k])
             else:
                 unsettled.append(k)
         pending = unsettled
@@ -222,12 +225,11 @@ def own_estimate(
     m, shift = asked.below, basis.sigma
     K, M = pencil.K.at(asked.theta), pencil.M.at(asked.theta)
     X = basis.combine(asked.Y[:, :m])
-    noise = np.finfo(float).eps * (K.diagonal() @ X**2)
     try:
         start = dense.decompose(gram(X, times(K, X)), gram(X, times(M, X)))
         if start.lam.size < m:
             return missing(asked.wanted.size)
-        off = np.abs(asked.lam[:m] - start.lam)
+        rounding = _rounding(K, X, np.abs(asked.lam[:m] - start.lam))
         unit = np.sqrt(start.lam - shift)
         of = replace(asked, lam=start.lam, Y=np.diag(unit))
         S, n = combine(X, start.Phi / unit), m
@@ -237,12 +239,11 @@ def own_estimate(
             R = times(K, X) - times(M, X) * found.lam
             Z = own.factor.solve(R)
             proof = _Proof(of, shift, found.eigenvalue, gram(R, Z), step, own.sigma)
-            S = np.hstack([S, _orthonormal(K, M, shift, S, Z)])
+            S = np.hstack([S, orthonormal(K, M, shift, S, Z)])
             inner, mass = gram(S, times(K, S)), gram(S, times(M, S))
             Y = np.vstack([of.Y, np.zeros((S.shape[1] - n, m))])[:n]
             found = _judged(inner, mass, n, of.lam, Y)
             if proof.holds(found):
-                rounding = np.where(off > ROUNDING * noise, off, 0.0)
                 return _certificate(proof, found, sensors @ S, rounding)
     except ModelError:
         pass
@@ -351,9 +352,7 @@ def _steps(of: Asked, shift: float) -> float:
     return np.arccosh(1 / np.sqrt(1 - FOUND)) / rate if rate > 0 else np.inf
 
 
-def _certificate(
-    proof: _Proof, found: _Judged, seen: Floats, rounding: Floats | float = 0.0
-) -> Certificate:
+def _certificate(proof: _Proof, found: _Judged, seen: Floats, rounding: Floats) -> Certificate:
     """Return the certificate from the errors found; ``seen`` is the space at the sensors."""
     of, m = proof.of, proof.of.below
     error, tiny = found.eigenvalue[:m], np.finfo(float).tiny
@@ -362,6 +361,15 @@ def _certificate(
     relative = error / np.maximum(of.lam[:m] - proof.shift - error, tiny)
     phi = seen @ found.Y
     return Certificate(relative[of.wanted], shape[of.wanted], found.lam, phi)
+
+
+def _rounding(K: scipy.sparse.csr_array, X: Floats, off: Floats) -> Floats:
+    """Return by how much eigenvalues of the basis are off, beyond the rounding in the full model.
+
+    ``off`` is by how much they differ from the Rayleigh quotients of the modes X.
+    """
+    noise = np.finfo(float).eps * (K.diagonal() @ X**2)
+    return np.where(off > ROUNDING * noise, off, 0.0)
 
 
 def _solutions(
@@ -374,8 +382,7 @@ def _solutions(
     R = residuals(pencil, thetas, lam, X)
     Z = factor.below.factor.solve(R)
     ends = np.cumsum([one.lam.size for _, one in models])[:-1]
-    parts = zip(np.split(R, ends, axis=1), np.split(Z, ends, axis=1), strict=True)
-    return [_Solutions(*part) for part in parts]
+    return [_Solutions(*part) for part in zip(*(np.split(A, ends, axis=1) for A in (X, R, Z)))]
 
 
 def _with_solutions(
@@ -386,23 +393,6 @@ def _with_solutions(
     energy = np.maximum(np.einsum("nc,nc->c", R, Z), 0.0)
     unit = np.divide(1.0, np.sqrt(energy), out=np.zeros_like(energy), where=energy > 0)
     return factor.extend(pencil, space, Z * unit, R * unit, np.sqrt(SHARE))
-
-
-def _orthonormal(
-    K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, shift: float, S: Floats, Z: Floats
-) -> Floats:
-    """Return what columns Z add to S, which is orthonormal in K - shift M, so that they are too."""
-
-    def product(X: Floats) -> Floats:
-        return times(K, X) - times(M, X) * shift
-
-    for _ in range(2):
-        square = np.einsum("nc,nc->c", Z, product(Z))
-        Z = Z * np.divide(1.0, np.sqrt(np.maximum(square, 0)), out=0 * square, where=square > 0)
-        Z = Z - combine(S, gram(S, product(Z)))
-    squares, U = np.linalg.eigh(gram(Z, product(Z)))
-    new = squares > LOST
-    return combine(Z, U[:, new] / np.sqrt(squares[new])) if new.any() else Z[:, :0]
 
 
 def _judged(K: Floats, M: Floats, n: int, lam: Floats, Y: Floats) -> _Judged:
