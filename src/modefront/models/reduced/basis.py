@@ -37,7 +37,6 @@ from modefront.modes.products import combine, combine_all, gram
 from modefront.modes.sparse import lowest
 from modefront.modes.spectrum import Shifted
 
-
 UNSOUND = 0.1
 """Energy of a direction that should have the energy 1, below which it is rounding."""
 

@@ -18,8 +18,9 @@ R be the lowest m Ritz values and residuals in any space.
 vectors has Rayleigh quotients above :math:`\sigma` (Schur), so that at most as many eigenvalues are
 below :math:`\ell < \sigma` as
 
-.. math:: \mathrm{diag}(\rho_k - \ell) - \frac{D R^T A^{-1} R D}{g\,(1 - (\ell + s) / (\sigma + s))},
-    \qquad D_{kk} = \frac{\ell + s}{\rho_k + s}
+.. math:: \mathrm{diag}(\rho_k - \ell)
+    - \frac{D R^T A^{-1} R D}{g\,(1 - (\ell + s) / (\sigma + s))}, \qquad
+    D_{kk} = \frac{\ell + s}{\rho_k + s}
 
 has negative ones. And to leading order n extensions find all but :math:`1 / T_n(x)^2` of
 :math:`\varepsilon`, T being Chebyshev's polynomial, :math:`x = (\kappa + 1) / (\kappa - 1)` and
@@ -30,7 +31,8 @@ extensions go on until then.
 **With the factor of** :math:`B = K - \sigma M` **itself**, taken where the first way does not lead
 there, the space is that of the Ritz vectors and of :math:`B^{-1} r`, and the matrix is
 
-.. math:: \mathrm{diag}\Big(\frac{\rho_k - \sigma}{\ell - \sigma} (\rho_k - \ell)\Big) - R^T B^{-1} R
+.. math:: \mathrm{diag}\Big(\frac{\rho_k - \sigma}{\ell - \sigma} (\rho_k - \ell)\Big)
+    - R^T B^{-1} R
 
 (Lehmann's bounds). Where that does not show it either, the estimate is infinite.
 
@@ -179,7 +181,7 @@ def estimates(
     zeros = [np.zeros(one.lam.shape) for one in asked]
     found = [_Judged(z, z, one.lam, one.Y) for one, z in zip(asked, zeros, strict=True)]
     out: list[Certificate | None] = [None] * len(asked)
-    rounding = zeros[:]
+    rounding = list(zip(zeros, zeros, strict=True))
     pending = [k for k, one in enumerate(asked) if _steps(one, shift) <= STEPS]
     for step in range(1, STEPS + 1):
         if not pending:
@@ -193,8 +195,8 @@ def estimates(
             of = asked[k]
             proof = _Proof(of, shift, found[k].eigenvalue, gram(one.R, one.Z), step)
             if step == 1:
-                off = np.abs(np.einsum("nc,nc->c", one.X, one.R))
-                rounding[k] = _rounding(pencil.K.at(of.theta), one.X, off)[: of.below]
+                K0 = pencil.K.at(of.theta)
+                rounding[k] = _rounding(K0, one.X, gram(one.X, one.R), of.lam)
             try:
                 K, M = space.K.at(of.theta), space.M.at(of.theta)
                 found[k] = _judged(K, M, basis.columns, of.lam, of.Y)
@@ -226,10 +228,12 @@ def own_estimate(
     K, M = pencil.K.at(asked.theta), pencil.M.at(asked.theta)
     X = basis.combine(asked.Y[:, :m])
     try:
-        start = dense.decompose(gram(X, times(K, X)), gram(X, times(M, X)))
+        inner, mass = gram(X, times(K, X)), gram(X, times(M, X))
+        start = dense.decompose(inner, mass)
         if start.lam.size < m:
             return missing(asked.wanted.size)
-        rounding = _rounding(K, X, np.abs(asked.lam[:m] - start.lam))
+        lam = asked.lam[:m]
+        rounding = _rounding(K, X, inner - mass * lam, lam)
         unit = np.sqrt(start.lam - shift)
         of = replace(asked, lam=start.lam, Y=np.diag(unit))
         S, n = combine(X, start.Phi / unit), m
@@ -352,24 +356,33 @@ def _steps(of: Asked, shift: float) -> float:
     return np.arccosh(1 / np.sqrt(1 - FOUND)) / rate if rate > 0 else np.inf
 
 
-def _certificate(proof: _Proof, found: _Judged, seen: Floats, rounding: Floats) -> Certificate:
+def _certificate(
+    proof: _Proof, found: _Judged, seen: Floats, rounding: tuple[Floats, Floats]
+) -> Certificate:
     """Return the certificate from the errors found; ``seen`` is the space at the sensors."""
     of, m = proof.of, proof.of.below
     error, tiny = found.eigenvalue[:m], np.finfo(float).tiny
-    shape = np.minimum(found.shape[:m], 1.0)
-    error = error + rounding
+    shape = np.minimum(np.hypot(found.shape[:m], rounding[1][:m]), 1.0)
+    error = error + rounding[0][:m]
     relative = error / np.maximum(of.lam[:m] - proof.shift - error, tiny)
     phi = seen @ found.Y
     return Certificate(relative[of.wanted], shape[of.wanted], found.lam, phi)
 
 
-def _rounding(K: scipy.sparse.csr_array, X: Floats, off: Floats) -> Floats:
-    """Return by how much eigenvalues of the basis are off, beyond the rounding in the full model.
+def _rounding(
+    K: scipy.sparse.csr_array, X: Floats, forms: Floats, lam: Floats
+) -> tuple[Floats, Floats]:
+    """Return errors of eigenvalues and shapes of the basis beyond the rounding of the full model.
 
-    ``off`` is by how much they differ from the Rayleigh quotients of the modes X.
+    ``forms`` are X^T (K - lam M) X of its modes (modes, modes), which should vanish.
     """
     noise = np.finfo(float).eps * (K.diagonal() @ X**2)
-    return np.where(off > ROUNDING * noise, off, 0.0)
+    forms = np.where(np.abs(forms) > ROUNDING * np.sqrt(np.outer(noise, noise)), forms, 0.0)
+    eigenvalue = np.abs(np.diag(forms))
+    distance = np.abs(lam[:, None] - lam)
+    np.fill_diagonal(distance, np.inf)
+    turned = forms / np.maximum(distance, np.finfo(float).tiny)
+    return eigenvalue, np.sqrt((turned**2).sum(axis=0))
 
 
 def _solutions(
@@ -382,7 +395,8 @@ def _solutions(
     R = residuals(pencil, thetas, lam, X)
     Z = factor.below.factor.solve(R)
     ends = np.cumsum([one.lam.size for _, one in models])[:-1]
-    return [_Solutions(*part) for part in zip(*(np.split(A, ends, axis=1) for A in (X, R, Z)))]
+    parts = (np.split(A, ends, axis=1) for A in (X, R, Z))
+    return [_Solutions(*part) for part in zip(*parts, strict=True)]
 
 
 def _with_solutions(
