@@ -413,8 +413,8 @@ def test_certificates_asked_for_together_are_sharper_than_alone() -> None:
 
 def extended_quotients(K: Floats, M: Floats, X: Floats) -> Floats:
     """Return the Rayleigh quotient of each column of X, in extended precision."""
-    K, M, X = (A.astype(np.longdouble) for A in (K, M, X))
-    return np.asarray((X * (K @ X)).sum(axis=0) / (X * (M @ X)).sum(axis=0))
+    k, m, x = (A.astype(np.longdouble) for A in (K, M, X))
+    return np.asarray((x * (k @ x)).sum(axis=0) / (x * (m @ x)).sum(axis=0))
 
 
 def chain(members: int, seed: int) -> MatrixModel:
