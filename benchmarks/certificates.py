@@ -253,7 +253,7 @@ def box(bounds: tuple[float, float], structures: int, count: int, seed: int) -> 
     finite = np.isfinite(estimate)
     told = finite & (truth > ROUNDING * rounding)
     ratio = estimate[told] / truth[told]
-    seen = finite & (true_shape > 1e-6)
+    seen = finite & (true_shape > np.maximum(1e-6, np.sqrt(rounding)))
     shapes = shape[seen] / np.minimum(true_shape[seen], 1.0)
     return {
         "modes": truth.size,
