@@ -22,7 +22,9 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
+from modefront.models.reduced.certificate import FOUND, Certificate
 from modefront.models.reduced.model import ReducedModel, Snap
+from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.checkpoint import Checkpoint, Solutions
 from modefront.solvers.edges import Edge
@@ -94,6 +96,11 @@ def certified_front(
 
     front: Front | None = None
     taken = _take_some(problem, model, "first", model.first, None, counted)
+    if taken.added and not taken.full:
+        lacking = counted("probes", partial(_lacking, problem, model))
+        if lacking:
+            there = np.array([one.at.theta for one in lacking])
+            _take_some(problem, model, "probes", Snap(there, _lowest(problem)), None, counted)
     for number in range(1, ROUNDS + 1):
         if not taken.added:
             break
@@ -109,16 +116,18 @@ def certified_front(
             taken = _take_some(problem, model, "ahead", _farthest(model, front), front, here)
             if not taken.enough or taken.added:
                 continue
-        front = _with_errors(model, front, here)
+        front = _with_errors(problem, model, front, here)
         needed = {_key(one): one for one in [*_of_the_front(front), *_rivals(problem, front)]}
         wrong = [one for one in needed.values() if _error(one) > model.tolerance]
         if not wrong:
             return front
         worst = _snap(sorted(wrong, key=_error, reverse=True)[:MODELS], 0.0)
+        if not all(map(np.isfinite, map(_error, wrong))):
+            worst = replace(worst, modes=max(worst.modes, _lowest(problem)))
         taken = _take_some(problem, model, "worst", worst, front, here)
     if front is None:
         raise UnfinishedError("the model cannot be solved at the nominal parameters")
-    return _with_errors(model, front, checkpoint)
+    return _with_errors(problem, model, front, checkpoint)
 
 
 def certified_points(
@@ -129,7 +138,7 @@ def certified_points(
     if not isinstance(model, ReducedModel) or not points:
         return points
     found = [one for _, one in points]
-    kept = checkpoint("certificates-of-others", lambda: _certified(model, found))
+    kept = checkpoint("certificates-of-others", lambda: _certified(problem, model, found))
     return [(label, one) for (label, _), one in zip(points, kept, strict=True)]
 
 
@@ -199,8 +208,8 @@ def _take_some(
         taken = here(f"snapshot-{name}-{count + 1}", partial(_take, problem, model, at))
         if not taken:
             return _Taken(error, added, enough=False, full=False)
-        model.resume([*before, at])
         found = {what: float(x[0]) for what, x in taken[0].at.quantities.items()}
+        model.resume([*before, replace(at, modes=int(found["modes"]))])
         error = found["error"] if count == 0 else error
         if found["error"] < at.enough:
             return _Taken(error, added, enough=True, full=False)
@@ -215,14 +224,21 @@ def _take_some(
 def _take(problem: UpdatingProblem, model: ReducedModel, at: Snap) -> list[Solution]:
     """Take a snapshot and keep the error that it found and how many columns it led to.
 
-    Nothing is returned where the model cannot be solved there.
+    Where none of its models can be solved, the basis learns that, so that it is not searched there
+    again; nothing is returned where that fails too.
     """
-    before = model.columns if model.snapshots else 0
+    before, modes = model.columns if model.snapshots else 0, at.modes
     try:
         error = model.take(at)
     except ModelError:
-        return []
-    found = {"error": error, "columns": model.columns, "added": model.columns - before}
+        if not before:
+            return []
+        try:
+            modes, error = 0, model.take(replace(at, modes=0))
+        except ModelError:
+            return []
+    columns = model.columns
+    found = {"error": error, "columns": columns, "added": columns - before, "modes": modes}
     kept = {name: np.array([float(value)]) for name, value in found.items()}
     theta = at.models[0]
     return [begin(replace(infeasible(theta, len(problem.objectives)), quantities=kept))]
@@ -241,9 +257,22 @@ def _farthest(model: ReducedModel, front: Front) -> Snap:
     return _snap(ranked[:MODELS], AIM * model.tolerance)
 
 
-def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> Front:
+def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Solution]:
+    """Return models where the basis lacks modes that measured ones might be paired with."""
+    there = model.lacking(_lowest(problem))[:MODELS]
+    return [begin(infeasible(theta, len(problem.objectives))) for theta in there]
+
+
+def _lowest(problem: UpdatingProblem) -> int:
+    """Return how many of the lowest modes may be paired with measured ones."""
+    return modes_needed(problem.pairing, problem.data, problem.model.size)
+
+
+def _with_errors(
+    problem: UpdatingProblem, model: ReducedModel, front: Front, checkpoint: Checkpoint
+) -> Front:
     """Return the front with the estimated errors of all its models."""
-    kept = checkpoint("certificates", lambda: _certified(model, _distinct(front)))
+    kept = checkpoint("certificates", lambda: _certified(problem, model, _distinct(front)))
     errors = {_key(one): {name: one.at.quantities[name] for name in ERRORS} for one in kept}
 
     def known(one: Solution) -> Solution:
@@ -268,17 +297,50 @@ def _with_errors(model: ReducedModel, front: Front, checkpoint: Checkpoint) -> F
     )
 
 
-def _certified(model: ReducedModel, solutions: Sequence[Solution]) -> list[Solution]:
-    """Return solutions with the errors of the modes that are paired with measured ones."""
+def _certified(
+    problem: UpdatingProblem, model: ReducedModel, solutions: Sequence[Solution]
+) -> list[Solution]:
+    """Return solutions with the errors of the modes that are paired with measured ones.
+
+    They are infinite where the full model may pair other modes: where one of those that are looked
+    at is missing, or where better known modes would be paired differently.
+    """
     paired = [np.unique(_paired(one), return_inverse=True) for one in solutions]
     asked = [(one.at.theta, wanted) for one, (wanted, _) in zip(solutions, paired, strict=True)]
-    certificates = model.certify(asked)
+    certificates = model.certify(asked, _lowest(problem))
     found = []
     for one, certificate, (_, place) in zip(solutions, certificates, paired, strict=True):
         errors = (certificate.eigenvalue[place], certificate.shape[place])
+        if certificate.known and not _pairs_alike(problem, model, one, certificate):
+            errors = (np.full(place.shape, np.inf), np.ones(place.shape))
         quantities = {**one.at.quantities, **dict(zip(ERRORS, errors, strict=True))}
         found.append(replace(one, at=replace(one.at, quantities=quantities)))
     return found
+
+
+def _pairs_alike(
+    problem: UpdatingProblem, model: ReducedModel, one: Solution, certificate: Certificate
+) -> bool:
+    """Return whether modes that are known better are paired as those of the basis are.
+
+    So have modes to be that are farther away by twice as much again, since a third of the errors
+    is known for sure.
+    """
+    count = _lowest(problem)
+    modes = model.modes(one.at.theta, count, derivatives=False)
+    lam, phi = certificate.lam[:count], certificate.phi[:, :count]
+    phi = phi * np.where((phi * modes.phi).sum(axis=0) < 0, -1.0, 1.0)
+    beyond = 1 / FOUND - 1
+    candidates = (
+        (lam, phi),
+        (lam + beyond * (lam - modes.lam), phi + beyond * (phi - modes.phi)),
+    )
+    for values, shapes in candidates:
+        frequency = np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi)
+        pairs = match(problem.pairing, problem.data, frequency, shapes)
+        if not np.array_equal(pairs.index, _paired(one)):
+            return False
+    return True
 
 
 def _of_the_front(front: Front) -> Iterator[Solution]:

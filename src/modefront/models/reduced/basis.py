@@ -37,6 +37,9 @@ from modefront.modes.products import combine, combine_all, gram
 from modefront.modes.sparse import lowest
 from modefront.modes.spectrum import Shifted
 
+UNSOUND = 0.1
+"""Energy of a direction that should have the energy 1, below which it is rounding."""
+
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
@@ -46,12 +49,14 @@ class Snapshot:
     ----------
     theta : where it was taken
     beyond : eigenvalues below it were proved to be all among the modes
+    proved : how many there are
     modes : (N, modes) of unit energy
     below : the factor of K + s M, which is positive definite
     """
 
     theta: Floats
     beyond: float
+    proved: int
     modes: Floats
     below: Shifted
 
@@ -100,7 +105,8 @@ def snapshot(pencil: Pencil, theta: Floats, count: int) -> Snapshot:
     """
     found = lowest(pencil, theta, count)
     below, above = found.factors
-    return Snapshot(theta, above.sigma, found.Phi / np.sqrt(found.lam - below.sigma), below)
+    modes = found.Phi / np.sqrt(found.lam - below.sigma)
+    return Snapshot(theta, above.sigma, found.proved, modes, below)
 
 
 def empty(pencil: Pencil, first: Snapshot) -> Basis:
@@ -180,7 +186,10 @@ def _kept(basis: Basis, space: Basis, turn: Floats) -> Basis:
     n, A = basis.columns, space.A
     turn[:n] -= A[:n] @ turn
     squares, U = np.linalg.eigh(turn.T @ A @ turn)
-    turn = turn @ (U / np.sqrt(squares))
+    there = squares > UNSOUND
+    if not there.any():
+        return basis
+    turn = turn @ (U[:, there] / np.sqrt(squares[there]))
     K, M = (_turned(one, n, turn) for one in (space.K, space.M))
     return replace(basis, blocks=(*basis.blocks, space.combine(turn)), K=K, M=M)
 

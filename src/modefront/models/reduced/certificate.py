@@ -6,39 +6,75 @@ The basis is extended by :math:`A^{-1} r` for the residuals r of all models that
 :math:`\lambda`, of the basis alone, is made up of these by
 
 .. math:: c_j = \varphi_j^T M x = \frac{\varphi_j^T r}{\lambda_j - \lambda}, \qquad
-    \lambda - \lambda_s = \sum_{j \ne s} c_j^2 \, (\lambda_j - \lambda_s) ,
+    \varepsilon = \lambda - \lambda_s = \sum_{j \ne s} c_j^2 \, (\lambda_j - \lambda_s) ,
 
 without cancellation, s being the mode that x stands for; the error of its shape is the root of the
 sum of the other :math:`c_j^2`. Both grow towards the errors in the full model as the space does.
-The first extension gives at least :math:`4 \kappa / (1 + \kappa)^2` of the error to leading order
-(Kantorovich), with :math:`\kappa` the condition of :math:`A^{-1} C`; others follow until they add
-little. Where they do not settle, A is that of the model itself.
+How much of them is found has to be known from elsewhere. Let m eigenvalues of the full model, and
+no more, be below :math:`\sigma`, see `modefront.models.reduced.window`, and let :math:`\rho_k` and
+R be the lowest m Ritz values and residuals in any space.
+
+**With the factor of another model**, :math:`g A \le K + s M \le b A`. What is outside the m Ritz
+vectors has Rayleigh quotients above :math:`\sigma` (Schur), so that at most as many eigenvalues are
+below :math:`\ell < \sigma` as
+
+.. math:: \mathrm{diag}(\rho_k - \ell)
+    - \frac{D R^T A^{-1} R D}{g\,(1 - (\ell + s) / (\sigma + s))}, \qquad
+    D_{kk} = \frac{\ell + s}{\rho_k + s}
+
+has negative ones. And to leading order n extensions find all but :math:`1 / T_n(x)^2` of
+:math:`\varepsilon`, T being Chebyshev's polynomial, :math:`x = (\kappa + 1) / (\kappa - 1)` and
+:math:`\kappa = b / (g (1 - (\lambda + s) / (\sigma + s)))` (conjugate gradients; n = 1 is
+Kantorovich's :math:`4 \kappa / (1 + \kappa)^2`). One of the two shows when a third is found, and
+extensions go on until then.
+
+**With the factor of** :math:`B = K - \sigma M` **itself**, taken where the first way does not lead
+there, the space is that of the Ritz vectors and of :math:`B^{-1} r`, and the matrix is
+
+.. math:: \mathrm{diag}\Big(\frac{\rho_k - \sigma}{\ell - \sigma} (\rho_k - \ell)\Big)
+    - R^T B^{-1} R
+
+(Lehmann's bounds). Where that does not show it either, the estimate is infinite.
+
+Sources: Lehmann 1949, doi:10.1002/zamm.19490290507 and Parlett 1998,
+doi:10.1137/1.9781611971163, section 10.5 (bounds from residuals).
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field, replace
 
 import numpy as np
+import scipy.sparse
 
-from modefront._typing import Floats, Ints
+from modefront._typing import Bools, Floats, Ints
+from modefront.errors import ModelError
 from modefront.models.reduced.basis import Basis, residuals
-from modefront.models.reduced.corrections import SLOWEST, Factor
+from modefront.models.reduced.corrections import Factor
 from modefront.modes import dense
-from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.pencil import Pencil
+from modefront.modes.products import combine, gram, times
 from modefront.modes.spectrum import Shifted
+from modefront.modes.subspace import orthonormal
 
-NEAR = 9.8
-"""Condition of K over that of the factor up to which the first extension is enough: a third of the
-error at the least, and nearly all of it in most cases."""
+FOUND = 1 / 3
+"""Share of the error that an estimate has to have found."""
 
-SETTLED = 1 / 3
-"""What an extension adds to an estimate, over all of it, below which another one is not needed."""
+SHARES = 0.9999, 0.99, 0.8, FOUND
+"""Shares of the error of which it is looked whether they were found."""
+
+MISSED = 0.99
+"""Share of the error of a mode next to those in question that is left, where none is known."""
+
+TOO_SMALL = 1e-8
+"""Error of a shape that is rounding, and needs no proof."""
 
 STEPS = 8
-"""Extensions at most."""
+"""Extensions with the factor of another model at most."""
+
+OWN_STEPS = 6
+"""Extensions with the factor of the model itself at most."""
 
 SHARE = 1e-3
 """Share of the energies of residuals that compressing them may lose."""
@@ -46,20 +82,39 @@ SHARE = 1e-3
 CLOSE = 1e-8
 """Relative gap of eigenvalues below which no quotient is formed with it."""
 
+LARGE = 0.05
+"""Relative error of an eigenvalue above which nothing is concluded from leading orders."""
+
+NOTHING = 1e-15
+"""Relative error of an eigenvalue that is rounding, and needs no proof."""
+
+ROUNDING = 100.0
+"""Error of a projection over the rounding of the full matrices above which it is an error."""
+
 
 @dataclass(frozen=True)
 class Certificate:
-    """Estimated errors of modes.
+    """Estimated errors of modes, and the lowest modes as they are known better.
 
     Attributes
     ----------
     eigenvalue : (modes,) relative errors of the eigenvalues; infinite where a mode is missing, or
-        where the estimate does not settle and the matrix is singular
+        where it is not known how much of the error was found
     shape : (modes,) errors of the mode shapes in the norm of M, over their length
+    lam, phi : (lowest modes,), (sensors, lowest modes) eigenvalues and mass-normalised shapes of
+        all modes that were looked at, much nearer to those of the full model; none where the
+        errors are infinite
     """
 
     eigenvalue: Floats
     shape: Floats
+    lam: Floats = field(default_factory=lambda: np.zeros(0))
+    phi: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+
+    @property
+    def known(self) -> bool:
+        """Whether the errors are finite."""
+        return bool(np.isfinite(self.eigenvalue).all())
 
 
 def missing(modes: int) -> Certificate:
@@ -75,15 +130,21 @@ class Asked:
     ----------
     theta : (p,) parameters of the model
     wanted : (modes,) the modes in question, counted from 0
-    lam, Y : (modes,), (n, modes) these modes in the basis, mass-normalised
-    near : whether the first extension is enough
+    lam, Y : (lowest,), (n, lowest) the lowest modes in the basis, mass-normalised
+    below : how many of them are below ``sigma``; of the full model there are as many
+    sigma : a level above the modes in question
+    bounds : g and b, between which K + s M is over that of the factor
+    proved : whether ``below`` is proved; else the next mode has to be found above ``sigma``
     """
 
     theta: Floats
     wanted: Ints
     lam: Floats
     Y: Floats
-    near: bool
+    below: int
+    sigma: float
+    bounds: tuple[float, float] = (0.0, np.inf)
+    proved: bool = True
 
 
 @dataclass(frozen=True, eq=False)
@@ -96,77 +157,275 @@ class _Judged:
     Y: Floats
 
 
+@dataclass(frozen=True, eq=False)
+class _Solutions:
+    """Solutions Z (N, m) for the residuals R (N, m) of some modes X (N, m)."""
+
+    X: Floats
+    R: Floats
+    Z: Floats
+
+
 def estimates(
-    pencil: Pencil, basis: Basis, factor: Factor, asked: Sequence[Asked]
-) -> list[Certificate]:
-    """Return the certificates of some models. Errors of eigenvalues are over lam + s."""
-    sigma, space = factor.below.sigma, basis
-    nothing = [np.zeros(one.lam.shape) for one in asked]
-    first = [_Judged(z, z, one.lam, one.Y) for one, z in zip(asked, nothing, strict=True)]
-    found = first[:]
-    left, added, pending = nothing[:], nothing[:], list(range(len(asked)))
-    for _ in range(STEPS):
+    pencil: Pencil,
+    sensors: scipy.sparse.csr_array,
+    basis: Basis,
+    factor: Factor,
+    asked: Sequence[Asked],
+) -> list[Certificate | None]:
+    """Return the certificates of some models, with the factor of another one.
+
+    They are None where a factor of their own is needed. Errors of eigenvalues are over lam + s.
+    """
+    shift, space = factor.below.sigma, basis
+    zeros = [np.zeros(one.lam.shape) for one in asked]
+    found = [_Judged(z, z, one.lam, one.Y) for one, z in zip(asked, zeros, strict=True)]
+    out: list[Certificate | None] = [None] * len(asked)
+    rounding = list(zip(zeros, zeros, strict=True))
+    pending = [k for k, one in enumerate(asked) if _steps(one, shift) <= STEPS]
+    for step in range(1, STEPS + 1):
         if not pending:
             break
-        space = _with_solutions(
-            pencil, space, factor, [(asked[k].theta, found[k]) for k in pending]
-        )
+        models = [(asked[k].theta, found[k]) for k in pending]
+        solved = _solutions(pencil, space, factor, models)
+        space = _with_solutions(pencil, space, factor, solved)
+        seen = np.hstack([sensors @ block for block in space.blocks])
         unsettled = []
-        for k in pending:
-            before, found[k] = found[k].eigenvalue, _judged(space, basis.columns, asked[k])
-            gain, total = found[k].eigenvalue - before, found[k].eigenvalue
-            ratio = np.divide(gain, added[k], out=np.zeros_like(gain), where=added[k] > 0)
-            ratio = np.clip(ratio, 0.0, SLOWEST)
-            left[k], added[k] = gain * ratio / (1 - ratio), gain
-            if not (asked[k].near or (gain <= SETTLED * total).all()):
+        for k, one in zip(pending, solved, strict=True):
+            of = asked[k]
+            proof = _Proof(of, shift, found[k].eigenvalue, gram(one.R, one.Z), step)
+            if step == 1:
+                K0 = pencil.K.at(of.theta)
+                rounding[k] = _rounding(K0, one.X, gram(one.X, one.R), of.lam)
+            try:
+                K, M = space.K.at(of.theta), space.M.at(of.theta)
+                found[k] = _judged(K, M, basis.columns, of.lam, of.Y)
+            except ModelError:
+                continue
+            if not proof.is_leading(found[k].eigenvalue):
+                continue
+            if proof.holds(found[k]):
+                out[k] = _certificate(proof, found[k], seen, rounding[k])
+            else:
                 unsettled.append(k)
         pending = unsettled
-    for k in pending:
-        theta = asked[k].theta
-        try:
-            A = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
-        except SingularMatrixError:
-            left[k] = np.full(left[k].shape, np.inf)
-            continue
-        own = Factor(theta, Shifted(sigma, A))
-        space = _with_solutions(pencil, basis, own, [(theta, first[k])])
-        found[k], left[k] = _judged(space, basis.columns, asked[k]), nothing[k]
-    return [
-        Certificate((one.eigenvalue + rest) / (of.lam - sigma), np.minimum(one.shape, 1.0))
-        for one, rest, of in zip(found, left, asked, strict=True)
-    ]
+    return out
 
 
-def _with_solutions(
+def own_estimate(
+    pencil: Pencil,
+    sensors: scipy.sparse.csr_array,
+    basis: Basis,
+    asked: Asked,
+    own: Shifted,
+) -> Certificate:
+    """Return the certificate of a model with its own factor of K - sigma M, sigma being the level.
+
+    Errors of eigenvalues are over lam + s, and contain the rounding of the basis where that is
+    greater than the one of the model.
+    """
+    m, shift = asked.below, basis.sigma
+    K, M = pencil.K.at(asked.theta), pencil.M.at(asked.theta)
+    X = basis.combine(asked.Y[:, :m])
+    try:
+        inner, mass = gram(X, times(K, X)), gram(X, times(M, X))
+        start = dense.decompose(inner, mass)
+        if start.lam.size < m:
+            return missing(asked.wanted.size)
+        lam = asked.lam[:m]
+        rounding = _rounding(K, X, inner - mass * lam, lam)
+        unit = np.sqrt(start.lam - shift)
+        of = replace(asked, lam=start.lam, Y=np.diag(unit))
+        S, n = combine(X, start.Phi / unit), m
+        found = _Judged(np.zeros(m), np.zeros(m), of.lam, of.Y)
+        for step in range(1, OWN_STEPS + 1):
+            X = combine(S, found.Y)
+            R = times(K, X) - times(M, X) * found.lam
+            Z = own.factor.solve(R)
+            proof = _Proof(of, shift, found.eigenvalue, gram(R, Z), step, own.sigma)
+            S = np.hstack([S, orthonormal(K, M, shift, S, Z)])
+            inner, mass = gram(S, times(K, S)), gram(S, times(M, S))
+            Y = np.vstack([of.Y, np.zeros((S.shape[1] - n, m))])[:n]
+            found = _judged(inner, mass, n, of.lam, Y)
+            if proof.holds(found):
+                return _certificate(proof, found, sensors @ S, rounding)
+    except ModelError:
+        pass
+    return missing(asked.wanted.size)
+
+
+@dataclass(frozen=True, eq=False)
+class _Proof:
+    """What shows how much of the errors of the lowest modes a space has found.
+
+    Attributes
+    ----------
+    of : the modes
+    shift : -s
+    known : (lowest,) their errors as the space before the last extension knew them
+    energy : R^T Z (lowest, lowest) of the residuals in that space
+    step : number of extensions
+    own : the shift of the factor, if it is that of the model itself
+    """
+
+    of: Asked
+    shift: float
+    known: Floats
+    energy: Floats
+    step: int
+    own: float | None = None
+
+    def is_leading(self, error: Floats) -> bool:
+        """Return whether leading orders tell, and the mode above the level belongs there."""
+        of = self.of
+        above = of.lam[of.below :] - error[of.below :] / FOUND
+        small = error <= LARGE * (of.lam - self.shift)
+        return bool(small.all() and (of.proved or (above.size and above[0] > of.sigma)))
+
+    def holds(self, found: _Judged) -> bool:
+        """Return whether a third of the errors of all modes in question is found."""
+        of = self.of
+        iterated = (1 - self._missed >= FOUND) if self.own is None else np.zeros(1, dtype=np.bool_)
+        eigenvalues = iterated | self._bounded(found.eigenvalue, FOUND)
+        shapes = FOUND * self.most(found) <= np.maximum(found.shape[: of.below], TOO_SMALL)
+        return bool((eigenvalues & shapes)[of.wanted].all())
+
+    def most(self, found: _Judged) -> Floats:
+        """Return the errors of shapes that what is left of the energy allows, (below,)."""
+        of, m, tiny = self.of, self.of.below, np.finfo(float).tiny
+        error = found.eigenvalue[:m]
+        left, lam = self._left(error), of.lam[:m] - error
+        distance = np.abs(lam[:, None] - lam)
+        np.fill_diagonal(distance, np.inf)
+        close = (left[:, None] / np.maximum(distance, tiny) ** 2).sum(axis=0) * left
+        outside = left / np.maximum(of.sigma - lam, tiny)
+        return np.sqrt(found.shape[:m] ** 2 + outside + close)
+
+    def _left(self, error: Floats) -> Floats:
+        """Return what is left of the errors of modes below the level at most, (below,)."""
+        missed = np.minimum(self._missed, MISSED) if self.own is None else MISSED
+        ratio = np.full(self.of.below, missed / (1 - missed))
+        for share in SHARES:
+            bounded = self._bounded(error, share)
+            ratio = np.where(bounded, np.minimum(ratio, 1 / share - 1), ratio)
+        out: Floats = error[: self.of.below] * ratio
+        return out
+
+    @property
+    def _missed(self) -> Floats:
+        """Share of the errors that the extensions have not found at most, to leading order."""
+        return 1 / np.cosh(self.step * _rate(self.of, self.shift)) ** 2
+
+    def _bounded(self, error: Floats, found: float) -> Bools:
+        """Return for which modes residuals show that at least a share of the error is found."""
+        of, m = self.of, self.of.below
+        known, energy = self.known[:m], self.energy[:m, :m]
+        rho, level = of.lam[:m] - self.shift, of.sigma - self.shift
+        share = error[:m] / np.maximum(rho - error[:m], np.finfo(float).tiny) / found
+        allowed = rho * np.maximum(share / (1 + share), NOTHING)
+        out = np.zeros(m, dtype=np.bool_)
+        for j in range(m):
+            ell = rho[j] - allowed[j]
+            above = rho - rho[j] + allowed[j] - known  # rho_k - ell, without cancellation
+            if self.own is None:
+                g = of.bounds[0] * (1 - ell / level)
+                if not g > 0:
+                    continue
+                D = ell / (rho - known)
+                P = energy * np.outer(D, D) / g
+            else:
+                above = above * (level - rho + known) / (level - ell)
+                P = energy
+            unit = 1 / np.sqrt(np.maximum(np.abs(above), np.finfo(float).tiny))
+            values = np.linalg.eigvalsh(np.diag(np.sign(above)) - P * np.outer(unit, unit))
+            out[j] = np.sum(values < 0) <= j
+        return out
+
+
+def _rate(of: Asked, shift: float) -> Floats:
+    """Return arcosh of (kappa + 1) / (kappa - 1) for each mode below the level, (below,)."""
+    g, b = of.bounds
+    gap = 1 - (of.lam[: of.below] - shift) / (of.sigma - shift)
+    inverse = np.clip(g * gap / b, 0.0, 0.999) if np.isfinite(b) else np.zeros(of.below)
+    return np.arccosh((1 + inverse) / (1 - inverse))
+
+
+def _steps(of: Asked, shift: float) -> float:
+    """Return after how many extensions enough is found of the errors, to leading order."""
+    rate = float(_rate(of, shift)[of.wanted].min())
+    return np.arccosh(1 / np.sqrt(1 - FOUND)) / rate if rate > 0 else np.inf
+
+
+def _certificate(
+    proof: _Proof, found: _Judged, seen: Floats, rounding: tuple[Floats, Floats]
+) -> Certificate:
+    """Return the certificate from the errors found; ``seen`` is the space at the sensors."""
+    of, m = proof.of, proof.of.below
+    error, tiny = found.eigenvalue[:m], np.finfo(float).tiny
+    shape = np.minimum(np.hypot(found.shape[:m], rounding[1][:m]), 1.0)
+    error = error + rounding[0][:m]
+    relative = error / np.maximum(of.lam[:m] - proof.shift - error, tiny)
+    phi = seen @ found.Y
+    return Certificate(relative[of.wanted], shape[of.wanted], found.lam, phi)
+
+
+def _rounding(
+    K: scipy.sparse.csr_array, X: Floats, forms: Floats, lam: Floats
+) -> tuple[Floats, Floats]:
+    """Return errors of eigenvalues and shapes of the basis beyond the rounding of the full model.
+
+    ``forms`` are X^T (K - lam M) X of its modes (modes, modes), which should vanish.
+    """
+    noise = np.finfo(float).eps * (K.diagonal() @ X**2)
+    forms = np.where(np.abs(forms) > ROUNDING * np.sqrt(np.outer(noise, noise)), forms, 0.0)
+    eigenvalue = np.abs(np.diag(forms))
+    distance = np.abs(lam[:, None] - lam)
+    np.fill_diagonal(distance, np.inf)
+    turned = forms / np.maximum(distance, np.finfo(float).tiny)
+    return eigenvalue, np.sqrt((turned**2).sum(axis=0))
+
+
+def _solutions(
     pencil: Pencil, space: Basis, factor: Factor, models: Sequence[tuple[Floats, _Judged]]
-) -> Basis:
-    """Return the space with the solutions for the residuals of some modes."""
+) -> list[_Solutions]:
+    """Return the solutions for the residuals of some modes of each model."""
     thetas = np.repeat([theta for theta, _ in models], [one.lam.size for _, one in models], axis=0)
     lam = np.concatenate([one.lam for _, one in models])
     X = space.combine(np.hstack([one.Y for _, one in models]))
     R = residuals(pencil, thetas, lam, X)
     Z = factor.below.factor.solve(R)
+    ends = np.cumsum([one.lam.size for _, one in models])[:-1]
+    parts = (np.split(A, ends, axis=1) for A in (X, R, Z))
+    return [_Solutions(*part) for part in zip(*parts, strict=True)]
+
+
+def _with_solutions(
+    pencil: Pencil, space: Basis, factor: Factor, solved: Sequence[_Solutions]
+) -> Basis:
+    """Return the space with the solutions for some residuals."""
+    R, Z = (np.hstack([getattr(one, name) for one in solved]) for name in ("R", "Z"))
     energy = np.maximum(np.einsum("nc,nc->c", R, Z), 0.0)
     unit = np.divide(1.0, np.sqrt(energy), out=np.zeros_like(energy), where=energy > 0)
-    R *= unit
-    Z *= unit
-    return factor.extend(pencil, space, Z, R, np.sqrt(SHARE))
+    return factor.extend(pencil, space, Z * unit, R * unit, np.sqrt(SHARE))
 
 
-def _judged(space: Basis, n: int, of: Asked) -> _Judged:
-    """Return how wrong modes of a basis are, given a space of which it is the first n columns."""
-    K, M = space.K.at(of.theta), space.M.at(of.theta)
-    modes, s = dense.decompose(K, M), of.wanted
-    r = K[n:, :n] @ of.Y - M[n:, :n] @ of.Y * of.lam
+def _judged(K: Floats, M: Floats, n: int, lam: Floats, Y: Floats) -> _Judged:
+    """Return how wrong the lowest modes of a basis are, given the matrices in a space.
+
+    The basis is the first n columns of the space, and the modes have the eigenvalues lam (modes,)
+    and coordinates Y (n, modes).
+    """
+    modes, s = dense.decompose(K, M), np.arange(lam.size)
+    r = K[n:, :n] @ Y - M[n:, :n] @ Y * lam
     mu, shift = modes.mu[:, None], modes.sigma
-    gap = 1 - (of.lam + shift) * mu  # (lam_j - lam) mu_j
+    gap = 1 - (lam + shift) * mu  # (lam_j - lam) mu_j
     c = modes.X[n:].T @ r
     close = np.abs(gap) < CLOSE
     c = np.divide(c, gap, out=np.zeros_like(c), where=~close)  # over the root of mu_j
     if close.any():
-        c = np.where(close, modes.X.T @ (M[:, :n] @ of.Y) / np.where(close, mu, 1.0), c)
+        c = np.where(close, modes.X.T @ (M[:, :n] @ Y) / np.where(close, mu, 1.0), c)
     lam = modes.lam[s]
-    c[s, np.arange(s.size)] = 0.0
+    c[s, s] = 0.0
     eigenvalue = (c**2 * (1 - (lam + shift) * mu)).sum(axis=0)
     shape = np.sqrt((c**2 * np.maximum(mu, 0.0)).sum(axis=0))
     return _Judged(np.maximum(eigenvalue, 0.0), shape, lam, modes.Phi[:, s])

@@ -4,7 +4,9 @@ from __future__ import annotations
 
 import time
 from collections.abc import Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 
 import numpy as np
 
@@ -14,8 +16,14 @@ from modefront.models.base import Counts
 from modefront.models.matrices import MatrixModel
 from modefront.models.ports import Ports, Transfer
 from modefront.models.reduced import window
-from modefront.models.reduced.basis import Basis, empty, extended, snapshot
-from modefront.models.reduced.certificate import NEAR, Asked, Certificate, estimates, missing
+from modefront.models.reduced.basis import Basis, Snapshot, empty, extended, snapshot
+from modefront.models.reduced.certificate import (
+    Asked,
+    Certificate,
+    estimates,
+    missing,
+    own_estimate,
+)
 from modefront.models.reduced.corrections import (
     Factor,
     Wanted,
@@ -23,15 +31,23 @@ from modefront.models.reduced.corrections import (
     with_derivatives,
     with_modes,
 )
+from modefront.models.reduced.instability import unstable
 from modefront.modes import dense
 from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.result import Modes
+from modefront.modes.spectrum import Shifted
 
 SHORTEST = 0.1
 """Length of the shortest direction of the basis, over the square root of the tolerance."""
 
 SPARE = 2
 """Modes in the basis beyond those that are used, without derivatives: they may enter later."""
+
+WIDE = 2
+"""Modes of the first snapshot over those that are used."""
+
+PROBES = 24
+"""Factorisations at most that look for modes which enter where two parameters drop together."""
 
 COARSE = 3e-3
 """Length of the shortest direction of the basis that stands for the bounds."""
@@ -61,7 +77,8 @@ class Snap:
     Attributes
     ----------
     theta : (p,) parameters of the model, or (models, p)
-    modes : how many modes are wanted
+    modes : how many modes are wanted; 0 where the stiffness matrix is indefinite, and the basis is
+        to know that
     enough : relative error of eigenvalues below which a model is left as it is
     """
 
@@ -82,10 +99,11 @@ class Snap:
 
 @dataclass(frozen=True)
 class Complete:
-    """The proof that at ``theta`` no modes below an eigenvalue are missing in the basis."""
+    """The proof that at ``theta`` as many modes as ``count`` are below an eigenvalue."""
 
     theta: Floats
     beyond: float
+    count: int
 
 
 @dataclass(frozen=True)
@@ -254,46 +272,100 @@ class ReducedModel:
     def distance(self, theta: Floats) -> float:
         """Return how far the nearest snapshot is, over the ranges of the parameters."""
         span = self.upper - self.lower
-        there = [at for one in self._wanted for at in one.models]
+        there = [at for one in self._wanted if one.modes for at in one.models]
         return float(min(np.linalg.norm((theta - at) / span) for at in there))
 
-    def certify(self, asked: Sequence[tuple[Floats, Ints]]) -> list[Certificate]:
+    def certify(self, asked: Sequence[tuple[Floats, Ints]], lowest: int = 0) -> list[Certificate]:
         """Return how wrong modes are at some parameters; see `Certificate`.
 
         ``asked`` are theta (p,) and the modes wanted there, counted from 0. Their errors are
-        infinite where a mode below them is missing. That is looked for by a factorisation where it
-        is in doubt, and what it proves speaks for the other models nearby.
+        infinite where one of the ``lowest`` modes, or a mode below the wanted ones, is missing.
+        That is looked for by a factorisation where it is in doubt, and what it proves speaks for
+        the other models nearby.
         """
         space, before = self._ready().space, self.full.counts.factorisations
         started = time.perf_counter()
         proofs = list(space.proofs)
-        most = max((wanted.size for _, wanted in asked), default=1)
-        width = max(1, together(self.size) // most)
+        counts = [max(lowest, int(wanted.max()) + 1) for _, wanted in asked]
+        width = max(1, together(self.size) // (max(counts, default=1) + 1))
         found: list[Certificate] = []
         for first in range(0, len(asked), width):
-            some = asked[first : first + width]
-            models = [self._asked(space, *one, proofs) for one in some]
-            there = [one for one in models if one is not None]
-            known = iter(estimates(self.full.pencil, space.basis, space.factor, there))
-            found += [
-                missing(wanted.size) if one is None else next(known)
-                for (_, wanted), one in zip(some, models, strict=True)
-            ]
+            some = range(first, min(first + width, len(asked)))
+            found += self._certified(space, [(*asked[k], counts[k]) for k in some], proofs)
         self.counts.certificates += len(asked)
         self.counts.factorisations += self.full.counts.factorisations - before
         self.counts.certificate_time += time.perf_counter() - started
         return found
 
-    def _asked(
-        self, space: _Space, theta: Floats, wanted: Ints, proofs: list[Complete]
-    ) -> Asked | None:
-        """Return the Ritz pairs that a certificate is of; None where modes are missing."""
-        basis = space.basis
-        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        if self._misses(basis, theta, ritz.lam, int(wanted.max()), proofs):
-            return None
-        near = window.condition(basis.K, theta, space.factor.theta) <= NEAR
-        return Asked(theta, wanted, ritz.lam[wanted], ritz.Phi[:, wanted], near)
+    def lacking(self, lowest: int) -> list[Floats]:
+        """Return models with two parameters at their lower bounds where modes are missing.
+
+        The modes at the bounds of single parameters are in the basis from the first. A mode of a
+        part that is held by several others may enter only where two of these drop together, and
+        no search in the basis would ever see that. Where it is not proved that none of the
+        ``lowest`` modes does so, a factorisation tells, of the most doubtful models.
+        """
+        space, before = self._ready().space, self.full.counts.factorisations
+        basis, proofs, doubtful = space.basis, list(space.proofs), []
+        for pair in combinations(range(self.nominal.size), 2):
+            theta = self.nominal.copy()
+            theta[list(pair)] = self.lower[list(pair)]
+            try:
+                ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+            except ModelError:
+                continue
+            last = min(lowest, ritz.lam.size - 1) - 1
+            if last >= 0 and not _knows(basis, proofs, theta, ritz.lam[last]):
+                reach = max(_reach(basis, one, theta) for one in proofs) / ritz.lam[last]
+                doubtful.append((reach, pair, theta, ritz.lam, last))
+        out = [
+            theta
+            for _, _, theta, lam, last in sorted(doubtful, key=lambda one: one[:2])[:PROBES]
+            if self._misses(basis, theta, lam, last, proofs)
+        ]
+        self.counts.factorisations += self.full.counts.factorisations - before
+        return out
+
+    def _certified(
+        self, space: _Space, some: Sequence[tuple[Floats, Ints, int]], proofs: list[Complete]
+    ) -> list[Certificate]:
+        """Return the certificates of some models, with the factor at hand where that will do."""
+        pencil, sensors = self.full.pencil, self.full.selection
+        found: dict[int, Certificate] = {}
+        shared: dict[int, Asked] = {}
+        for k, (theta, wanted, count) in enumerate(some):
+            near = _near(space, theta, wanted, count, proofs)
+            if near is None:
+                found[k] = self._certified_alone(space, theta, wanted, count, proofs)
+            else:
+                shared[k] = near
+        known = estimates(pencil, sensors, space.basis, space.factor, list(shared.values()))
+        for k, one in zip(shared, known, strict=True):
+            found[k] = one or self._certified_alone(space, *some[k], proofs)
+        return [found[k] for k in range(len(some))]
+
+    def _certified_alone(
+        self, space: _Space, theta: Floats, wanted: Ints, count: int, proofs: list[Complete]
+    ) -> Certificate:
+        """Return the certificate of a model with its own factor, which proves modes complete."""
+        basis, pencil = space.basis, self.full.pencil
+        try:
+            ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        except ModelError:
+            return missing(wanted.size)
+        gap = window.level(ritz.lam, count, basis.sigma, np.inf)
+        if gap is None:
+            return missing(wanted.size)
+        below, sigma = gap
+        try:
+            factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
+        except SingularMatrixError:
+            return missing(wanted.size)
+        if factor.negative != below:
+            return missing(wanted.size)
+        proofs.append(Complete(theta, sigma, below))
+        asked = Asked(theta, wanted, ritz.lam[:below], ritz.Phi[:, :below], below, sigma)
+        return own_estimate(pencil, self.full.selection, basis, asked, Shifted(sigma, factor))
 
     def _misses(
         self, basis: Basis, theta: Floats, lam: Floats, last: int, proofs: list[Complete]
@@ -312,7 +384,7 @@ class ReducedModel:
             return True
         if factor.negative != below:
             return True
-        proofs.append(Complete(theta, sigma))
+        proofs.append(Complete(theta, sigma, below))
         return False
 
     def _in_full(self, theta: Floats, count: int, derivatives: bool) -> Modes:
@@ -335,7 +407,10 @@ class ReducedModel:
         return self._state
 
     def _add(self, what: Snap) -> None:
-        """Compute another snapshot: with the factor at hand, or with factors of its own."""
+        """Compute another snapshot: with the factor at hand, or with factors of its own.
+
+        Models that have no modes are left out. Raises ModelError where all of them have none.
+        """
         taken = self._state.taken if self._state else ()
         before = self.full.counts.factorisations
         rest, solved, corrected, error = what.models, 0, 0, 0.0
@@ -343,6 +418,9 @@ class ReducedModel:
         if not space:
             space, corrected = self._solved(None, (), rest.pop(0), what.modes)
             solved, error = 1, np.inf
+        elif what.modes == 0:
+            space, rest, error = self._excluding(space, rest), [], np.inf
+        failed = 0
         while rest:
             found = self._corrected(space, rest, what)
             if found:
@@ -353,12 +431,41 @@ class ReducedModel:
             known, proofs = space.basis, space.proofs
             del space
             self._state = None  # its factor makes room for those of the snapshot
-            space, _ = self._solved(known, proofs, rest.pop(0), what.modes)
-            solved, error = solved + 1, np.inf
+            try:
+                space, _ = self._solved(known, proofs, rest.pop(0), what.modes)
+                solved, error = solved + 1, np.inf
+            except ModelError:
+                space, failed = self._refactored(known, proofs), failed + 1
+                if failed == len(what.models):
+                    self._state = self._sensed(taken, space)
+                    raise
         cost = self.full.counts.factorisations - before
-        sensed = np.hstack([self.full.selection @ block for block in space.basis.blocks])
         last = _Taken(what, solved, corrected, cost, error)
-        self._state = _State((*taken, last), space, sensed)
+        self._state = self._sensed((*taken, last), space)
+
+    def _sensed(self, taken: tuple[_Taken, ...], space: _Space) -> _State:
+        sensed = np.hstack([self.full.selection @ block for block in space.basis.blocks])
+        return _State(taken, space, sensed)
+
+    def _refactored(self, basis: Basis, proofs: tuple[Complete, ...]) -> _Space:
+        """Return the space with the factor in whose norm the basis is orthonormal."""
+        pencil = self.full.pencil
+        K, M = pencil.K.at(basis.theta), pencil.M.at(basis.theta)
+        below = Shifted(basis.sigma, pencil.factor(K.data, M.data, basis.sigma))
+        return _Space(basis, Factor(basis.theta, below), proofs)
+
+    def _excluding(self, space: _Space, models: list[Floats]) -> _Space:
+        """Return the space with directions in which the stiffness of some models is negative.
+
+        Raises ModelError where none is found.
+        """
+        basis, pencil = space.basis, self.full.pencil
+        found = [unstable(pencil, basis, space.factor, theta) for theta in models]
+        some = [X for X in found if X.shape[1]]
+        if not some:
+            raise ModelError("no direction of negative stiffness is found")
+        basis = extended(pencil, basis, np.hstack(some), self._shortest, self.capacity)
+        return _Space(basis, space.factor, space.proofs)
 
     def _solved(
         self,
@@ -370,7 +477,7 @@ class ReducedModel:
         """Return the space with the modes of a full solution, and how many others came with it."""
         started = time.perf_counter()
         pencil, count = self.full.pencil, modes + SPARE
-        one = snapshot(pencil, theta, min(count if known else max(count, self.count), self.size))
+        one = snapshot(pencil, theta, min(count, self.size)) if known else self._wide(theta, count)
         lowest = one.modes[:, : self.capacity]  # of directions of equal length, the lowest ones
         basis = extended(pencil, known or empty(pencil, one), lowest, self._shortest, self.capacity)
         solved = time.perf_counter()
@@ -380,7 +487,21 @@ class ReducedModel:
         bounds = [] if known else self._bounds(basis, theta, one.below.sigma)
         basis = self._at_bounds(basis, factor, bounds)
         self.counts.corrected_time += time.perf_counter() - solved
-        return _Space(basis, factor, (*proofs, Complete(theta, one.beyond))), len(bounds)
+        return _Space(basis, factor, (*proofs, Complete(theta, one.beyond, one.proved))), len(
+            bounds
+        )
+
+    def _wide(self, theta: Floats, count: int) -> Snapshot:
+        """Return the first snapshot, with more modes than are used.
+
+        They may enter from above where several parameters drop, and as long as they do not, they
+        spare factorisations: none is missing up to the lowest level to which they may fall.
+        """
+        count, pencil = max(count, self.count), self.full.pencil
+        try:
+            return snapshot(pencil, theta, min(WIDE * count, self.size))
+        except ModelError:
+            return snapshot(pencil, theta, min(count, self.size))
 
     def _corrected(
         self, space: _Space, models: list[Floats], what: Snap
@@ -400,7 +521,10 @@ class ReducedModel:
         new = tuple(proofs[len(space.proofs) :])
         count = what.modes + SPARE if new else what.modes  # all modes that a proof is of
         wanted = Wanted(0.0, self._shortest, self.capacity, what.enough)
-        found = with_modes(self.full.pencil, basis, factor, here, count, wanted)
+        try:
+            found = with_modes(self.full.pencil, basis, factor, here, count, wanted)
+        except ModelError:
+            return None  # a larger space sees that a matrix is indefinite
         if found is None:
             return None
         basis, errors = found
@@ -414,7 +538,10 @@ class ReducedModel:
         self, basis: Basis, factor: Factor, theta: Floats, modes: int, proofs: list[Complete]
     ) -> bool:
         """Return whether the factor at hand is of use for a snapshot, and no mode is missing."""
-        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        try:
+            ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        except ModelError:
+            return False
         return (
             ritz.lam.size >= modes + 2 * SPARE
             and window.condition_within(basis.K, basis.M, theta, factor.below.sigma) <= FAR
@@ -452,20 +579,55 @@ class ReducedModel:
         if not bounds or count < 1:
             return basis
         wanted = Wanted(SHARE, COARSE, capacity)
-        found = with_modes(self.full.pencil, basis, factor, bounds, count, wanted)
-        return found[0] if found else basis
+        try:
+            found = with_modes(self.full.pencil, basis, factor, bounds, count, wanted)
+            return found[0] if found else basis
+        except ModelError:  # a larger space sees that a matrix is indefinite at one of them
+            for theta in bounds:
+                with suppress(ModelError):
+                    found = with_modes(self.full.pencil, basis, factor, [theta], count, wanted)
+                    basis = found[0] if found else basis
+            return basis
 
     @property
     def _shortest(self) -> float:
         return SHORTEST * float(np.sqrt(self.tolerance))
 
 
+def _reach(basis: Basis, proof: Complete, theta: Floats) -> float:
+    """Return the level at ``theta`` below which a proof says that no modes are missing."""
+    return window.lower_bound(basis.K, basis.M, theta, proof.theta) * proof.beyond
+
+
 def _knows(basis: Basis, proofs: Sequence[Complete], theta: Floats, lam: float) -> bool:
     """Return whether proofs rule out that modes below ``lam`` are missing in the basis."""
-    K, M = basis.K, basis.M
-    return basis.semidefinite and any(
-        window.lower_bound(K, M, theta, one.theta) * one.beyond > lam for one in proofs
-    )
+    return basis.semidefinite and any(_reach(basis, one, theta) > lam for one in proofs)
+
+
+def _near(
+    space: _Space, theta: Floats, wanted: Ints, count: int, proofs: Sequence[Complete]
+) -> Asked | None:
+    """Return what the factor at hand may judge; None where modes may be missing without proof."""
+    basis, factor = space.basis, space.factor
+    if not basis.semidefinite:
+        return None
+    try:
+        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+    except ModelError:
+        return None
+    K, M, shift = basis.K, basis.M, factor.below.sigma
+    bounds = window.bounds(K, M, theta, factor.theta, shift)
+    found: Asked | None = None
+    for one in proofs:
+        most = _reach(basis, one, theta)
+        gap = window.level(ritz.lam, count, shift, most)
+        proved = int((ritz.lam < most).sum()) == one.count
+        if gap and (found is None or (proved, gap[1]) > (found.proved, found.sigma)):
+            below, sigma = gap
+            some = below + int(not proved)
+            Y = ritz.Phi[:, :some]
+            found = Asked(theta, wanted, ritz.lam[:some], Y, below, sigma, bounds, proved)
+    return found
 
 
 def _begins(wanted: Sequence[Snap], taken: Sequence[_Taken]) -> bool:

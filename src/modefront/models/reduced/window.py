@@ -2,13 +2,16 @@ r"""Whether modes may be missing below a Ritz value, without a factorisation whe
 
 Where the terms of K and M are positive semidefinite and their coefficients positive,
 
-.. math:: K(\theta) \ge a K(\theta_s), \quad M(\theta) \le b M(\theta_s), \quad
-    a = \min_j c_j(\theta) / c_j(\theta_s), \quad b = \max_j d_j(\theta) / d_j(\theta_s).
+.. math:: a K(\theta_s) \le K(\theta) \le b K(\theta_s), \quad
+    a = \min_j c_j(\theta) / c_j(\theta_s), \quad b = \max_j c_j(\theta) / c_j(\theta_s),
 
-The basis contains the modes of the snapshot s below :math:`\sigma_s`, which were proved to be all
-of them. What is outside the basis therefore has a Rayleigh quotient of at least
-:math:`\sigma_s\, a / b` at :math:`\theta`: a mode of a lower eigenvalue is not missing in it.
-Otherwise the negative eigenvalues of :math:`K - \sigma M` are counted by its factor (Sylvester).
+and M likewise with its own ratios. Of :math:`m_s` modes at :math:`\theta_s` below
+:math:`\sigma_s`, proved to be all of them, at most as many are below :math:`\tau = \sigma_s a_K /
+b_M` at :math:`\theta`, and what is outside the basis has a Rayleigh quotient of at least
+:math:`\tau` there. All modes below some :math:`\sigma \le \tau` are known where the basis has
+:math:`m_s` Ritz values below :math:`\tau`, or where the first Ritz value above :math:`\sigma` is
+exact enough not to belong below. Otherwise the negative eigenvalues of :math:`K - \sigma M` are
+counted by its factor (Sylvester).
 """
 
 from __future__ import annotations
@@ -25,6 +28,12 @@ thin shells of many elements, that is a good deal."""
 GAP = 1e-3
 """Relative gap of Ritz values in which sigma may lie."""
 
+WIDE = 0.2
+"""Relative gap that is wide enough not to look for another one."""
+
+LATER = 4
+"""Gaps above the last mode in question among which the widest is taken."""
+
 
 def semidefinite(A: DenseAffine) -> bool:
     """Return whether no projected term shows that the term is indefinite."""
@@ -32,20 +41,31 @@ def semidefinite(A: DenseAffine) -> bool:
     return bool((values[:, 0] >= -INDEFINITE * np.abs(values).max(axis=1)).all())
 
 
+def ratios(A: DenseAffine, at: Floats, snapshot: Floats) -> tuple[float, float]:
+    """Return the least and the greatest ratio of coefficients at two parameters.
+
+    They are 0 and infinite where nothing is known, since a coefficient is negative.
+    """
+    now, then = A.coefficients.values(at), A.coefficients.values(snapshot)
+    there = (now != 0) | (then != 0)
+    now, then = now[there], then[there]
+    if not (np.isfinite(now).all() and np.isfinite(then).all()) or min(now.min(), then.min()) < 0:
+        return 0.0, np.inf
+    ratio = np.divide(now, then, out=np.full(now.shape, np.inf), where=then > 0)
+    return float(ratio.min()), float(ratio.max())
+
+
 def lower_bound(K: DenseAffine, M: DenseAffine, at: Floats, snapshot: Floats) -> float:
     """Return a / b, the least ratio of eigenvalues at two parameters; 0 where nothing is known."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        c = K.coefficients.values(at) / K.coefficients.values(snapshot)
-        d = M.coefficients.values(at) / M.coefficients.values(snapshot)
-    positive = np.isfinite(c).all() and np.isfinite(d).all() and (d > 0).all()
-    return float(max(c.min(), 0.0) / d.max()) if positive else 0.0
+    return ratios(K, at, snapshot)[0] / ratios(M, at, snapshot)[1]
 
 
-def condition(K: DenseAffine, at: Floats, snapshot: Floats) -> float:
-    """Return the greatest ratio of coefficients over the least; infinite where one is negative."""
-    with np.errstate(divide="ignore", invalid="ignore"):
-        c = K.coefficients.values(at) / K.coefficients.values(snapshot)
-        return float(c.max() / c.min()) if (c > 0).all() else np.inf
+def bounds(
+    K: DenseAffine, M: DenseAffine, at: Floats, snapshot: Floats, sigma: float
+) -> tuple[float, float]:
+    """Return g and b with g A <= K - sigma M <= b A for A at the snapshot and sigma <= 0."""
+    some = [ratios(A, at, snapshot) for A in ((K,) if sigma == 0 else (K, M))]
+    return min(g for g, _ in some), max(b for _, b in some)
 
 
 def condition_within(K: DenseAffine, M: DenseAffine, at: Floats, sigma: float) -> float:
@@ -68,3 +88,20 @@ def gap_above(lam: Floats, last: int) -> tuple[int, float]:
     near = int(np.argmax(gap[:2]))
     at = last + (near if gap[near] > GAP else int(np.argmax(gap)))
     return at + 1, float(lam[at] + 0.5 * (lam[at + 1] - lam[at]))
+
+
+def level(lam: Floats, count: int, shift: float, most: float) -> tuple[int, float] | None:
+    """Return how many Ritz values are below a sigma above the lowest ``count``, and sigma.
+
+    It is in the first wide gap above these, or in the widest of the next ones, and at most
+    ``most``; gaps are relative to lam - shift. None where there is none.
+    """
+    found, widest = None, GAP
+    for k in range(count, min(count + LATER, lam.size)):
+        sigma = min(most, 0.5 * (lam[k - 1] + lam[k]))
+        gap = (sigma - lam[k - 1]) / max(sigma - shift, np.finfo(float).tiny)
+        if gap > widest:
+            found, widest = (k, float(sigma)), gap
+        if widest > WIDE:
+            break
+    return found
