@@ -13,7 +13,7 @@ import pytest
 from independent import Equation, Reference, agreement, edge_reference
 from updating_problems import chain_case
 
-from modefront.solvers.edges import edge, sample, typical_sizes
+from modefront.solvers.edges import edge
 from modefront.solvers.explore import Search
 from modefront.solvers.sqp import Solution
 
@@ -38,9 +38,7 @@ def reference(key: Key, i: int) -> Reference:
 
 
 def found(key: Key, i: int) -> Solution:
-    problem = equation(key).case.problem
-    sizes = typical_sizes(sample(problem, np.random.default_rng(0)))
-    assert sizes is not None
+    problem, sizes = equation(key).case.problem, reference(key, i).sizes
     there = edge(problem, i, sizes, np.random.default_rng(i), SEARCH)
     assert there is not None
     return there.best

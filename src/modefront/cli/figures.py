@@ -124,10 +124,12 @@ class _Picture:
 class _Along:
     """The abscissa: front points by number, then models with weights of their own."""
 
-    def __init__(self, front: list[int], others: list[int], labels: list[str], optimal: Bools):
+    def __init__(
+        self, front: list[int], others: list[int], labels: list[str], optimal: Bools, best: int
+    ):
         self.front, self.others, self.optimal = front, others, optimal
         self.names = [_plain(labels[i]).removesuffix("-weights") for i in others]
-        self.best = labels.index("optimal-weights") if "optimal-weights" in labels else None
+        self.best = best
         self.beside = len(front) + 1.6 + 1.6 * np.arange(len(others))
 
     @classmethod
@@ -136,7 +138,8 @@ class _Along:
         front = [i for i, x in enumerate(labels) if x.startswith("nbi-")]
         ends = ("nbi-", "edge-") if front else ()
         others = [i for i, x in enumerate(labels) if not x.startswith(ends)]
-        return cls(front, others, labels, np.asarray(data["pareto"].values, dtype=np.bool_))
+        best = labels.index(str(data.attrs["reference"]))
+        return cls(front, others, labels, np.asarray(data["pareto"].values, dtype=np.bool_), best)
 
     def panels(self, figure: Figure, picture: _Picture) -> None:
         """Draw a panel for each column of values."""
@@ -189,9 +192,8 @@ class _Along:
 
     def bar(self, axes: Axes, ends: Floats, colour: str) -> None:
         """Draw a bar at the optimally weighted model; ends are (2, points)."""
-        if self.best is not None:
-            x = self.beside[self.others.index(self.best)]
-            axes.plot([x, x], ends[:, self.best], "-_", color=colour, lw=1.2, ms=6)
+        x = self.beside[self.others.index(self.best)]
+        axes.plot([x, x], ends[:, self.best], "-_", color=colour, lw=1.2, ms=6)
 
     def finish(self, figure: Figure, grid: Sequence[Axes], columns: int) -> None:
         """Put ticks and labels on the abscissae, and one legend below the panels."""

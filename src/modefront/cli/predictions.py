@@ -85,8 +85,8 @@ class _Posterior:
         out = []
         if self.known:
             out.append(
-                "posterior: standard deviation around optimal-weights; of P as a factor, e to that "
-                "of ln P"
+                f"posterior: standard deviation around {self.data.attrs['reference']}; of P as a "
+                "factor, e to that of ln P"
             )
         if self.drawn:
             out.append(

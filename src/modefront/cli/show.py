@@ -114,29 +114,28 @@ def remarks(data: xr.Dataset, where: str | None = None) -> list[str]:
     if data.attrs["front_is_a_point"]:
         out.append("one model is the best in every group: the front is a single point")
     exact = [name for name, value in zip(groups, data["exact"].values, strict=True) if value]
-    if exact:
+    if exact and "optimal-weights" in labels:
         out.append(
-            f"some model fits {', '.join(exact)} exactly: sum a ln J has no lower bound there; "
-            + (
-                "optimal-weights is the regular minimum"
-                if "optimal-weights" in labels
-                else "and no regular minimum was found, so there is no optimally weighted model"
-            )
+            f"the model can fit {', '.join(exact)} exactly, where the optimal weights are not "
+            "defined: optimal-weights is the regular minimum"
         )
     if "optimal-weights" in labels:
         out.append(_iteration(data))
     for i in range(0, data.sizes.get("end", 0), 2):
         end, start = data["end_objective"].values[i : i + 2]
-        out.append(
-            f"the front has a gap: piece {i // 2 + 1} ends at J = {_vector(end)}, "
-            f"piece {i // 2 + 2} starts at J = {_vector(start)}"
-        )
+        if np.isfinite([end, start]).all():
+            out.append(
+                f"the front has a gap: branch {i // 2 + 1} ends at J = {_vector(end)}, "
+                f"branch {i // 2 + 2} starts at J = {_vector(start)}"
+            )
     if "piece" in data:
-        inside = (data["piece"].values == 0) & data["pareto"].values
+        on_front = np.isin(np.arange(data.sizes["point"]), front_points(data))
+        dominated = ~data["pareto"].values & ~data["dominated_among_front"].values
+        inside = on_front & dominated
         if inside.any():
             out.append(
-                f"{', '.join(data['label'].values[inside])}: in the gap, though no other point "
-                "dominates; the start of the next piece does"
+                f"{', '.join(data['label'].values[inside])}: dominated by a known model that is "
+                "no point of the front, such as the start of a branch"
             )
     wanted = data.attrs.get("refined", np.inf)
     if data.attrs["largest_gap"] > wanted:

@@ -31,7 +31,8 @@ def print_knowledge(console: Console, data: xr.Dataset) -> None:
     if "posterior_std" in data:
         modes = data["mode"].values
         rows = table(
-            "posterior around optimal-weights: standard deviations, variances of errors unknown",
+            f"posterior around {safe(data.attrs['reference'])}: standard deviations, variances of "
+            "errors unknown",
             ["", *names, *(f"f{r} Hz" for r in modes), *(f"MAC {r}" for r in modes)],
         )
         values = [data[f"posterior_{name}std"].values for name in ("", "frequency_", "mac_")]

@@ -292,6 +292,9 @@ class _Metered:
         self.spent += 1
         return self.problem.evaluate(theta, derivatives=derivatives)
 
+    def on_branch(self, branch: tuple[int, ...]) -> Problem:
+        return self.problem.on_branch(branch)
+
 
 def equally_good(
     problem: Problem,

@@ -25,7 +25,7 @@ from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution, begin, solve
 from modefront.study.doubtful import with_neighbours
-from modefront.study.run import OPTIMAL, Front, Labelled, generator
+from modefront.study.run import BOUNDED, OPTIMAL, Front, Labelled, generator
 from modefront.study.tables.identifiability import Identifiability
 from modefront.study.tables.uncertainty import Uncertainty
 from modefront.uncertainty.bootstrap import redraw
@@ -131,9 +131,10 @@ def learn(
         alone = front_scatter(problem, known, a, sizes, differentiate)
         scatter = with_neighbours(front, known, alone, a, sizes)
     posterior = None
-    if OPTIMAL in labels:
-        local = differentiate(OPTIMAL, labels[OPTIMAL], None)
-        posterior = laplace(problem, local[0], a) if local else None
+    if front.reference in (OPTIMAL, BOUNDED):
+        local = differentiate(front.reference, labels[front.reference], None)
+        floor = 0.0 if front.floor is None else front.floor
+        posterior = laplace(problem, local[0], a, floor) if local else None
     replicates = []
     if source is not None and front.scale is not None:
         for b in range(uncertainty.bootstrap):

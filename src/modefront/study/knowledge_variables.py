@@ -29,7 +29,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.manifold import Extent, Manifold
 from modefront.solvers.sqp import Solution
 from modefront.study.knowledge import PART, Knowledge, followed
-from modefront.study.run import OPTIMAL, Front
+from modefront.study.run import BOUNDED, EQUAL, OPTIMAL, Front
 from modefront.uncertainty.doubts import Doubt
 from modefront.uncertainty.prediction import linear
 
@@ -39,8 +39,10 @@ Variables = dict[str, tuple[tuple[str, ...], object, str]]
 Finding = tuple[int, str]
 """A sentence, and where it belongs among the others: the least is the most important."""
 
-IDLE, ALL_DATA, MANIFOLD, FLAT, OF_GROUP, SPENT, ALIKE, SCATTER, DOUBTFUL, DETERMINED = range(10)
-"""Parameters without effect, what all data leave open, ... what is determined in full."""
+WEIGHTS, IDLE, ALL_DATA, MANIFOLD, FLAT, OF_GROUP, SPENT, ALIKE, SCATTER, DOUBTFUL = range(10)
+DETERMINED = 10
+"""No optimal weights or unknown ends of branches, parameters without effect, what all data leave
+open, ... what is determined in full."""
 
 ALL = "all data"
 FEW = 10
@@ -58,12 +60,14 @@ def known_variables(problem: UpdatingProblem, front: Front, knowledge: Knowledge
     out: Variables = {}
     said: list[Finding] = []
     for found, more in (
+        ({}, _weights(problem, front)),
+        ({}, _unknown_ends(front)),
         _identifiability(problem, front),
         (_bounds(problem, front), []),
         _flat(problem, front, knowledge),
         _manifolds(problem, knowledge),
         _scatter(problem, front, knowledge),
-        _posterior(problem, knowledge),
+        _posterior(problem, front, knowledge),
         _replicates(problem, front, knowledge),
     ):
         out |= found
@@ -74,28 +78,63 @@ def known_variables(problem: UpdatingProblem, front: Front, knowledge: Knowledge
     return out
 
 
+def _weights(problem: UpdatingProblem, front: Front) -> list[Finding]:
+    """Return why there is no optimally weighted model, where there is none."""
+    if front.reference == OPTIMAL:
+        return []
+    exact = [name for name, fits in zip(problem.objectives, front.exact, strict=True) if fits]
+    if exact:
+        why = (
+            f"the model can fit {enumeration(exact)} exactly, where the optimal weights are not "
+            "defined, and no regular minimum of sum a ln J is better than the models of the front"
+        )
+    else:
+        why = "no minimum of sum a ln J was found that is better than the models of the front"
+    if front.reference == BOUNDED:
+        then = (
+            f"{BOUNDED} takes the place of {OPTIMAL}: no group counts as known better than the "
+            "errors of its data allow"
+        )
+    else:
+        then = (
+            f"{EQUAL} takes the place of {OPTIMAL}; standard deviations in the data, or several "
+            f"data sets, give {BOUNDED}, which are better"
+        )
+    return [(WEIGHTS, f"there is no {OPTIMAL}: {why}. {then}")]
+
+
+def _unknown_ends(front: Front) -> list[Finding]:
+    """Return which ends of branches are not known."""
+    out = []
+    for k, gap in enumerate(front.gaps):
+        if gap.end is None:
+            out.append(f"the front has a gap: where branch {k + 1} ends is not known")
+        if gap.start is None:
+            out.append(f"the front has a gap: where branch {k + 2} starts is not known")
+    return [(WEIGHTS, text) for text in out]
+
+
 def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables, list[Finding]]:
-    """Return combinations at the optimally weighted model, else at each edge for its own group."""
+    """Return combinations at the model that the data prefer and at each edge; say the first."""
     names, groups = problem.model.parameters, problem.groups
     labels = dict(front.points)
     edges = [f"edge-{name}" for name in problem.objectives]
-    places = [OPTIMAL] if OPTIMAL in labels else []
     rows: list[tuple[str, str, Combination, Floats]] = []
     said: list[Finding] = []
     effects = np.zeros((len(names), len(names)))
-    for place in [*places, *edges]:
+    for place in dict.fromkeys([front.reference, *edges]):
         at = labels[place].at
         weights = optimal_weights(problem.properties, at.J)
         scale = scale_at(problem, at.theta)
         idle = without_effect(problem, at, scale)
-        main = place == (places or edges)[0]
+        main = place == front.reference
         if main:
             said += [(IDLE, f"at {place}: {text}") for text in no_effect_in_words(idle, names)]
         for i in [*range(len(groups)), None] if len(groups) > 1 else [0]:
             of = ALL if i is None else groups[i].name
             found = combinations_at(problem, at, i, weights, scale)
             rows += [(place, of, one, scale.unit) for one in found]
-            if place == OPTIMAL or (main and i is None) or (not places and place == f"edge-{of}"):
+            if main:
                 thing = measured_thing(groups if i is None else [groups[i]])
                 text = f"at {place}: {summary(of, thing, found, names, scale, idle)}"
                 full = determined(found) == (len(names) - len(idle), 0)
@@ -105,7 +144,7 @@ def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables,
             effects[idle] = effects[:, idle] = 0.0
             alike = alike_in_words(effects, names, idle)
             said += [(ALIKE, f"at {place}: {text}") for text in alike]
-    place = (places or edges)[0]
+    place = front.reference
     active = [j for j in range(len(names)) if effects[j, j] > 0]
     meaning = "combination of parameters: changes in units of combination_unit, length 1"
     return {
@@ -177,6 +216,15 @@ def _flat(
                 text + f"{PART}1 to {PART}{len(found.points)} are the front without them"
                 if found.points
                 else text + "without them it is one point"
+            )
+    for name, count in zip(
+        problem.objectives, (found.uncut if found else flat).tolist(), strict=True
+    ):
+        if count and found:
+            said.append(
+                f"the front is flat at edge-{name}: {count} of {total} points are within "
+                f"{100 * knowledge.tolerance:g} % of the least J of {name}; where that part ends "
+                "was not found, so it is not cut"
             )
     return {
         "front_part": (
@@ -410,7 +458,9 @@ def left_open(free: Floats) -> Bools:
     return out
 
 
-def _posterior(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variables, list[Finding]]:
+def _posterior(
+    problem: UpdatingProblem, front: Front, knowledge: Knowledge
+) -> tuple[Variables, list[Finding]]:
     found = knowledge.posterior
     if found is None:
         return {}, []
@@ -419,13 +469,13 @@ def _posterior(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variable
     held = [name for name, at in zip(names, found.held, strict=True) if at]
     if held:
         said.append(f"the posterior is given {enumeration(held)} at a bound")
-    slopes = knowledge.slopes[OPTIMAL]
+    slopes = knowledge.slopes[front.reference]
     return {
         "posterior_std": (
             ("parameter",),
             _std(found.covariance, found.free),
-            "standard deviation of theta around optimal-weights, with the variance of the errors "
-            "of each group unknown; infinite where no data determine it",
+            f"standard deviation of theta around {front.reference}, with the variance of the "
+            "errors of each group unknown; infinite where no data determine it",
         ),
         "posterior_covariance": (
             ("parameter", "parameter_other"),

@@ -16,7 +16,7 @@ from modefront.identifiability.words import enumeration
 from modefront.predict import Passage, PeakResponse, Prediction
 from modefront.study.asking import FAILED, Asking
 from modefront.study.knowledge_variables import Variables, left_open
-from modefront.study.run import OPTIMAL, generator
+from modefront.study.run import generator
 from modefront.uncertainty.differences import Stencil, stencil
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.prediction import SUMMARY, TruncationError, draw, lognormal_std, summary
@@ -68,17 +68,19 @@ def around(data: xr.Dataset, asking: Asking, posterior: Posterior | None, draws:
         missing = "there is no posterior: no models are drawn from it"
         return Around(None, none, [missing] if draws else [])
     said = []
-    theta = data["theta"].values[_optimal(data)]
+    theta = data["theta"].values[_reference(data)]
     parted = zip(problem.model.parameters, left_open(posterior.free), strict=True)
     names = [name for name, is_open in parted if is_open]
     if names:
         said.append(
             "the posterior of predictions is that of what the data determine: where they leave "
-            f"{enumeration(names)} open, the models are those of {OPTIMAL}"
+            f"{enumeration(names)} open, the models are those of {data.attrs['reference']}"
         )
     differences = stencil(theta, posterior.axes, problem.lower, problem.upper)
     if differences is None:
-        said.append(f"{OPTIMAL} has no room for differences between bounds: see draws")
+        said.append(
+            f"{data.attrs['reference']} has no room for differences between bounds: see draws"
+        )
     drawn = none
     if draws:
         rng = generator(asking.seed, "posterior")
@@ -124,8 +126,9 @@ def predicted_around(data: xr.Dataset, asking: Asking, models: Around) -> xr.Dat
     return out.assign_coords(coordinates)
 
 
-def _optimal(data: xr.Dataset) -> int:
-    return [str(x) for x in data["label"].values].index(OPTIMAL)
+def _reference(data: xr.Dataset) -> int:
+    """Return the position of the model around which the posterior lies."""
+    return [str(x) for x in data["label"].values].index(data.attrs["reference"])
 
 
 def _answers(
@@ -165,7 +168,7 @@ def _to_first_order(
     unknown = np.zeros(data.sizes[kind.name], dtype=np.bool_)
     both = (kind.name, f"{kind.name}_other")
     for variable, name in kind.variables.items():
-        middle, beside = data[variable].values[_optimal(data)], values[name].reshape(m, 2, -1)
+        middle, beside = data[variable].values[_reference(data)], values[name].reshape(m, 2, -1)
         logarithmic = variable == "failure_probability"
         with np.errstate(divide="ignore", invalid="ignore"):
             change = (np.log(middle), np.log(beside)) if logarithmic else (middle, beside)
@@ -174,7 +177,7 @@ def _to_first_order(
         C = S @ S.T
         std = np.sqrt(np.diag(C))
         unknown |= np.isfinite(middle) & np.isnan(std)
-        by = f"by the posterior around {OPTIMAL}, to first order"
+        by = f"by the posterior around {data.attrs['reference']}, to first order"
         if logarithmic:
             out["posterior_failure_log_std"] = (
                 (kind.name,),
@@ -186,7 +189,8 @@ def _to_first_order(
                 (kind.name,),
                 lognormal_std(middle, std),
                 "standard deviation of failure_probability that follows where ln P is Gaussian, "
-                f"of standard deviation s: P sqrt(e^(s^2) (e^(s^2) - 1)), P that of {OPTIMAL}",
+                "of standard deviation s: P sqrt(e^(s^2) (e^(s^2) - 1)), P that of "
+                f"{data.attrs['reference']}",
             )
         else:
             out[f"posterior_{variable}_std"] = (
@@ -196,8 +200,8 @@ def _to_first_order(
             )
             out[f"posterior_{variable}_covariance"] = (both, C, f"covariance of {variable} {by}")
     said = [
-        f"no posterior standard deviation of {name}: models within one of {OPTIMAL} cannot be "
-        "solved, or have no such peak, or no failures"
+        f"no posterior standard deviation of {name}: models within one of "
+        f"{data.attrs['reference']} cannot be solved, or have no such peak, or no failures"
         for name in data[kind.name].values[unknown]
     ]
     return out, said
@@ -236,7 +240,7 @@ def _of_draws(
     ]
     first = next(iter(kind.variables.values()))
     missing = np.isnan(values[first]).sum(axis=0)
-    missing[np.isnan(data[next(iter(kind.variables))].values[_optimal(data)])] = 0
+    missing[np.isnan(data[next(iter(kind.variables))].values[_reference(data)])] = 0
     missing -= np.repeat([failed[one.name] for one in predictions], [x.size for x in predictions])
     said += [
         f"{count} of {n} models drawn from the posterior have no peak for {name}: they are left out"

@@ -19,9 +19,6 @@ from modefront.study.store import Arrays
 RANGE = ("minimum", "maximum", "spread")
 """Over the Pareto-optimal models; the spread is the ratio of greatest to least."""
 
-REPRESENTATIVES = ("optimal-weights", "equal-weights")
-"""Labels of the model at which the time step is halved: the first that there is."""
-
 Variables = Mapping[str, tuple[tuple[str, ...], Any, str]]
 
 
@@ -49,7 +46,7 @@ def predicted(data: xr.Dataset, asking: Asking) -> xr.Dataset:
         return data
     models = list(zip(map(str, data["label"].values), data["theta"].values, strict=True))
     labels = [label for label, _ in models]
-    halved = next((labels.index(x) for x in REPRESENTATIVES if x in labels), 0)
+    halved = labels.index(data.attrs["reference"])  # where the time step is halved
     optimal = data["pareto"].values
 
     def found(one: Prediction) -> list[Arrays]:

@@ -31,7 +31,7 @@ VARIABLES = (
 )
 ATTRIBUTES = (
     *("version", "seed", "method", "model_evaluations", "front_evaluations", "front_is_a_point"),
-    *("hypervolume", "igd_plus", "largest_gap"),
+    *("hypervolume", "igd_plus", "largest_gap", "reference"),
 )
 """What every file of results holds."""
 
@@ -118,6 +118,7 @@ def dataset(problem: UpdatingProblem, front: Front, knowledge: Knowledge) -> xr.
             name: (dims, np.asarray(values), {"long_name": meaning})
             for name, (dims, values, meaning) in variables.items()
         },
+        attrs={"reference": front.reference},
         coords={
             "parameter": list(problem.model.parameters),
             "group": groups,
