@@ -26,6 +26,17 @@ multipliers may be absurd: they are bounded, and a step that leaves the constrai
 than the start did is shortened. A stationary point with clearly negative curvature is tried to be
 left once.
 
+Where parameters outnumber data, minima lie in valleys that bend, and a step along the valley ends
+on its slope: residuals change by :math:`\tfrac12 s^T \partial^2 r\, s`, which no step of any length
+worth making survives. A poor step of a slow solution is therefore corrected: with the derivatives
+at its end, the shortest second step brings the residuals to what the first one had predicted,
+
+.. math:: \partial r(\theta + s)\, s_2 = r(\theta) + \partial r(\theta)\, s - r(\theta + s) ,
+
+in the least-squares sense, the residuals of each objective times the root of its weight, and
+together with the constraints (a second-order correction; Nocedal & Wright, *Numerical
+Optimization*, 2006, section 15.6, where it is for constraints alone). Both steps are judged as one.
+
 Variables are :math:`u = (\theta - lower) / (upper - lower)`.
 """
 
