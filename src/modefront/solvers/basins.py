@@ -41,6 +41,7 @@ import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.solvers.advance import BETTER, Simplex, simplex
+from modefront.solvers.archive import Archive
 from modefront.solvers.attainment import Attainment
 from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.dominance import nondominated
@@ -213,28 +214,42 @@ def explore_between(
     rng: np.random.Generator,
     search: Search,
     checkpoint: Checkpoint = compute_always,
+    visited: Archive | None = None,
 ) -> list[Solution]:
     """Return the points of a front by `nbi`, better ones in their places, and others besides.
 
-    ``minima`` are what each programme solved so far has found. Where nothing tells of other
-    basins, the points are returned as they are, at the price of a few evaluations; so they are
-    where the search allows no starts. Of two objectives, the points are in their order along the
+    ``minima`` are what each programme solved so far has found, ``visited`` are all models that
+    were evaluated: points that one of these is ahead of are solved again from it. Where nothing
+    tells of other basins, nothing else is done, at the price of a few evaluations; nor where the
+    search allows no starts. Of two objectives, the points are in their order along the
     front, and models that are ahead of some point or lie between points are points as well.
     """
-    if search.limit == 0 or len(points) < len(target.scale):
+    if len(points) < len(target.scale):
         return list(points)
     between = _Between(problem, target, lattice, checkpoint)
+    points = between.competed(points, _models_in(visited))
+    if search.limit == 0:
+        return points
     known = [*points, *(one for found in minima for one in found)]
     many = max((_different(found, target.scale) for found in minima), default=0) >= MINIMA
     doubtful = sum(not one.converged for one in points) >= DOUBTFUL
     if not (many or doubtful):
         probes = between.probes(points, rng)
         if not between.ahead(probes, models_of(known)):
-            return list(points)
+            return points
         known += probes
-    models = between.evolved(models_of(known), rng, EFFORT * search.limit)
-    better = between.competed(points, models)
+    everything, more = models_of(known), _models_in(visited)
+    everything = everything if more is None else everything.joined(more)
+    models = between.evolved(everything, rng, EFFORT * search.limit)
+    better = between.competed(points, models, "-evolved")
     return between.with_others(better, models)
+
+
+def _models_in(visited: Archive | None) -> Models | None:
+    """Return the models of an archive, of which none is followed."""
+    if visited is None:
+        return None
+    return Models(visited.theta, visited.J, np.zeros(len(visited.J), dtype=np.bool_))
 
 
 def _different(found: Sequence[Solution], scale: Floats) -> int:
@@ -274,6 +289,15 @@ class _Between:
     def excess(self, one: Solution, J: Floats) -> Floats:
         """Return the excess of models J (m, n) on the normal of a point of the front, (m,)."""
         return place_on_normals(self.target, self.own_place(one)[None], J)[:, 0]
+
+    def is_near(self, one: Solution, J: Floats) -> Bools:
+        """Return which models J (m, n) are projected from next to the place of a point.
+
+        Others that dominate it, as in a gap of the front, lie on no way to its normal.
+        """
+        places = np.array([self.target.place(row) for row in J])
+        away = np.abs(places - self.own_place(one)).max(axis=1)
+        return np.asarray(away <= 1 / self.lattice.divisions)
 
     def ahead(self, probes: Sequence[Solution], known: Models) -> bool:
         """Return whether a probe is ahead of all known models where it was to come to."""
@@ -365,17 +389,22 @@ class _Between:
                 break
         return models
 
-    def competed(self, points: Sequence[Solution], models: Models) -> list[Solution]:
+    def competed(
+        self, points: Sequence[Solution], models: Models | None, name: str = ""
+    ) -> list[Solution]:
         """Return the points, each solved again from a model that is ahead of it, if any is."""
         current = list(points)
         tried: set[tuple[int, bytes]] = set()
         for turn in range(ROUNDS):
-            everything = models.joined(models_of([one for one in current if one.at.feasible]))
+            everything = models_of([one for one in current if one.at.feasible])
+            everything = everything if models is None else models.joined(everything)
             starts = {}
             for k, one in enumerate(current):
                 if one.beta is None:
                     continue
-                excess = self.excess(one, everything.J)
+                excess = np.where(
+                    self.is_near(one, everything.J), self.excess(one, everything.J), np.inf
+                )
                 best = int(excess.argmin())
                 own = self.excess(one, one.at.J[None])[0] if one.at.feasible else np.inf
                 key = (k, everything.theta[best].tobytes())
@@ -385,7 +414,7 @@ class _Between:
             if not starts:
                 break
             again = partial(self._again, current, starts)
-            found = self.checkpoint(f"nbi-between-again-{turn + 1}", again)
+            found = self.checkpoint(f"nbi-between-again-{turn + 1}{name}", again)
             for k, one in zip(starts, found, strict=True):
                 if self._better(one, current[k]):
                     current[k] = one

@@ -231,7 +231,9 @@ def pareto_front(
             solved = nbi(problem, bests, target, lattice, named, minima_of_one, before=before)
             rng = generator(seed, "between")
             found_by = [*(one.minima for one in edges), [one for _, one in models]]
-            along = explore_between(problem, target, solved, found_by, lattice, rng, search, named)
+            along = explore_between(
+                problem, target, solved, found_by, lattice, rng, search, named, archive
+            )
             front = _without_copies(lattice, solved, along, target)
             if n == 2:
                 front = _branches(archive, front, target, refined, named)
