@@ -185,7 +185,7 @@ def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
     E = primitives(task, lam)
     M = _gram(task, E)
     first = 2 * len(lam) + len(task.powers)
-    T = _design(L, len(task.powers))
+    T = design(L, len(task.powers))
     G = np.einsum("jqa,jiqp,jpb->iab", T, M[..., :first, :first], T, optimize=True)
     inverse = _inverse(G)
     c = np.zeros(G.shape[:2])
@@ -196,7 +196,7 @@ def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
         r = task.H - np.einsum("jqa,ia->jiq", T, c) @ E[:first]
     rho = _project(task, E, r)
     model = _model(lam, L, held, c, len(task.powers))
-    K = _derivatives(model, E.shape[0])
+    K = derivatives(model, E.shape[0])
     cross = np.einsum("jqa,jiqp,jipk->iak", T, M[..., :first, :], K, optimize=True)
     Z = inverse @ cross
     direct = np.einsum("jiqk,jiqp,jipl->kl", K, M, K, optimize=True)
@@ -286,7 +286,7 @@ def _inverse(G: Floats) -> Floats:
     return (out + out.transpose(0, 2, 1)) / 2
 
 
-def _design(L: Complexes, powers: int) -> Floats:
+def design(L: Complexes, powers: int) -> Floats:
     """Return T, (references, primitives, linear): columns of Phi in the primitives."""
     n, n_in = L.shape
     T = np.zeros((n_in, 2 * n + powers, 2 * n + powers * n_in))
@@ -311,7 +311,7 @@ def free_factors(held: Ints, references: int) -> list[tuple[int, int]]:
     return [(r, j) for r, kept in enumerate(held) for j in range(references) if j != kept]
 
 
-def _derivatives(model: ModalModel, functions: int) -> Floats:
+def derivatives(model: ModalModel, functions: int) -> Floats:
     """Return K, (references, responses, primitives, alphas): columns of D in the primitives."""
     n, n_in = model.L.shape
     free = free_factors(model.held, n_in)
