@@ -41,8 +41,15 @@ PRINCIPAL = 48
 SUPPORT = 0.5
 """Least share of the orders, from the first one with this pole, that have it."""
 
-WIDEST = 0.5
-"""Greatest standard deviation of a frequency over the half bandwidth, and of damping over it."""
+WIDEST = 1.0
+"""Greatest standard deviation of damping over damping, and of a frequency over half its bandwidth
+or over the distance of lines."""
+
+LEAST_LEFT = 0.1
+"""Least share of the noise of a line that its residual is taken to hold."""
+
+VISIBLE = 0.1
+"""Least share of a mode in the sum of all at its frequency, in the function where it is greatest."""
 
 SEED = 20080410
 
@@ -183,7 +190,7 @@ def _select(
         fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
     if modes is not None:
         return task, fit
-    candidates = diagram.pole / omega
+    candidates = selection.distinct(diagram.pole) / omega
     for _ in range(selection.MOST_ADDED):
         fit = selection.backward(task, fit)
         more = selection.forward(task, fit, candidates)
@@ -202,11 +209,8 @@ def _reweighted(task: Problem, fit: Fit) -> Problem:
     """Return the problem weighted by the smooth variance of the residuals of a fit."""
     H = modal_model.synthesise(task, fit.model)
     used = task.weight > 0
-    lines = used.sum(axis=2)
-    linear = fit.inverse.shape[1] / max(task.weight.shape[0], 1)
-    shared = len(fit.gradient) / max(np.count_nonzero(lines), 1)
-    freedom = np.maximum(1 - (linear + shared) / 2 / np.maximum(lines, 1), 0.1)
-    raw = np.where(used, np.abs(task.H - H) ** 2, np.nan) / freedom[..., None]
+    left = np.maximum(1 - modal_model.leverage(task, fit), LEAST_LEFT)
+    raw = np.where(used, np.abs(task.H - H) ** 2 / left, np.nan)
     variance = fitted_variance(raw, np.where(used, H, np.nan))
     return replace(task, weight=np.where(used, 1 / variance, 0.0))
 
@@ -226,7 +230,7 @@ def _result(
     reasons = _reasons(data, task, fit, estimates, diagram, count is not None)
     kept = [one for one, why in zip(estimates, reasons, strict=True) if not why]
     rejected = [
-        Rejected(one.frequency, one.damping, why)
+        Rejected(float(one.frequency), float(one.damping), why)
         for one, why in zip(estimates, reasons, strict=True)
         if why
     ]
@@ -266,10 +270,11 @@ def _reasons(
 ) -> list[str]:
     """Return why each mode is none; empty where it is one."""
     low, high = data.frequency[0], data.frequency[-1]
+    spacing = float(np.median(np.diff(data.frequency)))
     doubled = selection.doubles(fit.model.lam, fit.model.phi, selection.gains(task, fit))
     out = []
-    for one, double in zip(estimates, doubled, strict=True):
-        half = one.damping * one.frequency
+    for one, double, seen in zip(estimates, doubled, _visibility(task, fit), strict=True):
+        half = max(one.damping * one.frequency, spacing)
         share = support(diagram, one.pole)
         why = ""
         if not low <= one.frequency <= high:
@@ -285,7 +290,26 @@ def _reasons(
             )
         elif share < SUPPORT and not given:
             why = f"on {share:.0%} of the orders only"
+        elif seen < VISIBLE and not given:
+            why = f"at most {seen:.0%} of any function at its own frequency"
         out.append(why)
+    return out
+
+
+def _visibility(task: Problem, fit: Fit) -> Floats:
+    """Return the greatest share of every mode, over all functions, at its own frequency."""
+    model = fit.model
+    out = np.zeros(len(model))
+    if not len(model):
+        return out
+    at = replace(task, s=1j * np.abs(model.lam))
+    E = modal_model.primitives(at, model.lam)[: 2 * len(model)]
+    a = model.L.T[:, None, :] * model.phi.T[None]  # (references, responses, modes)
+    measured = task.weight.any(axis=2)
+    for r in range(len(model)):
+        parts = np.abs(a.real * E[::2, r] + a.imag * E[1::2, r])
+        share = parts[..., r] / np.maximum(parts.sum(axis=-1), np.finfo(float).tiny)
+        out[r] = share[measured].max(initial=0.0)
     return out
 
 

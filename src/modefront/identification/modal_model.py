@@ -58,6 +58,7 @@ Mech. Syst. Signal Process. 37 (2013) 422-439, doi:10.1016/j.ymssp.2013.01.001.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
@@ -183,7 +184,7 @@ def primitives(task: Problem, lam: Complexes) -> Complexes:
 def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
     """Return the model with the best shapes for the given poles and participation factors."""
     E = primitives(task, lam)
-    M = _gram(task, E)
+    M = gram(task, E)
     first = 2 * len(lam) + len(task.powers)
     T = design(L, len(task.powers))
     G = np.einsum("jqa,jiqp,jpb->iab", T, M[..., :first, :first], T, optimize=True)
@@ -252,20 +253,50 @@ def maximise(task: Problem, lam: Complexes, L: Complexes, most: int = 40) -> Fit
     return replace(fit, evaluations=evaluations, converged=converged)
 
 
-def _gram(task: Problem, E: Complexes) -> Floats:
+def gram(task: Problem, E: Complexes) -> Floats:
     """Return the weighted Gram matrices of the primitives, (references, responses, Q, Q)."""
     p, q = np.triu_indices(len(E))
     flat = task.weight.reshape(-1, len(task.s))
     out = np.zeros((len(flat), len(p)))
-    size = max(CHUNK // len(p), 1)
-    for start in range(0, len(task.s), size):
-        part = E[:, start : start + size]
-        products = part.real[p] * part.real[q] + part.imag[p] * part.imag[q]
-        out += flat[:, start : start + size] @ products.T
+    for lines, products in _products(E):
+        out += flat[:, lines] @ products.T
     M = np.zeros((len(flat), len(E), len(E)))
     M[:, p, q] = out
     M[:, q, p] = out
     return M.reshape(*task.weight.shape[:2], len(E), len(E))
+
+
+def leverage(task: Problem, fit: Fit) -> Floats:
+    """Return the share of the noise of each line that the fit takes, of the shape of ``H``.
+
+    It is the mean over the real and the imaginary part of the diagonal of the projection on the
+    columns of Phi and of the rest of D.
+    """
+    model = fit.model
+    E = primitives(task, model.lam)
+    T = design(model.L, len(task.powers))
+    first = T.shape[1]
+    X = derivatives(model, len(E))
+    X[:, :, :first] -= np.einsum("jqa,iak->jiqk", T, fit.Z)
+    inverse = np.linalg.pinv(fit.information, hermitian=True)
+    S = np.einsum("jiqk,kl,jipl->jiqp", X, inverse, X, optimize=True)
+    S[:, :, :first, :first] += np.einsum("jqa,iab,jpb->jiqp", T, fit.inverse, T, optimize=True)
+    p, q = np.triu_indices(len(E))
+    coefficients = S[..., p, q] * np.where(p == q, 1.0, 2.0)
+    out = np.empty(task.weight.shape)
+    for lines, products in _products(E):
+        out[..., lines] = coefficients @ products
+    return task.weight * out / 2
+
+
+def _products(E: Complexes) -> Iterator[tuple[slice, Floats]]:
+    """Yield portions of lines with the real products of all pairs of functions."""
+    p, q = np.triu_indices(len(E))
+    size = max(CHUNK // len(p), 1)
+    for start in range(0, E.shape[1], size):
+        part = E[:, start : start + size]
+        products = part.real[p] * part.real[q] + part.imag[p] * part.imag[q]
+        yield slice(start, start + size), products
 
 
 def _project(task: Problem, E: Complexes, r: Complexes) -> Floats:

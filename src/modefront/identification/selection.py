@@ -23,13 +23,14 @@ doi:10.1214/aos/1176344136.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
 
 from modefront._typing import Bools, Floats
 from modefront.identification.modal_model import (
+    CHUNK,
     RESIDUALS,
     Fit,
     Problem,
@@ -45,12 +46,10 @@ LIKELY = 0.5
 """Least support of a cluster from which the model starts."""
 
 LEAST_ORDERS = 3
-TRIES = 3
-MOST_ADDED = 12
-
-Reweigh = Callable[[Problem, Fit], Problem]
-"""Returns the problem with the variance that a fit suggests."""
-
+TRIES = 2
+MOST_ADDED = 8
+MOST_EVALUATIONS = 12
+"""Evaluations of the model for a candidate on trial."""
 
 def noise_level(task: Problem, fit: Fit) -> float:
     """Return chi^2, the cost over the degrees of freedom; at least what rounding leaves."""
@@ -133,14 +132,32 @@ def forward(task: Problem, fit: Fit, candidates: Complexes) -> Fit:
             continue
         tried.append(lam)
         model = fit.model
-        trial = maximise(task, np.append(model.lam, lam), np.vstack([model.L, L[at]]))
+        trial = maximise(task, np.append(model.lam, lam), np.vstack([model.L, L[at]]), MOST_EVALUATIONS)
         gained = 2 * (fit.cost - trial.cost) / noise_level(task, trial)
         if gained > price(task) and gains(task, trial).min() > price(task):
             return trial
     return fit
 
 
+def distinct(poles: Complexes) -> Complexes:
+    """Return poles of which none lies within half the half bandwidth of another."""
+    kept: list[complex] = []
+    for pole in sorted(poles, key=lambda one: one.real):
+        if all(abs(pole - one) > -0.5 * one.real for one in kept):
+            kept.append(complex(pole))
+    return np.array(kept, complex)
+
+
 def candidate_gains(task: Problem, r: Complexes, lam: Complexes) -> tuple[Floats, Complexes]:
+    """Return gains and participation factors of candidates, in portions of them."""
+    size = max(CHUNK // len(task.s), 1)
+    parts = [_gains(task, r, lam[at : at + size]) for at in range(0, len(lam), size)]
+    if not parts:
+        return np.zeros(0), np.zeros((0, len(task.weight)), complex)
+    return np.concatenate([gain for gain, _ in parts]), np.concatenate([L for _, L in parts])
+
+
+def _gains(task: Problem, r: Complexes, lam: Complexes) -> tuple[Floats, Complexes]:
     """Return how much of the cost a pole could take at most without moving the others.
 
     Also returns the participation factors of the residues that do so, (poles, references).
@@ -158,8 +175,7 @@ def candidate_gains(task: Problem, r: Complexes, lam: Complexes) -> tuple[Floats
     x = np.linalg.solve(G, b[..., None])[..., 0]
     gain = np.einsum("fca,fca->c", b, x)
     residue = (x[..., 0] + 1j * x[..., 1]).T.reshape(len(lam), *task.weight.shape[:2])
-    L = np.linalg.svd(residue, full_matrices=False)[0][:, :, 0] if len(lam) else residue[..., 0]
-    return gain, L
+    return gain, np.linalg.svd(residue, full_matrices=False)[0][:, :, 0]
 
 
 def doubles(poles: Complexes, shapes: Complexes, strength: Floats) -> Bools:

@@ -16,7 +16,7 @@ Two things that are common in tests break the independence, and are measured on 
 
 *Noise of the force channel* is the same for all responses of one reference,
 :math:`\delta H_{ji} = -H_{ji}\,\varepsilon_j`: it does not average out over responses. Its
-variance :math:`b_j` is estimated from products of *different* responses, which noise of the
+variance :math:`b_j`, which is taken out of the variance of the single functions, is estimated from products of *different* responses, which noise of the
 responses does not enter,
 
 .. math:: b_j = \frac{\sum_k (|S_{jk}|^2 - \sum_i w^2|H|^2|r|^2)}
@@ -43,7 +43,7 @@ Mech. Syst. Signal Process. 21 (2007) 2359-2373, doi:10.1016/j.ymssp.2006.11.007
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -54,6 +54,7 @@ from modefront.identification.modal_model import (
     Problem,
     design,
     derivatives,
+    gram,
     primitives,
     synthesise,
 )
@@ -160,25 +161,64 @@ def mode_estimates(
 ) -> list[ModeEstimate]:
     """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
     model = fit.model
-    C = _inverse(fit.information) * found.scale / 2
-    root = _root(C)
-    inverse = fit.inverse * found.scale / 2
+    n_out = model.phi.shape[1]
     shapes = [real_shape(phi) for phi in model.phi]
+    inverse = _inverse(fit.information)
+    linear, alpha = _own_roots(task, fit, found)
+    C = np.einsum("ka,iae,lb,ibe->kl", inverse, alpha, inverse, alpha, optimize=True)
     variance = np.zeros(model.phi.shape)
     for r, shape in enumerate(shapes):
         rows = slice(2 * r, 2 * r + 2)
-        shared = fit.Z[:, rows] @ root
-        for part in (_block_roots(inverse[:, rows, rows]), shared[:, 0] + 1j * shared[:, 1]):
-            variance[r] += (shape.differential(part) ** 2).sum(axis=1)
-    for alpha, phi in _force_influence(task, fit, found.force):
-        C = C + alpha @ alpha.T
+        answer = shape.differential(_as_complex(fit.Z[:, rows] @ inverse))
+        for i in range(n_out):
+            direct = np.zeros((n_out, linear.shape[2]), complex)
+            direct[i] = _as_complex(linear[i, rows][None])[0]
+            change = shape.differential(direct) - answer @ alpha[i]
+            variance[r] += (change**2).sum(axis=1)
+    for steps, phi in _force_influence(task, fit, found.force):
+        C = C + steps @ steps.T
         for r, shape in enumerate(shapes):
             variance[r] += (shape.differential(phi[:, r]) ** 2).sum(axis=1)
+    C, variance = C * found.scale, variance * found.scale
     variance[:, ~task.weight.any(axis=(0, 2))] = np.nan
     return [
         _estimate(complex(model.lam[r]), C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2], omega, *rest)
         for r, rest in enumerate(zip(shapes, np.sqrt(variance), model.L, strict=True))
     ]
+
+
+def _as_complex(pairs: Floats) -> Complexes:
+    """Return (n, ...) complex from (n, 2, ...) real and imaginary parts."""
+    out: Complexes = pairs[:, 0] + 1j * pairs[:, 1]
+    return out
+
+
+def _own_roots(task: Problem, fit: Fit, found: Residuals) -> tuple[Floats, Floats]:
+    """Return what independent errors of each response do, as roots of their covariance.
+
+    (responses, 2 modes, errors): G^-1 Phi^T dy of the shapes; (responses, alphas, errors):
+    D_perp^T dy. Noise of the force is taken out of the variance: it is not independent.
+    """
+    model = fit.model
+    n, powers = len(model), len(task.powers)
+    E = primitives(task, model.lam)
+    T, X = design(model.L, powers), derivatives(model, len(E))
+    first = T.shape[1]
+    X[:, :, :first] -= np.einsum("jqa,iak->jiqk", T, fit.Z)
+    weight = task.weight
+    if found.force.any():
+        H = synthesise(task, model)
+        share = found.force[:, None, None] * weight * np.abs(H) ** 2
+        weight = weight * np.maximum(1 - share, 0)
+    M = gram(replace(task, weight=weight), E)
+    P = np.zeros((*M.shape[:3], 2 * n + X.shape[3]))
+    P[:, :, :first, : 2 * n] = np.einsum("jqa,iab->jiqb", T, fit.inverse[:, :, : 2 * n])
+    P[..., 2 * n :] = X
+    Q = np.einsum("jiqa,jiqp,jipb->iab", P, M, P, optimize=True) / 2
+    scale = np.sqrt(np.maximum(np.einsum("iaa->ia", Q), np.finfo(float).tiny))
+    value, vector = np.linalg.eigh(Q / scale[:, :, None] / scale[:, None, :])
+    roots = scale[:, :, None] * vector * np.sqrt(np.maximum(value, 0))[:, None, :]
+    return roots[:, : 2 * n], roots[:, 2 * n :]
 
 
 def _estimate(
@@ -206,23 +246,6 @@ def _inverse(A: Floats) -> Floats:
     floored = np.maximum(value, 1e-13)
     out: Floats = ((vector / floored) @ vector.T) * np.outer(scale, scale)
     return out
-
-
-def _root(C: Floats) -> Floats:
-    value, vector = np.linalg.eigh(C)
-    out: Floats = vector * np.sqrt(np.maximum(value, 0))
-    return out
-
-
-def _block_roots(blocks: Floats) -> Complexes:
-    """Return changes of a shape, (responses, 2 responses), from a 2 x 2 covariance of each part."""
-    n = len(blocks)
-    value, vector = np.linalg.eigh(blocks)
-    roots = vector * np.sqrt(np.maximum(value, 0))[:, None, :]
-    out = np.zeros((n, 2, n), complex)
-    i = np.arange(n)
-    out[i, :, i] = roots[:, 0] + 1j * roots[:, 1]
-    return out.reshape(n, -1)
 
 
 def _force_influence(
