@@ -48,8 +48,11 @@ or over the distance of lines."""
 LEAST_LEFT = 0.1
 """Least share of the noise of a line that its residual is taken to hold."""
 
-VISIBLE = 0.1
+VISIBLE = 1 / 3
 """Least share of a mode in the sum of all at its frequency, in the function where it is greatest."""
+
+LEAST_COLLINEARITY = 0.5
+"""Least phase collinearity of a mode."""
 
 SEED = 20080410
 
@@ -290,6 +293,8 @@ def _reasons(
             )
         elif share < SUPPORT and not given:
             why = f"on {share:.0%} of the orders only"
+        elif one.shape.collinearity < LEAST_COLLINEARITY:
+            why = f"its shape has no common phase: phase collinearity {one.shape.collinearity:.2f}"
         elif seen < VISIBLE and not given:
             why = f"at most {seen:.0%} of any function at its own frequency"
         out.append(why)
