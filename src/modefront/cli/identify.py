@@ -155,7 +155,9 @@ def _print_residuals(screen: Any, names: Sequence[str], found: Sequence[Identifi
     for name, one in zip(names, found, strict=True):
         for (j, i), share in np.ndenumerate(one.residuals.share):
             shown = f"{share:.2%}" if np.isfinite(share) else "not measured"
-            out.add_row(safe(name), safe(one.data.references[j]), safe(one.data.responses[i]), shown)
+            out.add_row(
+                safe(name), safe(one.data.references[j]), safe(one.data.responses[i]), shown
+            )
     screen.print(out)
 
 

@@ -55,7 +55,9 @@ def _names(path: Path, header: Sequence[str]) -> list[str]:
             faults.append(Fault(file, f"line 1, column {name!r}", "each column once", "another"))
         if name not in known:
             expected = "frequency, or NAME_re, NAME_im or NAME_coherence of a response"
-            faults.append(Fault(file, f"line 1, column {name!r}", expected, suggestion(name, known)))
+            faults.append(
+                Fault(file, f"line 1, column {name!r}", expected, suggestion(name, known))
+            )
     for name in names:
         if name + IMAGINARY not in header:
             place = f"line 1, column {name + IMAGINARY!r}"

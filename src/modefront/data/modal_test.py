@@ -212,14 +212,15 @@ def _assembled(
         if missing and root is not None:
             for channel in sorted(missing):
                 there = sorted(references if turned else responses)
-                root.fault(f"[sensors] {named.get(channel, '')}", "a channel of the files: "
-                           + ", ".join(there[:8]), suggestion(channel, there))
+                root.fault(
+                    f"[sensors] {named.get(channel, '')}",
+                    "a channel of the files: " + ", ".join(there[:8]),
+                    suggestion(channel, there),
+                )
             raise InputError(root.faults)
     else:
         turned = len(references) > len(responses) == 1
-    return assemble(
-        [_named(one, named) for one in channels], settings.quantity, name, turned
-    )
+    return assemble([_named(one, named) for one in channels], settings.quantity, name, turned)
 
 
 def _named(one: Channel, names: dict[str, str]) -> Channel:

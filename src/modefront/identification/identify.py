@@ -239,7 +239,9 @@ def _result(
     ]
     rejected += _passed_over(clusters, estimates)
     synthesised = modal_model.synthesise(task, fit.model) * size
-    variance = np.where(task.weight > 0, size**2 / np.where(task.weight > 0, task.weight, 1), np.nan)
+    variance = np.where(
+        task.weight > 0, size**2 / np.where(task.weight > 0, task.weight, 1), np.nan
+    )
     return Identification(
         data,
         tuple(sorted(kept, key=lambda one: one.frequency)),
@@ -318,9 +320,7 @@ def _visibility(task: Problem, fit: Fit) -> Floats:
     return out
 
 
-def _passed_over(
-    clusters: Sequence[Cluster], estimates: Sequence[ModeEstimate]
-) -> list[Rejected]:
+def _passed_over(clusters: Sequence[Cluster], estimates: Sequence[ModeEstimate]) -> list[Rejected]:
     """Return the clusters that the likelihood did not need."""
     out = []
     for one in clusters:

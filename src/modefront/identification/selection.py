@@ -51,6 +51,7 @@ MOST_ADDED = 8
 MOST_EVALUATIONS = 12
 """Evaluations of the model for a candidate on trial."""
 
+
 def noise_level(task: Problem, fit: Fit) -> float:
     """Return chi^2, the cost over the degrees of freedom; at least what rounding leaves."""
     n_out = int(np.sum(task.weight.any(axis=(0, 2))))
@@ -87,7 +88,9 @@ def gains(task: Problem, fit: Fit) -> Floats:
         block = fit.inverse[:, rows, rows]
         c = np.stack([fit.model.phi[r].real, fit.model.phi[r].imag], axis=1)
         seen = task.weight.any(axis=(0, 2))
-        out[r] = np.einsum("ia,ia->", c[seen], np.linalg.solve(block[seen], c[seen, :, None])[..., 0])
+        out[r] = np.einsum(
+            "ia,ia->", c[seen], np.linalg.solve(block[seen], c[seen, :, None])[..., 0]
+        )
     return 2 * out / noise_level(task, fit)
 
 
@@ -132,7 +135,9 @@ def forward(task: Problem, fit: Fit, candidates: Complexes) -> Fit:
             continue
         tried.append(lam)
         model = fit.model
-        trial = maximise(task, np.append(model.lam, lam), np.vstack([model.L, L[at]]), MOST_EVALUATIONS)
+        trial = maximise(
+            task, np.append(model.lam, lam), np.vstack([model.L, L[at]]), MOST_EVALUATIONS
+        )
         gained = 2 * (fit.cost - trial.cost) / noise_level(task, trial)
         if gained > price(task) and gains(task, trial).min() > price(task):
             return trial

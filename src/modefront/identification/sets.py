@@ -143,7 +143,9 @@ def _agreement(
 ) -> float:
     """Return the MAC of two modes at common sensors, 0 where their frequencies are too far apart."""
     half = max(a.damping * a.frequency, b.damping * b.frequency, 0.005 * a.frequency)
-    if abs(a.frequency - b.frequency) > max(WIDTH * np.hypot(a.frequency_std, b.frequency_std), half):
+    if abs(a.frequency - b.frequency) > max(
+        WIDTH * np.hypot(a.frequency_std, b.frequency_std), half
+    ):
         return 0.0
     x, y = _at(a.shape.shape, of_a, sensors), _at(b.shape.shape, of_b, sensors)
     both = np.isfinite(x) & np.isfinite(y)

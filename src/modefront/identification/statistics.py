@@ -156,9 +156,7 @@ def _force(task: Problem, H: Complexes, r: Complexes) -> Floats:
     return out
 
 
-def mode_estimates(
-    task: Problem, fit: Fit, found: Residuals, omega: float
-) -> list[ModeEstimate]:
+def mode_estimates(task: Problem, fit: Fit, found: Residuals, omega: float) -> list[ModeEstimate]:
     """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
     model = fit.model
     n_out = model.phi.shape[1]
@@ -248,9 +246,7 @@ def _inverse(A: Floats) -> Floats:
     return out
 
 
-def _force_influence(
-    task: Problem, fit: Fit, force: Floats
-) -> Iterator[tuple[Floats, Complexes]]:
+def _force_influence(task: Problem, fit: Fit, force: Floats) -> Iterator[tuple[Floats, Complexes]]:
     """Yield changes of alpha and of the shapes by independent errors of the force, in portions.
 
     The changes of the shapes are (responses, modes, errors).
