@@ -44,25 +44,23 @@ def run_identify(
             errors.print(f"warning: {safe(text)}")
         found.append(identify(one.assembled.data, band, test.modes))
     names = [one.name for one in test.sets]
+    combined = combine(names, found) if any(one.modes for one in found) else None
+    written = [] if combined is None else _write(output, test, combined, found)
+    if figures is not None:
+        from modefront.cli.identify_figures import write_figures
+
+        written += write_figures(names, found, figures)
     for name, one in zip(names, found, strict=True):
         _print_rejected(screen, name, one)
         for text in findings(one):
             errors.print(f"warning: set {safe(repr(name))}: {safe(text)}")
-    if figures is not None:
-        from modefront.cli.identify_figures import write_figures
-
-        for picture in write_figures(names, found, figures):
-            screen.print(f"wrote {safe(picture)}")
-    if not any(one.modes for one in found):
+    if combined is not None:
+        _print_modes(screen, combined, found)
+        _print_residuals(screen, names, found)
+    for file in written:
+        screen.print(f"wrote {safe(file)}")
+    if combined is None:
         raise UnfinishedError("no mode was found in the band; what was rejected is listed above")
-    combined = combine(names, found)
-    _print_modes(screen, combined, found)
-    _print_residuals(screen, names, found)
-    _write(output, combined, found)
-    screen.print(f"wrote {safe(output)}")
-    report = output.with_name(output.stem + "-identification.json")
-    _write_text(report, json.dumps(as_report(test, names, found), indent=1, allow_nan=False))
-    screen.print(f"wrote {safe(report)}: complex shapes, participation factors, what was rejected")
 
 
 def _error_console() -> Any:
@@ -161,14 +159,19 @@ def _print_residuals(screen: Any, names: Sequence[str], found: Sequence[Identifi
     screen.print(out)
 
 
-def _write(output: Path, modes: CombinedModes, found: Sequence[Identification]) -> None:
+def _write(
+    output: Path, test: ModalTest, modes: CombinedModes, found: Sequence[Identification]
+) -> list[Path]:
+    """Write modal data, and beside it all else that was identified; return the paths."""
+    report = output.with_name(output.stem + "-identification.json")
+    _write_text(report, json.dumps(as_report(test, modes.sets, found), indent=1, allow_nan=False))
     if output.suffix.lower() == ".uff":
         listed = [
             [(one.pole, _complex_at(one.shape.complex_shape, k, modes.sensors)) for one in k.modes]
             for k in found
         ]
         write_uff55(output, modes.sets, listed, modes.sensors)
-        return
+        return [output, report]
     clashing = [name for name in modes.sensors if is_reserved(name, modes.sensors)]
     if clashing:
         expected = "names of sensors that are no columns of modal data"
@@ -180,6 +183,7 @@ def _write(output: Path, modes: CombinedModes, found: Sequence[Identification]) 
         *(modes.frequency, modes.damping, modes.shape, modes.frequency_std, modes.shape_std),
     )
     write_csv(output, data, modes.damping_std)
+    return [output, report]
 
 
 def _complex_at(phi: Any, one: Identification, sensors: Sequence[str]) -> Any:

@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -32,6 +33,8 @@ from modefront.identification.statistics import (
     residuals,
 )
 
+Weighting = Literal["given", "scaled", "residuals"]
+
 LEAST_LINES = 20
 MOST_POLES = 60
 MOST_ORDERS = 25
@@ -49,7 +52,7 @@ LEAST_LEFT = 0.1
 """Least share of the noise of a line that its residual is taken to hold."""
 
 VISIBLE = 1 / 3
-"""Least share of a mode in the sum of all at its frequency, in the function where it is greatest."""
+"""Least share of a mode in the sum of all at its frequency, where it is greatest."""
 
 LEAST_COLLINEARITY = 0.5
 """Least phase collinearity of a mode."""
@@ -117,24 +120,28 @@ def identify(
     small, small_variance = _principal(data, first)
     diagram, clusters = _diagram(small, small_variance, orders)
     task, omega, _ = modal_model.problem(small, small_variance, 1)
-    task, fit = _select(task, omega, diagram, clusters, modes, variance is None)
+    task, fit = _select(task, omega, diagram, clusters, modes, weighting(small))
     level = modal_model.RESIDUALS.index(task.powers)
     task, omega, size = modal_model.problem(data, first, level)
     model = fit.model
-    known = variance is not None
-    if not known:
-        task = _reweighted(task, modal_model.evaluate(task, model.lam, model.L, model.held))
+    start = modal_model.evaluate(task, model.lam, model.L, model.held)
+    task = _reweighted(task, start, weighting(data))
     fit = modal_model.maximise(task, model.lam, model.L)
-    if not known:
-        task = _reweighted(task, fit)
+    if weighting(data) != "given":
+        task = _reweighted(task, fit, weighting(data))
         fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
     return _result(data, task, fit, omega, size, diagram, clusters, modes)
 
 
+def weighting(data: FrequencyResponses) -> Weighting:
+    """Return what the variance is from: given, given up to a factor, or residuals alone."""
+    if data.variance is None:
+        return "residuals"
+    return "scaled" if data.scaled else "given"
+
+
 def _known_variance(data: FrequencyResponses) -> Floats | None:
-    if data.variance is None or data.scaled:
-        return None
-    return fitted_variance(data.variance, data.H)
+    return None if data.variance is None else fitted_variance(data.variance, data.H)
 
 
 def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
@@ -182,14 +189,14 @@ def _select(
     diagram: StabilisationDiagram,
     clusters: list[Cluster],
     modes: int | None,
-    reweigh: bool,
+    kind: Weighting,
 ) -> tuple[Problem, Fit]:
     """Return the problem, with its residual terms and variance, and the modes that data need."""
     fit = selection.start(task, clusters, omega, modes)
     task = selection.choose_level(task, fit)
     fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
-    if reweigh:
-        task = _reweighted(task, fit)
+    if kind != "given":
+        task = _reweighted(task, fit, kind)
         fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
     if modes is not None:
         return task, fit
@@ -200,20 +207,29 @@ def _select(
         if more is fit:
             break
         fit = more
-        if reweigh:
-            task = _reweighted(task, fit)
+        if kind != "given":
+            task = _reweighted(task, fit, kind)
             fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
     task = selection.choose_level(task, fit)
     fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
     return task, selection.backward(task, fit)
 
 
-def _reweighted(task: Problem, fit: Fit) -> Problem:
-    """Return the problem weighted by the smooth variance of the residuals of a fit."""
+def _reweighted(task: Problem, fit: Fit, kind: Weighting) -> Problem:
+    """Return the problem weighted by the smooth variance of the residuals of a fit.
+
+    Where the variance is given it stays; where it is known up to a factor it gets that.
+    """
+    if kind == "given":
+        return task
     H = modal_model.synthesise(task, fit.model)
     used = task.weight > 0
     left = np.maximum(1 - modal_model.leverage(task, fit), LEAST_LEFT)
     raw = np.where(used, np.abs(task.H - H) ** 2 / left, np.nan)
+    if kind == "scaled":
+        lines = np.maximum(used.sum(axis=2, keepdims=True), 1)
+        factor = np.where(used, raw * task.weight, 0).sum(axis=2, keepdims=True) / lines
+        return replace(task, weight=task.weight / np.where(factor > 0, factor, 1.0))
     variance = fitted_variance(raw, np.where(used, H, np.nan))
     return replace(task, weight=np.where(used, 1 / variance, 0.0))
 

@@ -215,7 +215,7 @@ def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
 
 
 def synthesise(task: Problem, model: ModalModel) -> Complexes:
-    """Return the functions of the model at the lines of a problem, (references, responses, lines)."""
+    """Return the functions of the model, (references, responses, lines)."""
     first = 2 * len(model) + len(task.powers)
     E = primitives(task, model.lam)[:first]
     a = model.L.T[:, None, :] * model.phi.T[None]

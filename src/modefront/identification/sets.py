@@ -1,8 +1,9 @@
 r"""Modes of several data sets side by side, and what their spread says.
 
 Modes of different sets are the same where frequencies lie within half a bandwidth, 0.5 % or
-`WIDTH` standard deviations, and shapes agree at common sensors. Estimates :math:`x_k` of one quantity in
-the sets with standard deviations :math:`\sigma_k` differ more than they should where
+`WIDTH` standard deviations, and shapes agree at common sensors. Estimates
+:math:`x_k` of one quantity in the sets, with standard deviations :math:`\sigma_k`, differ more
+than they should where
 
 .. math:: Q = \sum_k \frac{(x_k - \bar x)^2}{\sigma_k^2} > \chi^2_{K-1,\,0.95},\qquad
           \bar x = \frac{\sum_k x_k/\sigma_k^2}{\sum_k 1/\sigma_k^2} .
@@ -141,7 +142,7 @@ def _agreement(
     of_b: Identification,
     sensors: Sequence[str],
 ) -> float:
-    """Return the MAC of two modes at common sensors, 0 where their frequencies are too far apart."""
+    """Return the MAC at common sensors, 0 where the frequencies are too far apart."""
     half = max(a.damping * a.frequency, b.damping * b.frequency, 0.005 * a.frequency)
     if abs(a.frequency - b.frequency) > max(
         WIDTH * np.hypot(a.frequency_std, b.frequency_std), half
@@ -154,7 +155,7 @@ def _agreement(
 
 
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:
-    """Return shapes in the sign of the first set, and their deviations with the spread of the sets."""
+    """Return shapes in the sign of the first set, and deviations with the spread of the sets."""
     there = np.flatnonzero(np.isfinite(phi).any(axis=1))
     first = phi[there[0]]
     phi = phi.copy()

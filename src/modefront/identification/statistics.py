@@ -16,8 +16,8 @@ Two things that are common in tests break the independence, and are measured on 
 
 *Noise of the force channel* is the same for all responses of one reference,
 :math:`\delta H_{ji} = -H_{ji}\,\varepsilon_j`: it does not average out over responses. Its
-variance :math:`b_j`, which is taken out of the variance of the single functions, is estimated from products of *different* responses, which noise of the
-responses does not enter,
+variance :math:`b_j` is taken out of that of the single functions. It is estimated from products
+of *different* responses, which noise of the responses does not enter,
 
 .. math:: b_j = \frac{\sum_k (|S_{jk}|^2 - \sum_i w^2|H|^2|r|^2)}
           {\sum_k \bigl((\sum_i w|H|^2)^2 - \sum_i w^2|H|^4\bigr)},\qquad
@@ -52,8 +52,8 @@ from modefront.identification.modal_model import (
     CHUNK,
     Fit,
     Problem,
-    design,
     derivatives,
+    design,
     gram,
     primitives,
     synthesise,
