@@ -292,7 +292,7 @@ def leverage(task: Problem, fit: Fit) -> Floats:
 def _products(E: Complexes) -> Iterator[tuple[slice, Floats]]:
     """Yield portions of lines with the real products of all pairs of functions."""
     p, q = np.triu_indices(len(E))
-    size = max(CHUNK // len(p), 1)
+    size = max(CHUNK // max(len(p), 1), 1)
     for start in range(0, E.shape[1], size):
         part = E[:, start : start + size]
         products = part.real[p] * part.real[q] + part.imag[p] * part.imag[q]

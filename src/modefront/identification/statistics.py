@@ -257,7 +257,7 @@ def _force_influence(task: Problem, fit: Fit, force: Floats) -> Iterator[tuple[F
     first = T.shape[1]
     H = synthesise(task, fit.model)
     inverse = _inverse(fit.information)
-    portion = max(CHUNK // (4 * n * H.shape[1]), 1)
+    portion = max(CHUNK // max(4 * n * H.shape[1], 1), 1)
     for j in np.flatnonzero(force):
         X = K[j].copy()
         X[:, :first] -= T[j] @ fit.Z
