@@ -237,7 +237,7 @@ def maximise(task: Problem, lam: Complexes, L: Complexes, most: int = 40) -> Fit
     while evaluations < most and not converged:
         step = _step(fit, damping)
         decrement = float(step @ fit.curvature @ step)
-        noise = fit.cost / max(task.count, 1)
+        noise = max(fit.cost / max(task.count, 1), 0.5)
         trial = evaluate(task, *_moved(fit.model, step), held)
         evaluations += 1
         if trial.cost <= fit.cost * (1 + 1e-14):

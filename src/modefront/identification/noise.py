@@ -41,8 +41,8 @@ MOST_HATS = 16
 MOST_BLOCKS = 600
 ITERATIONS = 60
 
-ROUNDING = 1e-24
-"""Least variance over the mean square of a function."""
+ROUNDING = 1e-14
+"""Least variance over the mean square of a function: files hold some seven digits."""
 
 
 def variance_from_differences(data: FrequencyResponses) -> Floats:

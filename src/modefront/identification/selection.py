@@ -53,10 +53,10 @@ MOST_EVALUATIONS = 12
 
 
 def noise_level(task: Problem, fit: Fit) -> float:
-    """Return chi^2, the cost over the degrees of freedom; at least what rounding leaves."""
+    """Return chi^2, the cost over the degrees of freedom; at least 1, the variance of the data."""
     n_out = int(np.sum(task.weight.any(axis=(0, 2))))
     freedom = max(task.count - n_out * fit.inverse.shape[1] - len(fit.gradient), 1)
-    return max(2 * fit.cost / freedom, np.finfo(float).tiny)
+    return max(2 * fit.cost / freedom, 1.0)
 
 
 def price(task: Problem) -> float:
