@@ -97,4 +97,4 @@ def test_noise_alone_has_no_modes() -> None:
 
 def test_too_few_lines_are_an_error() -> None:
     with pytest.raises(ValueError, match="20 lines in the band, found 5"):
-        identify(frequency_responses(np.arange(1.0, 6.0), np.ones((1, 5))))
+        identify(frequency_responses(np.arange(1.0, 6.0), np.ones((1, 5), complex)))

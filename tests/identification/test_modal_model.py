@@ -31,10 +31,11 @@ def _task(level: float = 0.01, terms: int = 1) -> tuple[Problem, float, float]:
 
 def _somewhere(omega: float) -> tuple[Complexes, Complexes, Ints]:
     rng = np.random.default_rng(2)
-    lam = 2 * np.pi / omega * 1.004 * THREE_STORY * (1j - 0.015)
+    lam: Complexes = np.asarray(2 * np.pi / omega * 1.004 * THREE_STORY * (1j - 0.015), complex)
     L = circular(rng, (3, 2))
     held = np.abs(L).argmax(axis=1)
-    return lam, L / L[np.arange(3), held][:, None], held
+    factors: Complexes = L / L[np.arange(3), held][:, None]
+    return lam, factors, held
 
 
 @pytest.mark.parametrize("terms", [0, 1, 2])

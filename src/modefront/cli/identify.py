@@ -39,10 +39,10 @@ def run_identify(
     _check_band(path, test, band)
     screen, errors = console(), _error_console()
     found = []
-    for one in test.sets:
-        for text in one.assembled.warnings:
+    for part in test.sets:
+        for text in part.assembled.warnings:
             errors.print(f"warning: {safe(text)}")
-        found.append(identify(one.assembled.data, band, test.modes))
+        found.append(identify(part.assembled.data, band, test.modes))
     names = [one.name for one in test.sets]
     combined = combine(names, found) if any(one.modes for one in found) else None
     written = [] if combined is None else _write(output, test, combined, found)

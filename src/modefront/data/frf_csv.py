@@ -96,7 +96,7 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
             continue
         for k, field in enumerate(fields):
             text = field.strip()
-            if NUMBER.fullmatch(text):
+            if NUMBER.fullmatch(text) and np.isfinite(float(text)):
                 values[at, k] = float(text)
             else:
                 place = f"line {number}, column {header[k]!r}"

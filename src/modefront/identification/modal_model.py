@@ -163,7 +163,7 @@ def problem(data: FrequencyResponses, variance: Floats, level: int) -> tuple[Pro
     weight = np.zeros(data.H.shape)
     weight[used] = size**2 / variance[used]
     s = 2j * np.pi * data.frequency / omega
-    H = np.where(used, data.H, 0) / size
+    H: Complexes = np.where(used, data.H, 0) / size
     return Problem(s, H, weight, ORDERS[data.quantity], RESIDUALS[level]), omega, size
 
 

@@ -61,8 +61,8 @@ def noise_level(task: Problem, fit: Fit) -> float:
 
 def price(task: Problem) -> float:
     """Return k ln n, what a mode has to gain."""
-    n_in, n_out = np.count_nonzero(task.weight.any(axis=2).any(axis=1)), 0
-    n_out = np.count_nonzero(task.weight.any(axis=2).any(axis=0))
+    measured = task.weight.max(axis=2, initial=0.0) > 0
+    n_in, n_out = (int(np.count_nonzero(measured.any(axis=axis))) for axis in (1, 0))
     return float((2 * n_in + 2 * n_out) * np.log(max(task.count, 2)))
 
 
@@ -99,9 +99,9 @@ def start(task: Problem, clusters: Sequence[Cluster], omega: float, count: int |
     likely = [one for one in clusters if one.support >= LIKELY and one.size >= LEAST_ORDERS]
     if count is not None:
         likely = sorted(clusters, key=lambda one: -one.support * one.size)[:count]
-    lam = np.array([one.pole for one in likely], complex) / omega
+    lam: Complexes = np.array([one.pole for one in likely], complex) / omega
     n_in = task.weight.shape[0]
-    L = np.array([one.participation for one in likely], complex).reshape(len(lam), n_in)
+    L: Complexes = np.array([one.participation for one in likely], complex).reshape(len(lam), n_in)
     return maximise(task, lam, L)
 
 
