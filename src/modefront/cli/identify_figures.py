@@ -43,7 +43,7 @@ def write_figures(
         folder.mkdir(parents=True, exist_ok=True)
         for name, one in zip(names, found, strict=True):
             for kind, draw in kinds:
-                with rc_context(STYLE):
+                with rc_context(dict(STYLE)):
                     figure = Figure(layout="constrained")
                     draw(figure, one)
                     safe_name = re.sub(r"[^\w-]+", "-", name)

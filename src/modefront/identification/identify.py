@@ -194,10 +194,10 @@ def _select(
     """Return the problem, with its residual terms and variance, and the modes that data need."""
     fit = selection.start(task, clusters, omega, modes)
     task = selection.choose_level(task, fit)
-    fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
+    fit = _again(task, fit)
     if kind != "given":
         task = _reweighted(task, fit, kind)
-        fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
+        fit = _again(task, fit)
     if modes is not None:
         return task, fit
     candidates = selection.distinct(diagram.pole) / omega
@@ -209,10 +209,15 @@ def _select(
         fit = more
         if kind != "given":
             task = _reweighted(task, fit, kind)
-            fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
+            fit = _again(task, fit)
     task = selection.choose_level(task, fit)
-    fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
+    fit = _again(task, fit)
     return task, selection.backward(task, fit)
+
+
+def _again(task: Problem, fit: Fit) -> Fit:
+    """Return the fit from the poles of another one, as far as choices need it."""
+    return modal_model.maximise(task, fit.model.lam, fit.model.L, tolerance=modal_model.COARSE)
 
 
 def _reweighted(task: Problem, fit: Fit, kind: Weighting) -> Problem:

@@ -71,7 +71,12 @@ from modefront.identification.responses import ORDERS, Complexes, FrequencyRespo
 RESIDUALS: tuple[tuple[int, ...], ...] = ((), (-2, 0), (-3, -2, 0, 1), (-4, -3, -2, 0, 1, 2))
 """Powers of s of the residual terms, by the number of terms on either side."""
 
-CHUNK = 1 << 22
+FINE, COARSE = 1e-5, 1e-2
+"""Squared steps in standard deviations that end an iteration: for results, and for choices."""
+
+MOST_EVALUATIONS = 40
+
+CHUNK = 1 << 19
 """Numbers in an intermediate array of products."""
 
 
@@ -163,7 +168,7 @@ def problem(data: FrequencyResponses, variance: Floats, level: int) -> tuple[Pro
     weight = np.zeros(data.H.shape)
     weight[used] = size**2 / variance[used]
     s = 2j * np.pi * data.frequency / omega
-    H: Complexes = np.where(used, data.H, 0) / size
+    H = np.where(used, data.H, 0).astype(complex) / size
     return Problem(s, H, weight, ORDERS[data.quantity], RESIDUALS[level]), omega, size
 
 
@@ -223,11 +228,18 @@ def synthesise(task: Problem, model: ModalModel) -> Complexes:
     return np.concatenate([modal, model.residual.transpose(1, 2, 0)], axis=-1) @ E
 
 
-def maximise(task: Problem, lam: Complexes, L: Complexes, most: int = 40) -> Fit:
+def maximise(
+    task: Problem,
+    lam: Complexes,
+    L: Complexes,
+    most: int = MOST_EVALUATIONS,
+    tolerance: float = FINE,
+) -> Fit:
     """Return the maximum-likelihood fit from initial poles and participation factors.
 
-    Levenberg-Marquardt in alpha. The iteration ends where a step changes every parameter by less
-    than 1e-3 of its standard deviation.
+    Levenberg-Marquardt in alpha. The iteration ends where the squared length of a step, in
+    standard deviations of the parameters, is below ``tolerance``, and fails after ``most``
+    evaluations.
     """
     held = np.abs(L).argmax(axis=1)
     L = np.asarray(L, complex) / L[np.arange(len(L)), held][:, None]
@@ -237,14 +249,14 @@ def maximise(task: Problem, lam: Complexes, L: Complexes, most: int = 40) -> Fit
     while evaluations < most and not converged:
         step = _step(fit, damping)
         decrement = float(step @ fit.curvature @ step)
-        noise = max(fit.cost / max(task.count, 1), 0.5)
+        noise = max(2 * fit.cost / max(task.count, 1), 1.0)
         trial = evaluate(task, *_moved(fit.model, step), held)
         evaluations += 1
         if trial.cost <= fit.cost * (1 + 1e-14):
-            converged = decrement <= 1e-6 * noise
+            converged = 2 * decrement <= tolerance * noise
             damping = 0.0 if damping < 1e-6 else damping / 10
             fit = trial
-        elif decrement <= 1e-6 * noise:
+        elif 2 * decrement <= tolerance * noise:
             converged = True
         else:
             damping = max(10 * damping, 1e-4)
@@ -290,12 +302,21 @@ def leverage(task: Problem, fit: Fit) -> Floats:
 
 
 def _products(E: Complexes) -> Iterator[tuple[slice, Floats]]:
-    """Yield portions of lines with the real products of all pairs of functions."""
-    p, q = np.triu_indices(len(E))
-    size = max(CHUNK // max(len(p), 1), 1)
+    """Yield portions of lines with the real products of all pairs of functions.
+
+    Pairs are in the order of ``np.triu_indices``.
+    """
+    pairs = len(E) * (len(E) + 1) // 2
+    size = max(CHUNK // max(pairs, 1), 1)
     for start in range(0, E.shape[1], size):
-        part = E[:, start : start + size]
-        products = part.real[p] * part.real[q] + part.imag[p] * part.imag[q]
+        real, imag = E.real[:, start : start + size], E.imag[:, start : start + size]
+        products = np.empty((pairs, real.shape[1]))
+        at = 0
+        for p in range(len(E)):  # the rows of an upper triangle
+            rows = products[at : at + len(E) - p]
+            np.multiply(real[p], real[p:], out=rows)
+            rows += imag[p] * imag[p:]
+            at += len(rows)
         yield slice(start, start + size), products
 
 

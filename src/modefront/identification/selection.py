@@ -31,6 +31,7 @@ import numpy as np
 from modefront._typing import Bools, Floats
 from modefront.identification.modal_model import (
     CHUNK,
+    COARSE,
     RESIDUALS,
     Fit,
     Problem,
@@ -99,10 +100,10 @@ def start(task: Problem, clusters: Sequence[Cluster], omega: float, count: int |
     likely = [one for one in clusters if one.support >= LIKELY and one.size >= LEAST_ORDERS]
     if count is not None:
         likely = sorted(clusters, key=lambda one: -one.support * one.size)[:count]
-    lam: Complexes = np.array([one.pole for one in likely], complex) / omega
+    lam = (np.array([one.pole for one in likely], complex) / omega).astype(complex)
     n_in = task.weight.shape[0]
     L: Complexes = np.array([one.participation for one in likely], complex).reshape(len(lam), n_in)
-    return maximise(task, lam, L)
+    return maximise(task, lam, L, tolerance=COARSE)
 
 
 def backward(task: Problem, fit: Fit) -> Fit:
@@ -118,7 +119,7 @@ def backward(task: Problem, fit: Fit) -> Fit:
 def without(task: Problem, fit: Fit, mode: int) -> Fit:
     """Return the fit that is left without one mode."""
     kept = np.arange(len(fit.model)) != mode
-    return maximise(task, fit.model.lam[kept], fit.model.L[kept])
+    return maximise(task, fit.model.lam[kept], fit.model.L[kept], tolerance=COARSE)
 
 
 def forward(task: Problem, fit: Fit, candidates: Complexes) -> Fit:
@@ -135,9 +136,8 @@ def forward(task: Problem, fit: Fit, candidates: Complexes) -> Fit:
             continue
         tried.append(lam)
         model = fit.model
-        trial = maximise(
-            task, np.append(model.lam, lam), np.vstack([model.L, L[at]]), MOST_EVALUATIONS
-        )
+        L_all = np.vstack([model.L, L[at]])
+        trial = maximise(task, np.append(model.lam, lam), L_all, MOST_EVALUATIONS, COARSE)
         gained = 2 * (fit.cost - trial.cost) / noise_level(task, trial)
         if gained > price(task) and gains(task, trial).min() > price(task):
             return trial
