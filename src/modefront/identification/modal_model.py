@@ -168,7 +168,8 @@ def problem(data: FrequencyResponses, variance: Floats, level: int) -> tuple[Pro
     weight = np.zeros(data.H.shape)
     weight[used] = size**2 / variance[used]
     s = 2j * np.pi * data.frequency / omega
-    H = np.where(used, data.H, 0).astype(complex) / size
+    H = np.zeros(data.H.shape, complex)
+    H[used] = data.H[used] / size
     return Problem(s, H, weight, ORDERS[data.quantity], RESIDUALS[level]), omega, size
 
 
