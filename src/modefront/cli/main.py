@@ -134,6 +134,37 @@ def compare(directories: tuple[Path, ...], form: str) -> None:
         print_comparison(found)
 
 
+@cli.command()
+@click.argument("test", type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    required=True,
+    help="Modal data: a CSV file, or .uff for dataset 55.",
+)
+@click.option(
+    "--band",
+    type=(click.FloatRange(0), click.FloatRange(0, min_open=True)),
+    metavar="LOW HIGH",
+    help="Band in Hz  [default: that of the test file, or all lines]",
+)
+@click.option(
+    "--figures",
+    type=click.Path(path_type=Path),
+    help="Folder for the stabilisation diagram, the synthesised functions and the auto-MAC.",
+)
+def identify(
+    test: Path, output: Path, band: tuple[float, float] | None, figures: Path | None
+) -> None:
+    """Turn the frequency response functions of TEST into modal data."""
+    from modefront.cli.identify import run_identify
+
+    if band and band[0] >= band[1]:
+        raise click.UsageError(f"--band: expected LOW below HIGH, found {band[0]:g} {band[1]:g}")
+    run_identify(test, output, band, figures)
+
+
 def main() -> None:
     """Run the command and leave with its exit status; no input produces a traceback."""
     try:

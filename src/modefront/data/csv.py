@@ -2,7 +2,7 @@
 
 One row is one mode of one data set; frequencies are in Hz and damping is the ratio to critical.
 An empty field is not measured. Standard deviations, where known, are in columns of the same name
-with ``_std`` behind it.
+with ``_std`` behind it; that of damping is checked, and used by nothing so far.
 """
 
 from __future__ import annotations
@@ -38,7 +38,7 @@ SHAPES = 1e-100, 1e100
 def is_reserved(name: str, sensors: Collection[str]) -> bool:
     """Return whether a column of this name would be another one than that of a sensor."""
     base = name.removesuffix(STD)
-    return name in (*KEYS, *QUANTITIES) or (base != name and base in ("frequency", *sensors))
+    return name in (*KEYS, *QUANTITIES) or (base != name and base in (*QUANTITIES, *sensors))
 
 
 def read_csv(path: Path, sensors: Sequence[str] | None = None) -> ModalData:
@@ -81,6 +81,32 @@ def read_csv(path: Path, sensors: Sequence[str] | None = None) -> ModalData:
     return _assemble(rows, tuple(sensors))
 
 
+def write_csv(
+    path: Path, data: ModalData, damping_std: Floats | None = None, digits: int = 9
+) -> None:
+    """Write modal data with standard deviations, those of damping where given; whole or not at all.
+
+    Modes of which a data set has neither frequency nor shape are left out.
+    """
+    stds = ("frequency", "damping", *data.sensors)
+    header = [*KEYS, *QUANTITIES, *data.sensors, *(name + STD for name in stds)]
+    unknown = np.full(data.frequency.shape, np.nan) if damping_std is None else damping_std
+    rows = []
+    for k, name in enumerate(data.sets):
+        for r, mode in enumerate(data.modes):
+            values = [data.frequency[k, r], data.damping[k, r], *data.shape[k, r]]
+            values += [data.frequency_std[k, r], unknown[k, r], *data.shape_std[k, r]]
+            if np.isfinite(values).any():
+                texts = ["" if math.isnan(value) else f"{value:.{digits}g}" for value in values]
+                rows.append([name, str(mode), *texts])
+    temporary = path.with_name(path.name + ".part")
+    with temporary.open("w", newline="", encoding="utf-8") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(header)
+        writer.writerows(rows)
+    temporary.replace(path)
+
+
 def _fault(file: str, line: int, column: str, expected: str, found: str) -> Fault:
     return Fault(file, f"line {line}, column {column!r}", expected, found)
 
@@ -110,7 +136,7 @@ def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
 def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[str, str, str]]:
     """Return (column, expected, found) for everything that is wrong with the header."""
     required = (*KEYS, *QUANTITIES, *sensors)
-    known = (*required, *(name + STD for name in ("frequency", *sensors)))
+    known = (*required, *(name + STD for name in (*QUANTITIES, *sensors)))
     faults = [
         (name, "the name of a quantity or of a sensor of the model", suggestion(name, known))
         for name in dict.fromkeys(header)

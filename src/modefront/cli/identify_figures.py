@@ -1,0 +1,124 @@
+"""Pictures of an identification: stabilisation diagram, synthesised functions, auto-MAC."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from modefront.cli.figures import COLOURS, STYLE
+from modefront.errors import Fault, InputError
+from modefront.identification.identify import Identification
+from modefront.identification.shapes import auto_mac
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+MOST_PANELS = 12
+
+
+def write_figures(
+    names: Sequence[str], found: Sequence[Identification], folder: Path
+) -> list[Path]:
+    """Write three pictures for every data set and return their paths.
+
+    Raises InputError where matplotlib is missing or the folder cannot be written to.
+    """
+    try:
+        from matplotlib import rc_context
+        from matplotlib.figure import Figure
+    except ImportError:
+        expected = "matplotlib, which `pip install modefront[figures]` brings"
+        raise InputError(Fault("--figures", "option", expected, "no such package")) from None
+    kinds: list[tuple[str, Callable[[Figure, Identification], None]]] = [
+        ("stabilisation", _stabilisation),
+        ("functions", _functions),
+        ("auto-mac", _auto_mac),
+    ]
+    written = []
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, one in zip(names, found, strict=True):
+            for kind, draw in kinds:
+                with rc_context(dict(STYLE)):
+                    figure = Figure(layout="constrained")
+                    draw(figure, one)
+                    safe_name = re.sub(r"[^\w-]+", "-", name)
+                    path = folder / f"{safe_name}-{kind}.svg"
+                    figure.savefig(path, metadata={"Date": None})
+                written.append(path)
+    except OSError as error:
+        expected = "a folder that can be written to"
+        raise InputError(Fault(str(folder), "folder", expected, str(error))) from None
+    return written
+
+
+def _stabilisation(figure: Figure, one: Identification) -> None:
+    """Draw the poles of all orders over the mean of the functions."""
+    figure.set_size_inches(7.0, 4.0)
+    axes = figure.add_subplot()
+    diagram = one.diagram
+    for stable, marker, colour, label in (
+        (False, "x", "0.7", "unstable"),
+        (True, "o", COLOURS[0], "stable"),
+    ):
+        at = diagram.stable == stable
+        axes.plot(
+            *(diagram.frequency[at], diagram.order[at], marker),
+            color=colour,
+            markersize=3,
+            label=label,
+        )
+    for k, mode in enumerate(one.modes):
+        axes.axvline(
+            mode.frequency, color=COLOURS[2], linewidth=0.8, label="" if k else "accepted mode"
+        )
+    axes.set(xlabel="frequency in Hz", ylabel="order", title="stabilisation diagram")
+    axes.set_xlim(one.data.frequency[0], one.data.frequency[-1])
+    behind = axes.twinx()
+    with np.errstate(divide="ignore"):
+        level = 10 * np.log10(np.nanmean(np.abs(one.data.H) ** 2, axis=(0, 1)))
+    behind.plot(one.data.frequency, level, color="0.6", linewidth=0.6)
+    behind.set_ylabel(f"mean {one.data.quantity} in dB")
+    axes.legend(loc="upper right")
+
+
+def _functions(figure: Figure, one: Identification) -> None:
+    """Draw synthesised over measured functions, those with the greatest residuals first."""
+    share = np.where(np.isfinite(one.residuals.share), one.residuals.share, -1.0)
+    listed = [at for at in np.argsort(-share.ravel()) if share.ravel()[at] >= 0][:MOST_PANELS]
+    columns = min(3, max(len(listed), 1))
+    rows = -(-max(len(listed), 1) // columns)
+    figure.set_size_inches(3.0 * columns, 2.2 * rows)
+    for panel, at in enumerate(listed):
+        j, i = np.unravel_index(at, share.shape)
+        axes = figure.add_subplot(rows, columns, panel + 1)
+        f = one.data.frequency
+        axes.semilogy(f, np.abs(one.data.H[j, i]), color="0.6", linewidth=0.8, label="measured")
+        axes.semilogy(
+            f, np.abs(one.synthesised[j, i]), color=COLOURS[1], linewidth=0.8, label="synthesised"
+        )
+        pair = f"{one.data.references[j]} to {one.data.responses[i]}"
+        axes.set_title(f"{pair}: residual {share[j, i]:.1%}")
+        axes.set_xlabel("frequency in Hz")
+        if not panel:
+            axes.legend()
+
+
+def _auto_mac(figure: Figure, one: Identification) -> None:
+    """Draw the MAC between all modes."""
+    figure.set_size_inches(3.6, 3.2)
+    axes = figure.add_subplot()
+    mac = auto_mac(np.array([mode.shape.complex_shape for mode in one.modes]))
+    ticks = [f"{mode.frequency:.4g}" for mode in one.modes]
+    image = axes.imshow(mac, vmin=0, vmax=1, cmap="Blues")
+    axes.grid(False)
+    axes.set_xticks(range(len(ticks)), ticks, rotation=90)
+    axes.set_yticks(range(len(ticks)), ticks)
+    for (r, s), value in np.ndenumerate(mac):
+        axes.text(s, r, f"{value:.2f}", ha="center", va="center", fontsize=6)
+    axes.set(title="auto-MAC", xlabel="frequency in Hz", ylabel="frequency in Hz")
+    figure.colorbar(image)

@@ -1,0 +1,239 @@
+"""Measured functions as files hold them: one channel at a time, put together into data sets.
+
+A channel is the frequency response between one reference and one response, or its coherence. The
+same pair again is another blow. Directions with a minus sign turn the function round.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from modefront._typing import Floats
+from modefront.errors import Fault, InputError
+from modefront.identification.responses import FrequencyResponses, frequency_responses
+
+SAME_LINES = 1e-6
+"""Relative difference within which two lines of a frequency axis are the same."""
+
+STRAY = 300.0
+"""Ratio of sizes from which on two channels seem to have different units."""
+
+
+@dataclass(frozen=True)
+class Channel:
+    """One measured function.
+
+    Attributes
+    ----------
+    file, place : where it was read
+    reference, response : names; the reference is empty where the file does not say
+    frequency : (lines,) in Hz
+    H : (lines,) complex
+    quantity : what it is; empty where the file does not say
+    coherence : (lines,), or None
+    """
+
+    file: str
+    place: str
+    reference: str
+    response: str
+    frequency: Floats
+    H: NDArray[np.complex128]
+    quantity: str = ""
+    coherence: Floats | None = None
+
+
+@dataclass(frozen=True)
+class Assembled:
+    """The functions of one data set, and what is odd about them."""
+
+    data: FrequencyResponses
+    warnings: tuple[str, ...]
+
+
+def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool) -> Assembled:
+    """Return one data set from its channels.
+
+    ``quantity`` is what the test file says, or empty; ``turned`` makes the points of the hammer
+    the responses, by reciprocity. Raises InputError with everything that is wrong.
+    """
+    _check_axes(channels)
+    quantity = _quantity(channels, quantity)
+    _check_values(channels)
+    if turned:
+        channels = [_turned(one) for one in channels]
+    references = tuple(dict.fromkeys(one.reference for one in channels))
+    responses = tuple(dict.fromkeys(one.response for one in channels))
+    groups: dict[tuple[int, int], list[Channel]] = {}
+    for one in channels:
+        key = references.index(one.reference), responses.index(one.response)
+        groups.setdefault(key, []).append(one)
+    blows = max(map(len, groups.values()))
+    frequency = channels[0].frequency
+    H = np.full((blows, len(references), len(responses), len(frequency)), np.nan, complex)
+    coherence = np.full(H.shape[1:], np.nan)
+    for (j, i), group in groups.items():
+        for b, one in enumerate(group):
+            H[b, j, i] = one.H
+            if one.coherence is not None:
+                coherence[j, i] = one.coherence
+    dead = ~(np.abs(np.nan_to_num(H)) > 0).any(axis=(0, 3))
+    H[:, dead] = np.nan
+    warnings = _warnings(name, H, frequency, references, responses, groups, dead)
+    data = frequency_responses(
+        frequency,
+        H if blows > 1 else H[0],
+        quantity,
+        references=references,
+        responses=responses,
+        coherence=coherence if blows == 1 and np.isfinite(coherence).any() else None,
+    )
+    return Assembled(data, tuple(warnings))
+
+
+def _turned(one: Channel) -> Channel:
+    return Channel(
+        *(one.file, one.place, one.response, one.reference, one.frequency, one.H),
+        *(one.quantity, one.coherence),
+    )
+
+
+def _check_axes(channels: Sequence[Channel]) -> None:
+    first = channels[0]
+    faults = []
+    for one in channels:
+        f = one.frequency
+        if not (np.isfinite(f).all() and (np.diff(f) > 0).all() and (f >= 0).all()):
+            expected = "frequencies in Hz that ascend from zero or above"
+            faults.append(Fault(one.file, one.place, expected, "others"))
+        elif len(f) != len(first.frequency):
+            expected = f"{len(first.frequency)} lines, as in {first.file}"
+            faults.append(Fault(one.file, one.place, expected, f"{len(f)} lines"))
+        elif np.abs(f - first.frequency).max() > SAME_LINES * first.frequency[-1]:
+            expected = f"the frequency axis of {first.file}, {_axis(first.frequency)}"
+            faults.append(Fault(one.file, one.place, expected, _axis(f)))
+    if faults:
+        raise InputError(faults)
+
+
+def _axis(f: Floats) -> str:
+    return f"{f[0]:g} to {f[-1]:g} Hz"
+
+
+def _quantity(channels: Sequence[Channel], declared: str) -> str:
+    faults = []
+    found = declared
+    for one in channels:
+        if not one.quantity and not declared:
+            expected = "quantity = 'receptance', 'mobility' or 'accelerance' in [test]"
+            faults.append(Fault(one.file, one.place, expected, "a file that does not say it"))
+        elif one.quantity and found and one.quantity != found:
+            faults.append(Fault(one.file, one.place, f"{found}, as in the others", one.quantity))
+        found = found or one.quantity
+    if faults:
+        raise InputError(faults[:5])
+    return found
+
+
+def _check_values(channels: Sequence[Channel]) -> None:
+    faults = []
+    for one in channels:
+        bad = np.flatnonzero(np.isinf(one.H) | np.isnan(one.H))
+        if len(bad):
+            at = f"at {one.frequency[bad[0]]:g} Hz" + (f" and {len(bad) - 1} more" * (len(bad) > 1))
+            faults.append(
+                Fault(one.file, one.place, "finite numbers", f"{one.H[bad[0]].real:g} {at}")
+            )
+    if all(not np.any(one.H) for one in channels) and not faults:
+        expected = "functions that are not zero everywhere"
+        faults.append(Fault(channels[0].file, channels[0].place, expected, "only zeros"))
+    if faults:
+        raise InputError(faults[:5])
+
+
+def _warnings(
+    name: str,
+    H: NDArray[np.complex128],
+    frequency: Floats,
+    references: tuple[str, ...],
+    responses: tuple[str, ...],
+    groups: dict[tuple[int, int], list[Channel]],
+    dead: NDArray[np.bool_],
+) -> list[str]:
+    out = []
+    if looks_like_circular(frequency):
+        out.append(
+            f"set {name!r}: the frequency axis looks like rad/s: its lines are "
+            f"{frequency[1] - frequency[0]:.6g} apart, 2π times a round number; expected Hz"
+        )
+    for (j, i), group in groups.items():
+        if dead[j, i]:
+            out.append(f"{group[0].file}: {group[0].place}: only zeros; the channel is left out")
+    mean = np.nanmean(H, axis=0) if len(H) > 1 else H[0]
+    size = np.sqrt(np.mean(np.abs(np.where(np.isfinite(mean), mean, 0)) ** 2, axis=2))
+    living = size[~dead & (size > 0)]
+    middle = float(np.median(living)) if len(living) else 0.0
+    for (j, i), group in groups.items():
+        ratio = size[j, i] / middle if middle else 1.0
+        if size[j, i] > 0 and not 1 / STRAY < ratio < STRAY:
+            out.append(
+                f"{group[0].file}: {group[0].place}: {ratio:.3g} times as great as the other "
+                "functions are: check its unit"
+            )
+    return out + _reciprocity(name, mean, references, responses)
+
+
+def _reciprocity(
+    name: str,
+    H: NDArray[np.complex128],
+    references: tuple[str, ...],
+    responses: tuple[str, ...],
+) -> list[str]:
+    """Return where H_ji and H_ij differ by a sign or a factor."""
+    out = []
+    for j, first in enumerate(references):
+        for second in references[j + 1 :]:
+            if first not in responses or second not in responses:
+                continue
+            a = H[j, responses.index(second)]
+            b = H[references.index(second), responses.index(first)]
+            if not (np.isfinite(a).all() and np.isfinite(b).all()):
+                continue
+            power = np.vdot(b, b).real
+            if power == 0 or not np.any(a):
+                continue
+            inner = np.vdot(b, a) / np.sqrt(power * np.vdot(a, a).real)
+            ratio = np.sqrt(np.vdot(a, a).real / power)
+            pair = f"set {name!r}: the functions {first}-{second} and {second}-{first}"
+            if inner.real < -0.5:
+                out.append(f"{pair} have opposite signs: check the direction of a sensor")
+            elif not 0.1 < ratio < 10:
+                out.append(f"{pair} differ by a factor of {ratio:.3g}: check the units")
+    return out
+
+
+def looks_like_circular(frequency: Floats) -> bool:
+    """Return whether the distance of lines is 2 pi times a round number, and not round itself.
+
+    >>> looks_like_circular(2 * np.pi * np.arange(0, 100, 0.25))
+    True
+    >>> looks_like_circular(np.arange(0, 100, 0.25))
+    False
+    """
+    if len(frequency) < 3:
+        return False
+    step = float(frequency[-1] - frequency[0]) / (len(frequency) - 1)
+
+    def is_round(x: float) -> bool:
+        digits = x / 10 ** np.floor(np.log10(x))
+        return bool(
+            abs(digits * 1e3 - round(digits * 1e3)) < 1e-3
+            or any(abs(1 / x - round(1 / x, k)) < 1e-6 / x for k in (0, 1))
+            or any(abs(x * 2**k - round(x * 2**k)) < 1e-6 * x * 2**k for k in range(14))
+        )
+
+    return is_round(step / (2 * np.pi)) and not is_round(step)

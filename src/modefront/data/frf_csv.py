@@ -1,0 +1,108 @@
+"""Frequency response functions in CSV.
+
+A column ``frequency`` in Hz, then two columns ``NAME_re`` and ``NAME_im`` for every response, and
+``NAME_coherence`` where there is one. All columns of a file belong to one reference.
+"""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from pathlib import Path
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.data.channels import Channel
+from modefront.data.csv import NUMBER
+from modefront.errors import Fault, InputError, suggestion
+
+FREQUENCY, REAL, IMAGINARY, COHERENCE = "frequency", "_re", "_im", "_coherence"
+
+MOST_FAULTS = 5
+
+
+def read_frf_csv(path: Path, reference: str) -> list[Channel]:
+    """Return the functions of one file; raises InputError with what is wrong."""
+    header, values = read_numbers(path, "a file of frequency response functions")
+    names = _names(path, header)
+    column = dict(zip(header, values.T, strict=True))
+    return [
+        Channel(
+            str(path),
+            f"columns {name + REAL!r} and {name + IMAGINARY!r}",
+            reference,
+            name,
+            column[FREQUENCY],
+            column[name + REAL] + 1j * column[name + IMAGINARY],
+            coherence=column.get(name + COHERENCE),
+        )
+        for name in names
+    ]
+
+
+def _names(path: Path, header: Sequence[str]) -> list[str]:
+    """Return the names of the responses, in the order of the columns."""
+    file = str(path)
+    faults = []
+    if FREQUENCY not in header:
+        found = "no such column"
+        faults.append(Fault(file, f"line 1, column {FREQUENCY!r}", "this column", found))
+    names = [name.removesuffix(REAL) for name in header if name.endswith(REAL)]
+    known = {FREQUENCY, *(name + end for name in names for end in (REAL, IMAGINARY, COHERENCE))}
+    for name in dict.fromkeys(header):
+        if header.count(name) > 1:
+            faults.append(Fault(file, f"line 1, column {name!r}", "each column once", "another"))
+        if name not in known:
+            expected = "frequency, or NAME_re, NAME_im or NAME_coherence of a response"
+            faults.append(
+                Fault(file, f"line 1, column {name!r}", expected, suggestion(name, known))
+            )
+    for name in names:
+        if name + IMAGINARY not in header:
+            place = f"line 1, column {name + IMAGINARY!r}"
+            faults.append(Fault(file, place, "this column", "no such column"))
+    if not names:
+        expected = "columns NAME_re and NAME_im of at least one response"
+        faults.append(Fault(file, "line 1", expected, ", ".join(header[:6])))
+    if faults:
+        raise InputError(faults[:MOST_FAULTS])
+    return names
+
+
+def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
+    """Return the header and the rows of a CSV file of numbers; raises InputError."""
+    file = str(path)
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as stream:
+            header = [field.strip() for field in next(csv.reader(stream), [])]
+            rows = stream.read().splitlines()
+    except FileNotFoundError:
+        raise InputError(Fault(file, "file", what, "no such file")) from None
+    except (OSError, ValueError, csv.Error) as error:
+        raise InputError(Fault(file, "file", "CSV in UTF-8", str(error))) from None
+    numbered = [(number, row) for number, row in enumerate(rows, start=2) if row.strip(" ,\t")]
+    if not any(header):
+        raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
+    if not numbered:
+        raise InputError(Fault(file, "line 2", "a row for each line of frequency", "the end"))
+    faults: list[Fault] = []
+    values = np.empty((len(numbered), len(header)))
+    for at, (number, row) in enumerate(numbered):
+        fields = row.split(",")
+        if len(fields) != len(header):
+            expected = f"{len(header)} fields, as in the header"
+            faults.append(Fault(file, f"line {number}", expected, str(len(fields))))
+            continue
+        for k, field in enumerate(fields):
+            text = field.strip()
+            if NUMBER.fullmatch(text) and np.isfinite(float(text)):
+                values[at, k] = float(text)
+            else:
+                place = f"line {number}, column {header[k]!r}"
+                faults.append(Fault(file, place, "a finite number", repr(text)))
+        if len(faults) >= MOST_FAULTS:
+            break
+    if faults:
+        raise InputError(faults[:MOST_FAULTS])
+    return header, values

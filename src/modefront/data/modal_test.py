@@ -1,0 +1,237 @@
+"""The test file: which files hold the functions of a modal test, and what to do with them.
+
+TOML with the tables ``[test]``, ``[identify]``, ``[sensors]`` and a table ``[[set]]`` for every
+data set. A universal file or a CSV file alone is a test of one set.
+"""
+
+from __future__ import annotations
+
+import tomllib
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from modefront.data.channels import Assembled, Channel, assemble
+from modefront.data.frf_csv import read_frf_csv
+from modefront.data.uff import read_uff
+from modefront.errors import Fault, InputError, suggestion
+from modefront.identification.responses import ORDERS
+from modefront.study.reader import Table, is_name, repeated
+
+UFF_ENDINGS = (".uff", ".unv", ".uf", ".bunv", ".ufb")
+MOST_MODES = 200
+
+
+@dataclass(frozen=True)
+class DataSet:
+    """One data set of a test: its name, its functions, what is odd about them."""
+
+    name: str
+    assembled: Assembled
+
+
+@dataclass(frozen=True)
+class ModalTest:
+    """A modal test.
+
+    Attributes
+    ----------
+    name : of the test
+    band : in Hz, or None for all lines
+    modes : their number, or None where it is to be found
+    sets : the data sets
+    """
+
+    name: str
+    band: tuple[float, float] | None
+    modes: int | None
+    sets: tuple[DataSet, ...]
+
+
+@dataclass(frozen=True)
+class _Settings:
+    quantity: str = ""
+    sensors: dict[str, str] = field(default_factory=dict)
+
+
+def read_test(path: Path) -> ModalTest:
+    """Return the test of a test file, a universal file or a CSV file; raises InputError."""
+    if path.suffix.lower() == ".toml":
+        return _from_toml(path)
+    settings = _Settings()
+    if is_universal(path):
+        channels = read_uff(path)
+    elif path.suffix.lower() == ".csv":
+        channels = read_frf_csv(path, "reference")
+        settings = _Settings("accelerance")
+    else:
+        expected = "a universal file (.uff), a CSV file (.csv) or a test file (.toml)"
+        found = "no such file" if not path.exists() else "none of these"
+        raise InputError(Fault(str(path), "file", expected, found))
+    assembled = _assembled(channels, path.stem, settings)
+    if path.suffix.lower() == ".csv":
+        note = f"{path}: the file does not say its quantity: taken for accelerance"
+        assembled = Assembled(assembled.data, (note, *assembled.warnings))
+    return ModalTest(path.stem, None, None, (DataSet(path.stem, assembled),))
+
+
+def is_universal(path: Path) -> bool:
+    """Return whether a file is taken for a universal file, by its ending or its first line."""
+    if path.suffix.lower() in UFF_ENDINGS:
+        return True
+    try:
+        with path.open("rb") as stream:
+            return stream.read(64).lstrip(b"\r\n").startswith(b"    -1")
+    except OSError:
+        return False
+
+
+def _from_toml(path: Path) -> ModalTest:
+    faults: list[Fault] = []
+    root = Table(str(path), "", _parsed(path), faults)
+    name, settings = _test_table(root)
+    band, modes = _identify_table(root)
+    sets = _set_tables(root, path.parent)
+    root.close()
+    if faults:
+        raise InputError(faults)
+    found = []
+    for title, files, references in sets:
+        channels = [
+            channel
+            for file, reference in zip(files, references, strict=True)
+            for channel in _channels(root, path.parent / file, reference)
+        ]
+        if faults:
+            raise InputError(faults)
+        found.append(DataSet(title, _assembled(channels, title, settings, root)))
+    return ModalTest(name, band, modes, tuple(found))
+
+
+def _parsed(path: Path) -> dict[str, object]:
+    try:
+        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
+    except FileNotFoundError:
+        raise InputError(Fault(str(path), "file", "a test file", "no such file")) from None
+    except (OSError, ValueError, RecursionError) as error:
+        raise InputError(Fault(str(path), "file", "TOML in UTF-8", str(error))) from None
+
+
+def _test_table(root: Table) -> tuple[str, _Settings]:
+    title, quantity = "", ""
+    table = root.table("test", "a table [test]")
+    if table:
+        title = table.text("name") or ""
+        quantity = table.choice("quantity", tuple(ORDERS), default=None) or ""
+        table.close()
+    sensors: dict[str, str] = {}
+    table = root.table("sensors", default=None)
+    if table:
+        for name in table.values:
+            channel = table.text(name, "node and direction of a channel, such as '1Z'")
+            if channel:
+                sensors[channel.upper().replace("+", "")] = name
+        table.close()
+    return title, _Settings(quantity, sensors)
+
+
+def _identify_table(root: Table) -> tuple[tuple[float, float] | None, int | None]:
+    table = root.table("identify", default=None)
+    if not table:
+        return None, None
+    expected = "a band [low, high] in Hz, 0 <= low < high"
+    limits = table.numbers("band", expected, lambda x: len(x) == 2 and 0 <= x[0] < x[1], None)
+    modes = table.take(
+        "modes",
+        f"'auto' or a number of modes from 1 to {MOST_MODES}",
+        lambda x: x == "auto" or (type(x) is int and 1 <= x <= MOST_MODES),
+        "auto",
+    )
+    table.close()
+    band = (limits[0], limits[1]) if limits else None
+    return band, None if modes == "auto" else int(modes)
+
+
+def _set_tables(root: Table, folder: Path) -> list[tuple[str, list[str], list[str]]]:
+    """Return name, files and reference of each file of all data sets."""
+    out = []
+    for number, table in enumerate(root.tables("set", required=True), start=1):
+        name = table.text("name", default=str(number)) or str(number)
+
+        def texts(value: object) -> bool:
+            return isinstance(value, list) and bool(value) and all(map(is_name, value))
+
+        files = table.take("files", "a list of files", texts, ...) or []
+        references = table.take("reference", "one reference a file", texts, None)
+        if references is None:
+            references = [""] * len(files)
+            for file in files:
+                if not is_universal(folder / file):
+                    table.fault("reference", f"the reference of {file}", "nothing")
+        elif len(references) != len(files):
+            found = f"{len(references)} for {len(files)} files"
+            table.fault("reference", "one reference a file", found)
+            references = [""] * len(files)
+        table.close()
+        out.append((name, files, references))
+    for name in repeated(name for name, _, _ in out):
+        root.fault("[[set]]", "a name for each data set", f"{name!r} twice")
+    return out
+
+
+def _channels(root: Table, path: Path, reference: str) -> list[Channel]:
+    try:
+        if not is_universal(path):
+            return read_frf_csv(path, reference)
+        found = read_uff(path)
+    except InputError as error:
+        root.faults.extend(error.faults)
+        return []
+    if not reference:
+        return found
+    return [_renamed(one, reference, one.response) for one in found]
+
+
+def _renamed(one: Channel, reference: str, response: str, sign: int = 1) -> Channel:
+    return Channel(
+        *(one.file, one.place, reference, response, one.frequency, sign * one.H),
+        *(one.quantity, one.coherence),
+    )
+
+
+def _assembled(
+    channels: list[Channel], name: str, settings: _Settings, root: Table | None = None
+) -> Assembled:
+    """Return one data set with the names of the test file, at the side that has the sensors."""
+    responses = {one.response for one in channels}
+    references = {one.reference for one in channels}
+    named = settings.sensors
+    if named:
+        plain = {channel.replace("-", "") for channel in named}
+        turned = len(plain & references) > len(plain & responses)
+        missing = plain - (references if turned else responses)
+        if missing and root is not None:
+            for channel in sorted(missing):
+                there = sorted(references if turned else responses)
+                root.fault(
+                    f"[sensors] {named.get(channel, '')}",
+                    "a channel of the files: " + ", ".join(there[:8]),
+                    suggestion(channel, there),
+                )
+            raise InputError(root.faults)
+    else:
+        turned = len(references) > len(responses) == 1
+    return assemble([_named(one, named) for one in channels], settings.quantity, name, turned)
+
+
+def _named(one: Channel, names: dict[str, str]) -> Channel:
+    response, first = _name(one.response, names)
+    reference, second = _name(one.reference, names)
+    return _renamed(one, reference, response, first * second)
+
+
+def _name(channel: str, names: dict[str, str]) -> tuple[str, int]:
+    """Return the name of a channel and the sign of its direction in ``[sensors]``, as in 1-Z."""
+    for known, name in names.items():
+        if known.replace("-", "") == channel:
+            return name, -1 if "-" in known else 1
+    return channel, 1

@@ -1,0 +1,228 @@
+"""Universal files: frequency response functions from dataset 58, modes into dataset 55.
+
+The text of the file is looked through first: what holds no dataset, is cut off or has exponents
+written with D is said or mended here, since `pyuff`, which decodes the datasets, returns nothing
+or fails without a place. `pyuff` is an extra, imported where it is used.
+
+Format: Structural Dynamics Research Laboratory, University of Cincinnati, *Universal File
+Formats*, datasets 55, 58 and 58b.
+"""
+
+from __future__ import annotations
+
+import re
+import tempfile
+import warnings
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+from typing import Any
+
+import numpy as np
+
+from modefront.data.channels import Channel
+from modefront.errors import Fault, InputError
+
+FRF, COHERENCE, TIME = 4, 6, 1
+"""Types of functions in dataset 58."""
+
+QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
+"""What the numerator is: displacement, velocity, acceleration."""
+
+AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
+
+DELIMITER = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
+EXPONENT = re.compile(rb"(?<=[0-9.])[Dd](?=[+-]?[0-9])")
+
+WHAT = "a universal file with frequency response functions (dataset 58)"
+
+
+@dataclass(frozen=True)
+class Block:
+    """One dataset of a universal file: its number, the line where it begins, its bytes."""
+
+    number: int
+    line: int
+    start: int
+    end: int
+    binary: bool
+
+
+def read_uff(path: Path) -> list[Channel]:
+    """Return the frequency response functions of a universal file, with their coherence.
+
+    Raises InputError where the file holds none, is cut off or cannot be decoded.
+    """
+    file = str(path)
+    try:
+        content = path.read_bytes()
+    except FileNotFoundError:
+        raise InputError(Fault(file, "file", WHAT, "no such file")) from None
+    except OSError as error:
+        raise InputError(Fault(file, "file", WHAT, str(error))) from None
+    found = blocks(content, file)
+    functions = [one for one in found if one.number == 58]
+    if not functions:
+        numbers = ", ".join(str(n) for n in dict.fromkeys(one.number for one in found))
+        raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
+    decoded = [_decode(content, one, file) for one in functions]
+    channels, coherences = [], {}
+    for block, values in zip(functions, decoded, strict=True):
+        kind = int(values["func_type"])
+        if kind == FRF:
+            channels.append(_channel(values, block, file))
+        elif kind == COHERENCE:
+            one = _channel(values, block, file)
+            coherences[one.reference, one.response] = one.H.real
+    if not channels:
+        kinds = ", ".join(str(n) for n in sorted({int(one["func_type"]) for one in decoded}))
+        expected = "frequency response functions (type 4) among the functions of dataset 58"
+        raise InputError(Fault(file, "dataset 58", expected, f"functions of type {kinds} only"))
+    return [
+        Channel(
+            *(one.file, one.place, one.reference, one.response, one.frequency, one.H),
+            *(one.quantity, coherences.get((one.reference, one.response))),
+        )
+        for one in channels
+    ]
+
+
+def blocks(content: bytes, file: str) -> list[Block]:
+    """Return the datasets of a universal file; raises InputError for other files and torn ones."""
+    out = []
+    at = 0
+    while opening := DELIMITER.search(content, at):
+        header = re.compile(rb"\r?\n[ ]*([0-9]{1,5})(b?)([^\n]*)").match(content, opening.end())
+        line = content.count(b"\n", 0, opening.start()) + 1
+        if not header:
+            break
+        number, binary = int(header[1]), bool(header[2])
+        start = header.end()
+        if binary:
+            start = _after_binary(content, header[3], start)
+        closing = DELIMITER.search(content, start) if start <= len(content) else None
+        if not closing:
+            expected = f"the end of dataset {number}, a line with -1"
+            raise InputError(Fault(file, f"line {line}", expected, "the end of the file"))
+        out.append(Block(number, line, opening.start(), closing.end(), binary))
+        at = closing.end()
+    if not out:
+        expected = "datasets between lines with -1 in columns 5 and 6"
+        raise InputError(Fault(file, "file", expected, "none: this is no universal file"))
+    return out
+
+
+def _after_binary(content: bytes, header: bytes, start: int) -> int:
+    """Return where the values of a binary dataset end, from what its header says."""
+    numbers = header.split()
+    lines = int(numbers[2]) if len(numbers) > 3 else 11
+    for _ in range(lines + 1):
+        start = content.find(b"\n", start) + 1
+        if not start:
+            return len(content) + 1
+    return start + (int(numbers[3]) if len(numbers) > 3 else 0)
+
+
+def _pyuff(file: str) -> ModuleType:
+    try:
+        import pyuff
+    except ImportError:
+        expected = "pyuff, which `pip install modefront[uff]` brings"
+        raise InputError(Fault(file, "universal file", expected, "no such package")) from None
+    module: ModuleType = pyuff
+    return module
+
+
+def _decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
+    """Return one dataset as pyuff reads it."""
+    pyuff = _pyuff(file)
+    text = content[block.start : block.end] + b"\n"
+    if not block.binary:
+        head, body = text.split(b"\n", 13)[:13], text.split(b"\n", 13)[13:]
+        text = b"\n".join([*head, *(EXPONENT.sub(b"E", part) for part in body)])
+        text = text.replace(b"\r\n", b"\n")
+    place = f"line {block.line}, dataset 58"
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / "one.uff"
+        copy.write_bytes(text)
+        try:
+            with warnings.catch_warnings():
+                warnings.simplefilter("ignore")
+                values: Mapping[str, Any] = pyuff.UFF(str(copy)).read_sets(0)
+            count, data = int(values["num_pts"]), np.asarray(values["data"])
+        except Exception as error:  # pyuff raises bare Exceptions
+            raise InputError(Fault(file, place, "a dataset 58", str(error))) from None
+    if len(data) != count or len(np.atleast_1d(values["x"])) != count:
+        raise InputError(Fault(file, place, f"{count} values, as its header says", str(len(data))))
+    return values
+
+
+def _channel(values: Mapping[str, Any], block: Block, file: str) -> Channel:
+    response, sign = _degree_of_freedom(values["rsp_node"], values["rsp_dir"])
+    reference, other = _degree_of_freedom(values["ref_node"], values["ref_dir"])
+    quantity = QUANTITIES.get(int(values["ordinate_spec_data_type"]), "")
+    place = f"line {block.line}, dataset 58 of {reference} to {response}"
+    H = sign * other * np.asarray(values["data"], complex)
+    x = np.asarray(values["x"], float)
+    return Channel(file, place, reference, response, x, H, quantity)
+
+
+def _degree_of_freedom(node: object, direction: object) -> tuple[str, int]:
+    """Return the name of a degree of freedom, such as ``1Z``, and the sign of its direction."""
+    number = int(float(str(direction or 0)))
+    return f"{int(float(str(node)))}{AXES.get(abs(number), '')}", -1 if number < 0 else 1
+
+
+def write_uff55(
+    path: Path,
+    sets: Sequence[str],
+    modes: Sequence[Sequence[tuple[complex, np.ndarray[Any, np.dtype[np.complex128]]]]],
+    sensors: Sequence[str],
+) -> None:
+    """Write modes as complex eigenvectors of first order, dataset 55 (analysis type 3).
+
+    ``modes`` holds, for every data set, poles in rad/s and complex shapes at the sensors; sensors
+    that are named by node and direction keep both, others are numbered from 1, in X.
+    """
+    pyuff = _pyuff(str(path))
+    places = [_place(name, i) for i, name in enumerate(sensors)]
+    nodes = list(dict.fromkeys(node for node, _ in places))
+    names = ", ".join(sensors)[:79]
+    written = []
+    for name, found in zip(sets, modes, strict=True):
+        for number, (pole, phi) in enumerate(found, start=1):
+            values = np.zeros((3, len(nodes)), complex)
+            for (node, axis), value in zip(places, phi, strict=True):
+                values[axis, nodes.index(node)] = value
+            written.append(
+                pyuff.prepare_55(
+                    model_type=1,
+                    id1=f"set {name}"[:79],
+                    id2=f"mode {number}, {abs(pole) / (2 * np.pi):.9g} Hz",
+                    id3=names or "NONE",
+                    id4="NONE",
+                    id5="NONE",
+                    analysis_type=3,
+                    data_ch=2,
+                    spec_data_type=8,
+                    data_type=5,
+                    n_data_per_node=3,
+                    r1=values[0],
+                    r2=values[1],
+                    r3=values[2],
+                    node_nums=nodes,
+                    load_case=1,
+                    mode_n=number,
+                    eig=pole,
+                    modal_a=0j,
+                    modal_b=0j,
+                )
+            )
+    path.unlink(missing_ok=True)
+    pyuff.UFF(str(path)).write_sets(written, "add")
+
+
+def _place(name: str, index: int) -> tuple[int, int]:
+    matched = re.fullmatch(r"([0-9]+)([XYZ])", name)
+    return (int(matched[1]), "XYZ".index(matched[2])) if matched else (index + 1, 0)

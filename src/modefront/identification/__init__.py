@@ -1,0 +1,16 @@
+"""From frequency response functions to modes, with their standard deviations.
+
+=====================  ================================================================
+step                   module
+=====================  ================================================================
+functions as arrays    `responses`; from impacts in time: `impact`
+variance of the data   `noise`
+poles of all orders    `lscf`
+clusters of poles      `stabilisation`
+maximum likelihood     `modal_model`
+modes that data need   `selection`
+standard deviations    `statistics`, `shapes`
+one data set           `identify`
+several data sets      `sets`
+=====================  ================================================================
+"""

@@ -1,0 +1,357 @@
+r"""From frequency response functions of one data set to its modes.
+
+1. Poles over a range of orders (`lscf`), their diagram and its clusters (`stabilisation`).
+2. The modal model from the likely clusters (`modal_model`); modes that do not pay are left out,
+   poles that do are added (`selection`), and the variance is that of the data or, where nothing
+   is known, that of the residuals (`noise`).
+3. Standard deviations (`statistics`); modes that are no modes of the structure are rejected.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from modefront._typing import Floats, Ints
+from modefront.identification import lscf, modal_model, selection
+from modefront.identification.modal_model import Fit, Problem
+from modefront.identification.noise import fitted_variance, variance_from_differences
+from modefront.identification.responses import ORDERS, Complexes, FrequencyResponses
+from modefront.identification.stabilisation import (
+    MOST_DAMPING,
+    Cluster,
+    StabilisationDiagram,
+    stabilisation_diagram,
+)
+from modefront.identification.statistics import (
+    ModeEstimate,
+    Residuals,
+    mode_estimates,
+    residuals,
+)
+
+Weighting = Literal["given", "scaled", "residuals"]
+
+LEAST_LINES = 20
+MOST_POLES = 60
+MOST_ORDERS = 25
+PRINCIPAL = 48
+"""Principal responses from which the modes are chosen where there are more responses."""
+
+SUPPORT = 0.5
+"""Least share of the orders, from the first one with this pole, that have it."""
+
+WIDEST = 1.0
+"""Greatest standard deviation of damping over damping, and of a frequency over half its bandwidth
+or over the distance of lines."""
+
+LEAST_LEFT = 0.1
+"""Least share of the noise of a line that its residual is taken to hold."""
+
+VISIBLE = 1 / 3
+"""Least share of a mode in the sum of all at its frequency, where it is greatest."""
+
+LEAST_COLLINEARITY = 0.5
+"""Least phase collinearity of a mode."""
+
+SEED = 20080410
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A pole that is no mode, in Hz and as a ratio, and why."""
+
+    frequency: float
+    damping: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class Identification:
+    """Modes of one data set.
+
+    Attributes
+    ----------
+    data : the functions within the band
+    modes : accepted modes by frequency
+    rejected : what was found besides, and why it is no mode
+    diagram : poles of all orders
+    synthesised : functions of the model, of the shape of ``data.H``
+    residuals : what the residuals say
+    variance : the variance that weighted the data
+    evaluations : number of evaluations of the model in the last fit
+    converged : whether it met its tolerance
+    residual_terms : number of residual terms on either side of the band
+    """
+
+    data: FrequencyResponses
+    modes: tuple[ModeEstimate, ...]
+    rejected: tuple[Rejected, ...]
+    diagram: StabilisationDiagram
+    synthesised: Complexes
+    residuals: Residuals
+    variance: Floats
+    evaluations: int
+    converged: bool
+    residual_terms: int
+
+
+def identify(
+    data: FrequencyResponses,
+    band: tuple[float, float] | None = None,
+    modes: int | None = None,
+    orders: Sequence[int] | None = None,
+) -> Identification:
+    """Return the modes of one data set within a band in Hz, by default all of it.
+
+    ``modes`` is their number where it is known; ``orders`` are those of the stabilisation diagram.
+    Raises ValueError where the band has too few lines or nothing was measured in it.
+    """
+    data = data.within(*(band or (0.0, np.inf)))
+    if len(data.frequency) < LEAST_LINES:
+        raise ValueError(f"expected {LEAST_LINES} lines in the band, found {len(data.frequency)}")
+    if not np.any(np.abs(np.nan_to_num(data.H)) > 0):
+        raise ValueError("expected functions that are not zero, found only zeros")
+    variance = _known_variance(data)
+    first = variance_from_differences(data) if variance is None else variance
+    small, small_variance = _principal(data, first)
+    diagram, clusters = _diagram(small, small_variance, orders)
+    task, omega, _ = modal_model.problem(small, small_variance, 1)
+    task, fit = _select(task, omega, diagram, clusters, modes, weighting(small))
+    level = modal_model.RESIDUALS.index(task.powers)
+    task, omega, size = modal_model.problem(data, first, level)
+    model = fit.model
+    start = modal_model.evaluate(task, model.lam, model.L, model.held)
+    task = _reweighted(task, start, weighting(data))
+    fit = modal_model.maximise(task, model.lam, model.L)
+    if weighting(data) != "given":
+        task = _reweighted(task, fit, weighting(data))
+        fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
+    return _result(data, task, fit, omega, size, diagram, clusters, modes)
+
+
+def weighting(data: FrequencyResponses) -> Weighting:
+    """Return what the variance is from: given, given up to a factor, or residuals alone."""
+    if data.variance is None:
+        return "residuals"
+    return "scaled" if data.scaled else "given"
+
+
+def _known_variance(data: FrequencyResponses) -> Floats | None:
+    return None if data.variance is None else fitted_variance(data.variance, data.H)
+
+
+def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
+    """Return principal responses of unit variance, by a randomised singular value decomposition.
+
+    Halko, Martinsson & Tropp, SIAM Rev. 53 (2011) 217-288, doi:10.1137/090771806.
+    """
+    n_in, n_out, lines = data.H.shape
+    if n_out <= PRINCIPAL:
+        return data, variance
+    level = np.sqrt(np.nanmedian(variance, axis=(0, 2)))
+    level = np.where(np.isfinite(level) & (level > 0), level, np.inf)
+    H = (np.where(data.measured, data.H, 0) / level[:, None]).transpose(0, 2, 1)
+    flat = H.reshape(-1, n_out)
+    draws = np.random.default_rng(SEED).standard_normal((n_out, PRINCIPAL + 10))
+    basis = np.linalg.qr(flat @ draws)[0]
+    V = np.linalg.svd(basis.conj().T @ flat, full_matrices=False)[2][:PRINCIPAL]
+    principal = (flat @ V.conj().T).reshape(n_in, lines, PRINCIPAL).transpose(0, 2, 1)
+    names = tuple(f"principal {i + 1}" for i in range(PRINCIPAL))
+    small = replace(data, H=principal, responses=names, variance=None)
+    return small, variance_from_differences(small)
+
+
+def _diagram(
+    data: FrequencyResponses, variance: Floats, orders: Sequence[int] | None
+) -> tuple[StabilisationDiagram, list[Cluster]]:
+    H = np.where(data.measured, data.H, 0)
+    weight = np.nan_to_num(1 / variance).mean(axis=0)
+    weight = weight / weight.max()
+    omega = 2 * np.pi * data.frequency
+    rate = 2 * np.pi * lscf.ARC / (omega[-1] - omega[0])
+    if orders is None:
+        most = max(MOST_POLES // H.shape[0], 6)
+        most = min(most, len(omega) // 4)
+        orders = sorted(set(np.linspace(2, most, min(MOST_ORDERS, most - 1)).astype(int).tolist()))
+    z = lscf.generalised_frequency(omega, omega[0], rate)
+    sums = lscf.moments(H, weight, z, max(orders))
+    found = lscf.poles(sums, orders, omega[0], rate)
+    return stabilisation_diagram(found, H, omega, ORDERS[data.quantity])
+
+
+def _select(
+    task: Problem,
+    omega: float,
+    diagram: StabilisationDiagram,
+    clusters: list[Cluster],
+    modes: int | None,
+    kind: Weighting,
+) -> tuple[Problem, Fit]:
+    """Return the problem, with its residual terms and variance, and the modes that data need."""
+    fit = selection.start(task, clusters, omega, modes)
+    task = selection.choose_level(task, fit)
+    fit = _again(task, fit)
+    if kind != "given":
+        task = _reweighted(task, fit, kind)
+        fit = _again(task, fit)
+    if modes is not None:
+        return task, fit
+    candidates = selection.distinct(diagram.pole) / omega
+    for _ in range(selection.MOST_ADDED):
+        fit = selection.backward(task, fit)
+        more = selection.forward(task, fit, candidates)
+        if more is fit:
+            break
+        fit = more
+        if kind != "given":
+            task = _reweighted(task, fit, kind)
+            fit = _again(task, fit)
+    task = selection.choose_level(task, fit)
+    fit = _again(task, fit)
+    return task, selection.backward(task, fit)
+
+
+def _again(task: Problem, fit: Fit) -> Fit:
+    """Return the fit from the poles of another one, as far as choices need it."""
+    return modal_model.maximise(task, fit.model.lam, fit.model.L, tolerance=modal_model.COARSE)
+
+
+def _reweighted(task: Problem, fit: Fit, kind: Weighting) -> Problem:
+    """Return the problem weighted by the smooth variance of the residuals of a fit.
+
+    Where the variance is given it stays; where it is known up to a factor it gets that.
+    """
+    if kind == "given":
+        return task
+    H = modal_model.synthesise(task, fit.model)
+    used = task.weight > 0
+    left = np.maximum(1 - modal_model.leverage(task, fit), LEAST_LEFT)
+    raw = np.where(used, np.abs(task.H - H) ** 2 / left, np.nan)
+    if kind == "scaled":
+        lines = np.maximum(used.sum(axis=2, keepdims=True), 1)
+        factor = np.where(used, raw * task.weight, 0).sum(axis=2, keepdims=True) / lines
+        return replace(task, weight=task.weight / np.where(factor > 0, factor, 1.0))
+    variance = fitted_variance(raw, np.where(used, H, np.nan))
+    return replace(task, weight=np.where(used, 1 / variance, 0.0))
+
+
+def _result(
+    data: FrequencyResponses,
+    task: Problem,
+    fit: Fit,
+    omega: float,
+    size: float,
+    diagram: StabilisationDiagram,
+    clusters: list[Cluster],
+    count: int | None,
+) -> Identification:
+    found = residuals(task, fit)
+    estimates = mode_estimates(task, fit, found, omega)
+    reasons = _reasons(data, task, fit, estimates, diagram, count is not None)
+    kept = [one for one, why in zip(estimates, reasons, strict=True) if not why]
+    rejected = [
+        Rejected(float(one.frequency), float(one.damping), why)
+        for one, why in zip(estimates, reasons, strict=True)
+        if why
+    ]
+    rejected += _passed_over(clusters, estimates)
+    synthesised = modal_model.synthesise(task, fit.model) * size
+    variance = np.where(
+        task.weight > 0, size**2 / np.where(task.weight > 0, task.weight, 1), np.nan
+    )
+    return Identification(
+        data,
+        tuple(sorted(kept, key=lambda one: one.frequency)),
+        tuple(sorted(rejected, key=lambda one: one.frequency)),
+        diagram,
+        synthesised,
+        found,
+        variance,
+        fit.evaluations,
+        fit.converged,
+        modal_model.RESIDUALS.index(task.powers),
+    )
+
+
+def support(diagram: StabilisationDiagram, pole: complex) -> float:
+    """Return the share of the orders, from the first one with this pole, that have it."""
+    near = np.abs(diagram.pole - pole) < np.maximum(0.005 * abs(pole), -0.5 * pole.real)
+    orders: Ints = np.unique(diagram.order[near])
+    if not len(orders):
+        return 0.0
+    return len(orders) / sum(order >= orders[0] for order in diagram.orders)
+
+
+def _reasons(
+    data: FrequencyResponses,
+    task: Problem,
+    fit: Fit,
+    estimates: Sequence[ModeEstimate],
+    diagram: StabilisationDiagram,
+    given: bool,
+) -> list[str]:
+    """Return why each mode is none; empty where it is one."""
+    low, high = data.frequency[0], data.frequency[-1]
+    spacing = float(np.median(np.diff(data.frequency)))
+    doubled = selection.doubles(fit.model.lam, fit.model.phi, selection.gains(task, fit))
+    out = []
+    for one, double, seen in zip(estimates, doubled, _visibility(task, fit), strict=True):
+        half = max(one.damping * one.frequency, spacing)
+        share = support(diagram, one.pole)
+        why = ""
+        if not low <= one.frequency <= high:
+            why = "outside the band"
+        elif one.damping > MOST_DAMPING:
+            why = "damped too heavily for a mode"
+        elif double:
+            why = "doubles a stronger mode of the same shape"
+        elif one.frequency_std > WIDEST * half or one.damping_std > WIDEST * one.damping:
+            why = (
+                f"not determined: {one.frequency_std:.2g} Hz, damping {one.damping_std:.2g} "
+                "standard deviation"
+            )
+        elif share < SUPPORT and not given:
+            why = f"on {share:.0%} of the orders only"
+        elif one.shape.collinearity < LEAST_COLLINEARITY:
+            why = f"its shape has no common phase: phase collinearity {one.shape.collinearity:.2f}"
+        elif seen < VISIBLE and not given:
+            why = f"at most {seen:.0%} of any function at its own frequency"
+        out.append(why)
+    return out
+
+
+def _visibility(task: Problem, fit: Fit) -> Floats:
+    """Return the greatest share of every mode, over all functions, at its own frequency."""
+    model = fit.model
+    out = np.zeros(len(model))
+    if not len(model):
+        return out
+    at = replace(task, s=1j * np.abs(model.lam))
+    E = modal_model.primitives(at, model.lam)[: 2 * len(model)]
+    a = model.L.T[:, None, :] * model.phi.T[None]  # (references, responses, modes)
+    measured = task.weight.any(axis=2)
+    for r in range(len(model)):
+        parts = np.abs(a.real * E[::2, r] + a.imag * E[1::2, r])
+        share = parts[..., r] / np.maximum(parts.sum(axis=-1), np.finfo(float).tiny)
+        out[r] = share[measured].max(initial=0.0)
+    return out
+
+
+def _passed_over(clusters: Sequence[Cluster], estimates: Sequence[ModeEstimate]) -> list[Rejected]:
+    """Return the clusters that the likelihood did not need."""
+    out = []
+    for one in clusters:
+        near = any(
+            abs(one.pole - mode.pole) < max(0.02 * abs(one.pole), -mode.pole.real)
+            for mode in estimates
+        )
+        if one.size >= selection.LEAST_ORDERS and not near:
+            frequency = abs(one.pole) / (2 * np.pi)
+            out.append(
+                Rejected(frequency, -one.pole.real / abs(one.pole), "the data do not need it")
+            )
+    return out

@@ -1,0 +1,173 @@
+r"""The least-squares complex frequency-domain method, common denominator and poly-reference.
+
+Over a band, the functions between all references and response *i* are modelled by a right matrix
+fraction with a common denominator,
+
+.. math:: H_i(\omega) = B_i(z)\,A(z)^{-1},\qquad A = \sum_{m=0}^{p} z^m A_m,\quad
+          B_i = \sum_{m=0}^{p} z^m B_{im},\qquad z = e^{c\,(s - s_1)},
+
+with the arc of z over the band, :math:`s_1 = 2\pi\mathrm{i} f_1`, as generalised frequency. With
+one column of references it is the common-denominator model. The coefficients are complex: a band
+holds the poles of positive frequency, and those of negative frequency are far away and smooth,
+so the numerator takes them. Multiplying by A makes the error linear,
+
+.. math:: e_i = H_i A - B_i = Y_i \alpha - X \beta_i,
+
+and eliminating every :math:`\beta_i` from the normal equations leaves
+
+.. math:: M \alpha = 0,\qquad M = \sum_i T_i - S_i^H R_i^{-1} S_i .
+
+R, S and T are (block) Toeplitz: one matrix product yields their entries for all orders. With
+:math:`A_0 = I`, poles that belong to noise lie outside of the unit circle and are unstable
+(Cauberghe, Guillaume, Verboven et al. 2005). Poles are the eigenvalues of the companion matrix,
+:math:`\lambda = s_1 + \ln z / c`, and its eigenvectors hold the modal participation factors L.
+
+===================  =====================================================================
+symbol               meaning
+===================  =====================================================================
+p                    order; p times the number of references is the number of poles
+R, S, T              :math:`X^H W X`, :math:`-X^H W Y`, :math:`Y^H W Y` of one response
+w                    weights 1/var H, the mean over references
+===================  =====================================================================
+
+Sources: Guillaume, Verboven, Vanlanduit, Van der Auweraer & Peeters, A poly-reference
+implementation of the least-squares complex frequency-domain estimator, IMAC XXI (2003);
+Peeters, Van der Auweraer, Guillaume & Leuridan, The PolyMAX frequency-domain method,
+Shock Vib. 11 (2004) 395-409, doi:10.1155/2004/523692; Cauberghe, Guillaume, Verboven,
+Vanlanduit & Parloo, On the influence of the parameter constraint on the stability of the poles
+and the discrimination capabilities of the stabilisation diagrams, Mech. Syst. Signal Process. 19
+(2005) 989-1014, doi:10.1016/j.ymssp.2004.08.003.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+
+from modefront._typing import Floats
+from modefront.identification.responses import Complexes
+
+ARC = 0.92
+"""Share of the unit circle that the band covers: all of it would join its ends."""
+
+SINGULAR = 1e-13
+"""Relative size of eigenvalues of R that are rounding."""
+
+
+@dataclass(frozen=True)
+class Poles:
+    """Poles of one order.
+
+    Attributes
+    ----------
+    order : p
+    value : (poles,) in rad/s, stable ones within the arc and of positive frequency
+    participation : (poles, references)
+    """
+
+    order: int
+    value: Complexes
+    participation: Complexes
+
+
+@dataclass(frozen=True)
+class Moments:
+    """Sums over the lines that all orders share, for lags of z up to the highest order.
+
+    Attributes
+    ----------
+    weight : (responses, lags): sum of w z^m
+    first : (responses, references, lags): sum of w H z^m
+    second : (references, references, lags): sum of w conj(H) H z^m, over all responses
+    """
+
+    weight: Complexes
+    first: Complexes
+    second: Complexes
+
+
+def generalised_frequency(omega: Floats, shift: float, rate: float) -> Complexes:
+    """Return z at circular frequencies, z = exp(i rate (omega - shift))."""
+    out: Complexes = np.exp(1j * rate * (omega - shift))
+    return out
+
+
+def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments:
+    """Return the sums of which R, S and T are made, for lags from -highest to highest.
+
+    ``H`` is (references, responses, lines) without NaN; ``weight`` (responses, lines).
+    """
+    lags = np.arange(-highest, highest + 1)
+    powers = z[:, None] ** lags
+    first = (weight * H) @ powers
+    second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True) @ powers
+    return Moments(weight @ powers, first.transpose(1, 0, 2), second)
+
+
+def poles(sums: Moments, orders: Iterable[int], shift: float, rate: float) -> list[Poles]:
+    """Return the stable poles of each order from the shared sums."""
+    return [_poles(sums, p, shift, rate) for p in orders]
+
+
+def _toeplitz(values: Complexes, p: int) -> Complexes:
+    """Return the matrix with entries values[m' - m], m and m' from 0 to p; lags are last."""
+    centre = values.shape[-1] // 2
+    index = np.arange(p + 1)
+    out: Complexes = values[..., centre + index[None, :] - index[:, None]]
+    return out
+
+
+def _reduced(sums: Moments, p: int) -> Complexes:
+    """Return M, (powers and references) squared."""
+    n_in = sums.first.shape[1]
+    T = _toeplitz(sums.second, p)  # (references, references, p + 1, p + 1)
+    M = T.transpose(2, 0, 3, 1).reshape((p + 1) * n_in, -1)
+    for weight, first in zip(sums.weight, sums.first, strict=True):
+        value, vector = la.eigh(_toeplitz(weight, p))
+        kept = value > SINGULAR * value[-1]
+        S = _toeplitz(first, p).transpose(1, 2, 0).reshape(p + 1, -1)  # columns (power, reference)
+        half = (vector[:, kept].conj().T @ S) / np.sqrt(value[kept])[:, None]
+        M = M - half.conj().T @ half
+    return M
+
+
+def _poles(sums: Moments, p: int, shift: float, rate: float) -> Poles:
+    n_in = sums.first.shape[1]
+    M = _reduced(sums, p)
+    M = (M + M.conj().T) / 2
+    scale = np.sqrt(np.maximum(M.diagonal().real, np.finfo(float).tiny))
+    rest = slice(n_in, None)
+    normal = M[rest, rest] / np.outer(scale[rest], scale[rest])
+    right = -M[rest, :n_in] / scale[rest, None]
+    alpha = la.lstsq(normal, right, lapack_driver="gelsd")[0] / scale[rest, None]
+    # sum_m z^m A_m v = 0 with A_0 = I: a companion matrix in 1/z on [v, v/z, ..., v/z^(p-1)]
+    companion = np.zeros((p * n_in, p * n_in), complex)
+    companion[n_in:, :-n_in] = np.eye((p - 1) * n_in)
+    companion[:n_in] = -np.hstack(list(alpha.reshape(p, n_in, n_in)))
+    inverse, vectors = la.eig(companion)
+    safe = np.abs(inverse) > np.finfo(float).eps
+    inverse, vectors = inverse[safe], vectors[-n_in:, safe]
+    middle = np.pi * ARC
+    angle = np.angle(np.exp(1j * (-np.angle(inverse) - middle))) + middle
+    value = -np.log(np.abs(inverse)) / rate + 1j * (shift + angle / rate)
+    good = (value.real < 0) & (value.imag > 0)
+    participation = _participation(alpha.reshape(p, n_in, n_in), 1 / inverse[good])
+    order = np.argsort(value[good].imag)
+    return Poles(p, value[good][order], participation[order])
+
+
+def _participation(A: Complexes, z: Complexes) -> Complexes:
+    """Return the left null vectors of A(z), (poles, references), greatest entry 1.
+
+    Near a pole, B A^-1 is a column times this row. ``A`` holds A_1 ... A_p; A_0 is I.
+    """
+    p, n_in = A.shape[:2]
+    if n_in == 1:
+        return np.ones((len(z), 1), complex)
+    total = np.eye(n_in) + np.einsum("km,mij->kij", z[:, None] ** np.arange(1, p + 1), A)
+    left: Complexes = np.linalg.svd(total)[0][:, :, -1].conj()
+    greatest = np.abs(left).argmax(axis=1)
+    return left / left[np.arange(len(left)), greatest][:, None]

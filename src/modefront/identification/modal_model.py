@@ -1,0 +1,427 @@
+r"""The maximum-likelihood modal model by variable projection.
+
+The functions of one data set are (Ewins, *Modal Testing*, 2nd ed., 2000, sec. 2.8)
+
+.. math:: H_{ji}(s) = s^q\Bigl[\sum_r \Bigl(\frac{L_{rj}\varphi_{ri}}{s-\lambda_r}
+          + \frac{L_{rj}^*\varphi_{ri}^*}{s-\lambda_r^*}\Bigr)
+          + \sum_k R_{kji}\,s^{k}\Bigr],\qquad s = \mathrm{i}\omega,
+
+with q = 0, 1, 2 for receptance, mobility, accelerance, and real residuals R of modes outside the
+band: k = -2 and 0 are the lower and the upper one, further powers their next terms. All
+references share poles and shapes. With errors of H that are independent, complex normal and of
+variance v, the maximum of the likelihood is the minimum of
+
+.. math:: J = \sum_{jik} \frac{|H_{ji}(\omega_k) - \hat H_{ji}(\omega_k)|^2}{v_{jik}}
+            = \|y - \Phi(\alpha) c\|^2 .
+
+Poles and participation factors :math:`\alpha` enter nonlinearly; shapes and residuals c linearly,
+and separately for every response *i*. Variable projection (Golub & Pereyra 1973) eliminates c:
+:math:`c(\alpha) = \Phi^+ y`, and the derivative of the projected residual r is
+
+.. math:: \frac{\partial r}{\partial \alpha} = -P_\perp D - (\Phi^+)^T (\partial\Phi)^T r,
+          \qquad D = (\partial\Phi)\,c,\qquad P_\perp = I - \Phi\Phi^+ .
+
+Both terms are orthogonal, so with :math:`G = \Phi^T\Phi` and :math:`U = (\partial\Phi)^T r`,
+
+.. math:: \nabla J / 2 = -D^T r,\qquad
+          \text{Gauss–Newton matrix} = D^T D - D^T\Phi\, G^{-1}\Phi^T D + U^T G^{-1} U .
+
+Every column of :math:`\Phi` and D is a combination of a few *primitives*, real functions of
+frequency that all responses share: with a residue a = x + iy,
+
+.. math:: \frac{a}{s-\lambda}+\frac{a^*}{s-\lambda^*} = x\,e + y\,o,\qquad
+          \frac{\partial}{\partial\operatorname{Re}\lambda} = x\,e_2 + y\,o_2,\qquad
+          \frac{\partial}{\partial\operatorname{Im}\lambda} = x\,o_2 - y\,e_2 ,
+
+e and o the sum and i times the difference of :math:`1/(s-\lambda)` and
+:math:`1/(s-\lambda^*)`, :math:`e_2` and :math:`o_2` of their squares. The Gram matrices of the
+primitives, weighted by 1/v of each function, are one matrix product; all else is small.
+
+===================  =====================================================================
+symbol               meaning
+===================  =====================================================================
+lam, L, phi          poles (modes,), participation (modes, references), shapes
+                     (modes, responses); the greatest :math:`|L_{rj}|` of a mode is 1
+E                    primitives, (functions, lines): e, o of all modes, then residuals,
+                     then :math:`e_2, o_2`
+alpha                Re and Im of lam, then Re and Im of the L that are not held at 1
+c                    Re and Im of phi of one response, then its residuals by reference
+===================  =====================================================================
+
+Sources: Golub & Pereyra, The differentiation of pseudo-inverses and nonlinear least squares
+problems whose variables separate, SIAM J. Numer. Anal. 10 (1973) 413-432, doi:10.1137/0710036;
+Pintelon & Schoukens, *System Identification: A Frequency Domain Approach*, 2nd ed., 2012,
+doi:10.1002/9781118287422; El-Kafafy, De Troyer, Peeters & Guillaume, Fast maximum-likelihood
+identification of modal parameters with uncertainty intervals: a modal model-based formulation,
+Mech. Syst. Signal Process. 37 (2013) 422-439, doi:10.1016/j.ymssp.2013.01.001.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+import scipy.linalg as la
+
+from modefront._typing import Floats, Ints
+from modefront.identification.responses import ORDERS, Complexes, FrequencyResponses
+
+RESIDUALS: tuple[tuple[int, ...], ...] = ((), (-2, 0), (-3, -2, 0, 1), (-4, -3, -2, 0, 1, 2))
+"""Powers of s of the residual terms, by the number of terms on either side."""
+
+FINE, COARSE = 1e-5, 1e-2
+"""Squared steps in standard deviations that end an iteration: for results, and for choices."""
+
+MOST_EVALUATIONS = 40
+
+CHUNK = 1 << 19
+"""Numbers in an intermediate array of products."""
+
+
+@dataclass(frozen=True)
+class Problem:
+    """Data and weights, with frequencies over the highest one and functions over their size.
+
+    Attributes
+    ----------
+    s : (lines,) i f / f_max
+    H : (references, responses, lines), 0 where not measured
+    weight : of the shape of ``H``, 1/v, 0 where not measured
+    order : q
+    powers : powers of s of the residual terms
+    """
+
+    s: Complexes
+    H: Complexes
+    weight: Floats
+    order: int
+    powers: tuple[int, ...]
+
+    @cached_property
+    def count(self) -> int:
+        """Number of real equations."""
+        return 2 * int(np.count_nonzero(self.weight))
+
+
+@dataclass(frozen=True)
+class ModalModel:
+    """Parameters of the model in the scale of a `Problem`.
+
+    Attributes
+    ----------
+    lam : (modes,) poles
+    L : (modes, references) participation factors; that of ``held`` is 1
+    held : (modes,) index of the reference with the greatest factor
+    phi : (modes, responses)
+    residual : (powers, references, responses)
+    """
+
+    lam: Complexes
+    L: Complexes
+    held: Ints
+    phi: Complexes
+    residual: Floats
+
+    def __len__(self) -> int:
+        return len(self.lam)
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A model with the cost and the curvature there; linear parameters are eliminated.
+
+    Attributes
+    ----------
+    model : the parameters
+    cost : J, sum of squared weighted residuals
+    gradient : (alphas,) half the gradient of J
+    information : (alphas, alphas) projected Gauss-Newton matrix without the term in U
+    curvature : (alphas, alphas) with it
+    inverse : (responses, linear, linear) inverse of G
+    Z : (responses, linear, alphas), -dc/dalpha
+    evaluations : number of evaluations of the model
+    converged : whether the iteration met its tolerance
+    """
+
+    model: ModalModel
+    cost: float
+    gradient: Floats
+    information: Floats
+    curvature: Floats
+    inverse: Floats
+    Z: Floats
+    evaluations: int = 1
+    converged: bool = False
+
+
+def problem(data: FrequencyResponses, variance: Floats, level: int) -> tuple[Problem, float, float]:
+    """Return the scaled problem with the units of frequency (rad/s) and of H.
+
+    ``level`` is the number of residual terms on either side of the band. Lines of which the
+    variance is not a positive number have no weight.
+    """
+    omega = 2 * np.pi * data.frequency[-1]
+    size = float(np.sqrt(np.mean(np.abs(data.H[data.measured]) ** 2)))
+    used = data.measured & np.isfinite(variance) & (variance > 0)
+    weight = np.zeros(data.H.shape)
+    weight[used] = size**2 / variance[used]
+    s = 2j * np.pi * data.frequency / omega
+    H = np.zeros(data.H.shape, complex)
+    H[used] = data.H[used] / size
+    return Problem(s, H, weight, ORDERS[data.quantity], RESIDUALS[level]), omega, size
+
+
+def primitives(task: Problem, lam: Complexes) -> Complexes:
+    """Return E, (2 modes + powers + 2 modes, lines)."""
+    s, front = task.s, task.s**task.order
+    upper, lower = 1 / (s - lam[:, None]), 1 / (s - lam[:, None].conj())
+
+    def pairs(first: Complexes, second: Complexes) -> Complexes:
+        both = np.stack([first + second, 1j * (first - second)], axis=1)
+        return front * both.reshape(-1, len(s))
+
+    residual = [front * s**k for k in task.powers]
+    parts = [pairs(upper, lower), *(one[None] for one in residual), pairs(upper**2, lower**2)]
+    return np.concatenate(parts)
+
+
+def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
+    """Return the model with the best shapes for the given poles and participation factors."""
+    E = primitives(task, lam)
+    M = gram(task, E)
+    first = 2 * len(lam) + len(task.powers)
+    T = design(L, len(task.powers))
+    G = np.einsum("jqa,jiqp,jpb->iab", T, M[..., :first, :first], T, optimize=True)
+    inverse = _inverse(G)
+    c = np.zeros(G.shape[:2])
+    r = task.H
+    for _ in range(2):  # the second round takes back what the normal equations lost
+        rho = _project(task, E[:first], r)
+        c = c + np.einsum("iab,jqb,jiq->ia", inverse, T, rho, optimize=True)
+        r = task.H - np.einsum("jqa,ia->jiq", T, c) @ E[:first]
+    rho = _project(task, E, r)
+    model = _model(lam, L, held, c, len(task.powers))
+    K = derivatives(model, E.shape[0])
+    cross = np.einsum("jqa,jiqp,jipk->iak", T, M[..., :first, :], K, optimize=True)
+    Z = inverse @ cross
+    direct = np.einsum("jiqk,jiqp,jipl->kl", K, M, K, optimize=True)
+    U = _second(model, rho, len(task.powers))
+    information = direct - np.einsum("iak,ial->kl", cross, Z)
+    return Fit(
+        model,
+        float(np.sum(task.weight * np.abs(r) ** 2)),
+        -np.einsum("jiqk,jiq->k", K, rho),
+        information,
+        information + np.einsum("iak,iab,ibl->kl", U, inverse, U, optimize=True),
+        inverse,
+        Z,
+    )
+
+
+def synthesise(task: Problem, model: ModalModel) -> Complexes:
+    """Return the functions of the model, (references, responses, lines)."""
+    first = 2 * len(model) + len(task.powers)
+    E = primitives(task, model.lam)[:first]
+    a = model.L.T[:, None, :] * model.phi.T[None]
+    modal = np.stack([a.real, a.imag], axis=-1).reshape(*a.shape[:2], -1)
+    return np.concatenate([modal, model.residual.transpose(1, 2, 0)], axis=-1) @ E
+
+
+def maximise(
+    task: Problem,
+    lam: Complexes,
+    L: Complexes,
+    most: int = MOST_EVALUATIONS,
+    tolerance: float = FINE,
+) -> Fit:
+    """Return the maximum-likelihood fit from initial poles and participation factors.
+
+    Levenberg-Marquardt in alpha. The iteration ends where the squared length of a step, in
+    standard deviations of the parameters, is below ``tolerance``, and fails after ``most``
+    evaluations.
+    """
+    held = np.abs(L).argmax(axis=1)
+    L = np.asarray(L, complex) / L[np.arange(len(L)), held][:, None]
+    fit = evaluate(task, lam, L, held)
+    damping, evaluations = 0.0, 1
+    converged = not len(lam)
+    while evaluations < most and not converged:
+        step = _step(fit, damping)
+        decrement = float(step @ fit.curvature @ step)
+        noise = max(2 * fit.cost / max(task.count, 1), 1.0)
+        trial = evaluate(task, *_moved(fit.model, step), held)
+        evaluations += 1
+        if trial.cost <= fit.cost * (1 + 1e-14):
+            converged = 2 * decrement <= tolerance * noise
+            damping = 0.0 if damping < 1e-6 else damping / 10
+            fit = trial
+        elif 2 * decrement <= tolerance * noise:
+            converged = True
+        else:
+            damping = max(10 * damping, 1e-4)
+            if damping > 1e8:
+                break
+    return replace(fit, evaluations=evaluations, converged=converged)
+
+
+def gram(task: Problem, E: Complexes) -> Floats:
+    """Return the weighted Gram matrices of the primitives, (references, responses, Q, Q)."""
+    p, q = np.triu_indices(len(E))
+    flat = task.weight.reshape(-1, len(task.s))
+    out = np.zeros((len(flat), len(p)))
+    for lines, products in _products(E):
+        out += flat[:, lines] @ products.T
+    M = np.zeros((len(flat), len(E), len(E)))
+    M[:, p, q] = out
+    M[:, q, p] = out
+    return M.reshape(*task.weight.shape[:2], len(E), len(E))
+
+
+def leverage(task: Problem, fit: Fit) -> Floats:
+    """Return the share of the noise of each line that the fit takes, of the shape of ``H``.
+
+    It is the mean over the real and the imaginary part of the diagonal of the projection on the
+    columns of Phi and of the rest of D.
+    """
+    model = fit.model
+    E = primitives(task, model.lam)
+    T = design(model.L, len(task.powers))
+    first = T.shape[1]
+    X = derivatives(model, len(E))
+    X[:, :, :first] -= np.einsum("jqa,iak->jiqk", T, fit.Z)
+    inverse = np.linalg.pinv(fit.information, hermitian=True)
+    S = np.einsum("jiqk,kl,jipl->jiqp", X, inverse, X, optimize=True)
+    S[:, :, :first, :first] += np.einsum("jqa,iab,jpb->jiqp", T, fit.inverse, T, optimize=True)
+    p, q = np.triu_indices(len(E))
+    coefficients = S[..., p, q] * np.where(p == q, 1.0, 2.0)
+    out = np.empty(task.weight.shape)
+    for lines, products in _products(E):
+        out[..., lines] = coefficients @ products
+    return task.weight * out / 2
+
+
+def _products(E: Complexes) -> Iterator[tuple[slice, Floats]]:
+    """Yield portions of lines with the real products of all pairs of functions.
+
+    Pairs are in the order of ``np.triu_indices``.
+    """
+    pairs = len(E) * (len(E) + 1) // 2
+    size = max(CHUNK // max(pairs, 1), 1)
+    for start in range(0, E.shape[1], size):
+        real, imag = E.real[:, start : start + size], E.imag[:, start : start + size]
+        products = np.empty((pairs, real.shape[1]))
+        at = 0
+        for p in range(len(E)):  # the rows of an upper triangle
+            rows = products[at : at + len(E) - p]
+            np.multiply(real[p], real[p:], out=rows)
+            rows += imag[p] * imag[p:]
+            at += len(rows)
+        yield slice(start, start + size), products
+
+
+def _project(task: Problem, E: Complexes, r: Complexes) -> Floats:
+    """Return the weighted products of residuals with the primitives."""
+    weighted = task.weight * r
+    out: Floats = weighted.real @ E.real.T + weighted.imag @ E.imag.T
+    return out
+
+
+def _inverse(G: Floats) -> Floats:
+    """Return the inverses of symmetric matrices, scaled to a unit diagonal first."""
+    diagonal = np.einsum("iaa->ia", G)
+    scale = 1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    scaled = G * scale[:, :, None] * scale[:, None, :]
+    unit = np.eye(G.shape[1])
+    scaled = scaled + unit * np.where(diagonal > 0, 1e-14, 1.0)[:, None, :]
+    out: Floats = np.linalg.inv(scaled) * scale[:, :, None] * scale[:, None, :]
+    return (out + out.transpose(0, 2, 1)) / 2
+
+
+def design(L: Complexes, powers: int) -> Floats:
+    """Return T, (references, primitives, linear): columns of Phi in the primitives."""
+    n, n_in = L.shape
+    T = np.zeros((n_in, 2 * n + powers, 2 * n + powers * n_in))
+    r = np.arange(n)
+    T[:, 2 * r, 2 * r] = T[:, 2 * r + 1, 2 * r + 1] = L.real.T
+    T[:, 2 * r, 2 * r + 1], T[:, 2 * r + 1, 2 * r] = -L.imag.T, L.imag.T
+    for j in range(n_in):
+        k = np.arange(powers)
+        T[j, 2 * n + k, 2 * n + powers * j + k] = 1.0
+    return T
+
+
+def _model(lam: Complexes, L: Complexes, held: Ints, c: Floats, powers: int) -> ModalModel:
+    n, n_in = L.shape
+    phi = (c[:, : 2 * n : 2] + 1j * c[:, 1 : 2 * n : 2]).T
+    residual = c[:, 2 * n :].reshape(len(c), n_in, powers).transpose(2, 1, 0)
+    return ModalModel(lam, L, held, phi, residual)
+
+
+def free_factors(held: Ints, references: int) -> list[tuple[int, int]]:
+    """Return (mode, reference) of the participation factors that are parameters."""
+    return [(r, j) for r, kept in enumerate(held) for j in range(references) if j != kept]
+
+
+def derivatives(model: ModalModel, functions: int) -> Floats:
+    """Return K, (references, responses, primitives, alphas): columns of D in the primitives."""
+    n, n_in = model.L.shape
+    free = free_factors(model.held, n_in)
+    n_out = model.phi.shape[1]
+    K = np.zeros((n_in, n_out, functions, 2 * n + 2 * len(free)))
+    a = model.L.T[:, None, :] * model.phi.T[None]  # (references, responses, modes)
+    base = functions - 2 * n
+    for r in range(n):
+        e, o = base + 2 * r, base + 2 * r + 1
+        K[:, :, e, 2 * r], K[:, :, o, 2 * r] = a[..., r].real, a[..., r].imag
+        K[:, :, e, 2 * r + 1], K[:, :, o, 2 * r + 1] = -a[..., r].imag, a[..., r].real
+    for at, (r, j) in enumerate(free, start=n):
+        phi = model.phi[r]
+        K[j, :, 2 * r, 2 * at], K[j, :, 2 * r + 1, 2 * at] = phi.real, phi.imag
+        K[j, :, 2 * r, 2 * at + 1], K[j, :, 2 * r + 1, 2 * at + 1] = -phi.imag, phi.real
+    return K
+
+
+def _second(model: ModalModel, rho: Floats, powers: int) -> Floats:
+    """Return U, (responses, linear, alphas): derivatives of the columns of Phi on the residual.
+
+    With z = rho_e + i rho_o, the product of the residual with x e + y o is Re(conj(x + iy) z).
+    """
+    n, n_in = model.L.shape
+    free = free_factors(model.held, n_in)
+    base = 2 * n + powers
+    single = rho[..., : 2 * n : 2] + 1j * rho[..., 1 : 2 * n : 2]
+    double = rho[..., base::2] + 1j * rho[..., base + 1 :: 2]
+    seen = np.einsum("rj,jir->ir", model.L.conj(), double)
+    U = np.zeros((rho.shape[1], 2 * n + powers * n_in, 2 * n + 2 * len(free)))
+    for r in range(n):
+        U[:, 2 * r, 2 * r], U[:, 2 * r + 1, 2 * r] = seen[:, r].real, seen[:, r].imag
+        U[:, 2 * r, 2 * r + 1], U[:, 2 * r + 1, 2 * r + 1] = seen[:, r].imag, -seen[:, r].real
+    for at, (r, j) in enumerate(free, start=n):
+        z = single[j, :, r]
+        U[:, 2 * r, 2 * at], U[:, 2 * r + 1, 2 * at] = z.real, z.imag
+        U[:, 2 * r, 2 * at + 1], U[:, 2 * r + 1, 2 * at + 1] = z.imag, -z.real
+    return U
+
+
+def _step(fit: Fit, damping: float) -> Floats:
+    diagonal = fit.curvature.diagonal()
+    scale = 1 / np.sqrt(np.where(diagonal > 0, diagonal, 1.0))
+    scaled = fit.curvature * np.outer(scale, scale) + (damping + 1e-12) * np.eye(len(scale))
+    step: Floats = -scale * la.solve(scaled, scale * fit.gradient, assume_a="sym")
+    n = len(fit.model)
+    sigma, omega = fit.model.lam.real, fit.model.lam.imag
+    # poles stay in the second quadrant, and no step goes beyond the neighbourhood of its pole
+    room = np.concatenate([np.abs(sigma) * 0.7, np.minimum(10 * np.abs(sigma), 0.5 * omega)])
+    taken = np.abs(np.concatenate([step[: 2 * n : 2], step[1 : 2 * n : 2]]))
+    return step * min(1.0, float((room / np.maximum(taken, np.finfo(float).tiny)).min(initial=1.0)))
+
+
+def _moved(model: ModalModel, step: Floats) -> tuple[Complexes, Complexes]:
+    n = len(model)
+    lam = model.lam + step[: 2 * n : 2] + 1j * step[1 : 2 * n : 2]
+    L = model.L.copy()
+    for at, (r, j) in enumerate(free_factors(model.held, L.shape[1]), start=n):
+        L[r, j] += step[2 * at] + 1j * step[2 * at + 1]
+    return lam, L

@@ -1,0 +1,172 @@
+r"""Modes of several data sets side by side, and what their spread says.
+
+Modes of different sets are the same where frequencies lie within half a bandwidth, 0.5 % or
+`WIDTH` standard deviations, and shapes agree at common sensors. Estimates
+:math:`x_k` of one quantity in the sets, with standard deviations :math:`\sigma_k`, differ more
+than they should where
+
+.. math:: Q = \sum_k \frac{(x_k - \bar x)^2}{\sigma_k^2} > \chi^2_{K-1,\,0.95},\qquad
+          \bar x = \frac{\sum_k x_k/\sigma_k^2}{\sum_k 1/\sigma_k^2} .
+
+Then the sets have a variance of their own besides (DerSimonian & Laird, Control. Clin. Trials 7
+(1986) 177-188, doi:10.1016/0197-2456(86)90046-2),
+
+.. math:: \tau^2 = \frac{Q - (K-1)}{\sum_k \sigma_k^{-2} - \sum_k \sigma_k^{-4} /
+          \sum_k \sigma_k^{-2}},
+
+and every standard deviation becomes :math:`\sqrt{\sigma_k^2 + \tau^2}`. Shapes are compared in
+the sign and scale of the first set that has the mode.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.stats import chi2
+
+from modefront._typing import Floats
+from modefront.identification.identify import Identification
+from modefront.identification.statistics import ModeEstimate
+
+WIDTH = 5.0
+"""Distance within which frequencies may belong to the same mode."""
+
+LEAST_MAC = 0.5
+SIGNIFICANT = 0.95
+
+
+@dataclass(frozen=True)
+class CombinedModes:
+    """Modes of all sets; NaN where a set does not have a mode.
+
+    Attributes
+    ----------
+    sets, sensors : names
+    frequency, damping : (sets, modes), Hz and ratio
+    shape : (sets, modes, sensors) real, of unit norm
+    frequency_std, damping_std, shape_std : standard deviations, spread of the sets included
+    spread : (modes, 2) standard deviations between sets of frequency and damping, 0 where the
+        sets agree within theirs
+    index : (sets, modes) which mode of each set it is; -1 for none
+    """
+
+    sets: tuple[str, ...]
+    sensors: tuple[str, ...]
+    frequency: Floats
+    damping: Floats
+    shape: Floats
+    frequency_std: Floats
+    damping_std: Floats
+    shape_std: Floats
+    spread: Floats
+    index: tuple[tuple[int, ...], ...]
+
+
+def combine(sets: Sequence[str], found: Sequence[Identification]) -> CombinedModes:
+    """Return the modes of several data sets under common numbers, by frequency."""
+    sensors = tuple(dict.fromkeys(name for one in found for name in one.data.responses))
+    groups = _groups(found, sensors)
+    K, R = len(found), len(groups)
+    index = tuple(tuple(group.get(k, -1) for group in groups) for k in range(K))
+    f, z, f_std, z_std = (np.full((K, R), np.nan) for _ in range(4))
+    phi, phi_std = np.full((K, R, len(sensors)), np.nan), np.full((K, R, len(sensors)), np.nan)
+    for r, group in enumerate(groups):
+        for k, at in group.items():
+            mode = found[k].modes[at]
+            f[k, r], f_std[k, r] = mode.frequency, mode.frequency_std
+            z[k, r], z_std[k, r] = mode.damping, mode.damping_std
+            phi[k, r] = _at(mode.shape.shape, found[k], sensors)
+            phi_std[k, r] = _at(mode.shape_std, found[k], sensors)
+    spread = np.zeros((R, 2))
+    for r in range(R):
+        spread[r] = between(f[:, r], f_std[:, r]), between(z[:, r], z_std[:, r])
+        phi[:, r], phi_std[:, r] = _shapes(phi[:, r], phi_std[:, r])
+    f_std, z_std = np.hypot(f_std, spread[:, 0]), np.hypot(z_std, spread[:, 1])
+    return CombinedModes(tuple(sets), sensors, f, z, phi, f_std, z_std, phi_std, spread, index)
+
+
+def between(x: Floats, std: Floats) -> float:
+    """Return tau, the standard deviation between sets; 0 where they agree.
+
+    >>> round(between(np.array([1.0, 2.0, 3.0]), np.array([0.1, 0.1, 0.1])), 2)
+    0.99
+    >>> between(np.array([1.0, 1.1, 0.9]), np.array([0.1, 0.1, 0.1]))
+    0.0
+    """
+    good = np.isfinite(x) & (std > 0)
+    if good.sum() < 2:
+        return 0.0
+    x, weight = x[good], 1 / std[good] ** 2
+    Q = float(np.sum(weight * (x - np.average(x, weights=weight)) ** 2))
+    freedom = len(x) - 1
+    if chi2.ppf(SIGNIFICANT, freedom) >= Q:
+        return 0.0
+    return float(np.sqrt((Q - freedom) / (weight.sum() - np.sum(weight**2) / weight.sum())))
+
+
+def _at(values: Floats, one: Identification, sensors: Sequence[str]) -> Floats:
+    where = dict(zip(one.data.responses, values, strict=True))
+    return np.array([where.get(name, np.nan) for name in sensors])
+
+
+def _groups(found: Sequence[Identification], sensors: Sequence[str]) -> list[dict[int, int]]:
+    """Return, for every mode of the structure, which mode of each set it is."""
+    groups: list[dict[int, int]] = []
+    for k, one in enumerate(found):
+        for at, mode in enumerate(one.modes):
+            best, most = None, LEAST_MAC
+            for group in groups:
+                if k in group:
+                    continue
+                first, index = next(iter(group.items()))
+                mac = _agreement(mode, one, found[first].modes[index], found[first], sensors)
+                if mac > most:
+                    best, most = group, mac
+            if best is None:
+                groups.append({k: at})
+            else:
+                best[k] = at
+
+    def mean(group: dict[int, int]) -> float:
+        return float(np.mean([found[k].modes[at].frequency for k, at in group.items()]))
+
+    return sorted(groups, key=mean)
+
+
+def _agreement(
+    a: ModeEstimate,
+    of_a: Identification,
+    b: ModeEstimate,
+    of_b: Identification,
+    sensors: Sequence[str],
+) -> float:
+    """Return the MAC at common sensors, 0 where the frequencies are too far apart."""
+    half = max(a.damping * a.frequency, b.damping * b.frequency, 0.005 * a.frequency)
+    if abs(a.frequency - b.frequency) > max(
+        WIDTH * np.hypot(a.frequency_std, b.frequency_std), half
+    ):
+        return 0.0
+    x, y = _at(a.shape.shape, of_a, sensors), _at(b.shape.shape, of_b, sensors)
+    both = np.isfinite(x) & np.isfinite(y)
+    power = float(np.sum(x[both] ** 2) * np.sum(y[both] ** 2))
+    return float(np.sum(x[both] * y[both]) ** 2) / power if power else 0.0
+
+
+def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:
+    """Return shapes in the sign of the first set, and deviations with the spread of the sets."""
+    there = np.flatnonzero(np.isfinite(phi).any(axis=1))
+    first = phi[there[0]]
+    phi = phi.copy()
+    scaled, scaled_std, scale = phi.copy(), std.copy(), np.ones(len(phi))
+    for k in there[1:]:
+        both = np.isfinite(first) & np.isfinite(phi[k])
+        if both.any() and np.any(phi[k][both]):
+            factor = float(phi[k][both] @ first[both]) / float(phi[k][both] @ phi[k][both])
+            if factor < 0:
+                phi[k] = -phi[k]
+            scale[k] = abs(factor) or 1.0
+            scaled[k], scaled_std[k] = phi[k] * scale[k], std[k] * scale[k]
+    tau = np.array([between(scaled[:, i], scaled_std[:, i]) for i in range(phi.shape[1])])
+    return phi, np.hypot(std, tau / scale[:, None])

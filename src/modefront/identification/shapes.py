@@ -1,0 +1,96 @@
+r"""Real mode shapes from complex ones, and what that loses.
+
+A complex shape :math:`\varphi` is known up to a complex factor. Of all rotations
+:math:`\psi = e^{-\mathrm{i}\theta}\varphi`, the one with the least imaginary part has
+
+.. math:: \theta = \tfrac12 \arg \sum_i \varphi_i^2,\qquad
+          \frac{\|\operatorname{Im}\psi\|^2}{\|\psi\|^2} = \frac{1 - \sqrt{\mathrm{MPC}}}{2},
+          \qquad \mathrm{MPC} = \frac{|\sum_i \varphi_i^2|^2}{(\sum_i |\varphi_i|^2)^2},
+
+since :math:`\|\operatorname{Re}\psi\|^2 - \|\operatorname{Im}\psi\|^2 =
+\operatorname{Re}\sum_i\psi_i^2` is greatest where that sum is real and positive. MPC is the modal
+phase collinearity (Pappa, Elliott & Schenk, Consistent-mode indicator for the eigensystem
+realization algorithm, J. Guid. Control Dyn. 16 (1993) 852-858, doi:10.2514/3.21092): 1 for a
+shape that is real up to a factor. The shape for updating is
+:math:`u = \operatorname{Re}\psi / \|\operatorname{Re}\psi\|`. With :math:`x + \mathrm{i}y = \psi`
+and :math:`a + \mathrm{i}b = e^{-\mathrm{i}\theta}\mathrm{d}\varphi`,
+
+.. math:: \mathrm{d}\theta = \frac{x^T b + y^T a}{\sum\psi_i^2},\qquad
+          \mathrm{d}u = (I - u u^T)\,(a + y\,\mathrm{d}\theta) / \|x\| .
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.identification.responses import Complexes
+
+TINY = float(np.finfo(float).tiny)
+
+
+@dataclass(frozen=True)
+class RealShape:
+    """A complex shape turned to be as real as it can be.
+
+    Attributes
+    ----------
+    complex_shape : (responses,) rotated, its real part of unit norm
+    shape : (responses,) its real part
+    collinearity : MPC
+    norm : that of the real part before it was scaled
+    turn : the rotation, exp(-i theta), with the sign that makes the greatest component positive
+    """
+
+    complex_shape: Complexes
+    shape: Floats
+    collinearity: float
+    norm: float
+    turn: complex
+
+    @property
+    def loss(self) -> float:
+        """Share of the squared norm that the imaginary part had."""
+        return float((1 - np.sqrt(self.collinearity)) / 2)
+
+    def differential(self, dphi: Complexes) -> Floats:
+        """Return du for changes of the shape that was given, both (responses, changes)."""
+        u, y = self.shape, self.complex_shape.imag
+        change = self.turn * dphi / self.norm
+        dtheta = (u @ change.imag + y @ change.real) / max(1 - float(y @ y), TINY)
+        dx = change.real + np.outer(y, dtheta)
+        out: Floats = dx - np.outer(u, u @ dx)
+        return out
+
+
+def phase_collinearity(phi: Complexes) -> float:
+    """Return the modal phase collinearity of a shape, from 0 to 1."""
+    power = max(float(np.sum(np.abs(phi) ** 2)), TINY)
+    return float(min((np.abs(np.sum(phi**2)) / power) ** 2, 1.0))
+
+
+def real_shape(phi: Complexes) -> RealShape:
+    """Return the rotation of a shape that loses least; its greatest component is positive."""
+    total = np.sum(phi**2)
+    turn = np.exp(-0.5j * np.angle(total))
+    psi = turn * phi
+    if psi.real[np.abs(psi.real).argmax()] < 0:
+        turn, psi = -turn, -psi
+    norm = max(float(np.linalg.norm(psi.real)), TINY)
+    return RealShape(psi / norm, psi.real / norm, phase_collinearity(phi), norm, complex(turn))
+
+
+def auto_mac(phi: Complexes) -> Floats:
+    """Return the MAC between all shapes of one set, (modes, modes); ``phi`` is (modes, responses).
+
+    >>> auto_mac(np.array([[1, 1j], [2, 2j], [1, -1j]])).round(12)
+    array([[1., 1., 0.],
+           [1., 1., 0.],
+           [0., 0., 1.]])
+    """
+    inner = np.abs(phi.conj() @ phi.T) ** 2
+    norms = np.sum(np.abs(phi) ** 2, axis=1)
+    out: Floats = inner / np.maximum(np.outer(norms, norms), np.finfo(float).tiny)
+    return out

@@ -1,0 +1,220 @@
+r"""The stabilisation diagram, and its interpretation by clustering.
+
+Poles of the structure come back at every order with nearly the same value and shape; poles of
+noise do not. Poles of neighbouring orders and all poles together are compared by
+
+.. math:: d(1, 2) = \frac{|\lambda_1 - \lambda_2|}{\max(|\lambda_1|, |\lambda_2|)}
+          + 1 - \mathrm{MAC}(\psi_1, \psi_2).
+
+In three stages (Reynders, Houbrechts & De Roeck 2012): (1) every pole is set against the nearest
+one of the order below, and the logarithms of these distances fall into two groups, *stable* and
+*unstable*, by 2-means; (2) stable poles are joined by average linkage up to a distance of the mean
+plus two standard deviations of the stable group, within `CUT`; (3) the support of a cluster is the
+share of the orders, from its first one, that contribute a pole. Where Reynders et al. divide the
+clusters by their size, here they are candidates for the maximum-likelihood model, which has a
+sharper criterion: a likelihood ratio (`modefront.identification.selection`).
+
+===================  =====================================================================
+symbol               meaning
+===================  =====================================================================
+psi                  shapes (poles, responses) by linear least squares at the given poles
+d                    distance of two poles
+===================  =====================================================================
+
+Source: Reynders, Houbrechts & De Roeck, Fully automated (operational) modal analysis, Mech. Syst.
+Signal Process. 29 (2012) 228-250, doi:10.1016/j.ymssp.2012.01.007.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg as la
+from scipy.cluster.hierarchy import fcluster, linkage
+from scipy.spatial.distance import squareform
+
+from modefront._typing import Bools, Floats, Ints
+from modefront.identification.lscf import Poles
+from modefront.identification.responses import Complexes
+
+CUT = 0.02, 0.08
+"""Limits of the distance within which poles belong to one cluster."""
+
+MOST_DAMPING = 0.3
+"""Damping ratio from which on a pole is no mode."""
+
+
+@dataclass(frozen=True)
+class StabilisationDiagram:
+    """Poles of all orders.
+
+    Attributes
+    ----------
+    order : (poles,) order at which each was found
+    pole : (poles,) rad/s
+    participation : (poles, references)
+    distance : (poles,) distance to the nearest pole of the order below; inf at the first order
+    stable : (poles,) whether that distance belongs to the stable group
+    cluster : (poles,) number of the cluster, -1 for none
+    orders : all orders
+    """
+
+    order: Ints
+    pole: Complexes
+    participation: Complexes
+    distance: Floats
+    stable: Bools
+    cluster: Ints
+    orders: tuple[int, ...]
+
+    @property
+    def frequency(self) -> Floats:
+        """Natural frequencies in Hz."""
+        out: Floats = np.abs(self.pole) / (2 * np.pi)
+        return out
+
+    @property
+    def damping(self) -> Floats:
+        """Damping ratios."""
+        out: Floats = -self.pole.real / np.abs(self.pole)
+        return out
+
+
+@dataclass(frozen=True)
+class Cluster:
+    """Poles that are taken for one mode.
+
+    Attributes
+    ----------
+    pole : rad/s, that of the member nearest to the median
+    participation : (references,) that of the same member
+    support : share of the orders, from the first one with a member, that have a member
+    size : number of orders with a member
+    """
+
+    pole: complex
+    participation: Complexes
+    support: float
+    size: int
+
+
+def stabilisation_diagram(
+    found: Sequence[Poles], H: Complexes, omega: Floats, quantity_order: int
+) -> tuple[StabilisationDiagram, list[Cluster]]:
+    """Return the diagram of the poles of ascending orders, and its clusters by pole.
+
+    ``H`` is (references, responses, lines) without NaN, at circular frequencies ``omega``.
+    """
+    kept = [_usable(one) for one in found]
+    shapes = [_shapes(one, H, omega, quantity_order) for one in kept]
+    distance = np.concatenate(
+        [np.full(len(kept[0].value), np.inf)]
+        + [
+            _distances(now.value, psi, below.value, psi_below).min(axis=1, initial=np.inf)
+            for now, psi, below, psi_below in zip(
+                kept[1:], shapes[1:], kept[:-1], shapes[:-1], strict=True
+            )
+        ]
+    )
+    pole = np.concatenate([one.value for one in kept])
+    order = np.concatenate([np.full(len(one.value), one.order) for one in kept])
+    stable, cut = _split(distance)
+    cluster = np.full(len(pole), -1)
+    members = np.flatnonzero(stable)
+    if len(members) > 1:
+        psi = np.concatenate(shapes)[members]
+        d = _distances(pole[members], psi, pole[members], psi)
+        tree = linkage(squareform((d + d.T) / 2, checks=False), "average")
+        cluster[members] = fcluster(tree, cut, "distance") - 1
+    elif len(members):
+        cluster[members] = 0
+    diagram = StabilisationDiagram(
+        order,
+        pole,
+        np.concatenate([one.participation for one in kept]),
+        distance,
+        stable,
+        cluster,
+        tuple(one.order for one in found),
+    )
+    return diagram, _clusters(diagram)
+
+
+def _usable(one: Poles) -> Poles:
+    good = -one.value.real < MOST_DAMPING * np.abs(one.value)
+    return Poles(one.order, one.value[good], one.participation[good])
+
+
+def _shapes(one: Poles, H: Complexes, omega: Floats, q: int) -> Complexes:
+    """Return shapes of the poles of one order, (poles, responses), by linear least squares."""
+    n, n_in = one.participation.shape
+    s = 1j * omega
+    front = (s / omega[-1]) ** q
+    modal = front * omega[-1] / (s - one.value[:, None])
+    residual = np.stack([front, front * (omega[-1] / s) ** 2])
+    normal = np.zeros((n + 2 * n_in, n + 2 * n_in), complex)
+    right = np.zeros((n + 2 * n_in, H.shape[1]), complex)
+    for j in range(n_in):
+        basis = np.zeros((n + 2 * n_in, len(s)), complex)
+        basis[:n] = one.participation[:, j, None] * modal
+        basis[n + 2 * j : n + 2 * j + 2] = residual
+        normal += basis.conj() @ basis.T
+        right += basis.conj() @ H[j].T
+    scale = 1 / np.sqrt(np.maximum(normal.diagonal().real, np.finfo(float).tiny))
+    scaled = normal * np.outer(scale, scale) + 1e-13 * np.eye(len(scale))
+    out: Complexes = (scale[:, None] * la.solve(scaled, scale[:, None] * right))[:n]
+    return out
+
+
+def _distances(a: Complexes, psi_a: Complexes, b: Complexes, psi_b: Complexes) -> Floats:
+    """Return d of every pole of one list and every pole of another."""
+    size = np.maximum(np.abs(a)[:, None], np.abs(b)[None])
+    inner = np.abs(psi_a.conj() @ psi_b.T) ** 2
+    norms = np.outer(np.sum(np.abs(psi_a) ** 2, axis=1), np.sum(np.abs(psi_b) ** 2, axis=1))
+    mac = inner / np.maximum(norms, np.finfo(float).tiny)
+    out: Floats = np.abs(a[:, None] - b[None]) / size + np.maximum(1 - mac, 0)
+    return out
+
+
+def _split(distance: Floats) -> tuple[Bools, float]:
+    """Return which distances are in the stable group of 2-means, and the cut for clusters."""
+    finite = np.isfinite(distance)
+    if finite.sum() < 2:
+        return finite, CUT[1]
+    x = np.log(np.maximum(distance, 1e-8))
+    low, high = np.quantile(x[finite], [0.1, 0.9])
+    for _ in range(100):
+        near = np.abs(x - low) <= np.abs(x - high)
+        if not (near & finite).any() or not (~near & finite).any():
+            break
+        before = low, high
+        low, high = x[near & finite].mean(), x[~near & finite].mean()
+        if (low, high) == before:
+            break
+    stable = finite & (np.abs(x - low) <= np.abs(x - high)) | (distance < CUT[0])
+    inside = distance[stable & finite]
+    if not len(inside):
+        return stable, CUT[1]
+    return stable, float(np.clip(inside.mean() + 2 * inside.std(), *CUT))
+
+
+def _clusters(diagram: StabilisationDiagram) -> list[Cluster]:
+    out = []
+    for number in range(diagram.cluster.max(initial=-1) + 1):
+        members = np.flatnonzero(diagram.cluster == number)
+        poles = diagram.pole[members]
+        middle = np.median(poles.real) + 1j * np.median(poles.imag)
+        best = members[np.abs(poles - middle).argmin()]
+        orders = np.unique(diagram.order[members])
+        possible = sum(order >= orders[0] for order in diagram.orders)
+        out.append(
+            Cluster(
+                complex(diagram.pole[best]),
+                diagram.participation[best],
+                len(orders) / possible,
+                len(orders),
+            )
+        )
+    return sorted(out, key=lambda one: one.pole.imag)

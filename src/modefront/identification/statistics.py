@@ -1,0 +1,272 @@
+r"""Standard deviations of frequencies, damping ratios and shapes.
+
+At the maximum of the likelihood, errors of the data reach the parameters linearly. With the
+projected Gauss–Newton matrix A of `modefront.identification.modal_model` and
+:math:`Z = G^{-1}\Phi^T D`,
+
+.. math:: \delta\alpha = A^{-1} D_\perp^T \delta y,\qquad
+          \delta c_i = G_i^{-1}\Phi_i^T \delta y_i - Z_i\,\delta\alpha,
+
+and the real and imaginary parts of a weighted residual have variance 1/2 each, so that
+
+.. math:: C_\alpha = \tfrac12 A^{-1},\qquad
+          C_{c_i c_k} = \tfrac12\delta_{ik} G_i^{-1} + Z_i C_\alpha Z_k^T .
+
+Two things that are common in tests break the independence, and are measured on the residuals:
+
+*Noise of the force channel* is the same for all responses of one reference,
+:math:`\delta H_{ji} = -H_{ji}\,\varepsilon_j`: it does not average out over responses. Its
+variance :math:`b_j` is taken out of that of the single functions. It is estimated from products
+of *different* responses, which noise of the responses does not enter,
+
+.. math:: b_j = \frac{\sum_k (|S_{jk}|^2 - \sum_i w^2|H|^2|r|^2)}
+          {\sum_k \bigl((\sum_i w|H|^2)^2 - \sum_i w^2|H|^4\bigr)},\qquad
+          S_{jk} = \sum_i w H^* r,
+
+and what it adds to the covariance follows from the two equations above.
+
+*Neighbouring lines* are correlated where windows or zero padding widened them. With the
+autocorrelation :math:`\rho_d` of the weighted residuals over lines, as far as it is significant,
+covariances are multiplied by :math:`1 + 2\sum_d \operatorname{Re}\rho_d`.
+
+Where the residuals are greater than the variance that was given, the model does not explain all
+of the data: covariances are multiplied by :math:`\chi^2` over the degrees of freedom, if that is
+above one.
+
+Frequency and damping are :math:`f = |\lambda|/2\pi`, :math:`\zeta = -\operatorname{Re}\lambda /
+|\lambda|`; shapes see `modefront.identification.shapes`.
+
+Source: Pintelon, Guillaume & Schoukens, Uncertainty calculation in (operational) modal analysis,
+Mech. Syst. Signal Process. 21 (2007) 2359-2373, doi:10.1016/j.ymssp.2006.11.007.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.identification.modal_model import (
+    CHUNK,
+    Fit,
+    Problem,
+    derivatives,
+    design,
+    gram,
+    primitives,
+    synthesise,
+)
+from modefront.identification.responses import Complexes
+from modefront.identification.shapes import RealShape, real_shape
+
+SIGNIFICANT = 3.0
+"""Standard errors beyond which a correlation of the residuals is one."""
+
+MOST_LAGS = 60
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """What the residuals of a fit say of the errors of the data.
+
+    Attributes
+    ----------
+    chi2 : weighted sum of squares over the degrees of freedom; 1 where the variance is right
+    widening : 1 + 2 sum of the significant autocorrelations over lines
+    force : (references,) b, variance of the noise of the force channel, relative
+    share : (references, responses) norm of the residual over that of the function; NaN where the
+        function was not measured
+    """
+
+    chi2: float
+    widening: float
+    force: Floats
+    share: Floats
+
+    @property
+    def scale(self) -> float:
+        """Factor on all covariances."""
+        return max(self.chi2, 1.0) * self.widening
+
+
+@dataclass(frozen=True)
+class ModeEstimate:
+    """One mode with its standard deviations, in physical units.
+
+    Attributes
+    ----------
+    pole : rad/s
+    frequency, damping : Hz, ratio
+    frequency_std, damping_std : their standard deviations
+    shape : the complex shape and the real one
+    shape_std : (responses,) standard deviations of the real shape of unit norm
+    participation : (references,) factors that go with the complex shape as given, before rotation
+    """
+
+    pole: complex
+    frequency: float
+    damping: float
+    frequency_std: float
+    damping_std: float
+    shape: RealShape
+    shape_std: Floats
+    participation: Complexes
+
+
+def residuals(task: Problem, fit: Fit) -> Residuals:
+    """Return what the residuals of a fit say."""
+    H = synthesise(task, fit.model)
+    r = np.where(task.weight > 0, task.H - H, 0)
+    linear = int(np.sum(task.weight.any(axis=(0, 2)))) * fit.inverse.shape[1]
+    freedom = max(task.count - linear - len(fit.gradient), 1)
+    size = np.where(task.weight > 0, np.abs(task.H) ** 2, 0).sum(axis=2)
+    share = np.sqrt((np.abs(r) ** 2).sum(axis=2) / np.where(size > 0, size, np.nan))
+    chi2 = 2 * fit.cost / freedom
+    return Residuals(chi2, _widening(task, r), _force(task, H, r), share)
+
+
+def _widening(task: Problem, r: Complexes) -> float:
+    e = np.sqrt(task.weight) * r
+    total = float(np.sum(np.abs(e) ** 2))
+    out = 1.0
+    if total == 0:
+        return out
+    for lag in range(1, min(MOST_LAGS, len(task.s) // 10) + 1):
+        both = (task.weight[..., lag:] > 0) & (task.weight[..., :-lag] > 0)
+        rho = float(np.sum((e[..., lag:] * e[..., :-lag].conj()).real)) / total
+        if rho < SIGNIFICANT / np.sqrt(2 * max(int(both.sum()), 1)):
+            break
+        out += 2 * rho
+    return out
+
+
+def _force(task: Problem, H: Complexes, r: Complexes) -> Floats:
+    """Return b of each reference; 0 where it is not significant."""
+    w = task.weight
+    S = np.sum(w * H.conj() * r, axis=1)
+    power, own = w * np.abs(H) ** 2, w**2 * np.abs(H) ** 2 * np.abs(r) ** 2
+    per_line = np.abs(S) ** 2 - own.sum(axis=1)
+    below = (power.sum(axis=1) ** 2 - (power**2).sum(axis=1)).sum(axis=1)
+    b = per_line.sum(axis=1)
+    error = np.sqrt((per_line**2).sum(axis=1))
+    good = (b > SIGNIFICANT * error) & (below > 0)
+    out: Floats = np.where(good, b / np.where(below > 0, below, 1.0), 0.0)
+    return out
+
+
+def mode_estimates(task: Problem, fit: Fit, found: Residuals, omega: float) -> list[ModeEstimate]:
+    """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
+    model = fit.model
+    n_out = model.phi.shape[1]
+    shapes = [real_shape(phi) for phi in model.phi]
+    inverse = _inverse(fit.information)
+    linear, alpha = _own_roots(task, fit, found)
+    C = np.einsum("ka,iae,lb,ibe->kl", inverse, alpha, inverse, alpha, optimize=True)
+    variance = np.zeros(model.phi.shape)
+    for r, shape in enumerate(shapes):
+        rows = slice(2 * r, 2 * r + 2)
+        answer = shape.differential(_as_complex(fit.Z[:, rows] @ inverse))
+        for i in range(n_out):
+            direct = np.zeros((n_out, linear.shape[2]), complex)
+            direct[i] = _as_complex(linear[i, rows][None])[0]
+            change = shape.differential(direct) - answer @ alpha[i]
+            variance[r] += (change**2).sum(axis=1)
+    for steps, phi in _force_influence(task, fit, found.force):
+        C = C + steps @ steps.T
+        for r, shape in enumerate(shapes):
+            variance[r] += (shape.differential(phi[:, r]) ** 2).sum(axis=1)
+    C, variance = C * found.scale, variance * found.scale
+    variance[:, ~task.weight.any(axis=(0, 2))] = np.nan
+    return [
+        _estimate(complex(model.lam[r]), C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2], omega, *rest)
+        for r, rest in enumerate(zip(shapes, np.sqrt(variance), model.L, strict=True))
+    ]
+
+
+def _as_complex(pairs: Floats) -> Complexes:
+    """Return (n, ...) complex from (n, 2, ...) real and imaginary parts."""
+    out: Complexes = pairs[:, 0] + 1j * pairs[:, 1]
+    return out
+
+
+def _own_roots(task: Problem, fit: Fit, found: Residuals) -> tuple[Floats, Floats]:
+    """Return what independent errors of each response do, as roots of their covariance.
+
+    (responses, 2 modes, errors): G^-1 Phi^T dy of the shapes; (responses, alphas, errors):
+    D_perp^T dy. Noise of the force is taken out of the variance: it is not independent.
+    """
+    model = fit.model
+    n, powers = len(model), len(task.powers)
+    E = primitives(task, model.lam)
+    T, X = design(model.L, powers), derivatives(model, len(E))
+    first = T.shape[1]
+    X[:, :, :first] -= np.einsum("jqa,iak->jiqk", T, fit.Z)
+    weight = task.weight
+    if found.force.any():
+        H = synthesise(task, model)
+        share = found.force[:, None, None] * weight * np.abs(H) ** 2
+        weight = weight * np.maximum(1 - share, 0)
+    M = gram(replace(task, weight=weight), E)
+    P = np.zeros((*M.shape[:3], 2 * n + X.shape[3]))
+    P[:, :, :first, : 2 * n] = np.einsum("jqa,iab->jiqb", T, fit.inverse[:, :, : 2 * n])
+    P[..., 2 * n :] = X
+    Q = np.einsum("jiqa,jiqp,jipb->iab", P, M, P, optimize=True) / 2
+    scale = np.sqrt(np.maximum(np.einsum("iaa->ia", Q), np.finfo(float).tiny))
+    value, vector = np.linalg.eigh(Q / scale[:, :, None] / scale[:, None, :])
+    roots = scale[:, :, None] * vector * np.sqrt(np.maximum(value, 0))[:, None, :]
+    return roots[:, : 2 * n], roots[:, 2 * n :]
+
+
+def _estimate(
+    lam: complex, C: Floats, omega: float, shape: RealShape, shape_std: Floats, L: Complexes
+) -> ModeEstimate:
+    size, hertz = abs(lam), omega / (2 * np.pi)
+    df = np.array([lam.real, lam.imag]) / size
+    dzeta = np.array([-1 / size, 0.0]) + lam.real / size**2 * df
+    return ModeEstimate(
+        lam * omega,
+        size * hertz,
+        -lam.real / size,
+        float(np.sqrt(df @ C @ df)) * hertz,
+        float(np.sqrt(dzeta @ C @ dzeta)),
+        shape,
+        shape_std,
+        L,
+    )
+
+
+def _inverse(A: Floats) -> Floats:
+    """Return the inverse of a symmetric matrix that may be nearly singular: large, not wrong."""
+    scale = 1 / np.sqrt(np.maximum(A.diagonal(), np.finfo(float).tiny))
+    value, vector = np.linalg.eigh(A * np.outer(scale, scale))
+    floored = np.maximum(value, 1e-13)
+    out: Floats = ((vector / floored) @ vector.T) * np.outer(scale, scale)
+    return out
+
+
+def _force_influence(task: Problem, fit: Fit, force: Floats) -> Iterator[tuple[Floats, Complexes]]:
+    """Yield changes of alpha and of the shapes by independent errors of the force, in portions.
+
+    The changes of the shapes are (responses, modes, errors).
+    """
+    n, powers = len(fit.model), len(task.powers)
+    E = primitives(task, fit.model.lam)
+    T, K = design(fit.model.L, powers), derivatives(fit.model, len(E))
+    first = T.shape[1]
+    H = synthesise(task, fit.model)
+    inverse = _inverse(fit.information)
+    portion = max(CHUNK // max(4 * n * H.shape[1], 1), 1)
+    for j in np.flatnonzero(force):
+        X = K[j].copy()
+        X[:, :first] -= T[j] @ fit.Z
+        deviation = np.sqrt(force[j] / 2)
+        for start in range(0, len(task.s), portion):
+            lines = slice(start, start + portion)
+            y = task.weight[j, :, lines] * H[j, :, lines] * deviation
+            seen = E[:, lines].conj() * y[:, None, :]
+            alpha = inverse @ np.einsum("iqa,iqk->ak", X, seen, optimize=True)
+            c = fit.inverse[:, : 2 * n] @ (T[j].T @ seen[:, :first]) - fit.Z[:, : 2 * n] @ alpha
+            parts = np.concatenate([c.real, c.imag], axis=2)
+            yield np.hstack([alpha.real, alpha.imag]), parts[:, ::2] + 1j * parts[:, 1::2]

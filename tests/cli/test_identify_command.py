@@ -1,0 +1,64 @@
+"""The command ``modefront identify``."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+from click.testing import CliRunner
+
+from modefront.cli.main import cli
+from modefront.data.csv import read_csv
+from modefront.errors import InputError, UnfinishedError
+from modefront.study.examples import write_example
+
+
+def _invoke(*arguments: object) -> str:
+    result = CliRunner().invoke(cli, ["identify", *map(str, arguments)], catch_exceptions=False)
+    assert result.exit_code == 0, result.output
+    return result.output
+
+
+def test_the_example_gives_the_modal_data_it_comes_with(tmp_path: Path) -> None:
+    write_example("hammer-test", tmp_path)
+    output = tmp_path / "again.csv"
+    said = _invoke(tmp_path / "test-m0.toml", "-o", output)
+    found, kept = read_csv(output), read_csv(tmp_path / "modes-m0.csv")
+    np.testing.assert_allclose(found.frequency, kept.frequency, rtol=1e-6)
+    np.testing.assert_allclose(found.shape, kept.shape, atol=1e-5)
+    assert (found.frequency_std > 0).all()
+    assert (found.shape_std > 0).all()
+    assert "residual of each function" in said
+    report = json.loads((tmp_path / "again-identification.json").read_text())
+    assert [len(one["modes"]) for one in report["sets"]] == [3, 3, 3]
+
+
+def test_universal_files_are_written(tmp_path: Path) -> None:
+    pyuff = pytest.importorskip("pyuff")
+    write_example("hammer-test", tmp_path)
+    pictures = tmp_path / "pictures"
+    _invoke(tmp_path / "m0-set1-floor3.csv", "-o", tmp_path / "m.uff", "--figures", pictures)
+    assert len(list(pictures.iterdir())) == 3
+    sets = pyuff.UFF(str(tmp_path / "m.uff")).read_sets()
+    assert [one["type"] for one in sets] == [55, 55, 55]
+    assert abs(sets[0]["eig"]) / (2 * np.pi) == pytest.approx(4.7357, rel=1e-3)
+
+
+def test_a_band_without_modes_is_said_and_nothing_is_written(tmp_path: Path) -> None:
+    write_example("hammer-test", tmp_path)
+    with pytest.raises(UnfinishedError, match="no mode was found in the band"):
+        _invoke(tmp_path / "test-m0.toml", "-o", tmp_path / "o.csv", "--band", 20.5, 24)
+    assert not (tmp_path / "o.csv").exists()
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (["-o", "o.csv", "--band", "40", "50"], "the files reach from 1 to 25 Hz"),
+        (["-o", "o.txt"], r"ends in \.csv"),
+    ],
+)
+def test_wrong_input_is_named(tmp_path: Path, arguments: list[str], message: str) -> None:
+    write_example("hammer-test", tmp_path)
+    with pytest.raises(InputError, match=message):
+        _invoke(tmp_path / "test-m0.toml", *arguments)

@@ -1,0 +1,177 @@
+"""Files of frequency response functions, test files, and what is wrong with them."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from modefront._typing import Floats
+from modefront.data.csv import read_csv, write_csv
+from modefront.data.modal import modal_data
+from modefront.data.modal_test import read_test
+from modefront.data.uff import blocks, read_uff
+from modefront.errors import InputError
+from modefront.identification.responses import Complexes
+
+UFF = Path(__file__).parents[3] / "shared" / "data" / "uff"
+
+
+def _ascii58(values: str, count: int, kind: int = 4, quantity: int = 12) -> str:
+    """Return an ASCII dataset 58 of complex values at an even abscissa."""
+    return (
+        "    -1\n    58\nNONE\nNONE\n01-Jan-26 00:00:00\nNONE\nNONE\n"
+        f"{kind:5d}         0    0         0 NONE               3  -3 NONE               7   3\n"
+        f"         5{count:10d}         1  1.00000E+00  5.00000E-01  0.00000E+00\n"
+        "        18    0    0    0 NONE                 Hz                  \n"
+        f"{quantity:10d}    0    0    0 NONE                 NONE                \n"
+        "         9    0    0    0 NONE                 NONE                \n"
+        "         0    0    0    0 NONE                 NONE                \n"
+        f"{values}    -1\n"
+    )
+
+
+def _values(letter: str, count: int = 9) -> str:
+    numbers = [f"{k + 1:13.5E}".replace("E", letter) for k in range(2 * count)]
+    return "".join("".join(numbers[at : at + 6]) + "\n" for at in range(0, 2 * count, 6))
+
+
+@pytest.mark.parametrize("letter", ["E", "D"])
+def test_ascii_functions_are_read_with_either_exponent(tmp_path: Path, letter: str) -> None:
+    path = tmp_path / "a.uff"
+    path.write_text(_ascii58(_values(letter), 9))
+    (one,) = read_uff(path)
+    assert (one.response, one.reference, one.quantity) == ("3Z", "7Z", "accelerance")
+    assert one.frequency == pytest.approx(1 + 0.5 * np.arange(9))
+    assert one.H == pytest.approx(-(np.arange(1, 19, 2) + 1j * np.arange(2, 20, 2)))
+
+
+def test_binary_functions_are_read(tmp_path: Path) -> None:
+    path = tmp_path / "b.uff"
+    H = np.exp(1j * np.arange(30.0))
+    body = np.stack([H.real, H.imag], axis=1).astype("<f4").tobytes()
+    lines = _ascii58("", 30, quantity=8).split("\n")[2:-2]
+    header = f"{58:6d}b{1:6d}{2:6d}{len(lines):12d}{len(body):12d}{0:6d}{0:6d}{0:12d}{0:12d}"
+    text = "\n".join(["    -1", header, *lines]) + "\n"
+    path.write_bytes(text.encode() + body + b"\n    -1\n")
+    (found,) = read_uff(path)
+    assert found.quantity == "receptance"
+    assert found.H == pytest.approx(-H, rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("content", "message"),
+    [
+        (_ascii58(_values("E"), 9)[:-40], "the end of dataset 58"),
+        (_ascii58(_values("E"), 20), "20 values"),
+        (_ascii58(_values("E"), 9, kind=1), "functions of type 1 only"),
+        ("    -1\n    15\n  1 2 3\n    -1\n", "datasets 15 only"),
+        ("once upon a time", "this is no universal file"),
+        ("", "this is no universal file"),
+    ],
+)
+def test_other_files_are_answered(tmp_path: Path, content: str, message: str) -> None:
+    path = tmp_path / "a.uff"
+    path.write_text(content)
+    with pytest.raises(InputError, match=message):
+        read_uff(path)
+
+
+@pytest.mark.skipif(not UFF.exists(), reason="no folder of shared data")
+@pytest.mark.parametrize(
+    ("name", "first", "count"),
+    [
+        ("heat_engine_housing.uff", 151, 5),
+        ("mesh_Oros-modal_uff15_uff2412.uff", 18, 3),
+        ("Sample_UFF58_ascii.uff", 58, 1),
+    ],
+)
+def test_datasets_of_real_files_are_found(name: str, first: int, count: int) -> None:
+    found = blocks((UFF / name).read_bytes(), name)
+    assert found[0].number == first
+    assert len(found) >= count
+    with pytest.raises(InputError, match="frequency response functions"):
+        read_uff(UFF / name)
+
+
+def _csv(path: Path, f: Floats, H: dict[str, Complexes]) -> Path:
+    header = ",".join(["frequency", *(f"{n}_{e}" for n in H for e in ("re", "im"))])
+    columns = [f, *(part for h in H.values() for part in (h.real, h.imag))]
+    np.savetxt(path, np.transpose(columns), delimiter=",", header=header, comments="", fmt="%.9g")
+    return path
+
+
+def _test_file(folder: Path, files: list[str], references: list[str]) -> Path:
+    path = folder / "test.toml"
+    path.write_text(
+        f'[test]\nname = "t"\nquantity = "mobility"\n[[set]]\nfiles = {files}\n'
+        f"reference = {references}\n"
+    )
+    return path
+
+
+def _functions(seed: int) -> dict[str, Complexes]:
+    rng = np.random.default_rng(seed)
+    return {n: rng.standard_normal(30) + 1j * rng.standard_normal(30) for n in ("a", "b")}
+
+
+def test_references_and_blows_are_told_apart(tmp_path: Path) -> None:
+    f = np.arange(1, 31.0)
+    for k in range(3):
+        _csv(tmp_path / f"{k}.csv", f, _functions(k))
+    path = _test_file(tmp_path, ["0.csv", "1.csv", "2.csv"], ["a", "a", "b"])
+    (one,) = read_test(path).sets
+    data = one.assembled.data
+    assert data.H.shape == (2, 2, 30)
+    assert (data.references, data.responses, data.quantity) == (("a", "b"), ("a", "b"), "mobility")
+    assert data.H[0, 0] == pytest.approx((_functions(0)["a"] + _functions(1)["a"]) / 2)
+    assert data.variance is not None
+    spread = np.abs(_functions(0)["a"] - _functions(1)["a"]) ** 2 / 4
+    assert data.variance[0, 0] == pytest.approx(spread)
+    assert np.isnan(data.variance[1]).all()
+
+
+def test_different_axes_and_missing_files_are_named(tmp_path: Path) -> None:
+    _csv(tmp_path / "0.csv", np.arange(1, 31.0), _functions(0))
+    _csv(tmp_path / "1.csv", np.arange(2, 32.0), _functions(1))
+    with pytest.raises(InputError, match=r"1\.csv: .*expected the frequency axis of .*0\.csv"):
+        read_test(_test_file(tmp_path, ["0.csv", "1.csv"], ["a", "b"]))
+    with pytest.raises(InputError, match=r"2\.csv: file: .*no such file"):
+        read_test(_test_file(tmp_path, ["0.csv", "2.csv"], ["a", "b"]))
+
+
+def test_odd_channels_are_pointed_out(tmp_path: Path) -> None:
+    f = 2 * np.pi * np.arange(1, 31.0)
+    H = _functions(0)
+    _csv(tmp_path / "0.csv", f, {"a": H["a"], "b": H["b"], "c": 0 * H["a"]})
+    _csv(tmp_path / "1.csv", f, {"a": -H["b"], "b": H["a"], "c": 1000 * H["a"]})
+    (one,) = read_test(_test_file(tmp_path, ["0.csv", "1.csv"], ["a", "b"])).sets
+    said = "\n".join(one.assembled.warnings)
+    for text in ("looks like rad/s", "only zeros", "check its unit", "opposite signs"):
+        assert text in said
+    assert np.isnan(one.assembled.data.H[0, 2]).all()
+
+
+@pytest.mark.parametrize("bad", ["nan", "x", "", "1e999"])
+def test_numbers_that_are_none_are_named(tmp_path: Path, bad: str) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text(f"frequency,a_re,a_im\n1,2,3\n2,{bad},4\n")
+    with pytest.raises(InputError, match="finite number"):
+        read_test(path)
+
+
+def test_only_zeros_are_an_error(tmp_path: Path) -> None:
+    f = np.arange(1, 31.0)
+    with pytest.raises(InputError, match="only zeros"):
+        read_test(_csv(tmp_path / "a.csv", f, {"a": np.zeros(30, complex)}))
+
+
+def test_written_modal_data_are_read_again(tmp_path: Path) -> None:
+    f = np.array([[1.5, 2.5], [1.6, np.nan]])
+    phi = np.array([[[1.0, 0.5], [0.2, -1.0]], [[0.9, 0.6], [np.nan, np.nan]]])
+    data = modal_data(f, phi, ("low", "top"), frequency_std=0.01 * f, shape_std=0.02 + 0 * phi)
+    write_csv(tmp_path / "m.csv", data, damping_std=0.1 * f)
+    again = read_csv(tmp_path / "m.csv")
+    np.testing.assert_allclose(again.frequency, data.frequency)
+    np.testing.assert_allclose(again.shape, data.shape)
+    np.testing.assert_allclose(again.shape_std[0], data.shape_std[0])
+    assert (tmp_path / "m.csv").read_text().startswith("set,mode,frequency,damping,low,top,freq")

@@ -1,0 +1,100 @@
+"""Simulated tests: all modes, no others, and intervals that hold the truth."""
+
+import numpy as np
+import pytest
+from simulation import THREE_STORY, THREE_STORY_DAMPING, accelerance, blows, three_story_shapes
+
+from modefront._typing import Floats
+from modefront.identification.identify import identify
+from modefront.identification.responses import frequency_responses
+
+F = np.arange(0.1, 30.05, 0.1)
+
+
+def _scores(level: float, known: bool, force: float, runs: int) -> Floats:
+    """Return errors over standard deviations of all quantities, one row a run."""
+    phi = three_story_shapes()
+    H = accelerance(F, THREE_STORY, THREE_STORY_DAMPING, phi, [0, 1, 2])
+    out = []
+    for seed in range(runs):
+        measured = blows(H, level, np.random.default_rng(seed), force=force)
+        data = frequency_responses(F, measured if known else measured.mean(axis=0))
+        found = identify(data, (1, 30))
+        assert [round(mode.frequency, 1) for mode in found.modes] == [4.6, 12.8, 17.9]
+        row = []
+        for r, mode in enumerate(found.modes):
+            true = phi[r] / np.linalg.norm(phi[r])
+            true = true * np.sign(true @ mode.shape.shape)
+            row.append((mode.frequency - THREE_STORY[r]) / mode.frequency_std)
+            row.append((mode.damping - THREE_STORY_DAMPING[r]) / mode.damping_std)
+            row.extend((mode.shape.shape - true) / mode.shape_std)
+        out.append(row)
+    return np.array(out)
+
+
+@pytest.mark.parametrize(
+    ("level", "known", "force"), [(0.01, True, 0.0), (0.05, False, 0.0), (0.05, True, 0.05)]
+)
+def test_intervals_hold_the_truth(level: float, known: bool, force: float) -> None:
+    scores = _scores(level, known, force, 12)
+    assert 0.88 < np.mean(np.abs(scores) < 1.96) < 0.99
+    assert 0.8 < scores.std() < 1.2
+
+
+def _eight() -> tuple[Floats, Floats, Floats]:
+    rng = np.random.default_rng(5)
+    phi = np.linalg.qr(rng.standard_normal((10, 10)))[0][:8]
+    phi[4] = 0  # a local mode: two sensors see it
+    phi[4, [2, 7]] = 0.4, -0.3
+    f0 = np.array([5.0, 9.0, 9.09, 14.0, 18.0, 21.0, 25.0, 29.0])
+    zeta = np.array([0.01, 0.01, 0.01, 0.015, 0.01, 0.08, 0.01, 0.012])
+    return f0, zeta, phi
+
+
+@pytest.mark.parametrize("high", [29.5, 30.0])
+def test_close_local_heavily_damped_and_edge_modes_are_found(high: float) -> None:
+    f0, zeta, phi = _eight()
+    f = np.arange(0.05, 30.05, 0.05)
+    H = accelerance(f, f0, zeta, phi, [0, 2, 9])
+    data = frequency_responses(f, blows(H, 0.05, np.random.default_rng(0)))
+    found = identify(data, (2, high))
+    assert len(found.modes) == 8
+    assert [mode.frequency for mode in found.modes] == pytest.approx(f0, rel=0.005)
+    assert found.modes[5].damping == pytest.approx(0.08, rel=0.05)
+    assert found.converged
+
+
+def test_coherence_weights_and_tells_the_variance() -> None:
+    phi = three_story_shapes()
+    H = accelerance(F, THREE_STORY, THREE_STORY_DAMPING, phi, [2])
+    rng = np.random.default_rng(3)
+    measured = blows(H, 0.03, rng, count=10)
+    deviation = 0.03**2 * np.mean(np.abs(H) ** 2, axis=-1, keepdims=True)
+    coherence = np.abs(H) ** 2 / (np.abs(H) ** 2 + deviation)
+    data = frequency_responses(F, measured.mean(axis=0), coherence=coherence, blows=10)
+    found = identify(data, (1, 30))
+    assert len(found.modes) == 3
+    assert found.residuals.chi2 == pytest.approx(1, abs=0.15)
+
+
+def test_a_dead_channel_and_gaps_are_left_out() -> None:
+    phi = three_story_shapes()
+    H = accelerance(F, THREE_STORY, THREE_STORY_DAMPING, phi, [1, 2])
+    measured = blows(H, 0.01, np.random.default_rng(0)).mean(axis=0)
+    measured[:, 1] = np.nan
+    found = identify(frequency_responses(F, measured), (1, 30))
+    assert len(found.modes) == 3
+    assert np.isnan(found.modes[0].shape_std[1])
+    assert np.isfinite(found.modes[0].shape_std[[0, 2]]).all()
+
+
+def test_noise_alone_has_no_modes() -> None:
+    rng = np.random.default_rng(0)
+    H = rng.standard_normal((1, 3, 300)) + 1j * rng.standard_normal((1, 3, 300))
+    found = identify(frequency_responses(np.arange(1, 301.0), H))
+    assert found.modes == ()
+
+
+def test_too_few_lines_are_an_error() -> None:
+    with pytest.raises(ValueError, match="20 lines in the band, found 5"):
+        identify(frequency_responses(np.arange(1.0, 6.0), np.ones((1, 5), complex)))

@@ -1,0 +1,123 @@
+"""The modal model: its derivatives, and exact data."""
+
+import numpy as np
+import pytest
+from simulation import THREE_STORY, THREE_STORY_DAMPING, accelerance, circular, three_story_shapes
+
+from modefront._typing import Ints
+from modefront.identification.lscf import ARC, generalised_frequency, moments, poles
+from modefront.identification.modal_model import (
+    Problem,
+    evaluate,
+    free_factors,
+    gram,
+    leverage,
+    maximise,
+    primitives,
+    problem,
+    synthesise,
+)
+from modefront.identification.responses import Complexes, frequency_responses
+
+
+def _task(level: float = 0.01, terms: int = 1) -> tuple[Problem, float, float]:
+    f = np.arange(0.1, 30, 0.1)
+    H = accelerance(f, THREE_STORY, THREE_STORY_DAMPING, three_story_shapes(), [0, 2])
+    rng = np.random.default_rng(1)
+    noise = level * np.abs(H).std() * circular(rng, H.shape)
+    data = frequency_responses(f, H + noise).within(1, 30)
+    return problem(data, np.full(data.H.shape, (level * np.abs(H).std()) ** 2), terms)
+
+
+def _somewhere(omega: float) -> tuple[Complexes, Complexes, Ints]:
+    rng = np.random.default_rng(2)
+    lam: Complexes = np.asarray(2 * np.pi / omega * 1.004 * THREE_STORY * (1j - 0.015), complex)
+    L = circular(rng, (3, 2))
+    held = np.abs(L).argmax(axis=1)
+    factors: Complexes = L / L[np.arange(3), held][:, None]
+    return lam, factors, held
+
+
+@pytest.mark.parametrize("terms", [0, 1, 2])
+def test_the_gradient_is_that_of_the_projected_cost(terms: int) -> None:
+    task, omega, _ = _task(terms=terms)
+    lam, L, held = _somewhere(omega)
+    fit = evaluate(task, lam, L, held)
+    free = free_factors(held, 2)
+    for k in range(len(fit.gradient)):
+        h = 1e-6 * (abs(lam[k // 2]) if k < 6 else 1.0)
+        costs = []
+        for sign in (1, -1):
+            step = sign * h * (1j if k % 2 else 1)
+            moved, factors = lam.copy(), L.copy()
+            if k < 6:
+                moved[k // 2] += step
+            else:
+                factors[free[(k - 6) // 2]] += step
+            costs.append(evaluate(task, moved, factors, held).cost)
+        assert (costs[0] - costs[1]) / (4 * h) == pytest.approx(fit.gradient[k], rel=2e-5)
+
+
+def test_gauss_newton_is_the_hessian_where_nothing_is_left_over() -> None:
+    task, _, _ = _task(level=1e-7)
+    fit = maximise(task, *_somewhere(2 * np.pi * 29.9)[:2])
+    model = fit.model
+    rng = np.random.default_rng(0)
+    direction = rng.standard_normal(6) * np.abs(model.lam.real).repeat(2)
+    h = 1e-2
+    gradients = [
+        evaluate(
+            task,
+            model.lam + sign * h * (direction[::2] + 1j * direction[1::2]),
+            model.L,
+            model.held,
+        ).gradient[:6]
+        for sign in (1, -1)
+    ]
+    assert (gradients[0] - gradients[1]) / (2 * h) == pytest.approx(
+        fit.curvature[:6, :6] @ direction, rel=2e-3
+    )
+
+
+def test_gram_matrices_are_those_of_the_stacked_columns() -> None:
+    task, omega, _ = _task()
+    E = primitives(task, _somewhere(omega)[0])
+    columns = np.sqrt(task.weight[1, 2]) * E
+    stacked = np.hstack([columns.real, columns.imag])
+    assert gram(task, E)[1, 2] == pytest.approx(stacked @ stacked.T, rel=1e-10)
+
+
+def test_leverage_sums_to_half_the_number_of_parameters() -> None:
+    task, omega, _ = _task()
+    fit = maximise(task, *_somewhere(omega)[:2])
+    parameters = len(fit.gradient) + 3 * fit.inverse.shape[1]
+    assert 2 * leverage(task, fit).sum() == pytest.approx(parameters, rel=1e-6)
+
+
+def test_exact_data_give_exact_modes() -> None:
+    f = np.arange(0.1, 30, 0.1)
+    H = accelerance(f, THREE_STORY, THREE_STORY_DAMPING, three_story_shapes(), [0, 2])
+    data = frequency_responses(f, H).within(1, 30)
+    task, omega, size = problem(data, np.full(data.H.shape, 1e-18), 1)
+    fit = maximise(task, *_somewhere(omega)[:2])
+    assert fit.converged
+    found = fit.model.lam * omega / (2 * np.pi)
+    assert np.abs(found) == pytest.approx(THREE_STORY, rel=1e-8)
+    assert -found.real / np.abs(found) == pytest.approx(THREE_STORY_DAMPING, rel=1e-7)
+    assert np.abs(synthesise(task, fit.model) * size - data.H).max() < 1e-8 * np.abs(data.H).max()
+
+
+@pytest.mark.parametrize("references", [[0], [0, 2]])
+def test_lscf_finds_the_poles_of_exact_data_at_the_first_order_that_holds_them(
+    references: list[int],
+) -> None:
+    f = np.arange(1, 30, 0.1)
+    H = accelerance(f, THREE_STORY, THREE_STORY_DAMPING, three_story_shapes(), references)
+    omega = 2 * np.pi * f
+    rate = 2 * np.pi * ARC / (omega[-1] - omega[0])
+    z = generalised_frequency(omega, omega[0], rate)
+    sums = moments(H, np.ones(H.shape[1:]), z, 16)
+    found = poles(sums, [16], omega[0], rate)[0]
+    for f0, zeta in zip(THREE_STORY, THREE_STORY_DAMPING, strict=True):
+        true = 2 * np.pi * f0 * (-zeta + 1j * np.sqrt(1 - zeta**2))
+        assert np.abs(found.value - true).min() < 1e-4 * abs(true)
