@@ -1,8 +1,9 @@
 """Programmes on a lattice, solved outwards from the edges, each from a neighbour that is solved.
 
 Where two such advances meet, each is checked against the other: the better solution stays, and
-its advance goes on. So a front whose parts belong to different minima gets the best of them
-everywhere, at the price of a few more programmes.
+its advance goes on. An advance that jumps to another branch is another one from there, so that the
+branch which it has left is checked against it. So a front whose parts belong to different minima
+gets the best of them everywhere, at the price of a few more programmes.
 """
 
 from __future__ import annotations
@@ -120,6 +121,10 @@ where these are more. With each further objective a point has more neighbours.""
 MANY = 300
 """Points of the simplex that are not exceeded if nothing else is wanted."""
 
+JUMP = 0.25
+"""Change of a parameter from a point to its neighbour, over its range, from which on the neighbour
+counts as one of another branch, from which the first point is checked."""
+
 SAME = 1e-6
 """Distance of two points, over the ranges of the objectives, below which they are one."""
 
@@ -145,7 +150,8 @@ def advance(
     queue: deque[tuple[Place, Place]] = deque()
     doubtful: deque[tuple[Place, Place]] = deque()  # from solutions that did not converge
     tried: set[tuple[Place, Place, int]] = set()
-    divisions = lattice.divisions
+    divisions, span = lattice.divisions, problem.upper - problem.lower
+    branches = len(edges)
     fixed: set[Place] = set()
     few = lattice.counts.shape[1] <= 3
     room = max(BEYOND, 10 * len(lattice.counts)) if few else BEYOND
@@ -210,7 +216,9 @@ def advance(
         solve = programmes.solve_again if known and known.converged else programmes.solve
         found = checkpoint(name, partial(_one, solve, problem, beta(place), solved[source]))[0]
         if known is None or better(place, found, known):
-            settle(place, found, origin[source])
+            step = np.abs((found.at.theta - solved[source].at.theta) / span).max()
+            branches += step > JUMP
+            settle(place, found, branches if step > JUMP else origin[source])
         elif found.converged and not better(place, known, found):
             tried.add((source, place, renewed[place]))
 
