@@ -99,6 +99,8 @@ def level(lam: Floats, count: int, shift: float, most: float) -> tuple[int, floa
     found, widest = None, GAP
     for k in range(count, min(count + LATER, lam.size)):
         sigma = min(most, 0.5 * (lam[k - 1] + lam[k]))
+        if sigma <= lam[k - 1]:
+            continue
         gap = (sigma - lam[k - 1]) / max(sigma - shift, np.finfo(float).tiny)
         if gap > widest:
             found, widest = (k, float(sigma)), gap
