@@ -58,6 +58,24 @@ def test_a_flat_part_is_found_and_the_rest_covered_by_itself() -> None:
     assert steps.max() < 3 * steps.min()
 
 
+def test_a_flat_part_of_which_the_end_is_not_found_is_counted_and_not_cut() -> None:
+    problem = box(flat, [0, -1], [4, 1])
+    sizes = np.array([16.0, 1.0])
+    edges, along = whole_front(problem, sizes)
+    beside = flat_points(
+        *(np.array([one.at.J for one in along]), np.array([0.0, 1 + np.exp(-16.0)])), 0.01, sizes
+    )
+    # Without a solution to start from, there is no way to the end.
+    part = identifiable_part(problem, along, edges, [], 0.01, sizes, 19, compute_always)
+    assert part is not None
+    assert beside[1] >= 8
+    assert part.flat.tolist() == [0, 0]
+    assert part.uncut.tolist() == beside.tolist()
+    assert part.target is None
+    assert len(part.points) == 0
+    assert part.ends[1] is edges[1]
+
+
 def test_a_front_that_bends_everywhere_is_left_alone() -> None:
     problem = box(circles, [-2, -2], [2, 2])
     sizes = np.ones(2)

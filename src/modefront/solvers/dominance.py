@@ -13,6 +13,9 @@ TRADE = 1e-7
 SAME = 1e-6
 """Gain in an objective, over its range, that counts as none: solvers leave as much."""
 
+BLOCK = 1_000_000
+"""Differences of objectives that are held at once."""
+
 
 def nondominated(J: Floats, tolerance: float = SAME, scale: Floats | None = None) -> Bools:
     """Return which rows of J (points, n) no other row dominates, equation (4).
@@ -30,13 +33,29 @@ def nondominated(J: Floats, tolerance: float = SAME, scale: Floats | None = None
     >>> nondominated(np.array([[0.0, 1.0], [1e-11, 0.5], [1.0, 0.0]])).tolist()
     [False, True, True]
     """
-    finite = np.asarray(np.isfinite(J).all(axis=1))
-    out = finite.copy()
-    if finite.any():
-        J = J[finite]
-        scale = J.max(axis=0) - J.min(axis=0) if scale is None else scale
-        apart = (J[:, None] - J) / np.where(scale > 0, scale, 1.0)
+    if scale is None:
+        finite = J[np.isfinite(J).all(axis=1)]
+        scale = np.ptp(finite, axis=0) if len(finite) else np.ones(J.shape[1])
+    return undominated(J, J, scale, tolerance)
+
+
+def undominated(J: Floats, known: Floats, scale: Floats, tolerance: float = SAME) -> Bools:
+    """Return which rows of J (points, n) no row of ``known`` (models, n) dominates.
+
+    Gains and losses count as in `nondominated`; ``scale`` (n,) are the ranges of the objectives.
+
+    >>> known = np.array([[0.0, 1.0], [1.0, 0.0]])
+    >>> undominated(np.array([[0.0, 1.1], [0.5, 0.5]]), known, np.ones(2)).tolist()
+    [False, True]
+    """
+    out = np.asarray(np.isfinite(J).all(axis=1))
+    known = known[np.isfinite(known).all(axis=1)]
+    unit = np.where(scale > 0, scale, 1.0)
+    block = max(BLOCK // max(known.size, 1), 1)
+    rows = np.flatnonzero(out)
+    for own in (rows[k : k + block] for k in range(0, rows.size, block)):
+        apart = (known[:, None] - J[own]) / unit
         loss, gain = apart.max(axis=2), -apart.min(axis=2)
         dominates = (gain > tolerance) & (loss <= np.minimum(tolerance, TRADE * gain))
-        out[finite] = ~dominates.any(axis=0)
+        out[own] = ~dominates.any(axis=0)
     return out

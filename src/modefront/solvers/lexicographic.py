@@ -126,7 +126,8 @@ class Lexicographic:
         margin = self.margin(float(min(J[i], other[i])))
         if abs(J[i] - other[i]) > margin:
             return bool(J[i] < other[i])
-        return bool(self.others @ J < (1 - CLEAR) * (self.others @ other))
+        rest, before = float(self.others @ J), float(self.others @ other)
+        return before - rest > max(CLEAR * before, EXACT)
 
     def solve(self, problem: Problem, start: Solution, options: Options) -> Solution:
         """Return the lexicographic minimum below a start.

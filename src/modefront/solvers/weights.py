@@ -31,7 +31,7 @@ from dataclasses import replace
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.dominance import nondominated
+from modefront.solvers.dominance import undominated
 from modefront.solvers.explore import EQUAL, Descent, Search, explore
 from modefront.solvers.lexicographic import EXACT, TIE
 from modefront.solvers.problem import Problem
@@ -91,11 +91,10 @@ def accepted(
     least = min(values, default=np.inf)
     out = []
     for one in minima:
-        rows = np.vstack([one.at.J, known])
         if (
             regular(one.at.J, sizes)
             and programme.value(one.at.J) <= least + TIE * a.sum()
-            and nondominated(rows, scale=scale)[0]
+            and undominated(one.at.J[None], known, scale)[0]
         ):
             out.append(one)
     return sorted(out, key=lambda one: programme.value(one.at.J))

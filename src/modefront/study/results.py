@@ -13,7 +13,7 @@ import xarray as xr
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import Fault, InputError
 from modefront.residuals.problem import UpdatingProblem
-from modefront.solvers.dominance import nondominated
+from modefront.solvers.dominance import nondominated, undominated
 from modefront.solvers.evolutionary import EVOLUTIONARY
 from modefront.solvers.pieces import piece_numbers
 from modefront.solvers.sqp import Solution
@@ -203,7 +203,8 @@ def _pareto(front: Front, J: Floats, others: Floats) -> Bools:
     minima += [one.at.J for one in front.optimal]
     n = J.shape[1]
     known = np.vstack([J, front.known.reshape(-1, n), _stack(minima, n), others])
-    return nondominated(known, scale=front.scale)[: len(J)]
+    scale = np.ptp(known, axis=0) if front.scale is None else front.scale
+    return undominated(J, known, scale)
 
 
 def _dominated_among_front(front: Front, J: Floats) -> Bools:
@@ -227,8 +228,9 @@ def _lattice(front: Front) -> Variables:
         ),
         "lattice_label": (
             ("place",),
-            np.array([f"{front.method}-{k + 1}" for k in front.places], dtype=str),
-            "label of the point that this place led to; places of the same model share one",
+            np.array(["" if k < 0 else f"{front.method}-{k + 1}" for k in front.places], dtype=str),
+            "label of the point that this place led to, empty for none; places of the same model "
+            "share one",
         ),
     }
 

@@ -420,7 +420,8 @@ def _branches(
         if len(breaks) == before:
             break
     places = [
-        next(k for k, one in enumerate(along) if one is front.points[i]) for i in front.places
+        -1 if i < 0 else next(k for k, one in enumerate(along) if one is front.points[i])
+        for i in front.places
     ]
     return replace(front, points=along, gaps=breaks, places=np.array(places, dtype=np.intp))
 

@@ -75,8 +75,8 @@ def noise_floor(problem: UpdatingProblem, source: Source) -> Floats:
     r"""Return the objectives (n,) that errors of the data alone would cause, of a perfect model.
 
     They are sums of the variances of the residuals: :math:`\sigma^2` over the same units, or, from
-    several data sets, the variance of single sets about their mean. A group of which no error is
-    known has 0.
+    several data sets, the variance of single sets about their mean. Errors along a shape count as
+    its scale: no residual has them. A group of which no error is known has 0.
     """
     out = np.zeros(len(problem.groups))
     for i, row in enumerate(problem.members):
@@ -101,17 +101,25 @@ def _shape_floor(problem: UpdatingProblem, r: int, scale: Scale, source: Source)
     seen = np.isfinite(data.shape[:, r])
     sets = np.flatnonzero(seen.any(axis=1))
     if source == "std":
-        stds = [data.shape_std[k, r, seen[k]] for k in sets]
-        pairs = zip(parts, stds, strict=True)
-        return float(sum(((w * np.where(s > 0, s, 0.0)) ** 2).sum() for (_, w, _), s in pairs))
+        out = 0.0
+        for k, (at, weight, psi) in zip(sets, parts, strict=True):
+            std = data.shape_std[k, r, at]
+            variance = (weight * np.where(std > 0, std, 0.0)) ** 2
+            out += float(variance @ (1 - psi**2 / (psi @ psi)))
+        return out
     common = seen[sets].all(axis=0)
-    if sets.size < 2 or not common.any():
+    if sets.size < 2 or common.sum() < 2:
         return 0.0
     # Shapes of any scale and sign: each is brought to the first by least squares.
     values = data.shape[sets, r][:, common]
     factor = (values @ values[0]) / (values**2).sum(axis=1)
-    spread = (factor[:, None] * values).var(axis=0, ddof=1).sum() / (values[0] @ values[0])
-    return float(spread * np.mean([psi @ psi for _, _, psi in parts]) * sets.size)
+    mean = factor @ values
+    out = 0.0
+    for at, weight, psi in parts:
+        own, phi = psi[common[at]], weight[common[at]] * mean
+        away = own - (own @ phi) / (phi @ phi) * phi
+        out += float((away @ away) * (psi @ psi) / (own @ own))
+    return out * sets.size / (sets.size - 1)
 
 
 def _from_std(problem: UpdatingProblem, modes: Modes, pairs: Pairs) -> Noise:

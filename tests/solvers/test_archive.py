@@ -1,0 +1,79 @@
+"""The archive of evaluated models: nondominated ones by comparison of all, and after a break."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+from interruptions import interrupt_after
+from problems import box, circles, disconnected
+
+from modefront._typing import Floats
+from modefront.solvers.archive import Archive
+from modefront.solvers.explore import Search
+from modefront.study.run import Front, pareto_front
+from modefront.study.store import Store
+
+
+def dominated(J: Floats, others: Floats) -> bool:
+    """Return whether one of the others is nowhere greater than J and somewhere less."""
+    return any((other <= J).all() and (other < J).any() for other in others)
+
+
+@pytest.mark.parametrize("n", [2, 3, 4])
+def test_it_holds_the_nondominated_models_of_all(n: int) -> None:
+    rng = np.random.default_rng(n)
+    J = rng.integers(0, 12, size=(300, n)).astype(float)
+    J[7, 0] = np.inf
+    theta = rng.uniform(size=(300, 2))
+    archive = Archive(box(circles, [0, 0], [1, 1], n))
+    for own, value in zip(theta, J, strict=True):
+        archive.add(own, value)
+    finite = J[np.isfinite(J).all(axis=1)]
+    expected = {tuple(row) for row in finite.tolist() if not dominated(np.array(row), finite)}
+    assert len(archive.J) == len(expected), "models with the same objectives are kept once"
+    assert {tuple(row) for row in archive.J.tolist()} == expected
+    known = {own.tobytes(): value for own, value in zip(theta, J, strict=True)}
+    for own, value in zip(archive.theta, archive.J, strict=True):
+        assert (known[own.tobytes()] == value).all(), "each with its own parameters"
+    for row in finite[:50]:
+        assert archive.dominators(row).any() == dominated(row, finite)
+
+
+def test_models_are_remembered_that_are_evaluated_but_not_those_of_a_branch() -> None:
+    problem = box(circles, [-1, -1], [2, 2])
+    archive = Archive(problem)
+    archive.on_branch(()).evaluate(np.array([0.5, 0.0]))
+    assert len(archive.J) == 0
+    for theta in ([0.5, 1.0], [0.5, 0.5], [0.0, 0.0]):
+        archive.evaluate(np.array(theta), derivatives=False)
+    assert archive.theta.tolist() == [[0.5, 0.5], [0.0, 0.0]]
+    assert problem.counter["eigenproblems"] == 4
+
+
+def found(folder: Path) -> Front:
+    problem = box(disconnected, [0, -1], [1, 1])
+    store = Store(folder, lambda: problem.counts, lambda _: None, {})
+    search = Search(starts=2, limit=2, evolutions=0)
+    return pareto_front(problem, np.ones(2), points=7, refined=0.2, search=search, checkpoint=store)
+
+
+@pytest.mark.parametrize("pieces", [2, 9, 14])
+def test_a_run_that_is_continued_knows_the_same_models(
+    pieces: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = found(tmp_path / "whole")
+    interrupt_after(pieces, monkeypatch)
+    with pytest.raises(KeyboardInterrupt):
+        found(tmp_path / "broken")
+    again = found(tmp_path / "broken")
+    assert len(whole.known) > 20
+    assert again.known.tobytes() == whole.known.tobytes()
+    assert again.places.tolist() == whole.places.tolist()
+    assert [label for label, _ in again.points] == [label for label, _ in whole.points]
+    for (_, one), (_, other) in zip(again.points, whole.points, strict=True):
+        assert one.at.theta.tobytes() == other.at.theta.tobytes()
+        assert one.at.J.tobytes() == other.at.J.tobytes()
+        assert one.status is other.status
+    for gap, other_gap in zip(again.gaps, whole.gaps, strict=True):
+        for end, other_end in zip(gap.ends, other_gap.ends, strict=True):
+            assert end.at.J.tobytes() == other_end.at.J.tobytes()

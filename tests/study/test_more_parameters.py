@@ -1,0 +1,200 @@
+"""More parameters than data: the model that the data prefer, and what is said of it."""
+
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from interruptions import interrupt_after
+
+import modefront as mf
+from modefront._typing import Floats
+from modefront.solvers.explore import Search
+from modefront.study import session
+from modefront.study.run import Front
+from modefront.study.tables.identifiability import Identifiability
+from modefront.uncertainty.noise import noise_floor
+
+NAMES = tuple(f"k{i + 1}" for i in range(6))
+SEARCH = Search(starts=1, limit=2, evolutions=0)
+TRUTH = np.array([1.2, 0.8, 1.1, 0.9, 1.3, 0.75])
+GROUPS = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+
+
+def problem(*, std: bool) -> mf.UpdatingProblem:
+    """A chain of six stiffnesses, of which two modes are measured at three floors."""
+    model = mf.chain(
+        *(NAMES, [1000.0] * 6, [2e6] * 6),
+        stiffness_parameters=NAMES,
+        sensors={"low": 1, "middle": 3, "top": 5},
+    )
+    rng = np.random.default_rng(3)
+    at = model.modes(TRUTH, 2)
+    f_std, shape_std = 0.005 * at.frequency, np.full((2, 3), 0.02 * np.abs(at.phi).max())
+    f = at.frequency + f_std * rng.normal(size=2)
+    shape = at.phi.T + shape_std * rng.normal(size=(2, 3))
+    known = {"frequency_std": f_std, "shape_std": shape_std} if std else {}
+    data = mf.modal_data(f, shape, model.sensors, **known)
+    bounds, nominal = dict.fromkeys(NAMES, (0.4, 2.5)), dict.fromkeys(NAMES, 1.0)
+    return mf.updating_problem(model, data, GROUPS, bounds, nominal)
+
+
+@cache
+def solved(*, std: bool) -> tuple[xr.Dataset, Front]:
+    """Return the results, and the front with all models that were evaluated for it."""
+    fronts = []
+    certified = session.certified_front
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setattr(
+            session,
+            "certified_front",
+            lambda *given: (fronts.append(certified(*given)), fronts[-1])[1],
+        )
+        data = mf.solve(
+            *(problem(std=std),),
+            points=5,
+            seed=2,
+            search=SEARCH,
+            identifiability=Identifiability(models=0),
+        )
+    return data, fronts[0]
+
+
+def row(data: xr.Dataset, label: str) -> xr.Dataset:
+    return data.isel(point=data["label"].values.tolist().index(label))
+
+
+def test_with_standard_deviations_bounded_weights_are_preferred() -> None:
+    data, _ = solved(std=True)
+    labels = data["label"].values.tolist()
+    assert "optimal-weights" not in labels
+    assert data.attrs["reference"] == "bounded-weights"
+    one, a = row(data, "bounded-weights"), data["properties"].values
+    b = noise_floor(problem(std=True), "std")
+    J = one["objective"].values
+    assert one["weight"].values == pytest.approx(a / (J + b))
+    assert bool(one["pareto"])
+    value = a @ np.log(J + b)
+    assert (data["objective"].values + b > 0).all()
+    assert value <= (np.log(data["objective"].values + b) @ a).min() + 1e-6 * a.sum()
+    assert np.isfinite(data["posterior_covariance"].values).all()
+    own = (data["combination_at"] == "bounded-weights") & (data["combination_of"] == "all data")
+    undetermined = data["combination_direction"].values[own & (data["combination_share"] == 0)]
+    assert len(undetermined) == 1, "six values, of which five tell something of the stiffnesses"
+    std = data["posterior_std"].values
+    assert np.isinf(std).tolist() == (np.abs(undetermined[0]) > 1e-6).tolist()
+    assert (std > 0).all()
+    (said,) = [text for text in data["finding"].values if "no optimal-weights" in text]
+    assert "the model can fit frequencies exactly" in said
+    assert "bounded-weights takes the place of optimal-weights" in said
+    assert set(data["combination_at"].values) == {
+        *("bounded-weights", "edge-frequencies", "edge-shapes")
+    }
+
+
+def test_without_them_equal_weights_are_and_what_to_do_is_said() -> None:
+    data, _ = solved(std=False)
+    labels = data["label"].values.tolist()
+    assert not {"optimal-weights", "bounded-weights"} & set(labels)
+    assert data.attrs["reference"] == "equal-weights"
+    assert "posterior_std" not in data
+    (said,) = [text for text in data["finding"].values if "no optimal-weights" in text]
+    assert "equal-weights takes the place of optimal-weights" in said
+    assert "standard deviations" in said
+    assert "several data sets" in said
+
+
+def dominated(J: Floats, known: Floats, scale: Floats) -> bool:
+    """Return whether a known model dominates J, with the tolerance that results state."""
+    for other in (known - J) / scale:
+        gain, loss = float(-other.min()), float(other.max())
+        if gain > 1e-6 and loss <= min(1e-6, 1e-7 * gain):
+            return True
+    return False
+
+
+@pytest.mark.parametrize("std", [True, False])
+def test_pareto_is_what_no_model_reported_or_evaluated_dominates(std: bool) -> None:
+    data, front = solved(std=std)
+    assert front.scale is not None
+    known = [data["objective"].values, data["minimum_objective"].values, front.known]
+    known += [data["end_objective"].values, data["equal_objective"].values]
+    everything = np.vstack([J[np.isfinite(J).all(axis=1)] for J in known])
+    expected = [not dominated(J, everything, front.scale) for J in data["objective"].values]
+    assert data["pareto"].values.tolist() == expected
+    along = np.array([str(label).startswith("nbi-") for label in data["label"].values])
+    J = data["objective"].values
+    among = [on and dominated(own, J[along], front.scale) for on, own in zip(along, J, strict=True)]
+    assert data["dominated_among_front"].values.tolist() == among
+
+
+@pytest.mark.parametrize("std", [True, False])
+def test_no_edge_is_worse_than_any_evaluated_model(std: bool) -> None:
+    data, front = solved(std=std)
+    labels = data["label"].values.tolist()
+    for i, name in enumerate(("frequencies", "shapes")):
+        edge = data["objective"].values[labels.index(f"edge-{name}")]
+        assert edge[i] <= front.known[:, i].min() * (1 + 1e-6) + 1e-10
+        as_good = front.known[front.known[:, i] <= edge[i] * (1 + 1e-6)]
+        assert (as_good[:, 1 - i] >= edge[1 - i] * (1 - 1e-3) - 1e-10).all()
+
+
+STUDY = """
+[study]
+name = "more parameters than data"
+seed = 2
+
+[data]
+file = "modes.csv"
+
+[model]
+kind = "chain"
+masses = [1000.0, 1000.0, 1000.0, 1000.0]
+stiffnesses = [2e6, 2e6, 2e6, 2e6]
+stiffness_parameters = ["k1", "k2", "k3", "k4"]
+sensors = { low = 1, top = 3 }
+
+[[group]]
+name = "frequencies"
+frequency = "all"
+
+[[group]]
+name = "shapes"
+shape = "all"
+
+[pareto]
+points = 4
+
+[search]
+starts = 1
+limit = 1
+evolutions = 0
+
+[identifiability]
+models = 0
+""" + "".join(
+    f'\n[[parameter]]\nname = "k{i + 1}"\nnominal = 1.0\nbounds = [0.4, 2.5]\n' for i in range(4)
+)
+
+DATA = """set,mode,frequency,frequency_std,damping,low,low_std,top,top_std
+a,1,2.45,0.012,,0.62,0.02,1.0,0.02
+a,2,7.25,0.036,,1.0,0.02,-0.71,0.02
+"""
+
+
+def test_a_run_that_is_interrupted_goes_on_to_the_same_digits(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    (tmp_path / "modes.csv").write_text(DATA)
+    (tmp_path / "study.toml").write_text(STUDY)
+    study = mf.load(tmp_path / "study.toml")
+    whole = mf.run(study, tmp_path / "whole")
+    assert whole.attrs["reference"] == "bounded-weights"
+    written = len(list((tmp_path / "whole").rglob("*.npz")))
+    for pieces in (3, written - 8):
+        interrupt_after(pieces, monkeypatch)
+        with pytest.raises(KeyboardInterrupt):
+            mf.run(mf.load(tmp_path / "study.toml"), tmp_path / f"broken-{pieces}")
+        again = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / f"broken-{pieces}")
+        assert again.identical(whole)
