@@ -297,7 +297,7 @@ def test_a_group_that_no_parameter_changes_is_refused() -> None:
     single = problem_of("k", 3, springs=springs)
     assert unchanged_groups(single) == [1]
     with pytest.raises(mf.InputError, match=r"'shapes'.*no parameter changes them") as caught:
-        refuse_unchanged_groups(single, "study.toml")
+        refuse_unchanged_groups(single, "study.toml", unchanged_groups(single))
     assert "single sensor" not in str(caught.value)
     one_sensor = problem_of("k", 3, sensors=[2])
     assert unchanged_groups(one_sensor) == [1]

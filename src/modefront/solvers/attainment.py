@@ -153,9 +153,10 @@ class Attainment:
     def _checked(self, found: Solution, beta: Floats) -> Solution:
         """Return a solution; stalled where an objective that is least already holds the bound.
 
-        There, beyond the simplex, all other objectives may be anything: it is weakly optimal.
+        There, beyond the simplex, all other objectives may be anything: it is weakly optimal. Of
+        three objectives, the share of the others in what is minimised decides between these.
         """
-        if not found.at.feasible or beta.min() >= 0:
+        if not found.at.feasible or beta.min() >= 0 or beta.size <= 3:
             return found
         c, y = self.excess(beta, found.at.J), (found.at.J - self.target.utopia) / self.scale
         weak = bool(((c >= c.max() - MET) & (y <= MET)).any())

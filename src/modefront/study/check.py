@@ -69,7 +69,7 @@ def check(study: Study) -> Findings:
     Raises InputError where no parameter changes a group.
     """
     problem = study.problem
-    refuse_unchanged_groups(problem, str(study.file))
+    refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))
     at = problem.evaluate(problem.start)
     scale = scale_at(problem, problem.start)
     warnings = _undetermined(problem, at, scale)
@@ -93,10 +93,10 @@ def check(study: Study) -> Findings:
     return Findings(derivative_error(problem), determined(problem), tuple(warnings))
 
 
-def refuse_unchanged_groups(problem: UpdatingProblem, file: str) -> None:
+def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequence[int]) -> None:
     """Raise InputError where no parameter changes a group: its minimum would be made of rounding.
 
-    A model that is not defined at the nominal parameters is not judged.
+    ``unchanged`` are the positions of these groups.
     """
     faults = [
         Fault(
@@ -107,7 +107,7 @@ def refuse_unchanged_groups(problem: UpdatingProblem, file: str) -> None:
             "remove the group, or give it other members or the model other parameters"
             + _single_sensors(problem, i),
         )
-        for i in unchanged_groups(problem)
+        for i in unchanged
     ]
     if faults:
         raise InputError(faults)

@@ -14,6 +14,7 @@ from threadpoolctl import threadpool_limits
 import modefront
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError
+from modefront.identifiability.combinations import unchanged_groups
 from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
@@ -166,7 +167,8 @@ class _Session:
         Dense problems of a hundred unknowns are slower on several threads of the BLAS than on one.
         """
         with threadpool_limits(1, user_api="blas"):
-            refuse_unchanged_groups(self.problem, str(self.file))
+            found = self.store.arrays("unchanged-groups", self._unchanged_groups)["groups"]
+            refuse_unchanged_groups(self.problem, str(self.file), found.astype(int).tolist())
             return self._results()
 
     def _results(self) -> xr.Dataset:
@@ -213,6 +215,10 @@ class _Session:
         data = predicted_around(predicted(data, asking), asking, near)
         data.attrs |= self._attributes(front)
         return data
+
+    def _unchanged_groups(self) -> dict[str, Floats]:
+        """Return the positions of groups that no parameter changes, to be kept."""
+        return {"groups": np.array(unchanged_groups(self.problem), dtype=float)}
 
     def _noise_floor(self) -> Floats | None:
         """Return what errors of the data make of the objectives; None where one is not known."""
