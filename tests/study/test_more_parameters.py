@@ -86,7 +86,7 @@ def test_with_standard_deviations_bounded_weights_are_preferred() -> None:
     assert np.isinf(std).tolist() == (np.abs(undetermined[0]) > 1e-6).tolist()
     assert (std > 0).all()
     (said,) = [text for text in data["finding"].values if "no optimal-weights" in text]
-    assert "the model can fit frequencies exactly" in said
+    assert "the model can fit frequencies and shapes exactly" in said
     assert "bounded-weights takes the place of optimal-weights" in said
     assert set(data["combination_at"].values) == {
         *("bounded-weights", "edge-frequencies", "edge-shapes")
@@ -191,6 +191,9 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_digits(
     study = mf.load(tmp_path / "study.toml")
     whole = mf.run(study, tmp_path / "whole")
     assert whole.attrs["reference"] == "bounded-weights"
+    # As many values as parameters: all are fitted, and no model is better by more than rounding.
+    assert whole.attrs["front_is_a_point"]
+    assert whole["pareto"].values.all()
     written = len(list((tmp_path / "whole").rglob("*.npz")))
     for pieces in (3, written - 8):
         interrupt_after(pieces, monkeypatch)
