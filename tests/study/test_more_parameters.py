@@ -2,6 +2,7 @@
 
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import modefront as mf
 from modefront._typing import Floats
 from modefront.solvers.explore import Search
 from modefront.study import session
+from modefront.study.certified import certified_front
 from modefront.study.run import Front
 from modefront.study.tables.identifiability import Identifiability
 from modefront.uncertainty.noise import noise_floor
@@ -34,8 +36,11 @@ def problem(*, std: bool) -> mf.UpdatingProblem:
     f_std, shape_std = 0.005 * at.frequency, np.full((2, 3), 0.02 * np.abs(at.phi).max())
     f = at.frequency + f_std * rng.normal(size=2)
     shape = at.phi.T + shape_std * rng.normal(size=(2, 3))
-    known = {"frequency_std": f_std, "shape_std": shape_std} if std else {}
-    data = mf.modal_data(f, shape, model.sensors, **known)
+    data = mf.modal_data(
+        *(f, shape, model.sensors),
+        frequency_std=f_std if std else None,
+        shape_std=shape_std if std else None,
+    )
     bounds, nominal = dict.fromkeys(NAMES, (0.4, 2.5)), dict.fromkeys(NAMES, 1.0)
     return mf.updating_problem(model, data, GROUPS, bounds, nominal)
 
@@ -43,14 +48,14 @@ def problem(*, std: bool) -> mf.UpdatingProblem:
 @cache
 def solved(*, std: bool) -> tuple[xr.Dataset, Front]:
     """Return the results, and the front with all models that were evaluated for it."""
-    fronts = []
-    certified = session.certified_front
+    fronts: list[Front] = []
+
+    def kept(*given: Any) -> Front:
+        fronts.append(certified_front(*given))
+        return fronts[-1]
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            session,
-            "certified_front",
-            lambda *given: (fronts.append(certified(*given)), fronts[-1])[1],
-        )
+        patch.setattr(session, "certified_front", kept)
         data = mf.solve(
             *(problem(std=std),),
             points=5,
