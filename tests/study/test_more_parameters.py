@@ -2,6 +2,7 @@
 
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -12,6 +13,7 @@ import modefront as mf
 from modefront._typing import Floats
 from modefront.solvers.explore import Search
 from modefront.study import session
+from modefront.study.certified import certified_front
 from modefront.study.run import Front
 from modefront.study.tables.identifiability import Identifiability
 from modefront.uncertainty.noise import noise_floor
@@ -34,8 +36,11 @@ def problem(*, std: bool) -> mf.UpdatingProblem:
     f_std, shape_std = 0.005 * at.frequency, np.full((2, 3), 0.02 * np.abs(at.phi).max())
     f = at.frequency + f_std * rng.normal(size=2)
     shape = at.phi.T + shape_std * rng.normal(size=(2, 3))
-    known = {"frequency_std": f_std, "shape_std": shape_std} if std else {}
-    data = mf.modal_data(f, shape, model.sensors, **known)
+    data = mf.modal_data(
+        *(f, shape, model.sensors),
+        frequency_std=f_std if std else None,
+        shape_std=shape_std if std else None,
+    )
     bounds, nominal = dict.fromkeys(NAMES, (0.4, 2.5)), dict.fromkeys(NAMES, 1.0)
     return mf.updating_problem(model, data, GROUPS, bounds, nominal)
 
@@ -43,14 +48,14 @@ def problem(*, std: bool) -> mf.UpdatingProblem:
 @cache
 def solved(*, std: bool) -> tuple[xr.Dataset, Front]:
     """Return the results, and the front with all models that were evaluated for it."""
-    fronts = []
-    certified = session.certified_front
+    fronts: list[Front] = []
+
+    def kept(*given: Any) -> Front:
+        fronts.append(certified_front(*given))
+        return fronts[-1]
+
     with pytest.MonkeyPatch.context() as patch:
-        patch.setattr(
-            session,
-            "certified_front",
-            lambda *given: (fronts.append(certified(*given)), fronts[-1])[1],
-        )
+        patch.setattr(session, "certified_front", kept)
         data = mf.solve(
             *(problem(std=std),),
             points=5,
@@ -86,7 +91,7 @@ def test_with_standard_deviations_bounded_weights_are_preferred() -> None:
     assert np.isinf(std).tolist() == (np.abs(undetermined[0]) > 1e-6).tolist()
     assert (std > 0).all()
     (said,) = [text for text in data["finding"].values if "no optimal-weights" in text]
-    assert "the model can fit frequencies exactly" in said
+    assert "the model can fit frequencies and shapes exactly" in said
     assert "bounded-weights takes the place of optimal-weights" in said
     assert set(data["combination_at"].values) == {
         *("bounded-weights", "edge-frequencies", "edge-shapes")
@@ -191,6 +196,9 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_digits(
     study = mf.load(tmp_path / "study.toml")
     whole = mf.run(study, tmp_path / "whole")
     assert whole.attrs["reference"] == "bounded-weights"
+    # As many values as parameters: all are fitted, and no model is better by more than rounding.
+    assert whole.attrs["front_is_a_point"]
+    assert whole["pareto"].values.all()
     written = len(list((tmp_path / "whole").rglob("*.npz")))
     for pieces in (3, written - 8):
         interrupt_after(pieces, monkeypatch)

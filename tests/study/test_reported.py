@@ -16,6 +16,7 @@ from modefront._typing import Floats
 from modefront.cli.show import as_json, print_results, remarks
 from modefront.solvers.advance import Simplex, simplex
 from modefront.solvers.explore import Search
+from modefront.solvers.flat import Identifiable
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.pieces import Gap
 from modefront.solvers.problem import Evaluation
@@ -96,7 +97,7 @@ def test_an_end_that_is_not_known_is_said_and_is_no_number(
 
 
 def test_a_flat_part_that_is_not_cut_is_said(monkeypatch: pytest.MonkeyPatch) -> None:
-    part = knowledge.Identifiable(np.array([0, 0]), np.array([0, 3]), [], None, [])
+    part = Identifiable(np.array([0, 0]), np.array([0, 3]), [], None, [])
 
     def uncut(_: object, __: object, edges: list[Solution], *___: object) -> object:
         return replace(part, ends=edges)

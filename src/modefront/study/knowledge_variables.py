@@ -97,8 +97,8 @@ def _weights(problem: UpdatingProblem, front: Front) -> list[Finding]:
         )
     else:
         then = (
-            f"{EQUAL} takes the place of {OPTIMAL}; standard deviations in the data, or several "
-            f"data sets, give {BOUNDED}, which are better"
+            f"{EQUAL} takes the place of {OPTIMAL}; standard deviations of the data of every "
+            f"group, or several data sets, give {BOUNDED}, which are better"
         )
     return [(WEIGHTS, f"there is no {OPTIMAL}: {why}. {then}")]
 

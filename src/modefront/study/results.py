@@ -203,7 +203,8 @@ def _pareto(front: Front, J: Floats, others: Floats) -> Bools:
     minima += [one.at.J for one in front.optimal]
     n = J.shape[1]
     known = np.vstack([J, front.known.reshape(-1, n), _stack(minima, n), others])
-    scale = np.ptp(known, axis=0) if front.scale is None else front.scale
+    # Of a front that is a point, the ranges over models as good as each other are rounding.
+    scale = front.sizes if front.scale is None else front.scale
     return undominated(J, known, scale)
 
 

@@ -81,6 +81,7 @@ class Front:
     places : (places,) the point of the front, from 0, to which each of them led; -1 for none
     known : (models, n) objectives of evaluated models that no evaluated model dominates
     floor : (n,) bounds b of J in the bounded weights; None where there is no such model
+    sizes : (n,) typical sizes of the objectives, of random models; empty where not known
     """
 
     method: str
@@ -95,6 +96,7 @@ class Front:
     places: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     known: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     floor: Floats | None = None
+    sizes: Floats = field(default_factory=lambda: np.zeros(0))
 
     @property
     def reference(self) -> str:
@@ -282,6 +284,7 @@ def pareto_front(
         front.places,
         archive.J,
         floor if any(label == BOUNDED for label, _ in models) else None,
+        sizes,
     )
 
 

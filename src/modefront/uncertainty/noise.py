@@ -107,7 +107,7 @@ def _shape_floor(problem: UpdatingProblem, r: int, scale: Scale, source: Source)
             variance = (weight * np.where(std > 0, std, 0.0)) ** 2
             out += float(variance @ (1 - psi**2 / (psi @ psi)))
         return out
-    common = seen[sets].all(axis=0)
+    common = np.asarray(seen[sets].all(axis=0))
     if sets.size < 2 or common.sum() < 2:
         return 0.0
     # Shapes of any scale and sign: each is brought to the first by least squares.
