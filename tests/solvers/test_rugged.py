@@ -14,9 +14,9 @@ from modefront.solvers.basins import explore_between, ranks
 from modefront.solvers.checkpoint import Checkpoint, Solutions, compute_always
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.evolutionary import evolve_front
-from modefront.solvers.explore import Search
+from modefront.solvers.explore import Descent, Search, explore
 from modefront.solvers.indicators import hypervolume, igd_plus
-from modefront.solvers.scalarisation import LogSum, Squares
+from modefront.solvers.scalarisation import LogSum, Squares, weighted
 from modefront.study.run import Front, pareto_front
 
 FEW = Search(starts=4, limit=12, evolutions=0)
@@ -92,6 +92,26 @@ def test_a_rugged_front_is_not_behind_an_evolution_with_as_many_evaluations() ->
     behind = sum((row - R).min(axis=1).max() > 0.01 for row in called)
     assert len(called) >= 12
     assert behind <= len(called) / 20
+
+
+def test_starts_end_where_each_leads_to_a_minimum_of_its_own() -> None:
+    problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
+    search = Search(starts=12, limit=60, evolutions=0)
+    found = explore(problem, Descent(weighted(np.ones(2))), np.random.default_rng(1), search)
+    # The problem's own start and 15 others; with few minima left, as many as the limit allows.
+    assert 12 <= len(found) <= 25
+
+
+def test_no_evaluated_model_is_better_than_edges_and_weighted_models() -> None:
+    problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
+    search = Search(starts=2, limit=4, evolutions=0)
+    front = pareto_front(problem, np.array([4.0, 4.0]), points=6, seed=2, search=search)
+    models = {label: one.at.J for label, one in front.points}
+    least = front.known.sum(axis=1).min()
+    assert models["equal-weights"].sum() <= least * (1 + 1e-5)
+    for i in range(2):
+        assert models[f"edge-J{i + 1}"][i] <= front.known[:, i].min() + 1e-5
+        assert front.edges[i].best.at.J.tolist() == models[f"edge-J{i + 1}"].tolist()
 
 
 def test_an_evolution_that_is_continued_evaluates_nothing_again() -> None:
