@@ -17,6 +17,7 @@ from modefront.solvers.evolutionary import evolve_front
 from modefront.solvers.explore import Descent, Search, explore
 from modefront.solvers.indicators import hypervolume, igd_plus
 from modefront.solvers.scalarisation import LogSum, Squares, weighted
+from modefront.solvers.sqp import Status
 from modefront.study.run import Front, pareto_front
 
 FEW = Search(starts=4, limit=12, evolutions=0)
@@ -148,7 +149,9 @@ def test_smooth_fronts_cost_a_few_probes(function: Callable[[Floats], Derivative
     )
     assert not any(name.startswith("nbi-between-") for name in kept)
     assert sum(label.startswith("nbi") for label, _ in front.points) == 10
-    probes = sum(1 + one.evaluations for one in kept["between-probes"])
+    # Models that were only visited on the way are kept with the piece of work.
+    ends = [one for one in kept["between-probes"] if one.status is not Status.VISITED]
+    probes = sum(1 + one.evaluations for one in ends)
     assert 3 <= probes <= 30
 
 
