@@ -89,10 +89,10 @@ CROSSOVER, MUTATION = 15.0, 20.0
 ROUNDS = 4
 """Times at most that all models compete for all points."""
 
-SPACING = 0.2
+SPACING = 0.125
 """Distance of points of the front besides the lattice, in its steps, at least."""
 
-CROWD = 4
+CROWD = 6
 """Points besides the lattice at most, for one step of it."""
 
 OTHERS = 1e-2
@@ -275,7 +275,8 @@ class _Between:
     def programmes(self) -> Projection | Attainment:
         """The programmes of the points of the simplex."""
         n = self.target.utopia.size
-        return Projection(self.target) if n == 2 else Attainment(self.target, np.zeros((0, 0)))
+        none = np.zeros((0, self.problem.lower.size))
+        return Projection(self.target) if n == 2 else Attainment(self.target, none)
 
     def place(self, J: Floats) -> Floats:
         """Return the point of the simplex from which J (n,) is projected, or the nearest to it."""

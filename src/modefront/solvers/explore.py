@@ -10,8 +10,10 @@ after N starts,
 Where the objectives are too rugged for that within the limit of starts, CMA-ES (Hansen,
 arXiv:1604.00772) finds basins that no start fell into: it is run from a random start until it has
 found a basin, the gradient method goes to the bottom, and as long as a run finds a new minimum
-another one follows. All distinct minima are kept, and so is what a search reached that ended
-without its tolerances met, where it is better than all minima.
+another one follows. Where nearly every start leads to a minimum of its own and the estimate on the
+left is more than twice the limit, more starts are of no use: CMA-ES follows at once, and goes on
+only as long as each minimum is better than all before. All distinct minima are kept, and so is what
+a search reached that ended without its tolerances met, where it is better than all minima.
 """
 
 from __future__ import annotations
@@ -33,6 +35,9 @@ DISTINCT = 1e-3
 
 EQUAL = 1e-6
 """Difference of the values of two minima, over them, below which they are as good."""
+
+ESTIMATED, MANY = 15, 2
+"""Starts from which on an estimate of more minima than so many times their limit ends them."""
 
 NEAR = 2e-2
 """Distance of a half-finished search from a minimum below which it is on its way there."""
@@ -154,20 +159,29 @@ def explore(
     for start in [*starts, begin(problem.evaluate(problem.start))]:
         follow(start)
     fewest = 0 if starts else search.starts
-    rugged = True
+    rugged, hopeless = True, False
     for tried, theta in enumerate(latin_hypercube(problem, rng, search.limit)):
         N, w = tried + len(starts), _different(minima, local)
         if tried >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2):
             rugged = False
             break
+        hopeless = tried >= ESTIMATED and w * (N - 1) > MANY * search.limit * (N - w - 2)
+        if hopeless:
+            break
         follow(begin(problem.evaluate(theta)))
     for _ in range(search.evolutions if rugged else 0):
+        before = _least(minima, local)
         theta = evolve(problem, local, rng, search)
-        if not follow(begin(problem.evaluate(theta))):
+        new = follow(begin(problem.evaluate(theta)))
+        if not new or (hopeless and _least(minima, local) >= before):
             break
-    least = min((local.value(one.at.J) for one in minima), default=np.inf)
+    least = _least(minima, local)
     ahead = [one for one in unfinished if local.value(one.at.J) < least]
     return sorted([*minima, *ahead], key=lambda one: local.value(one.at.J))
+
+
+def _least(minima: Sequence[Solution], local: LocalSearch) -> float:
+    return min((local.value(one.at.J) for one in minima), default=np.inf)
 
 
 def _different(minima: Sequence[Solution], local: LocalSearch) -> int:

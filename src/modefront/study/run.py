@@ -34,7 +34,7 @@ from modefront.solvers.pieces import Gap, gaps
 from modefront.solvers.problem import Problem
 from modefront.solvers.refine import refine
 from modefront.solvers.scalarisation import weighted
-from modefront.solvers.sqp import Solution, begin
+from modefront.solvers.sqp import Options, Solution, begin
 from modefront.solvers.sweep import weight_sweep
 from modefront.solvers.weights import (
     accepted,
@@ -244,6 +244,11 @@ def pareto_front(
             break
         edges = better
     target = front.target if front.target is not None else target
+    if tolerance == 0:
+        bests = [one.best for one in edges]
+    models = _weighted_from_archive(
+        archive, models, [*given, (EQUAL, np.ones(n))], sizes, checkpoint
+    )
 
     rivals = [*(one for _, one in models), *front.points]
     near = [*(one for _, one in models), *bests, *least_along(front.points, a, sizes)]
@@ -343,6 +348,35 @@ def _from_archive(
         better = found and order.better(found.best.at.J, known.best.at.J)
         out.append(found if found and better else known)
     return out
+
+
+def _weighted_from_archive(
+    archive: Archive,
+    models: Labelled,
+    weights: Sequence[tuple[str, Floats]],
+    sizes: Floats,
+    checkpoint: Checkpoint,
+) -> list[tuple[str, Solution]]:
+    """Return the weighted models, searched again from an evaluated model that is better."""
+    out = []
+    for label, known in models:
+        w = dict(weights)[label]
+        descent = Descent(weighted(w), EXACT * float(w @ sizes))
+        first = int((archive.J @ w).argmin())
+        best = known
+        if archive.J[first] @ w < known.at.J @ w and not descent.equal(
+            archive.J[first], known.at.J
+        ):
+            search = partial(_descended, archive, descent, archive.theta[first])
+            (found,) = checkpoint(f"{label}-known", search)
+            if descent.value(found.at.J) < descent.value(known.at.J):
+                best = found
+        out.append((label, best))
+    return out
+
+
+def _descended(problem: Problem, descent: Descent, theta: Floats) -> list[Solution]:
+    return [descent.solve(problem, _begin(problem, theta), Options())]
 
 
 def _begin(problem: Problem, theta: Floats) -> Solution:
