@@ -47,7 +47,8 @@ def test_all_methods_give_the_same_variables_and_count_alike(method: str) -> Non
     data, nbi = results(method), results("nbi")
     assert data.attrs["method"] == method
     assert set(nbi.data_vars) - set(data.data_vars) <= {
-        *("piece", "end_label", "end_theta", "end_objective", "end_converged")
+        *("piece", "end_label", "end_theta", "end_objective", "end_converged"),
+        *("lattice", "lattice_label"),
     }
     n = len(front(data))
     assert data["label"].values[:n].tolist() == [f"{method}-{i + 1}" for i in range(n)]

@@ -241,6 +241,7 @@ def explore_between(
     everything, more = models_of(known), _models_in(visited)
     everything = everything if more is None else everything.joined(more)
     models = between.evolved(everything, rng, EFFORT * search.limit)
+    models = models if more is None else models.joined(more)
     better = between.competed(points, models, "-evolved")
     return between.with_others(better, models)
 

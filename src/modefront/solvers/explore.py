@@ -33,6 +33,10 @@ from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 DISTINCT = 1e-3
 """Distance of two minima, over the ranges of the parameters, above which they are two."""
 
+ENOUGH, AGREED = 30, 10
+"""Starts after which the search ends where so many have arrived at the best minimum, however many
+worse minima there are."""
+
 EQUAL = 1e-6
 """Difference of the values of two minima, over them, below which they are as good."""
 
@@ -126,6 +130,7 @@ def explore(
     options = options or Options()
     minima: list[Solution] = []
     unfinished: list[Solution] = []
+    arrived: list[Solution] = []
 
     def follow(start: Solution) -> bool:
         """Go to the minima below a start; say whether one is new.
@@ -144,6 +149,7 @@ def explore(
     def finish(rough: Solution) -> bool:
         """Go on to the minimum near a half-finished search; say whether it is a new one."""
         if not distinct(minima, rough, problem, NEAR):
+            arrived.append(rough)
             return False
         found = local.solve(problem, rough, options)
         if not found.at.feasible or not np.isfinite(local.value(found.at.J)):
@@ -151,10 +157,17 @@ def explore(
         if not found.converged:
             unfinished.append(found)
             return False
+        arrived.append(found)
         new = distinct(minima, found, problem)
         if new:
             minima.append(found)
         return new
+
+    def agreed() -> bool:
+        """Return whether enough searches have arrived at the best minimum."""
+        best = min(minima, key=lambda one: local.value(one.at.J), default=None)
+        close = [one for one in arrived if best and not distinct([best], one, problem, NEAR)]
+        return len(close) >= AGREED
 
     for start in [*starts, begin(problem.evaluate(problem.start))]:
         follow(start)
@@ -163,6 +176,9 @@ def explore(
     for tried, theta in enumerate(latin_hypercube(problem, rng, search.limit)):
         N, w = tried + len(starts), _different(minima, local)
         if tried >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2):
+            rugged = False
+            break
+        if tried >= ENOUGH and agreed():
             rugged = False
             break
         hopeless = tried >= ESTIMATED and w * (N - 1) > MANY * search.limit * (N - w - 2)
