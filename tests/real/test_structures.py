@@ -85,6 +85,7 @@ name = "steel bridge"
 file = "modes.csv"
 [model]
 kind = "matrices"
+reduction = 1e-8
 stiffness = {{ base = "K0.npz", {terms} }}
 mass = {{ base = "M0.npz" }}
 sensors = {{ {sensors} }}
@@ -98,7 +99,7 @@ name = "shapes"
 shape = "all"
 scale = "std"
 [pareto]
-points = 5
+points = 3
 [search]
 starts = 1
 limit = 1
