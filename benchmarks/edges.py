@@ -305,7 +305,7 @@ class OutOfTimeError(Exception):
 def limited(seconds: int) -> Iterator[None]:
     """Raise OutOfTimeError after some time of the processor."""
 
-    def stop(number: int, frame: FrameType | None) -> None:  # noqa: ARG001
+    def stop(number: int, frame: FrameType | None) -> None:
         raise OutOfTimeError(f"not done after {seconds} s")
 
     before = signal.signal(signal.SIGVTALRM, stop)
