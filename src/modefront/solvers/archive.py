@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Floats
 from modefront.solvers.checkpoint import Checkpoint, Solutions
 from modefront.solvers.problem import Evaluation, Problem
 from modefront.solvers.sqp import Solution, Status
@@ -81,10 +81,6 @@ class Archive:
         kept = (self.J < J).any(axis=1)
         self.theta = np.vstack([self.theta[kept], theta])
         self.J = np.vstack([self.J[kept], J])
-
-    def dominators(self, J: Floats) -> Bools:
-        """Return which models are nowhere worse than objectives (n,) and somewhere better."""
-        return np.asarray((self.J <= J).all(axis=1) & (self.J < J).any(axis=1))
 
     def keeping(self, checkpoint: Checkpoint) -> Checkpoint:
         """Return a checkpoint that keeps the models added by each piece of work with it."""
