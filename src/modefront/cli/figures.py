@@ -135,9 +135,10 @@ class _Along:
     @classmethod
     def of(cls, data: xr.Dataset) -> _Along:
         labels = [str(x) for x in data["label"].values]
-        front = [i for i, x in enumerate(labels) if x.startswith("nbi-")]
-        ends = ("nbi-", "edge-") if front else ()
-        others = [i for i, x in enumerate(labels) if not x.startswith(ends)]
+        kinds = data["kind"].values.tolist()
+        front = [i for i, kind in enumerate(kinds) if kind == "front"]
+        along = ("front", "edge") if front else ()
+        others = [i for i, kind in enumerate(kinds) if kind not in along]
         best = labels.index(str(data.attrs["reference"]))
         return cls(front, others, labels, np.asarray(data["pareto"].values, dtype=np.bool_), best)
 

@@ -17,7 +17,7 @@ def prediction_tables(data: xr.Dataset) -> Iterator[tuple[str, list[str], list[R
     """Yield title, columns, rows and remarks of each prediction; nothing where there are none."""
     if "range" not in data.sizes:
         return
-    named = [i for i, x in enumerate(data["label"].values) if not str(x).startswith("nbi-")]
+    named = np.flatnonzero(data["kind"].values != "front").tolist()
     posterior = _Posterior(data)
     labels = list(map(str, data["label"].values[named]))
     columns = ["minimum", "maximum", "spread", *posterior.columns, *labels]

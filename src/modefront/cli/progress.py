@@ -9,27 +9,24 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 
-from modefront.study.session import Progress
+from modefront.work.progress import Progress, State
 
 
 @contextmanager
 def progress_bar(title: str) -> Iterator[Progress]:
-    """Show pieces of work as they are done; the last one is named."""
+    """Show how many tasks are done, of how many, and the stage of the last one."""
     columns = (
         TextColumn("{task.description}", markup=False),
         BarColumn(),
         MofNCompleteColumn(),
         TimeElapsedColumn(),
-        TextColumn("{task.fields[piece]}", markup=False),
+        TextColumn("{task.fields[stage]}", markup=False),
     )
     with Bar(*columns, console=Console(stderr=True)) as bar:
-        task = bar.add_task(title, piece="", total=None)
+        task = bar.add_task(title, stage="", total=None)
 
-        def expect(pieces: int) -> None:
-            bar.update(task, total=pieces)
+        def report(state: State) -> None:
+            bar.update(task, total=state.expected, completed=state.done, stage=state.stage)
 
-        def done(name: str) -> None:
-            bar.update(task, advance=1, piece=name)
-
-        yield Progress(expect, done)
+        yield Progress(report)
         bar.update(task, total=bar.tasks[0].completed)

@@ -109,17 +109,17 @@ def remarks(data: xr.Dataset, where: str | None = None) -> list[str]:
     Where it is said ``where`` to see all findings, there are ten of them at most.
     """
     out = []
-    labels = data["label"].values.tolist()
+    is_optimal = "optimal-weights" in data["kind"].values
     groups = data["group"].values.tolist()
     if data.attrs["front_is_a_point"]:
         out.append("one model is the best in every group: the front is a single point")
     exact = [name for name, value in zip(groups, data["exact"].values, strict=True) if value]
-    if exact and "optimal-weights" in labels:
+    if exact and is_optimal:
         out.append(
             f"the model can fit {', '.join(exact)} exactly, where the optimal weights are not "
             "defined: optimal-weights is the regular minimum"
         )
-    if "optimal-weights" in labels:
+    if is_optimal:
         out.append(_iteration(data))
     for i in range(0, data.sizes.get("end", 0), 2):
         end, start = data["end_objective"].values[i : i + 2]
@@ -183,7 +183,7 @@ def in_numbers(data: xr.Dataset) -> str:
 def _iteration(data: xr.Dataset) -> str:
     of = data["minimum_of"].values
     theta = data["minimum_theta"].values
-    found = data["theta"].values[data["label"].values == "optimal-weights"][0]
+    found = data["theta"].values[data["kind"].values == "optimal-weights"][0]
     span = np.diff(data["bounds"].values, axis=1)[:, 0]
     if "iterated-weights" not in of:
         return "the iteration w = a / J ran into the singularity and confirms nothing"

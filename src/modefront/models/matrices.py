@@ -20,6 +20,7 @@ from modefront.modes.factorisation import Factorisation, Symbolic
 from modefront.modes.pencil import Pencil, pencil
 from modefront.modes.products import gram
 from modefront.modes.result import Modes
+from modefront.work.costs import Costs, spend
 
 BASE = "base"
 """Name of the term that does not depend on the parameters."""
@@ -42,6 +43,7 @@ class _Counted:
 
     def factor(self, values: Floats) -> Factorisation:
         self.counts.factorisations += 1
+        spend(Costs(factorisations=1))
         return self.symbolic.factor(values)
 
 
@@ -90,6 +92,7 @@ class MatrixModel:
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         self.counts.eigenproblems += 1
+        spend(Costs(eigenproblems=1))
         started = time.perf_counter()
         try:
             if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
@@ -98,6 +101,7 @@ class MatrixModel:
             return sparse.modes(self.pencil, self.selection, theta, count, derivatives)
         finally:
             self.counts.full_time += time.perf_counter() - started
+            spend(Costs(full_time=time.perf_counter() - started))
 
     def is_singular(self, theta: Floats) -> bool:
         """Return whether K(theta) is singular to working precision."""
@@ -118,6 +122,7 @@ class MatrixModel:
     def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
         """Return the model between ``ports``; see `modefront.models.base.Model`."""
         self.counts.eigenproblems += 1
+        spend(Costs(eigenproblems=1))
         outputs = self._patterns(ports.outputs)
         if ports.base is None:
             loads, rigid = self._patterns(ports.forces), None
@@ -132,6 +137,7 @@ class MatrixModel:
                 found = full.sparse_modes(self.pencil, theta, count, loads)
         finally:
             self.counts.full_time += time.perf_counter() - started
+            spend(Costs(full_time=time.perf_counter() - started))
         phi = self.selection @ found.Phi
         empty = np.zeros((count, 0)), np.zeros((*phi.shape, 0))
         return Transfer(

@@ -9,7 +9,7 @@ gets the best of them everywhere, at the price of a few more programmes.
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from itertools import combinations
@@ -19,9 +19,9 @@ from typing import Protocol
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
+from modefront.work.task import IMMEDIATE, Executor, Key, Task
 
 Place = tuple[int, ...]
 """A point of the lattice: whole coordinates, one an objective, whose sum is that of its corners."""
@@ -134,7 +134,7 @@ def advance(
     programmes: Programmes,
     edges: Sequence[Solution],
     lattice: Simplex,
-    checkpoint: Checkpoint = compute_always,
+    work: Executor = IMMEDIATE,
     before: Sequence[Solution] = (),
 ) -> list[Solution]:
     """Return one solution a point of the lattice, in its order, then those beyond the simplex.
@@ -192,16 +192,16 @@ def advance(
         if np.abs(coordinates - place).max() <= SAME * divisions:
             fixed.add(place)
         else:
-            name = f"{programmes.label}-{_text(place)}-from-edge-{i + 1}"
-            solve_one = partial(_one, programmes.solve, problem, beta(place), edge)
-            found = checkpoint(name, solve_one)[0]
+            key: Key = ("front", programmes.label, place, "from-edge", i + 1)
+            (found,) = work.run([Task(key, _solve, (problem, programmes, beta(place), edge))])
         if place not in solved or better(place, found, solved[place]):
             settle(place, found, i)
     for one in before:
         if one.beta is None or (at := _nearest(divisions * one.beta, divisions)) in solved:
             continue
-        again = partial(_from_before, programmes, problem, beta(at), one)
-        settle(at, checkpoint(f"{programmes.label}-{_text(at)}-again", again)[0], -1)
+        key = ("front", programmes.label, at, "again")
+        (found,) = work.run([Task(key, _from_before, (problem, programmes, beta(at), one))])
+        settle(at, found, -1)
     while queue or doubtful:
         place, source = (queue or doubtful).popleft()
         if not worth_trying(place, source):
@@ -212,9 +212,10 @@ def advance(
                 continue
         tried.add((place, source, renewed[source]))
         known = solved.get(place)
-        name = f"{programmes.label}-{_text(place)}-from-{_text(source)}-{renewed[source]}"
-        solve = programmes.solve_again if known and known.converged else programmes.solve
-        found = checkpoint(name, partial(_one, solve, problem, beta(place), solved[source]))[0]
+        key = ("front", programmes.label, place, "from", source, renewed[source])
+        solve = _solve_again if known and known.converged else _solve
+        arguments = (problem, programmes, beta(place), solved[source])
+        (found,) = work.run([Task(key, solve, arguments)])
         if known is None or better(place, found, known):
             step = np.abs((found.at.theta - solved[source].at.theta) / span).max()
             branches += step > JUMP
@@ -232,20 +233,21 @@ def advance(
     return out
 
 
-def _one(
-    solve: Callable[[Problem, Floats, Solution], Solution],
-    problem: Problem,
-    beta: Floats,
-    start: Solution,
-) -> list[Solution]:
-    return [solve(problem, beta, start)]
+def _solve(problem: Problem, programmes: Programmes, beta: Floats, start: Solution) -> Solution:
+    return programmes.solve(problem, beta, start)
+
+
+def _solve_again(
+    problem: Problem, programmes: Programmes, beta: Floats, start: Solution
+) -> Solution:
+    return programmes.solve_again(problem, beta, start)
 
 
 def _from_before(
-    programmes: Programmes, problem: Problem, beta: Floats, before: Solution
-) -> list[Solution]:
+    problem: Problem, programmes: Programmes, beta: Floats, before: Solution
+) -> Solution:
     start = replace(before, at=problem.evaluate(before.at.theta))
-    return [programmes.solve(problem, beta, start)]
+    return programmes.solve(problem, beta, start)
 
 
 def _nearest(coordinates: Floats, total: int) -> Place:
@@ -255,7 +257,3 @@ def _nearest(coordinates: Floats, total: int) -> Place:
     first = np.argsort(floor - coordinates, kind="stable")[:short]
     floor[first] += 1
     return tuple(floor.tolist())
-
-
-def _text(place: Place) -> str:
-    return "_".join(map(str, place))

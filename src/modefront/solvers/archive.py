@@ -8,15 +8,16 @@ stores those that the piece has added, so that a run that is continued knows the
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.checkpoint import Checkpoint, Solutions
 from modefront.solvers.problem import Evaluation, Problem
-from modefront.solvers.sqp import Solution, Status
+from modefront.work.codec import record
+from modefront.work.task import Executor, R, Task
 
 
 @dataclass
@@ -82,26 +83,54 @@ class Archive:
         self.theta = np.vstack([self.theta[kept], theta])
         self.J = np.vstack([self.J[kept], J])
 
-    def keeping(self, checkpoint: Checkpoint) -> Checkpoint:
-        """Return a checkpoint that keeps the models added by each piece of work with it."""
 
-        def kept(name: str, compute: Callable[[], Solutions]) -> Solutions:
-            def work() -> list[Solution]:
-                before = {row.tobytes() for row in self.theta}
-                found = list(compute())
-                added = [k for k, row in enumerate(self.theta) if row.tobytes() not in before]
-                return [*found, *(_visited(self.theta[k], self.J[k]) for k in added)]
+@record
+@dataclass(frozen=True)
+class Archived:
+    """The result of a task with the nondominated models of its evaluations.
 
-            found = checkpoint(name, work)
-            for one in found:
-                if one.status is Status.VISITED:
-                    self.add(one.at.theta, one.at.J)
-            return [one for one in found if one.status is not Status.VISITED]
+    Attributes
+    ----------
+    result : of the task
+    theta, J : (models, p) and (models, n)
+    """
 
-        return kept
+    result: Any
+    theta: Floats
+    J: Floats
 
 
-def _visited(theta: Floats, J: Floats) -> Solution:
-    none = np.zeros(0)
-    at = Evaluation(theta, J, none, none)
-    return Solution(at, none, none, 0.0, Status.VISITED, 0)
+@dataclass(frozen=True)
+class Archiving:
+    """An executor that adds all models that tasks evaluate to an archive.
+
+    The first argument of every task is the problem.
+    """
+
+    inner: Executor
+    archive: Archive
+
+    def run(self, tasks: Sequence[Task[R]]) -> list[R]:
+        """Return the results of the tasks."""
+        wrapped: list[Task[Archived]] = [
+            Task(task.key, archived, (task.function, *task.arguments), task.seed, task.turn)
+            for task in tasks
+        ]
+        results = self.inner.run(wrapped)
+        for each in results:
+            for theta, J in zip(each.theta, each.J, strict=True):
+                self.archive.add(theta, J)
+        return [each.result for each in results]
+
+    def expect(self, stages: Mapping[str, int]) -> None:
+        """Pass on the extent of the work."""
+        self.inner.expect(stages)
+
+
+def archived(
+    function: Callable[..., Any], problem: Problem, *arguments: Any, **options: Any
+) -> Archived:
+    """Return the result of a function of a problem, and the models that it evaluates."""
+    archive = Archive(problem)
+    result = function(archive, *arguments, **options)
+    return Archived(result, archive.theta, archive.J)

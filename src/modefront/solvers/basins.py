@@ -43,14 +43,15 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.solvers.advance import BETTER, Simplex, simplex
 from modefront.solvers.archive import Archive
 from modefront.solvers.attainment import Attainment
-from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.explore import NEAR, Search
 from modefront.solvers.nbi import Projection
 from modefront.solvers.payoff import Payoff
-from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
+from modefront.work.codec import record
+from modefront.work.task import IMMEDIATE, Executor, Key, Task
 
 MINIMA = 5
 """Minima of one programme with different objectives, from which on the search is known not to have
@@ -101,6 +102,7 @@ OTHERS = 1e-2
 _ROUGH = Options(step=NEAR / 4, iterations=8)
 
 
+@record
 @dataclass(frozen=True)
 class Models:
     """Models theta (m, p) with their objectives J (m, n), and which need not be followed (m,)."""
@@ -213,7 +215,7 @@ def explore_between(
     lattice: Simplex,
     rng: np.random.Generator,
     search: Search,
-    checkpoint: Checkpoint = compute_always,
+    work: Executor = IMMEDIATE,
     visited: Archive | None = None,
 ) -> list[Solution]:
     """Return the points of a front by `nbi`, better ones in their places, and others besides.
@@ -226,7 +228,7 @@ def explore_between(
     """
     if len(points) < len(target.scale):
         return list(points)
-    between = _Between(problem, target, lattice, checkpoint)
+    between = _Between(problem, target, lattice, work)
     points = between.competed(points, _models_in(visited))
     if search.limit == 0:
         return points
@@ -242,7 +244,7 @@ def explore_between(
     everything = everything if more is None else everything.joined(more)
     models = between.evolved(everything, rng, EFFORT * search.limit)
     models = models if more is None else models.joined(more)
-    better = between.competed(points, models, "-evolved")
+    better = between.competed(points, models, "evolved")
     return between.with_others(better, models)
 
 
@@ -270,27 +272,11 @@ class _Between:
     problem: Problem
     target: Payoff
     lattice: Simplex
-    checkpoint: Checkpoint
-
-    @property
-    def programmes(self) -> Projection | Attainment:
-        """The programmes of the points of the simplex."""
-        n = self.target.utopia.size
-        none = np.zeros((0, self.problem.lower.size))
-        return Projection(self.target) if n == 2 else Attainment(self.target, none)
-
-    def place(self, J: Floats) -> Floats:
-        """Return the point of the simplex from which J (n,) is projected, or the nearest to it."""
-        beta = np.maximum(self.target.place(J), 0.0)
-        return np.asarray(beta / beta.sum())
-
-    def own_place(self, one: Solution) -> Floats:
-        """Return the point of the plane that a point of the front belongs to."""
-        return self.target.place(one.at.J) if one.beta is None else one.beta
+    work: Executor
 
     def excess(self, one: Solution, J: Floats) -> Floats:
         """Return the excess of models J (m, n) on the normal of a point of the front, (m,)."""
-        return place_on_normals(self.target, self.own_place(one)[None], J)[:, 0]
+        return place_on_normals(self.target, place_of(self.target, one)[None], J)[:, 0]
 
     def is_near(self, one: Solution, J: Floats) -> Bools:
         """Return which models J (m, n) are projected from next to the place of a point.
@@ -298,7 +284,7 @@ class _Between:
         Others that dominate it, as in a gap of the front, lie on no way to its normal.
         """
         places = np.array([self.target.place(row) for row in J])
-        away = np.abs(places - self.own_place(one)).max(axis=1)
+        away = np.abs(places - place_of(self.target, one)).max(axis=1)
         return np.asarray(away <= 1 / self.lattice.divisions)
 
     def ahead(self, probes: Sequence[Solution], known: Models) -> bool:
@@ -314,39 +300,19 @@ class _Between:
         least = (models.J.min(axis=0) - self.target.utopia) / self.target.scale
         return float(excess.min(axis=0).mean() + least.mean())
 
-    def follow(self, theta: Floats, objective: int | None) -> Solution:
-        """Return what the programme through a model comes to, or that of one objective."""
-        at = self.problem.evaluate(theta)
-        start = begin(at)
-        if not at.feasible:
-            return start
-        if objective is None:
-            programme = self.target.subproblem(self.place(at.J))
-        else:
-            own = np.arange(at.J.size) == objective
-            programme = weighted(np.where(own, 1.0, OTHERS) / self.target.scale)
-        found = solve(self.problem, programme, start, _ROUGH)
-        return replace(found, evaluations=found.evaluations + 1)
-
-    def _followed(self, starts: Sequence[tuple[Floats, int | None]]) -> list[Solution]:
-        return [self.follow(theta, objective) for theta, objective in starts]
-
     def probes(self, points: Sequence[Solution], rng: np.random.Generator) -> Sequence[Solution]:
         """Return where programmes between the edges end from random starts."""
         span = self.problem.upper - self.problem.lower
         thetas = self.problem.lower + span * rng.uniform(size=(PROBES, span.size))
         chosen = np.linspace(0, len(points) - 1, PROBES + 2)[1:-1].astype(int)
-        betas = [self.own_place(points[k]) for k in chosen.tolist()]
-
-        def compute() -> list[Solution]:
-            starts = [begin(self.problem.evaluate(theta)) for theta in thetas]
-            found = [
-                solve(self.problem, self.target.subproblem(beta), start, _ROUGH)
-                for beta, start in zip(betas, starts, strict=True)
+        betas = [place_of(self.target, points[k]) for k in chosen.tolist()]
+        found = self.work.run(
+            [
+                Task(("probe", k + 1), _probe, (self.problem, self.target, theta, beta))
+                for k, (theta, beta) in enumerate(zip(thetas, betas, strict=True))
             ]
-            return [replace(one, beta=beta) for one, beta in zip(found, betas, strict=True)]
-
-        return [one for one in self.checkpoint("between-probes", compute) if one.at.feasible]
+        )
+        return [one for one in found if one.at.feasible]
 
     def evolved(self, models: Models, rng: np.random.Generator, evaluations: int) -> Models:
         """Return the population in which the evolution ends, with all that was followed."""
@@ -361,13 +327,13 @@ class _Between:
             generation += 1
             u = (models.theta - lower) / span
             mothers, fathers = (u[chosen(models, OFFSPRING, rng)] for _ in range(2))
-            children = crossed(mothers, fathers, rng)
+            crossover = crossed(mothers, fathers, rng)
             whole = np.where(rng.uniform(size=mothers.shape) < 0.5, mothers, fathers)
-            children[::4] = whole[::4]
-            thetas = lower + span * np.clip(mutated(children, rng), 0, 1)
-            name = f"nbi-between-{generation}"
-            (kept,) = self.checkpoint(name, partial(_evaluated, self.problem, thetas))
-            models = models.joined(_sampled(kept))
+            crossover[::4] = whole[::4]
+            thetas = lower + span * np.clip(mutated(crossover, rng), 0, 1)
+            key = ("front", "nbi", "between", generation)
+            (children,) = self.work.run([Task(key, _evaluated, (self.problem, thetas))])
+            models = models.joined(children)
             models = models[survivors(models, excess(models.J))]
             best = np.unique(excess(models.J).argmin(axis=0))
             u = (models.theta - lower) / span
@@ -382,7 +348,12 @@ class _Between:
             starts: list[tuple[Floats, int | None]] = [(theta, None) for theta in along]
             starts += [(theta, i) for i, theta in enumerate(jumps[JUMPS:])]
             models.followed[rest[:FOLLOWED]] = True
-            ends = self.checkpoint(f"{name}-followed", partial(self._followed, starts))
+            ends = self.work.run(
+                [
+                    Task((*key, "followed", k + 1), _follow, (self.problem, self.target, *start))
+                    for k, start in enumerate(starts)
+                ]
+            )
             models = models.joined(models_of([one for one in ends if one.at.feasible]))
             models = models[survivors(models, excess(models.J))]
             spent += len(thetas) + sum(one.evaluations for one in ends)
@@ -392,7 +363,7 @@ class _Between:
         return models
 
     def competed(
-        self, points: Sequence[Solution], models: Models | None, name: str = ""
+        self, points: Sequence[Solution], models: Models | None, name: str = "nbi"
     ) -> list[Solution]:
         """Return the points, each solved again from a model that is ahead of it, if any is."""
         current = list(points)
@@ -415,20 +386,17 @@ class _Between:
                     starts[k] = everything.theta[best]
             if not starts:
                 break
-            again = partial(self._again, current, starts)
-            found = self.checkpoint(f"nbi-between-again-{turn + 1}{name}", again)
+            task_key: Key = ("front", "nbi", "compete", name, turn + 1)
+            found = self.work.run(
+                [
+                    Task((*task_key, k + 1), _again, (self.problem, self.target, current[k], theta))
+                    for k, theta in starts.items()
+                ]
+            )
             for k, one in zip(starts, found, strict=True):
                 if self._better(one, current[k]):
                     current[k] = one
         return current
-
-    def _again(self, points: Sequence[Solution], starts: dict[int, Floats]) -> list[Solution]:
-        return [
-            self.programmes.solve_again(
-                self.problem, self.own_place(points[k]), begin(self.problem.evaluate(theta))
-            )
-            for k, theta in starts.items()
-        ]
 
     def _better(self, found: Solution, known: Solution) -> bool:
         """Return whether a solution of the same programme is better than one that is known."""
@@ -439,48 +407,91 @@ class _Between:
 
     def with_others(self, points: Sequence[Solution], models: Models) -> list[Solution]:
         """Return the points and, of two objectives in their order, optimal models besides them."""
-        others = self.checkpoint("nbi-between-others", partial(self._others, points, models))
+        arguments = (self.problem, self.target, self.lattice, list(points), models)
+        (others,) = self.work.run([Task(("front", "nbi", "others"), _others, arguments)])
         out = [*points, *others]
         if self.target.utopia.size > 2:
             return out
         return sorted(out, key=lambda one: -float(self.target.place(one.at.J)[0]))
 
-    def _others(self, points: Sequence[Solution], models: Models) -> list[Solution]:
-        """Return optimal models that lie apart from the points, the farthest first."""
-        spacing = SPACING / self.lattice.divisions
-        optimal = nondominated(np.concatenate([models.J, [one.at.J for one in points]]))
-        left = models[optimal[: len(models.J)]]
-        known = np.array([one.at.J for one in points if one.at.feasible]) / self.target.scale
-        out: list[Solution] = []
-        while len(left.J) and len(out) < CROWD * self.lattice.divisions:
-            away = np.abs(left.J[:, None] / self.target.scale - known).max(axis=2).min(axis=1)
-            farthest = int(away.argmax())
-            if away[farthest] < spacing:
-                break
-            out.append(self._bottom(left.theta[farthest]))
-            new = np.array([left.J[farthest], out[-1].at.J]) / self.target.scale
-            known = np.concatenate([known, new])
-            left = left[np.arange(len(left.J)) != farthest]
-        return out
 
-    def _bottom(self, theta: Floats) -> Solution:
-        """Return the solution of the programme through a model, or the model if it is no better."""
-        start = begin(self.problem.evaluate(theta))
-        beta = self.target.place(start.at.J)
-        found = self.programmes.solve_again(self.problem, beta, start)
-        own, other = place_on_normals(self.target, beta[None], np.array([found.at.J, start.at.J]))
-        if own[0] <= other[0] + BETTER:
-            return found
-        return replace(start, status=Status.STALLED, beta=beta)
+def programmes_of(problem: Problem, target: Payoff) -> Projection | Attainment:
+    """Return the programmes of the points of the simplex."""
+    if target.utopia.size == 2:
+        return Projection(target)
+    return Attainment(target, np.zeros((0, problem.lower.size)))
 
 
-def _evaluated(problem: Problem, thetas: Floats) -> list[Solution]:
-    """Return the evaluations of models theta (m, p), packed into one."""
+def place_of(target: Payoff, point: Solution) -> Floats:
+    """Return the coordinates (n,) of the plane that a point of the front belongs to."""
+    return target.place(point.at.J) if point.beta is None else point.beta
+
+
+def _probe(problem: Problem, target: Payoff, theta: Floats, beta: Floats) -> Solution:
+    """Return where the programme of a point of the simplex ends from some parameters."""
+    start = begin(problem.evaluate(theta))
+    return replace(solve(problem, target.subproblem(beta), start, _ROUGH), beta=beta)
+
+
+def _follow(problem: Problem, target: Payoff, theta: Floats, objective: int | None) -> Solution:
+    """Return the end of the programme through a model, or of that of one objective."""
+    at = problem.evaluate(theta)
+    start = begin(at)
+    if not at.feasible:
+        return start
+    if objective is None:
+        beta = np.maximum(target.place(at.J), 0.0)
+        programme = target.subproblem(np.asarray(beta / beta.sum()))
+    else:
+        own = np.arange(at.J.size) == objective
+        programme = weighted(np.where(own, 1.0, OTHERS) / target.scale)
+    end = solve(problem, programme, start, _ROUGH)
+    return replace(end, evaluations=end.evaluations + 1)
+
+
+def _again(problem: Problem, target: Payoff, point: Solution, theta: Floats) -> Solution:
+    """Return the programme of a point of the front solved from another model."""
+    start = begin(problem.evaluate(theta))
+    return programmes_of(problem, target).solve_again(problem, place_of(target, point), start)
+
+
+def _others(
+    problem: Problem,
+    target: Payoff,
+    lattice: Simplex,
+    points: Sequence[Solution],
+    models: Models,
+) -> list[Solution]:
+    """Return optimal models that lie apart from the points, the farthest first."""
+    spacing = SPACING / lattice.divisions
+    optimal = nondominated(np.concatenate([models.J, [one.at.J for one in points]]))
+    left = models[optimal[: len(models.J)]]
+    known = np.array([one.at.J for one in points if one.at.feasible]) / target.scale
+    out: list[Solution] = []
+    while len(left.J) and len(out) < CROWD * lattice.divisions:
+        away = np.abs(left.J[:, None] / target.scale - known).max(axis=2).min(axis=1)
+        farthest = int(away.argmax())
+        if away[farthest] < spacing:
+            break
+        out.append(_bottom(problem, target, left.theta[farthest]))
+        new = np.array([left.J[farthest], out[-1].at.J]) / target.scale
+        known = np.concatenate([known, new])
+        left = left[np.arange(len(left.J)) != farthest]
+    return out
+
+
+def _bottom(problem: Problem, target: Payoff, theta: Floats) -> Solution:
+    """Return the solution of the programme through a model, or the model if it is no better."""
+    start = begin(problem.evaluate(theta))
+    beta = target.place(start.at.J)
+    end = programmes_of(problem, target).solve_again(problem, beta, start)
+    own, other = place_on_normals(target, beta[None], np.array([end.at.J, start.at.J]))
+    if own[0] <= other[0] + BETTER:
+        return end
+    return replace(start, status=Status.STALLED, beta=beta)
+
+
+def _evaluated(problem: Problem, thetas: Floats) -> Models:
+    """Return models theta (m, p), which may be followed."""
     J = [problem.evaluate(theta, derivatives=False).J for theta in thetas]
-    none = np.zeros(0)
-    at = Evaluation(thetas, np.array(J), none, none)
-    return [Solution(at, none, none, 0.0, Status.SAMPLED, len(thetas))]
-
-
-def _sampled(kept: Solution) -> Models:
-    return Models(kept.at.theta, kept.at.J, np.zeros(len(kept.at.J), dtype=np.bool_))
+    return Models(thetas, np.array(J), np.zeros(len(thetas), dtype=np.bool_))

@@ -21,6 +21,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.problem import Evaluation, Problem
+from modefront.work.codec import record
 
 STEP = 3e-4
 """Step of the differences, over the range of a parameter."""
@@ -29,6 +30,7 @@ ERROR = 1e-5
 """Second derivative over the greatest one below which it is the error of differences."""
 
 
+@record
 @dataclass(frozen=True)
 class SecondOrder:
     """A point with all derivatives up to the second ones.

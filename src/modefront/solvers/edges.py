@@ -13,12 +13,12 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.explore import Search, distinct, explore
 from modefront.solvers.lexicographic import EXACT, Lexicographic
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Linear
 from modefront.solvers.sqp import Options, Solution, begin, solve
+from modefront.work.task import IMMEDIATE, Executor, Task
 
 ATTEMPTS = 4
 """Starts from which the end of a flat valley is looked for, at most."""
@@ -34,7 +34,7 @@ class Edge:
     minima: Sequence[Solution]
 
 
-def sample(problem: Problem, rng: np.random.Generator, points: int = 16) -> list[Solution]:
+def sample(problem: Problem, points: int = 16, *, rng: np.random.Generator) -> list[Solution]:
     """Return evaluations at random parameters, as starts that were not solved from."""
     span = problem.upper - problem.lower
     thetas = problem.lower + span * rng.uniform(size=(points, span.size))
@@ -53,9 +53,9 @@ def edge(
     problem: Problem,
     objective: int,
     sizes: Floats,
-    rng: np.random.Generator,
+    seed: np.random.SeedSequence,
     search: Search,
-    checkpoint: Checkpoint = compute_always,
+    work: Executor = IMMEDIATE,
     starts: Sequence[Solution] = (),
 ) -> Edge | None:
     """Return the edge of one objective, or None where no minimum was found.
@@ -64,11 +64,9 @@ def edge(
     """
     name = problem.objectives[objective]
     order = Lexicographic(objective, sizes)
-    found = checkpoint(
-        f"edge-{name}",
-        lambda: explore(problem, order, rng, search, starts=starts, options=_TIGHT),
-    )
-    return ordered(problem, objective, sizes, found)
+    arguments = (problem, order, search, starts, _TIGHT)
+    (minima,) = work.run([Task(("edge", name), explore, arguments, seed)])
+    return ordered(problem, objective, sizes, minima)
 
 
 def ordered(
@@ -106,7 +104,7 @@ def near_best(
     tolerance: float,
     sizes: Floats,
     known: Sequence[Solution],
-) -> list[Solution]:
+) -> Solution:
     """Return, of the models within a tolerance of the best in an objective, the best in the others.
 
     Where an objective hardly changes along a valley, the end of the valley says nothing, and the
@@ -116,7 +114,7 @@ def near_best(
     """
     least = best.at.J[objective]
     if least <= EXACT * sizes[objective]:
-        return [best]
+        return best
     value = (1 + tolerance) * least
     others = np.where(np.arange(sizes.size) != objective, 1 / sizes, 0.0)
     unit = np.eye(sizes.size)[[objective]] / value
@@ -124,5 +122,5 @@ def near_best(
     for start in closest[:ATTEMPTS]:
         found = solve(problem, Linear(others, unit, np.ones(1)), start)
         if found.converged:
-            return [found]
-    return [best]
+            return found
+    return best

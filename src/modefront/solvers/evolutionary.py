@@ -14,17 +14,18 @@ from __future__ import annotations
 
 import importlib.util
 import zlib
-from dataclasses import replace
-from functools import partial
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.problem import Evaluation, Problem, infeasible
 from modefront.solvers.sqp import Solution, Status
+from modefront.work.codec import record
+from modefront.work.task import IMMEDIATE, Executor, Task
 
 EVOLUTIONARY = ("spea2", "nsga2")
 
@@ -43,7 +44,7 @@ def evolve_front(
     population: int,
     evaluations: int,
     rng: np.random.Generator,
-    checkpoint: Checkpoint = compute_always,
+    work: Executor = IMMEDIATE,
 ) -> list[Solution]:
     """Return the non-dominated models of the last population, ascending in the first objective.
 
@@ -68,9 +69,9 @@ def evolve_front(
         asked = algorithm.ask()
         thetas = asked.get("X")
         # Another version of pymoo may ask for other models.
-        name = f"{method}-{spent}-{zlib.crc32(thetas.tobytes()):x}"
-        (kept,) = checkpoint(name, partial(_generation, problem, thetas))
-        found = _members(kept, n)
+        key = ("front", method, spent, f"{zlib.crc32(thetas.tobytes()):x}")
+        (generation,) = work.run([Task(key, _generation, (problem, thetas))])
+        found = _members(generation, n)
         spent += len(asked)
         known |= {theta.tobytes(): at for theta, at in zip(thetas, found, strict=True)}
         J = np.array([at.J for at in found])
@@ -96,31 +97,41 @@ def _algorithm(method: str, population: int) -> Any:
     return NSGA2(pop_size=population)
 
 
-def _generation(problem: Problem, thetas: Floats) -> list[Solution]:
-    """Return the evaluations of a generation (members, p), packed into one.
+@record
+@dataclass(frozen=True)
+class Generation:
+    """Evaluations of a generation.
 
-    Its arrays have the members as their first dimension, quantities those that are feasible.
+    Attributes
+    ----------
+    theta, J : (members, p) and (members, n)
+    quantities : of the feasible members, their first dimension
     """
+
+    theta: Floats
+    J: Floats
+    quantities: Mapping[str, Floats]
+
+
+def _generation(problem: Problem, thetas: Floats) -> Generation:
+    """Return the evaluations of models (members, p), moved into the bounds."""
     inside = np.clip(thetas, problem.lower, problem.upper)
     found = [problem.evaluate(theta, derivatives=False) for theta in inside]
     kept = [at.quantities for at in found if at.feasible]
     names = kept[0] if kept else {}
     quantities = {name: np.array([one[name] for one in kept]) for name in names}
-    none = np.zeros(0)
-    at = Evaluation(inside, np.array([at.J for at in found]), none, none, quantities)
-    return [Solution(at, none, none, 0.0, Status.SAMPLED, len(found))]
+    return Generation(inside, np.array([at.J for at in found]), quantities)
 
 
-def _members(generation: Solution, n: int) -> list[Evaluation]:
+def _members(generation: Generation, n: int) -> list[Evaluation]:
     """Return the evaluations of a generation."""
-    at = generation.at
-    count = iter(range(len(at.theta)))
+    count = iter(range(len(generation.theta)))
     out = []
-    for theta, J in zip(at.theta, at.J, strict=True):
+    for theta, J in zip(generation.theta, generation.J, strict=True):
         one = infeasible(theta, n)
         if np.isfinite(J).all():
             k = next(count)
-            quantities = {name: values[k] for name, values in at.quantities.items()}
+            quantities = {name: values[k] for name, values in generation.quantities.items()}
             one = replace(one, J=J, quantities=quantities)
         out.append(one)
     return out

@@ -115,11 +115,11 @@ class Descent:
 def explore(
     problem: Problem,
     local: LocalSearch,
-    rng: np.random.Generator,
     search: Search,
-    *,
     starts: Sequence[Solution] = (),
     options: Options | None = None,
+    *,
+    rng: np.random.Generator,
 ) -> list[Solution]:
     """Return the distinct minima that a local search leads to, best first.
 

@@ -16,19 +16,18 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.solvers.advance import simplex
-from modefront.solvers.checkpoint import Checkpoint
 from modefront.solvers.edges import near_best
 from modefront.solvers.lexicographic import EXACT, TIE
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import Payoff, payoff
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
+from modefront.work.task import IMMEDIATE, Executor, Task, Within
 
 SPREAD = 0.2
 """Share of the range of another objective over which a flat part extends at least."""
@@ -86,7 +85,7 @@ def identifiable_part(
     tolerance: float,
     sizes: Floats,
     divisions: int,
-    checkpoint: Checkpoint,
+    work: Executor = IMMEDIATE,
 ) -> Identifiable | None:
     """Return the part of a front that is not flat; None where nothing is flat.
 
@@ -102,9 +101,9 @@ def identifiable_part(
         return None
     ends = list(edges)
     for i in np.flatnonzero(flat).tolist():
-        name = f"identifiable-edge-{problem.objectives[i]}"
-        cut = partial(near_best, problem, edges[i], i, tolerance, sizes, known)
-        (ends[i],) = checkpoint(name, cut)
+        arguments = (problem, edges[i], i, tolerance, sizes, known)
+        key = ("identifiable", "edge", problem.objectives[i])
+        (ends[i],) = work.run([Task(key, near_best, arguments)])
     moved = [not same(one, edge) for one, edge in zip(ends, edges, strict=True)]
     flat, uncut = np.where(moved, flat, 0), np.where(moved, 0, flat)
     if not flat.any():
@@ -118,7 +117,7 @@ def identifiable_part(
         ends,
         target,
         simplex(n, divisions),
-        lambda name, compute: checkpoint(f"identifiable-{name}", compute),
+        Within(work, part=("identifiable",)),
         floor=floor,
     )
     above = [one for one in along if (floor <= one.at.J).all()]

@@ -76,6 +76,7 @@ from modefront._typing import Bools, Floats
 from modefront.solvers.curvature import ERROR, second_order
 from modefront.solvers.problem import Evaluation, Problem
 from modefront.solvers.scalarisation import Scalarisation
+from modefront.work.codec import record
 
 FLAT = 1e-12
 """Eigenvalue of B_0 over the greatest one, below which no residual changes in a direction."""
@@ -127,6 +128,7 @@ AHEAD = 0.5
 """Least cosine between tangents at the two ends of a step."""
 
 
+@record
 class Extent(Enum):
     """How far a manifold was followed; the value says what it means."""
 
@@ -139,6 +141,7 @@ class Extent(Enum):
     SPENT = "followed until the eigenproblems allowed for it were spent; it may go on"
 
 
+@record
 @dataclass(frozen=True)
 class Manifold:
     """A connected set of models that are equally good.

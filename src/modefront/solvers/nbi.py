@@ -27,11 +27,11 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.solvers.advance import Simplex, advance
 from modefront.solvers.attainment import Attainment
-from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution, solve
+from modefront.work.task import IMMEDIATE, Executor
 
 HALVINGS = 2
 """How often a step along the front is halved, at most."""
@@ -101,7 +101,7 @@ def nbi(
     edges: Sequence[Solution],
     target: Payoff,
     lattice: Simplex,
-    checkpoint: Checkpoint = compute_always,
+    work: Executor = IMMEDIATE,
     minima: Sequence[Solution] = (),
     floor: Floats | None = None,
     before: Sequence[Solution] = (),
@@ -120,4 +120,4 @@ def nbi(
     others = [known[i] for i in np.flatnonzero(optimal) if i >= len(edges)]
     if len(edges) == 2:
         others = [one for one in others if target.place(one.at.J).min() >= 0]
-    return advance(problem, solved, [*edges, *others], lattice, checkpoint, before)
+    return advance(problem, solved, [*edges, *others], lattice, work, before)

@@ -4,16 +4,15 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Linear, Squares, boundary
 from modefront.solvers.sqp import Options, Solution, begin, solve
+from modefront.work.task import IMMEDIATE, Executor, Task
 
 POINT = 1e-10
 """Range of an objective over the edges, over its typical size, below which it is no range."""
@@ -85,7 +84,7 @@ def corners(
     edges: Sequence[Solution],
     sizes: Floats,
     known: Sequence[Solution],
-    checkpoint: Checkpoint = compute_always,
+    work: Executor = IMMEDIATE,
 ) -> list[Solution]:
     """Return, for each objective, a model that is as near as can be to the least of all others.
 
@@ -97,21 +96,21 @@ def corners(
     if n == 2 or _solid(edges, sizes):
         return []
     utopia = np.array([one.at.J[i] for i, one in enumerate(edges)])
-    out = []
+    tasks = []
     for i, name in enumerate(problem.objectives):
         w = np.where(np.arange(n) == i, LAST, 1.0) / sizes**2
-        search = partial(_corner, problem, Squares(w, utopia), [*edges, *known])
-        out.append(checkpoint(f"corner-{name}", search)[0])
-    return out
+        arguments = (problem, Squares(w, utopia), [*edges, *known])
+        tasks.append(Task(("corner", name), _corner, arguments))
+    return work.run(tasks)
 
 
-def _corner(problem: Problem, programme: Squares, known: Sequence[Solution]) -> list[Solution]:
+def _corner(problem: Problem, programme: Squares, known: Sequence[Solution]) -> Solution:
     """Return the best minimum found from the best of the known models and from the first guess."""
     best = sorted(known, key=lambda one: programme.value(one.at.J))[:ATTEMPTS]
     starts = [begin(problem.evaluate(problem.start)), *best]
     found = [solve(problem, programme, start, _COARSE) for start in starts]
     feasible = [one for one in found if one.at.feasible]
-    return [min(feasible, key=lambda one: programme.value(one.at.J))]
+    return min(feasible, key=lambda one: programme.value(one.at.J))
 
 
 def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats) -> Payoff | None:

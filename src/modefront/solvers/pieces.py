@@ -20,17 +20,16 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.dominance import SAME
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import level, weighted
 from modefront.solvers.sqp import Options, Solution, Status, solve
+from modefront.work.task import IMMEDIATE, Executor, Task
 
 _TIGHT = Options(reduction=1e-17)
 
@@ -74,7 +73,7 @@ def gaps(
     points: Sequence[Solution],
     optimal: Bools,
     scale: Floats,
-    checkpoint: Checkpoint = compute_always,
+    work: Executor = IMMEDIATE,
     jumps: Sequence[tuple[Solution, Solution]] = (),
     known: Floats | None = None,
 ) -> list[Gap]:
@@ -92,9 +91,8 @@ def gaps(
         if b > a + 1 or jump:
             before = [points[i] for i in kept[: k + 1]]
             behind = [points[i] for i in kept[k + 1 :]]
-            ends = checkpoint(
-                f"gap-{a + 1}-{b + 1}", partial(_ends, problem, before, behind, scale, others)
-            )
+            arguments = (problem, before, behind, scale, others)
+            (ends,) = work.run([Task(("gap", a + 1, b + 1), _ends, arguments)])
             end, start = (one if one.converged else None for one in ends)
             if not jump or _apart(end, start, points[b], scale):
                 out.append(Gap(points[a], points[b], end, start))

@@ -20,8 +20,10 @@ from typing import Protocol
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.work.codec import record
 
 
+@record
 @dataclass(frozen=True)
 class Residual:
     """A vector r (rows,) with its derivatives (rows, p)."""
@@ -30,6 +32,7 @@ class Residual:
     dr: Floats
 
 
+@record
 @dataclass(frozen=True)
 class Evaluation:
     r"""The objectives at one point.

@@ -10,18 +10,17 @@ its end.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from functools import partial
 from itertools import pairwise
 
 import numpy as np
 
 from modefront._typing import Bools, Floats
-from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.nbi import Projection
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.pieces import Gap, piece_numbers
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
+from modefront.work.task import IMMEDIATE, Executor, Task
 
 SMALLEST = 1e-4
 """Distance of two projections below which a distance of points is a jump that is left as it is."""
@@ -34,7 +33,7 @@ def refine(
     optimal: Bools,
     gaps: Sequence[Gap],
     size: float,
-    checkpoint: Checkpoint = compute_always,
+    work: Executor = IMMEDIATE,
 ) -> tuple[list[Solution], list[tuple[Solution, Solution]]]:
     """Return the points of a front in their order, with new ones between them.
 
@@ -49,7 +48,7 @@ def refine(
             a, b = pairs.pop()
             if distance(a, b, target.scale) <= size:
                 continue
-            middle = _between(problem, target, a, b, checkpoint)
+            middle = _between(problem, target, a, b, work)
             if middle:
                 found.append(middle)
                 pairs += [(middle, b), (a, middle)]
@@ -77,7 +76,7 @@ def distance(a: Solution, b: Solution, scale: Floats) -> float:
 
 
 def _between(
-    problem: Problem, target: Payoff, a: Solution, b: Solution, checkpoint: Checkpoint
+    problem: Problem, target: Payoff, a: Solution, b: Solution, work: Executor
 ) -> Solution | None:
     """Return the point half-way, or None where there is none on this piece."""
     at_a, at_b = target.place(a.at.J), target.place(b.at.J)
@@ -86,12 +85,12 @@ def _between(
     beta = (at_a + at_b) / 2
     lower, upper = np.minimum(a.at.J, b.at.J), np.maximum(a.at.J, b.at.J)
     for side, start in (("a", a), ("b", b)):
-        name = f"nbi-refine-{float(beta[1]).hex()}-{side}"
-        found = checkpoint(name, partial(_solve, problem, target, beta, start))[0]
+        key = ("front", "nbi", "refine", float(beta[1]).hex(), side)
+        (found,) = work.run([Task(key, _solve, (problem, target, beta, start))])
         if found.converged and (lower <= found.at.J).all() and (upper >= found.at.J).all():
             return found
     return None
 
 
-def _solve(problem: Problem, target: Payoff, beta: Floats, start: Solution) -> list[Solution]:
-    return [Projection(target).solve(problem, beta, start)]
+def _solve(problem: Problem, target: Payoff, beta: Floats, start: Solution) -> Solution:
+    return Projection(target).solve(problem, beta, start)

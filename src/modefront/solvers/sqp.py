@@ -52,6 +52,7 @@ from modefront._typing import Floats
 from modefront.solvers.problem import Evaluation, Problem, Residual
 from modefront.solvers.qp import solve_qp
 from modefront.solvers.scalarisation import Scalarisation
+from modefront.work.codec import record
 
 SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again."""
@@ -86,6 +87,7 @@ NOISE = 1e-11
 """Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
 
 
+@record
 class Status(Enum):
     """How a solution ended; the value says what it means and what to do about it."""
 
@@ -97,7 +99,7 @@ class Status(Enum):
     UNBOUNDED = "what is minimised falls without bound: an objective vanishes"
     EXHAUSTED = "the limit of iterations was reached: more iterations, or another start"
     SAMPLED = "the method has no tolerance: more evaluations, or normal-boundary intersection"
-    VISITED = "a model on the way of a search, no solution of its own"
+    GIVEN = "a model that was given, not sought"
     INFEASIBLE = "the model cannot be evaluated at the start: narrower bounds, or another start"
 
 
@@ -117,6 +119,7 @@ class Options:
     learn: bool = True
 
 
+@record
 @dataclass(frozen=True)
 class Solution:
     """A solution of one programme.
@@ -143,8 +146,13 @@ class Solution:
 
     @property
     def converged(self) -> bool:
-        """Whether the tolerances were met."""
-        return self.status is Status.CONVERGED
+        """Whether the tolerances were met, or none apply."""
+        return self.status in (Status.CONVERGED, Status.GIVEN)
+
+
+def given(at: Evaluation) -> Solution:
+    """Return the solution that a given model is."""
+    return replace(begin(at), status=Status.GIVEN, violation=0.0)
 
 
 def begin(at: Evaluation) -> Solution:

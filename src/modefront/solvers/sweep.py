@@ -16,10 +16,10 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.advance import Simplex, advance
-from modefront.solvers.checkpoint import Checkpoint, compute_always
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Solution, solve
+from modefront.work.task import IMMEDIATE, Executor
 
 LEAST = 1e-6
 """Least weight: without any, the minimum of the others would not be unique."""
@@ -64,10 +64,10 @@ def weight_sweep(
     edges: Sequence[Solution],
     scale: Floats,
     lattice: Simplex,
-    checkpoint: Checkpoint = compute_always,
+    work: Executor = IMMEDIATE,
 ) -> list[Solution]:
     """Return the minimum of a weighted sum for each point of the lattice, in its order.
 
     Each is sought from its neighbours on all sides; the best one is kept.
     """
-    return advance(problem, WeightedSums(scale), edges, lattice, checkpoint)
+    return advance(problem, WeightedSums(scale), edges, lattice, work)

@@ -50,10 +50,11 @@ def optimal_minima(
     problem: Problem,
     a: Floats,
     sizes: Floats,
-    rng: np.random.Generator,
     search: Search,
     starts: Sequence[Solution],
     floor: Floats | float = 0.0,
+    *,
+    rng: np.random.Generator,
 ) -> list[Solution]:
     """Return minima of I, best first; searches on which an objective vanishes are given up.
 
@@ -63,14 +64,7 @@ def optimal_minima(
     """
     bounded = bool(np.any(np.asarray(floor) > 0))
     programme = LogSum(a, floor, 0.0 if bounded else EXACT * sizes)
-    return explore(
-        problem,
-        Descent(programme, EQUAL * a.sum()),
-        rng,
-        search,
-        starts=starts,
-        options=_TIGHT,
-    )
+    return explore(problem, Descent(programme, EQUAL * a.sum()), search, starts, _TIGHT, rng=rng)
 
 
 def accepted(

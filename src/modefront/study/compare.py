@@ -130,8 +130,7 @@ def _optimal(data: xr.Dataset) -> xr.Dataset:
     """Return the Pareto-optimal points of the front; its one point where it is no more."""
     front = front_points(data)
     if front.size == 0:
-        labels = data["label"].values.tolist()
-        front = np.array([i for i, label in enumerate(labels) if label.startswith("edge-")][:1])
+        front = np.flatnonzero(data["kind"].values == "edge")[:1]
     return data.isel(point=front[data["pareto"].values[front]] if front.size > 1 else front)
 
 
@@ -186,8 +185,8 @@ def _spreads(prefix: str, names: Iterable[object], values: Floats) -> list[Sprea
 
 
 def _optimally_weighted(data: xr.Dataset) -> xr.Dataset | None:
-    labels = data["label"].values.tolist()
-    return data.isel(point=labels.index("optimal-weights")) if "optimal-weights" in labels else None
+    best = np.flatnonzero(data["kind"].values == "optimal-weights")
+    return data.isel(point=int(best[0])) if best.size else None
 
 
 def _apart(one: tuple[str, xr.Dataset], other: tuple[str, xr.Dataset]) -> Apart:

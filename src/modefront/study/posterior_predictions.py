@@ -14,12 +14,12 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront.identifiability.words import enumeration
 from modefront.predict import Passage, PeakResponse, Prediction
-from modefront.study.asking import FAILED, Asking
-from modefront.study.knowledge_variables import Variables, left_open
-from modefront.study.run import generator
+from modefront.study.analysis_variables import Variables, left_open
+from modefront.study.prediction_runner import PredictionRunner
 from modefront.uncertainty.differences import Stencil, stencil
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.prediction import SUMMARY, TruncationError, draw, lognormal_std, summary
+from modefront.work.task import seed_sequence
 
 
 @dataclass(frozen=True)
@@ -58,11 +58,13 @@ class Around:
         return along + len(self.drawn)
 
 
-def around(data: xr.Dataset, asking: Asking, posterior: Posterior | None, draws: int) -> Around:
+def around(
+    data: xr.Dataset, runner: PredictionRunner, posterior: Posterior | None, draws: int
+) -> Around:
     """Return the models around the optimally weighted one that predictions are to be made with."""
-    problem = asking.problem
+    problem = runner.problem
     none = np.empty((0, problem.start.size))
-    if not asking.predictions:
+    if not runner.predictions:
         return Around(None, none, [])
     if posterior is None:
         missing = "there is no posterior: no models are drawn from it"
@@ -83,7 +85,7 @@ def around(data: xr.Dataset, asking: Asking, posterior: Posterior | None, draws:
         )
     drawn = none
     if draws:
-        rng = generator(asking.seed, "posterior")
+        rng = np.random.default_rng(seed_sequence(runner.seed, "posterior"))
         bounds = problem.lower, problem.upper
         try:
             drawn = draw(theta, posterior.axes, rng, draws, bounds)
@@ -92,17 +94,17 @@ def around(data: xr.Dataset, asking: Asking, posterior: Posterior | None, draws:
     return Around(differences, drawn, said)
 
 
-def predicted_around(data: xr.Dataset, asking: Asking, models: Around) -> xr.Dataset:
+def predicted_around(data: xr.Dataset, runner: PredictionRunner, models: Around) -> xr.Dataset:
     """Return results that have predictions with how far the posterior scatters these."""
     variables: Variables = {}
     said = list(models.said)
     for kind in KINDS:
-        predictions = [one for one in asking.predictions if isinstance(one, kind.prediction)]
+        predictions = [one for one in runner.predictions if isinstance(one, kind.prediction)]
         if not predictions:
             continue
         for found, more in (
-            _to_first_order(data, asking, models, predictions, kind),
-            _of_draws(data, asking, models, predictions, kind),
+            _to_first_order(data, runner, models, predictions, kind),
+            _of_draws(data, runner, models, predictions, kind),
         ):
             variables |= found
             said += more
@@ -132,29 +134,26 @@ def _reference(data: xr.Dataset) -> int:
 
 
 def _answers(
-    asking: Asking, predictions: Sequence[Prediction], thetas: Floats, what: str
+    runner: PredictionRunner, predictions: Sequence[Prediction], thetas: Floats, what: str
 ) -> tuple[dict[str, Floats], dict[str, int]]:
     """Return quantities at models (n, p), each (n, values), and how often predictions failed."""
-    found = [
-        [asking.other(one, f"{what}-{i}", theta) for i, theta in enumerate(thetas, start=1)]
-        for one in predictions
-    ]
+    found = [runner.at_models(one, thetas, what) for one in predictions]
     asked = list(zip(predictions, found, strict=True))
     values = {
         name: np.hstack(
             [
-                np.array([x[name] for x in rows]).reshape(len(thetas), one.size)
+                np.array([x.values[name] for x in rows]).reshape(len(thetas), one.size)
                 for one, rows in asked
             ]
         )
         for name in predictions[0].quantities
     }
-    return values, {one.name: sum(FAILED in x for x in rows) for one, rows in asked}
+    return values, {one.name: sum(not x.solved for x in rows) for one, rows in asked}
 
 
 def _to_first_order(
     data: xr.Dataset,
-    asking: Asking,
+    runner: PredictionRunner,
     models: Around,
     predictions: Sequence[Prediction],
     kind: _Kind,
@@ -163,7 +162,7 @@ def _to_first_order(
     if models.differences is None:
         return {}, []
     m, _, p = models.differences.theta.shape
-    values, _ = _answers(asking, predictions, models.differences.theta.reshape(2 * m, p), "axis")
+    values, _ = _answers(runner, predictions, models.differences.theta.reshape(2 * m, p), "axis")
     out: Variables = {}
     unknown = np.zeros(data.sizes[kind.name], dtype=np.bool_)
     both = (kind.name, f"{kind.name}_other")
@@ -209,7 +208,7 @@ def _to_first_order(
 
 def _of_draws(
     data: xr.Dataset,
-    asking: Asking,
+    runner: PredictionRunner,
     models: Around,
     predictions: Sequence[Prediction],
     kind: _Kind,
@@ -218,7 +217,7 @@ def _of_draws(
     n = len(models.drawn)
     if not n:
         return {}, []
-    values, failed = _answers(asking, predictions, models.drawn, "draw")
+    values, failed = _answers(runner, predictions, models.drawn, "draw")
     out: Variables = {}
     for variable, name in kind.variables.items():
         out[f"draw_{variable}"] = (

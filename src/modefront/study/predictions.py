@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
@@ -11,10 +10,7 @@ import xarray as xr
 
 from modefront._typing import Bools, Floats
 from modefront.predict import Passage, PeakResponse, Prediction
-from modefront.solvers.advance import default_points
-from modefront.study.asking import Asking
-from modefront.study.file import Study
-from modefront.study.store import Arrays
+from modefront.study.prediction_runner import Arrays, PredictionRunner
 
 RANGE = ("minimum", "maximum", "spread")
 """Over the Pareto-optimal models; the spread is the ratio of greatest to least."""
@@ -22,26 +18,18 @@ RANGE = ("minimum", "maximum", "spread")
 Variables = Mapping[str, tuple[tuple[str, ...], Any, str]]
 
 
-def pieces_of(study: Study) -> int:
-    """Return how many pieces of work the predictions of a study are, at most."""
-    n, p = len(study.problem.objectives), len(study.parameters)
-    points = study.pareto.points or default_points(n)
-    front = math.comb(points + n - 2, n - 1) if n > 1 else 0
-    points = front + n + len(study.weighted) + 2
-    return pieces(study.predictions, points + 2 * p + study.uncertainty.draws)
+def extent(predictions: Sequence[Prediction], models: int) -> dict[str, int]:
+    """Return the expected number of tasks of the predictions of so many models."""
+    halved = sum(isinstance(one, Passage) for one in predictions)
+    return {"predict": len(predictions) * models + halved}
 
 
-def pieces(predictions: Sequence[Prediction], models: int) -> int:
-    """Return how many pieces of work the predictions of so many models are."""
-    return len(predictions) * models + sum(isinstance(one, Passage) for one in predictions)
-
-
-def predicted(data: xr.Dataset, asking: Asking) -> xr.Dataset:
+def predicted(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
     """Return results with the predictions of every point; see the page on results.
 
-    What is raised is what `Asking.point` raises.
+    Raises what `PredictionRunner.at_points` raises.
     """
-    predictions = asking.predictions
+    predictions = runner.predictions
     if not predictions:
         return data
     models = list(zip(map(str, data["label"].values), data["theta"].values, strict=True))
@@ -49,12 +37,11 @@ def predicted(data: xr.Dataset, asking: Asking) -> xr.Dataset:
     halved = labels.index(data.attrs["reference"])  # where the time step is halved
     optimal = data["pareto"].values
 
-    def found(one: Prediction) -> list[Arrays]:
-        return [asking.point(one, *model) for model in models]
-
-    peaks = [(one, found(one)) for one in predictions if isinstance(one, PeakResponse)]
+    peaks = [
+        (one, runner.at_points(one, models)) for one in predictions if isinstance(one, PeakResponse)
+    ]
     passages = [
-        (one, found(one), asking.halved(one, *models[halved]))
+        (one, runner.at_points(one, models), runner.halved(one, *models[halved]))
         for one in predictions
         if isinstance(one, Passage)
     ]

@@ -11,21 +11,33 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.analysis.certified import certificate_variables
+from modefront.analysis.front import FrontAnalysis
 from modefront.errors import Fault, InputError
+from modefront.fronts.front import Front
+from modefront.fronts.methods import METHODS
+from modefront.fronts.point import WEIGHTED, Kind, label
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.dominance import nondominated, undominated
-from modefront.solvers.evolutionary import EVOLUTIONARY
 from modefront.solvers.pieces import piece_numbers
 from modefront.solvers.sqp import Solution
-from modefront.study.certified import certificate_variables
-from modefront.study.knowledge import PART, Knowledge
-from modefront.study.knowledge_variables import Variables, known_variables
-from modefront.study.run import BOUNDED, OPTIMAL, Front
+from modefront.study.analysis_variables import Variables, analysis_variables
 
 FILE = "results.nc"
 
 VARIABLES = (
-    *("label", "pareto", "theta", "objective", "error", "weight", "frequency", "mac", "converged"),
+    *(
+        "label",
+        "kind",
+        "pareto",
+        "theta",
+        "objective",
+        "error",
+        "weight",
+        "frequency",
+        "mac",
+        "converged",
+    ),
     *("status", "stationary_weight", "paired_mode", "measured_frequency", "exact", "bounds"),
     *("minimum_of", "minimum_theta", "minimum_objective", "parameter", "group", "mode", "finding"),
 )
@@ -36,30 +48,22 @@ ATTRIBUTES = (
 """What every file of results holds."""
 
 
-UNWEIGHTED = ("nbi-", "edge-", *(f"{method}-" for method in EVOLUTIONARY))
-"""Beginnings of the labels of points that no weights were given for."""
-
-
-def dataset(problem: UpdatingProblem, front: Front, knowledge: Knowledge) -> xr.Dataset:
+def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> xr.Dataset:
     """Return everything that was found with names and units; see the page on results."""
-    front = replace(front, points=[*front.points, *knowledge.points])
-    labels = [label for label, _ in front.points]
-    solutions = [one for _, one in front.points]
+    front = replace(front, points=[*front.points, *analysis.points])
+    points = front.points
+    labels = [x.label for x in points]
+    solutions = [x.solution for x in points]
     groups, n = list(problem.objectives), len(problem.objectives)
     J = _stack([one.at.J for one in solutions], n)
-    manifolds = [at.J for _, found in knowledge.manifolds for one in found for at in one.models]
+    manifolds = [at.J for _, found in analysis.manifolds for one in found for at in one.models]
     optimal = _pareto(front, J, _stack(manifolds, n))
     a = problem.properties
-    weights = np.full(J.shape, np.nan)
-    for i, label in enumerate(labels):
-        if not label.startswith((*UNWEIGHTED, PART)):
-            weights[i] = solutions[i].weights
-            if label in (OPTIMAL, BOUNDED):
-                floor = front.floor if label == BOUNDED and front.floor is not None else 0.0
-                weights[i] = a / (J[i] + floor)
+    weights = _weights(front, J, a)
     point, mode = ("point", "mode"), ("point", "group")
     variables: Variables = {
-        "label": (("point",), labels, "what the point is"),
+        "label": (("point",), labels, "name of the point"),
+        "kind": (("point",), [x.kind.value for x in points], "why the model is reported"),
         "pareto": (
             ("point",),
             optimal,
@@ -98,7 +102,8 @@ def dataset(problem: UpdatingProblem, front: Front, knowledge: Knowledge) -> xr.
         "coincident": "1 where the mode is so close to another one that it is not defined alone",
     }
     for name, meaning in meanings.items():
-        rows = [one.at.quantities[name] for one in solutions]
+        unknown = np.full(len(problem.data.modes), np.nan)
+        rows = [one.at.quantities.get(name, unknown) for one in solutions]
         variables[name] = (point, _stack(rows, len(problem.data.modes)), meaning)
     variables |= certificate_variables(problem, solutions)
     variables["measured_frequency"] = (
@@ -112,13 +117,13 @@ def dataset(problem: UpdatingProblem, front: Front, knowledge: Knowledge) -> xr.
     variables["bounds"] = (("parameter", "bound"), np.column_stack([lower, upper]), "bounds")
     variables |= _minima(problem, front)
     variables |= _ends(problem, front, J, nondominated(J)) | _lattice(front)
-    variables |= known_variables(problem, front, knowledge)
+    variables |= analysis_variables(problem, front, analysis)
     return xr.Dataset(
         {
             name: (dims, np.asarray(values), {"long_name": meaning})
             for name, (dims, values, meaning) in variables.items()
         },
-        attrs={"reference": front.reference},
+        attrs={"reference": front.reference.label},
         coords={
             "parameter": list(problem.model.parameters),
             "group": groups,
@@ -138,7 +143,7 @@ def _minima(problem: UpdatingProblem, front: Front) -> Variables:
         for _ in edge.minima
     ]
     found = [one for edge in front.edges for one in edge.minima]
-    of += ["optimal-weights"] * len(front.optimal)
+    of += [label(Kind.OPTIMAL)] * len(front.optimal)
     found += front.optimal
     if front.iterated:
         of.append("iterated-weights")
@@ -210,10 +215,24 @@ def _pareto(front: Front, J: Floats, others: Floats) -> Bools:
 
 def _dominated_among_front(front: Front, J: Floats) -> Bools:
     """Return which points (points, n) another point of the front dominates; others do not count."""
-    on = np.array([label.startswith(f"{front.method}-") for label, _ in front.points])
+    on = np.array([x.kind is Kind.FRONT for x in front.points])
     out = np.zeros(len(J), dtype=bool)
     if on.any():
-        out[: on.size][on] = ~nondominated(J[: on.size][on], scale=front.scale)
+        out[on] = ~nondominated(J[on], scale=front.scale)
+    return out
+
+
+def _weights(front: Front, J: Floats, a: Floats) -> Floats:
+    """Return the weights (points, n) that weighted methods used; NaN at other points."""
+    out = np.full(J.shape, np.nan)
+    swept = METHODS[front.method].programme == "weights"
+    for i, point in enumerate(front.points):
+        if point.kind is Kind.OPTIMAL:
+            out[i] = a / J[i]
+        elif point.kind is Kind.BOUNDED and front.floor is not None:
+            out[i] = a / (J[i] + front.floor)
+        elif point.kind in WEIGHTED or (point.kind is Kind.FRONT and swept):
+            out[i] = point.solution.weights
     return out
 
 
@@ -229,7 +248,7 @@ def _lattice(front: Front) -> Variables:
         ),
         "lattice_label": (
             ("place",),
-            np.array(["" if k < 0 else f"{front.method}-{k + 1}" for k in front.places], dtype=str),
+            np.array(["" if k < 0 else front.points[k].label for k in front.places], dtype=str),
             "label of the point that this place led to, empty for none; places of the same model "
             "share one",
         ),
@@ -253,8 +272,7 @@ def _shares(weights: Floats, scale: Floats | None) -> Floats:
 
 def front_points(data: xr.Dataset) -> Ints:
     """Return the positions of the points of the front, in their order along it."""
-    prefix = f"{data.attrs['method']}-"
-    return np.flatnonzero([str(label).startswith(prefix) for label in data["label"].values])
+    return np.flatnonzero(data["kind"].values == Kind.FRONT.value)
 
 
 def not_converged(data: xr.Dataset) -> list[str]:

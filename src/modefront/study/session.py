@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -13,34 +13,36 @@ from threadpoolctl import threadpool_limits
 
 import modefront
 from modefront._typing import Floats
+from modefront.analysis.certified import (
+    certificate_attributes,
+    certified_front,
+    certified_points,
+)
+from modefront.analysis.coverage import coverage
+from modefront.analysis.front import AnalysisOptions, analyse_front
 from modefront.errors import Fault, InputError
+from modefront.fronts.driver import pareto_front
+from modefront.fronts.front import Front
+from modefront.fronts.point import Kind, Point
 from modefront.identifiability.combinations import unchanged_groups
 from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
-from modefront.study.asking import Asking
-from modefront.study.certified import certificate_attributes, certified_front, certified_points
+from modefront.solvers.sqp import Solution, given
 from modefront.study.check import refuse_unchanged_groups
 from modefront.study.file import Study
-from modefront.study.knowledge import learn
-from modefront.study.quality import indicators
-from modefront.study.run import Front, ignore, pareto_front
-from modefront.study.store import PIECES, Store
+from modefront.study.prediction_runner import PredictionRunner
 from modefront.study.tables.identifiability import Identifiability
 from modefront.study.tables.settings import Pareto
 from modefront.study.tables.uncertainty import Uncertainty
 from modefront.uncertainty.noise import noise_floor
+from modefront.work.progress import Progress
+from modefront.work.serial import Serial
+from modefront.work.store import FOLDER, Store
+from modefront.work.task import Task
 
 if TYPE_CHECKING:
     import xarray as xr
-
-
-@dataclass(frozen=True)
-class Progress:
-    """Who is told how many pieces of work there are, and of each that is done."""
-
-    expect: Callable[[int], None] = ignore
-    done: Callable[[str], None] = ignore
 
 
 def solve(
@@ -67,11 +69,10 @@ def solve(
     """
     session = _Session(
         problem,
-        Store(None, lambda: problem.counts, ignore, {}),
-        Pareto(method, points, tolerance, population, evaluations),
+        Serial(),
+        Pareto(method, points, tolerance, population, evaluations, refined),
         seed,
         search=search,
-        refined=refined,
         identifiability=identifiability or Identifiability(),
         uncertainty=uncertainty or Uncertainty(),
         predictions=predictions,
@@ -89,40 +90,33 @@ def run(
 ) -> xr.Dataset:
     """Do the work of a study, write ``results.nc`` into a folder and return what it holds.
 
-    Pieces of work that an earlier run of the same inputs has left there are not done again;
-    ``fresh`` sets them aside; ``refined`` is that of `solve`. Raises InputError where the folder
-    cannot be written to or no parameter changes a group, and UnfinishedError where the work cannot
-    be done.
+    Tasks that an earlier run of the same inputs has done are not done again; ``fresh`` sets their
+    results aside; ``refined`` is that of `solve`. Raises InputError where the folder cannot be
+    written to or no parameter changes a group, and UnfinishedError where the work cannot be done.
     """
-    from modefront.study.predictions import pieces_of
     from modefront.study.results import FILE, write
 
-    progress = progress or Progress()
-    pieces = folder / PIECES / f"{study.work[:12]}-{modefront.__version__}"
+    tasks = folder / FOLDER / f"{study.work[:12]}-{modefront.__version__}"
     try:
-        pieces.mkdir(parents=True, exist_ok=True)
+        tasks.mkdir(parents=True, exist_ok=True)
         if fresh:
-            _set_aside(pieces)
+            _set_aside(tasks)
             _set_aside(folder / FILE)
     except OSError as error:
         fault = Fault(str(folder), "folder", "a folder that can be written to", str(error))
         raise InputError(fault) from None
-    problem = study.problem
-    store = Store(pieces, lambda: problem.counts, progress.done, {})
+    pareto = study.pareto if refined is None else replace(study.pareto, refined=refined)
     session = _Session(
-        problem,
-        store,
-        study.pareto,
+        study.problem,
+        Serial(Store(tasks), progress or Progress()),
+        pareto,
         study.seed,
         search=study.search,
-        given=[(one.name, np.array(one.weights)) for one in study.weighted],
-        refined=refined,
+        given=[(weights.name, np.array(weights.weights)) for weights in study.weighted],
         identifiability=study.identifiability,
         uncertainty=study.uncertainty,
         predictions=study.predictions,
         file=study.file,
-        expect=progress.expect,
-        later=pieces_of(study),
     )
     data = session.results()
     data.attrs |= {"study": study.name, "inputs": study.digest, "remark": study.remark}
@@ -141,87 +135,63 @@ def check_refinable(study: Study, refined: float | None) -> None:
 
 @dataclass(frozen=True)
 class _Session:
-    """All the work on a problem, kept in a store, of which ``expect`` is told the extent.
-
-    ``later`` is how many pieces of work follow what is asked for first.
-    """
+    """All the work on a problem, by an executor."""
 
     problem: UpdatingProblem
-    store: Store
+    work: Serial
     pareto: Pareto
     seed: int
     search: Search | None
-    refined: float | None
     identifiability: Identifiability
     uncertainty: Uncertainty
     predictions: Sequence[Prediction]
     given: Sequence[tuple[str, Floats]] = ()
     file: Path = Path("study")
-    expect: Callable[[int], None] = ignore
-    later: int = 0
 
     def results(self) -> xr.Dataset:
-        """Do the work and return all that it finds.
+        """Do the work and return its results.
 
         Raises InputError where no parameter changes a group.
         Dense problems of a hundred unknowns are slower on several threads of the BLAS than on one.
         """
         with threadpool_limits(1, user_api="blas"):
-            found = self.store.arrays("unchanged-groups", self._unchanged_groups)["groups"]
-            refuse_unchanged_groups(self.problem, str(self.file), found.astype(int).tolist())
+            task = Task(("check-groups",), unchanged_groups, (self.problem,))
+            (unchanged,) = self.work.run([task])
+            refuse_unchanged_groups(self.problem, str(self.file), unchanged)
             return self._results()
 
     def _results(self) -> xr.Dataset:
         from modefront.study.posterior_predictions import around, predicted_around
-        from modefront.study.predictions import pieces, predicted
+        from modefront.study.predictions import extent, predicted
         from modefront.study.results import dataset
 
-        problem, store, pareto = self.problem, self.store, self.pareto
-        work = partial(
+        problem, work = self.problem, self.work
+        search = partial(
             pareto_front,
             problem,
             problem.properties,
-            method=pareto.method,
-            points=pareto.points,
-            refined=self.refined,
-            population=pareto.population,
-            evaluations=pareto.evaluations,
-            tolerance=pareto.tolerance,
+            self.pareto,
             seed=self.seed,
             search=self.search,
             given=self.given,
             floor=self._noise_floor(),
         )
-        front = certified_front(
-            problem, work, store, lambda pieces: self.expect(pieces + self.later)
-        )
-        knowledge = learn(
-            problem,
-            front,
-            points=pareto.points,
-            tolerance=pareto.tolerance,
-            seed=self.seed,
-            identifiability=self.identifiability,
-            uncertainty=self.uncertainty,
-            checkpoint=store,
-            expect=lambda more: self.expect(len(store.costs) + more + self.later),
-        )
-        extra = certified_points(problem, knowledge.points, store)
-        data = dataset(problem, front, replace(knowledge, points=extra))
-        asking = Asking(problem, self.predictions, self.seed, store, self.file)
-        near = around(data, asking, knowledge.posterior, self.uncertainty.draws)
-        more = pieces(self.predictions, data.sizes["point"] + near.models)
-        self.expect(len(store.costs) + more)
-        data = predicted_around(predicted(data, asking), asking, near)
+        front = certified_front(problem, search, work)
+        options = AnalysisOptions(self.pareto, self.identifiability, self.uncertainty, self.seed)
+        analysis = analyse_front(problem, front, options, work)
+        (nominal,) = work.run([Task(("nominal",), _nominal, (problem,))])
+        extra = [*analysis.points, Point(Kind.NOMINAL, nominal)]
+        analysis = replace(analysis, points=certified_points(problem, extra, work))
+        data = dataset(problem, front, analysis)
+        runner = PredictionRunner(problem, self.predictions, self.seed, work, self.file)
+        near = around(data, runner, analysis.posterior, self.uncertainty.draws)
+        work.expect(extent(self.predictions, data.sizes["point"] + near.models))
+        data = predicted_around(predicted(data, runner), runner, near)
         data.attrs |= self._attributes(front)
         return data
 
-    def _unchanged_groups(self) -> dict[str, Floats]:
-        """Return the positions of groups that no parameter changes, to be kept."""
-        return {"groups": np.array(unchanged_groups(self.problem), dtype=float)}
-
     def _noise_floor(self) -> Floats | None:
-        """Return what errors of the data make of the objectives; None where one is not known."""
+        """Return the objectives that errors of the data explain; None where one is not known."""
         source = self.uncertainty.of(self.problem.data)
         if source is None:
             return None
@@ -229,26 +199,32 @@ class _Session:
         return floor if (floor > 0).all() else None
 
     def _attributes(self, front: Front) -> dict[str, str | int | float]:
-        """Return what else is known: version, seed, cost, and remarks on what was found."""
-        total, along = self.store.total(), self.store.total(f"{front.method}-")
-        by_nbi = self.store.total("nbi-")
+        """Return version, seed, costs, and the coverage of the front."""
+        total = self.work.total()
+        along = self.work.total(lambda stage: stage == "front")
+        predictions = self.work.total(lambda stage: stage == "predict")
         out: dict[str, str | int | float] = {
             "version": modefront.__version__,
             "seed": self.seed,
-            "model_evaluations": total["eigenproblems"] + total["reduced"],
+            "model_evaluations": total.model_evaluations,
             "method": front.method,
-            "front_evaluations": along["eigenproblems"] + along["reduced"],
-            "nbi_evaluations": by_nbi["eigenproblems"] + by_nbi["reduced"],
-            "full_eigensolutions": total["eigenproblems"],
-            "prediction_eigensolutions": self.store.total("predict-")["eigenproblems"],
-            "corrected_eigensolutions": total["corrected"],
-            "factorisations": total["factorisations"],
-            "reduced_solutions": total["reduced"],
+            "front_evaluations": along.model_evaluations,
+            "nbi_evaluations": along.model_evaluations if front.method == "nbi" else 0,
+            "full_eigensolutions": total.eigenproblems,
+            "prediction_eigensolutions": predictions.eigenproblems,
+            "corrected_eigensolutions": total.corrected,
+            "factorisations": total.factorisations,
+            "reduced_solutions": total.reduced,
             "front_is_a_point": int(front.target is None),
-            **({} if self.refined is None else {"refined": self.refined}),
-            **indicators(front),
+            **({} if self.pareto.refined is None else {"refined": self.pareto.refined}),
+            **coverage(front),
         }
         return out | certificate_attributes(self.problem)
+
+
+def _nominal(problem: UpdatingProblem) -> Solution:
+    """Return the model at the nominal parameters."""
+    return given(problem.evaluate(problem.start))
 
 
 def _set_aside(path: Path) -> None:

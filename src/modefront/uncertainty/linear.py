@@ -9,7 +9,6 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.solvers.curvature import SecondOrder
 from modefront.solvers.problem import Problem
-from modefront.solvers.sqp import Solution
 from modefront.uncertainty.conditions import (
     Target,
     between,
@@ -20,21 +19,28 @@ from modefront.uncertainty.conditions import (
     over_ranges,
 )
 from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.points import Point, Role, edge_weights, in_order
+from modefront.uncertainty.points import Kind, Role, SolvedPoint, edge_weights, in_order
 from modefront.uncertainty.scatter import Scatter, scatter
 
 Local = tuple[SecondOrder, Noise]
 
-Differentiate = Callable[[str, Solution, Floats | None], Local | None]
-"""Returns the second derivatives and the noise at a point of this label.
+Differentiate = Callable[[Sequence[tuple[SolvedPoint, Floats | None]]], list[Local | None]]
+"""Returns the second derivatives and the noise at each point; None where they are not defined.
 
-With weights (n,), the point is solved with them first. None where they are not defined.
+A point with weights (n,) is solved with these first.
 """
+
+DEPENDENT: tuple[tuple[Kind, ...], ...] = (
+    ("edge", "minimum"),
+    ("level",),
+    ("weights", "optimal", "boundary"),
+)
+"""Kinds of programmes, each after those on whose scatter its own depends."""
 
 
 def front_scatter(
     problem: Problem,
-    points: Sequence[Point],
+    points: Sequence[SolvedPoint],
     a: Floats,
     sizes: Floats,
     differentiate: Differentiate,
@@ -43,47 +49,52 @@ def front_scatter(
     level_of: dict[int, Floats] = {}  # changes of the least value of each objective
     ends: dict[str, tuple[Floats, Floats]] = {}
     out: dict[str, Scatter] = {}
-    for one in in_order(points):
-        role = one.role
-        if role.kind in ("edge", "minimum"):
-            w = edge_weights(role.objective, sizes)
-            local = differentiate(one.label, one.solution, w)
+    for kinds in DEPENDENT:
+        chosen = [
+            point
+            for point in in_order(points)
+            if point.role.kind in kinds and _is_defined(point, ends, level_of)
+        ]
+        weights = [
+            edge_weights(point.role.objective, sizes) if kinds == DEPENDENT[0] else None
+            for point in chosen
+        ]
+        derivatives = differentiate(list(zip(chosen, weights, strict=True)))
+        for solved, local, w in zip(chosen, derivatives, weights, strict=True):
             if local is None:
                 continue
             point, noise = local
-            out[one.label] = scatter(problem, point, w, given_weights(noise), noise)
-            ends[one.label] = point.at.J, out[one.label].J
+            role, text = solved.role, solved.label
+            if w is None:
+                w = a / point.at.J if role.kind == "optimal" else solved.solution.weights
+            if role.kind in ("edge", "minimum", "weights"):
+                conditions = given_weights(noise)
+            elif role.kind == "optimal":
+                conditions = optimal_weights(point, a, noise)
+            elif role.kind == "level":
+                dv = (1 + role.tolerance) * level_of[role.objective]
+                conditions = level(point, role.objective, dv, noise)
+            elif (beta := solved.solution.beta) is not None:
+                w, conditions = boundary(point, w, _target(role, ends), beta, noise)
+            out[text] = scatter(problem, point, w, conditions, noise)
+            if role.kind in ("edge", "minimum", "level"):
+                ends[text] = point.at.J, out[text].J
             if role.kind == "edge":
-                level_of[role.objective] = out[one.label].J[:, role.objective]
-            continue
-        if role.kind == "end":
-            if role.ends[0] in out:
-                out[one.label] = out[role.ends[0]]
-            continue
-        beta = one.solution.beta
-        if role.kind == "boundary" and (beta is None or not {*role.ends, *role.worst} <= set(ends)):
-            continue
-        if role.kind == "level" and role.objective not in level_of:
-            continue
-        local = differentiate(one.label, one.solution, None)
-        if local is None:
-            continue
-        point, noise = local
-        w = one.solution.weights
-        if role.kind == "weights":
-            conditions = given_weights(noise)
-        elif role.kind == "optimal":
-            w = a / point.at.J
-            conditions = optimal_weights(point, a, noise)
-        elif role.kind == "level":
-            dv = (1 + role.tolerance) * level_of[role.objective]
-            conditions = level(point, role.objective, dv, noise)
-        elif beta is not None:
-            w, conditions = boundary(point, w, _target(role, ends), beta, noise)
-        out[one.label] = scatter(problem, point, w, conditions, noise)
-        if role.kind == "level":
-            ends[one.label] = point.at.J, out[one.label].J
+                level_of[role.objective] = out[text].J[:, role.objective]
+    for end in points:
+        if end.role.kind == "end" and end.role.ends[0] in out:
+            out[end.label] = out[end.role.ends[0]]
     return out
+
+
+def _is_defined(
+    point: SolvedPoint, ends: Mapping[str, object], level_of: Mapping[int, object]
+) -> bool:
+    """Return whether all is known on which the scatter of a point depends."""
+    role = point.role
+    if role.kind == "boundary":
+        return point.solution.beta is not None and {*role.ends, *role.worst} <= set(ends)
+    return role.kind != "level" or role.objective in level_of
 
 
 def _target(role: Role, ends: Mapping[str, tuple[Floats, Floats]]) -> Target:

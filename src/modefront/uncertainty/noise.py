@@ -40,11 +40,13 @@ from modefront.modes.result import Modes
 from modefront.pairing.match import Pairs
 from modefront.residuals.groups import Scale
 from modefront.residuals.problem import UpdatingProblem, usable_std
+from modefront.work.codec import record
 
 Source = Literal["std", "sets"]
 """Where the uncertainty of the data is taken from."""
 
 
+@record
 @dataclass(frozen=True)
 class Noise:
     """Changes of the objectives, (sources, n), and of their derivatives, (sources, n, p)."""

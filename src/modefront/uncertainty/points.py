@@ -50,7 +50,7 @@ class Role:
 
 
 @dataclass(frozen=True)
-class Point:
+class SolvedPoint:
     """A labelled solution and what it solves."""
 
     label: str
@@ -65,13 +65,13 @@ def edge_weights(objective: int, sizes: Floats) -> Floats:
     return w / sizes
 
 
-def in_order(points: Sequence[Point]) -> list[Point]:
+def in_order(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
     """Return the points, each after those that it depends on."""
     return sorted(points, key=lambda one: get_args(Kind).index(one.role.kind))
 
 
 def solve_again(
-    problem: Problem, points: Sequence[Point], a: Floats, sizes: Floats
+    problem: Problem, points: Sequence[SolvedPoint], a: Floats, sizes: Floats
 ) -> list[Solution]:
     """Return the points of a problem with other data, each solved from where it was.
 
@@ -86,7 +86,7 @@ def solve_again(
 
 def _again(
     problem: Problem,
-    point: Point,
+    point: SolvedPoint,
     solved: Mapping[str, Solution],
     a: Floats,
     sizes: Floats,
@@ -106,7 +106,7 @@ def _again(
             return best
         own = np.arange(sizes.size) == role.objective
         sizes = np.where(own, sizes, 1 / point.solution.weights)  # as it was solved with
-        return near_best(problem, best, role.objective, role.tolerance, sizes, [start])[0]
+        return near_best(problem, best, role.objective, role.tolerance, sizes, [start])
     else:
         ends = [solved[label] for label in role.ends]
         target = spanned(ends, [solved[label] for label in role.worst], sizes)

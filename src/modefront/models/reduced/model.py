@@ -36,6 +36,7 @@ from modefront.modes import dense
 from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.result import Modes
 from modefront.modes.spectrum import Shifted
+from modefront.work.costs import Costs, spend, uncounted
 
 SHORTEST = 0.1
 """Length of the shortest direction of the basis, over the square root of the tolerance."""
@@ -255,6 +256,13 @@ class ReducedModel:
             counts.eigenproblems += last.solved
             counts.corrected += last.corrected
             counts.factorisations += last.factorisations
+        spend(
+            Costs(
+                eigenproblems=last.solved,
+                corrected=last.corrected,
+                factorisations=last.factorisations,
+            )
+        )
         return last.error
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
@@ -266,6 +274,7 @@ class ReducedModel:
         K, M = state.space.basis.K, state.space.basis.M
         found = dense.modes(K, M, state.sensed, theta, count, derivatives)
         self.counts.reduced += 1
+        spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         self.counts.reduced_time += time.perf_counter() - started
         return found
 
@@ -293,6 +302,7 @@ class ReducedModel:
             some = range(first, min(first + width, len(asked)))
             found += self._certified(space, [(*asked[k], counts[k]) for k in some], proofs)
         self.counts.certificates += len(asked)
+        spend(Costs(certificates=len(asked), certificate_time=time.perf_counter() - started))
         self.counts.factorisations += self.full.counts.factorisations - before
         self.counts.certificate_time += time.perf_counter() - started
         return found
@@ -402,8 +412,9 @@ class ReducedModel:
             self.take(self.first)
         if self._state is not None and not _begins(self._wanted, self._state.taken):
             self._state = None
-        while self._state is None or len(self._state.taken) < len(self._wanted):
-            self._add(self._wanted[len(self._state.taken) if self._state else 0])
+        with uncounted():  # `take` counts a snapshot, once
+            while self._state is None or len(self._state.taken) < len(self._wanted):
+                self._add(self._wanted[len(self._state.taken) if self._state else 0])
         return self._state
 
     def _add(self, what: Snap) -> None:

@@ -27,6 +27,8 @@ class Pareto:
     points : along each edge of the simplex of objectives; None leaves it to their number
     population, evaluations : size of a generation and budget of an evolutionary method
     tolerance : share by which an edge may exceed the least value of its group
+    refined : distance of neighbours on a front by NBI of two groups, in units of the ranges of the
+        objectives, above which more points are put between them; None for none
     """
 
     method: str = METHODS[0]
@@ -34,6 +36,7 @@ class Pareto:
     tolerance: float = 0.0
     population: int = 100
     evaluations: int = 10_000
+    refined: float | None = None
 
 
 def read_pareto(root: Table) -> Pareto:

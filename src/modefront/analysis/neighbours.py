@@ -1,4 +1,4 @@
-"""Points of a front whose scatter is doubtful for what lies next to them."""
+"""Validity of the linearised scatter of points, as far as it depends on their neighbours."""
 
 from __future__ import annotations
 
@@ -6,17 +6,17 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from modefront._typing import Floats
+from modefront.fronts.front import Front
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution
-from modefront.study.run import Front
 from modefront.uncertainty.doubts import Doubt, has_rival, near_an_end
-from modefront.uncertainty.points import Point, edge_weights, in_order
+from modefront.uncertainty.points import SolvedPoint, edge_weights, in_order
 from modefront.uncertainty.scatter import Scatter
 
 
 def with_neighbours(
     front: Front,
-    points: Sequence[Point],
+    points: Sequence[SolvedPoint],
     scatter: Mapping[str, Scatter],
     a: Floats,
     sizes: Floats,
@@ -42,7 +42,9 @@ def with_neighbours(
     return out
 
 
-def _has_rival(front: Front, point: Point, scatter: Scatter, a: Floats, sizes: Floats) -> bool:
+def _has_rival(
+    front: Front, point: SolvedPoint, scatter: Scatter, a: Floats, sizes: Floats
+) -> bool:
     """Return whether another minimum of what an edge or the optimal weights minimise is as good."""
     programme: Scalarisation
     others: Sequence[Solution]

@@ -7,6 +7,10 @@ from collections.abc import Callable, Sequence
 import numpy as np
 
 from modefront._typing import Bools, Floats
+from modefront.analysis.front import FrontAnalysis, followed
+from modefront.fronts.front import Front
+from modefront.fronts.methods import METHODS
+from modefront.fronts.point import Kind, label, of_kind
 from modefront.identifiability.collinearity import cosines, index
 from modefront.identifiability.combinations import (
     Combination,
@@ -28,8 +32,6 @@ from modefront.identifiability.words import (
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.manifold import Extent, Manifold
 from modefront.solvers.sqp import Solution
-from modefront.study.knowledge import PART, Knowledge, followed
-from modefront.study.run import BOUNDED, EQUAL, OPTIMAL, Front
 from modefront.uncertainty.doubts import Doubt
 from modefront.uncertainty.prediction import linear
 
@@ -55,8 +57,10 @@ AT_BOUND = 1e-9
 """Distance from a bound, over the range, up to which a parameter is at it."""
 
 
-def known_variables(problem: UpdatingProblem, front: Front, knowledge: Knowledge) -> Variables:
-    """Return the variables; ``front`` holds all points, those of ``knowledge`` too."""
+def analysis_variables(
+    problem: UpdatingProblem, front: Front, analysis: FrontAnalysis
+) -> Variables:
+    """Return the variables; ``front`` holds all points, those of ``analysis`` too."""
     out: Variables = {}
     said: list[Finding] = []
     for found, more in (
@@ -64,11 +68,11 @@ def known_variables(problem: UpdatingProblem, front: Front, knowledge: Knowledge
         ({}, _unknown_ends(front)),
         _identifiability(problem, front),
         (_bounds(problem, front), []),
-        _flat(problem, front, knowledge),
-        _manifolds(problem, knowledge),
-        _scatter(problem, front, knowledge),
-        _posterior(problem, front, knowledge),
-        _replicates(problem, front, knowledge),
+        _flat(problem, front, analysis),
+        _manifolds(problem, analysis),
+        _scatter(problem, front, analysis),
+        _posterior(problem, front, analysis),
+        _replicates(problem, front, analysis),
     ):
         out |= found
         said += more
@@ -80,7 +84,7 @@ def known_variables(problem: UpdatingProblem, front: Front, knowledge: Knowledge
 
 def _weights(problem: UpdatingProblem, front: Front) -> list[Finding]:
     """Return why there is no optimally weighted model, where there is none."""
-    if front.reference == OPTIMAL:
+    if front.reference.kind is Kind.OPTIMAL:
         return []
     exact = [name for name, fits in zip(problem.objectives, front.exact, strict=True) if fits]
     if exact:
@@ -90,17 +94,18 @@ def _weights(problem: UpdatingProblem, front: Front) -> list[Finding]:
         )
     else:
         why = "no minimum of sum a ln J was found that is better than the models of the front"
-    if front.reference == BOUNDED:
+    if front.reference.kind is Kind.BOUNDED:
         then = (
-            f"{BOUNDED} takes the place of {OPTIMAL}: no group counts as known better than the "
-            "errors of its data allow"
+            f"{label(Kind.BOUNDED)} takes the place of {label(Kind.OPTIMAL)}: no group counts as "
+            "known better than the errors of its data allow"
         )
     else:
         then = (
-            f"{EQUAL} takes the place of {OPTIMAL}; standard deviations of the data of every "
-            f"group, or several data sets, give {BOUNDED}, which are better"
+            f"{label(Kind.EQUAL)} takes the place of {label(Kind.OPTIMAL)}; standard deviations "
+            "of the data of every group, or several data sets, give "
+            f"{label(Kind.BOUNDED)}, which are better"
         )
-    return [(WEIGHTS, f"there is no {OPTIMAL}: {why}. {then}")]
+    return [(WEIGHTS, f"there is no {label(Kind.OPTIMAL)}: {why}. {then}")]
 
 
 def _unknown_ends(front: Front) -> list[Finding]:
@@ -117,17 +122,16 @@ def _unknown_ends(front: Front) -> list[Finding]:
 def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables, list[Finding]]:
     """Return combinations at the model that the data prefer and at each edge; say the first."""
     names, groups = problem.model.parameters, problem.groups
-    labels = dict(front.points)
-    edges = [f"edge-{name}" for name in problem.objectives]
+    points = [front.reference, *of_kind(front.points, Kind.EDGE)]
     rows: list[tuple[str, str, Combination, Floats]] = []
     said: list[Finding] = []
     effects = np.zeros((len(names), len(names)))
-    for place in dict.fromkeys([front.reference, *edges]):
-        at = labels[place].at
+    for point in points:
+        place, at = point.label, point.solution.at
         weights = optimal_weights(problem.properties, at.J)
         scale = scale_at(problem, at.theta)
         idle = without_effect(problem, at, scale)
-        main = place == front.reference
+        main = point is front.reference
         if main:
             said += [(IDLE, f"at {place}: {text}") for text in no_effect_in_words(idle, names)]
         for i in [*range(len(groups)), None] if len(groups) > 1 else [0]:
@@ -144,7 +148,7 @@ def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables,
             effects[idle] = effects[:, idle] = 0.0
             alike = alike_in_words(effects, names, idle)
             said += [(ALIKE, f"at {place}: {text}") for text in alike]
-    place = front.reference
+    place = front.reference.label
     active = [j for j in range(len(names)) if effects[j, j] > 0]
     meaning = "combination of parameters: changes in units of combination_unit, length 1"
     return {
@@ -187,7 +191,7 @@ def _identifiability(problem: UpdatingProblem, front: Front) -> tuple[Variables,
 
 
 def _bounds(problem: UpdatingProblem, front: Front) -> Variables:
-    theta = np.array([one.at.theta for _, one in front.points])
+    theta = np.array([point.solution.at.theta for point in front.points])
     margin = AT_BOUND * (problem.upper - problem.lower)
     at = np.where(theta >= problem.upper - margin, 1, 0)
     at = np.where(theta <= problem.lower + margin, -1, at)
@@ -196,13 +200,15 @@ def _bounds(problem: UpdatingProblem, front: Front) -> Variables:
 
 
 def _flat(
-    problem: UpdatingProblem, front: Front, knowledge: Knowledge
+    problem: UpdatingProblem, front: Front, analysis: FrontAnalysis
 ) -> tuple[Variables, list[Finding]]:
-    part = [
-        "whole" if label.startswith("nbi-") else "identifiable" if label.startswith(PART) else ""
-        for label, _ in front.points
-    ]
-    found = knowledge.identifiable
+    boundary = METHODS[front.method].programme == "boundary"
+    parts = {Kind.FRONT: "whole" if boundary else ""}
+    parts |= dict.fromkeys((Kind.IDENTIFIABLE, Kind.IDENTIFIABLE_EDGE), "identifiable")
+    part = [parts.get(point.kind, "") for point in front.points]
+    found = analysis.identifiable
+    first = label(Kind.IDENTIFIABLE, index=1)
+    last = label(Kind.IDENTIFIABLE, index=len(found.points) if found else 0)
     flat = found.flat if found else np.zeros(len(problem.objectives), dtype=int)
     total = part.count("whole")
     said = []
@@ -210,10 +216,10 @@ def _flat(
         if count and found:
             text = (
                 f"the front is flat at edge-{name}: beside it, {count} of {total} points are "
-                f"within {100 * knowledge.tolerance:g} % of the least J of {name}; "
+                f"within {100 * analysis.tolerance:g} % of the least J of {name}; "
             )
             said.append(
-                text + f"{PART}1 to {PART}{len(found.points)} are the front without them"
+                text + f"{first} to {last} are the front without them"
                 if found.points
                 else text + "without them it is one point"
             )
@@ -223,7 +229,7 @@ def _flat(
         if count and found:
             said.append(
                 f"the front is flat at edge-{name}: {count} of {total} points are within "
-                f"{100 * knowledge.tolerance:g} % of the least J of {name}; where that part ends "
+                f"{100 * analysis.tolerance:g} % of the least J of {name}; where that part ends "
                 "was not found, so it is not cut"
             )
     return {
@@ -236,15 +242,17 @@ def _flat(
     }, [(FLAT, text) for text in said]
 
 
-def _manifolds(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variables, list[Finding]]:
+def _manifolds(
+    problem: UpdatingProblem, analysis: FrontAnalysis
+) -> tuple[Variables, list[Finding]]:
     names = problem.model.parameters
     rows = [
         (of, number, manifold, at)
-        for of, manifolds in knowledge.manifolds
+        for of, manifolds in analysis.manifolds
         for number, manifold in enumerate(manifolds, start=1)
         for at in manifold.models
     ]
-    said = _separate(knowledge) + _connected(problem, knowledge)
+    said = _separate(analysis) + _connected(problem, analysis)
     p, n = len(names), len(problem.objectives)
     return {
         "equal_of": (
@@ -281,10 +289,10 @@ def _manifolds(problem: UpdatingProblem, knowledge: Knowledge) -> tuple[Variable
     }, said
 
 
-def _separate(knowledge: Knowledge) -> list[Finding]:
+def _separate(analysis: FrontAnalysis) -> list[Finding]:
     """Return what there is to say of isolated models that are equally good."""
     said: list[Finding] = []
-    for of, manifolds in knowledge.manifolds:
+    for of, manifolds in analysis.manifolds:
         isolated = sum(one.extent is Extent.ISOLATED for one in manifolds)
         if isolated > 1:
             said.append((MANIFOLD, f"{isolated} separate models fit {of} equally well"))
@@ -302,11 +310,11 @@ def _separate(knowledge: Knowledge) -> list[Finding]:
     return said
 
 
-def _connected(problem: UpdatingProblem, knowledge: Knowledge) -> list[Finding]:
+def _connected(problem: UpdatingProblem, analysis: FrontAnalysis) -> list[Finding]:
     """Return what there is to say of manifolds, those of one group and dimension at once."""
-    known = followed(knowledge.manifolds)
+    known = followed(analysis.manifolds)
     shared: dict[int, list[str]] = {k: [of] for k, (of, _) in enumerate(known)}
-    for of, manifolds in knowledge.manifolds:
+    for of, manifolds in analysis.manifolds:
         for one in manifolds:
             if one.twin is not None and of not in shared[one.twin]:
                 shared[one.twin].append(of)
@@ -356,41 +364,41 @@ def _far(problem: UpdatingProblem, theta: Floats) -> str:
 
 
 def _scatter(
-    problem: UpdatingProblem, front: Front, knowledge: Knowledge
+    problem: UpdatingProblem, front: Front, analysis: FrontAnalysis
 ) -> tuple[Variables, list[Finding]]:
-    if knowledge.source is None:
+    if analysis.source is None:
         data = problem.data
         given = np.isfinite(data.frequency_std).any() or np.isfinite(data.shape_std).any()
         used = (data.frequency_std > 0).any() or (data.shape_std > 0).any()
         unused = (SCATTER, "no standard deviation is above 0: none is used")
         return {}, [unused] if given and not used else []
-    labels = [label for label, _ in front.points]
+    labels = [point.label for point in front.points]
     m, n, p = len(labels), len(problem.objectives), len(problem.model.parameters)
     r = len(problem.data.modes)
     theta, J = np.full((m, p, p), np.nan), np.full((m, n, n), np.nan)
     theta_std = np.full((m, p), np.nan)
     predicted = {name: np.full((m, r), np.nan) for name in ("frequency", "mac")}
-    for i, label in enumerate(labels):
-        found = knowledge.scatter.get(label)
+    for i, text in enumerate(labels):
+        found = analysis.scatter.get(text)
         if found is None:
             continue
         theta[i], J[i] = found.covariance, found.J.T @ found.J
         theta_std[i] = _std(found.covariance, found.free)
-        slopes = knowledge.slopes.get(label)
+        slopes = analysis.slopes.get(text)
         if slopes is not None:
             for name, values in predicted.items():
                 values[i] = np.sqrt(np.diag(linear(found.covariance, slopes[name])))
     why = {"std": "their standard deviations", "sets": "the scatter of the data sets"}
-    by = f"by errors of the data, from {why[knowledge.source]}"
-    said = [(SCATTER, f"uncertainty of the data is taken from {why[knowledge.source]}")]
-    unknown = _without_std(problem) if knowledge.source == "std" else 0
+    by = f"by errors of the data, from {why[analysis.source]}"
+    said = [(SCATTER, f"uncertainty of the data is taken from {why[analysis.source]}")]
+    unknown = _without_std(problem) if analysis.source == "std" else 0
     if unknown:
         text = f"{unknown} measured values have no standard deviation above 0: they count as exact"
         said.append((SCATTER, text))
-    missing = [label for label in labels if label not in knowledge.scatter]
+    missing = [label for label in labels if label not in analysis.scatter]
     if missing:
         said.append((DOUBTFUL, f"no scatter is known at {_places(missing, m)}"))
-    known = [(label, knowledge.scatter[label]) for label in labels if label in knowledge.scatter]
+    known = [(label, analysis.scatter[label]) for label in labels if label in analysis.scatter]
     for doubt in Doubt:
         there = [label for label, one in known if doubt in one.doubts]
         if there:
@@ -459,9 +467,9 @@ def left_open(free: Floats) -> Bools:
 
 
 def _posterior(
-    problem: UpdatingProblem, front: Front, knowledge: Knowledge
+    problem: UpdatingProblem, front: Front, analysis: FrontAnalysis
 ) -> tuple[Variables, list[Finding]]:
-    found = knowledge.posterior
+    found = analysis.posterior
     if found is None:
         return {}, []
     names = problem.model.parameters
@@ -469,12 +477,12 @@ def _posterior(
     held = [name for name, at in zip(names, found.held, strict=True) if at]
     if held:
         said.append(f"the posterior is given {enumeration(held)} at a bound")
-    slopes = knowledge.slopes[front.reference]
+    slopes = analysis.slopes[front.reference.label]
     return {
         "posterior_std": (
             ("parameter",),
             _std(found.covariance, found.free),
-            f"standard deviation of theta around {front.reference}, with the variance of the "
+            f"standard deviation of theta around {front.reference.label}, with the variance of the "
             "errors of each group unknown; infinite where no data determine it",
         ),
         "posterior_covariance": (
@@ -496,12 +504,12 @@ def _posterior(
 
 
 def _replicates(
-    problem: UpdatingProblem, front: Front, knowledge: Knowledge
+    problem: UpdatingProblem, front: Front, analysis: FrontAnalysis
 ) -> tuple[Variables, list[Finding]]:
-    if not knowledge.replicates:
+    if not analysis.replicates:
         return {}, []
     p, n = len(problem.model.parameters), len(problem.objectives)
-    found = [[one.get(label) for label, _ in front.points] for one in knowledge.replicates]
+    found = [[one.get(point.label) for point in front.points] for one in analysis.replicates]
     theta = _stacked(found, p, lambda one: one.at.theta)
     J = _stacked(found, n, lambda one: one.at.J)
     failed = int(np.isnan(theta).all(axis=2).sum())

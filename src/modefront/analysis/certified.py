@@ -7,31 +7,31 @@ certificate, and where one is above the tolerance, a snapshot is taken there. Mi
 the best ones, whatever their errors are, need not hold. As long as the basis is poor, it may have
 led astray: after a single snapshot the global search is repeated.
 
-Every round's pieces of work have names of their own, and its snapshots are among them, so that an
+The tasks of every round have a turn of their own, and its snapshots are among them, so that an
 interrupted run goes on with the same digits.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from functools import partial
 from typing import Protocol
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
+from modefront.fronts.front import Front
+from modefront.fronts.point import Point
 from modefront.models.reduced.certificate import FOUND, Certificate
 from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
-from modefront.solvers.checkpoint import Checkpoint, Solutions
 from modefront.solvers.edges import Edge
-from modefront.solvers.problem import infeasible
 from modefront.solvers.scalarisation import LogSum
-from modefront.solvers.sqp import Solution, begin
-from modefront.study.run import Front, Labelled
+from modefront.solvers.sqp import Solution
+from modefront.work.codec import record
+from modefront.work.task import Executor, Task, Within
 
 POOR = 1e-3
 """Relative error of an eigenvalue at a reported model above which the search is not trusted."""
@@ -53,30 +53,34 @@ ERRORS = ("eigenvalue_error", "shape_error")
 """Names under which the estimates are kept with a solution."""
 
 
-class Work(Protocol):
-    """All the work of a study but for the certificates, see `modefront.study.run.pareto_front`."""
+class Search(Protocol):
+    """The search for a front, see `modefront.fronts.driver.pareto_front`."""
 
-    def __call__(
-        self, *, checkpoint: Checkpoint, expect: Callable[[int], None], known: Front | None
-    ) -> Front:
-        """Return everything that was found."""
+    def __call__(self, *, work: Executor, known: Front | None) -> Front:
+        """Return the front."""
 
 
+@record
 @dataclass(frozen=True)
-class _Round:
-    """Names the pieces of work of one round."""
+class SnapshotTaken:
+    """What a snapshot has brought.
 
-    checkpoint: Checkpoint
-    number: int
+    Attributes
+    ----------
+    error : greatest relative error of an eigenvalue before it
+    columns : of the basis with it
+    added : columns that it added
+    modes : that it is of; 0 where the basis has learned an indefinite stiffness
+    """
 
-    def __call__(self, name: str, compute: Callable[[], Solutions]) -> Solutions:
-        return self.checkpoint(f"{name}.round-{self.number}", compute)
+    error: float
+    columns: int
+    added: int
+    modes: int
 
 
-def certified_front(
-    problem: UpdatingProblem, work: Work, checkpoint: Checkpoint, expect: Callable[[int], None]
-) -> Front:
-    """Return what the work finds.
+def certified_front(problem: UpdatingProblem, search: Search, work: Executor) -> Front:
+    """Return the front that a search leads to.
 
     On a reduced model, the estimated errors are among the quantities of the solutions. They are
     above the tolerance where it could not be met: for want of memory, or because the model has no
@@ -84,36 +88,25 @@ def certified_front(
     """
     model = problem.model
     if not isinstance(model, ReducedModel):
-        return work(checkpoint=checkpoint, expect=expect, known=None)
+        return search(work=work, known=None)
     model.restart()
-    done = 0
-
-    def counted(name: str, compute: Callable[[], Solutions]) -> Solutions:
-        nonlocal done
-        solutions = checkpoint(name, compute)
-        done += 1
-        return solutions
-
     front: Front | None = None
-    taken = _take_some(problem, model, "first", model.first, None, counted)
+    taken = _take_some(model, "first", model.first, None, work)
     if taken.added and not taken.full:
-        lacking = counted("probes", partial(_lacking, problem, model))
+        (lacking,) = work.run([Task(("probe-basis",), _lacking, (problem, model))])
         if lacking:
-            there = np.array([one.at.theta for one in lacking])
-            _take_some(problem, model, "probes", Snap(there, _lowest(problem)), None, counted)
+            request = Snap(np.array(lacking), _lowest(problem))
+            _take_some(model, "probes", request, None, work)
     for number in range(1, ROUNDS + 1):
         if not taken.added:
             break
-        here = _Round(counted, number)
-        front = work(
-            checkpoint=here,
-            expect=lambda pieces: expect(done + pieces + 2),  # a snapshot, certificates
-            known=front if taken.error <= POOR else None,
-        )
+        here = Within(work, turn=("round", number))
+        work.expect({"snapshot": 1, "certificate": 1})
+        front = search(work=here, known=front if taken.error <= POOR else None)
         if taken.full:
             break
         if not taken.enough:
-            taken = _take_some(problem, model, "ahead", _farthest(model, front), front, here)
+            taken = _take_some(model, "ahead", _farthest(model, front), front, here)
             if not taken.enough or taken.added:
                 continue
         front = _with_errors(problem, model, front, here)
@@ -124,22 +117,23 @@ def certified_front(
         worst = _snap(sorted(wrong, key=_error, reverse=True)[:MODELS], 0.0)
         if not all(map(np.isfinite, map(_error, wrong))):
             worst = replace(worst, modes=max(worst.modes, _lowest(problem)))
-        taken = _take_some(problem, model, "worst", worst, front, here)
+        taken = _take_some(model, "worst", worst, front, here)
     if front is None:
         raise UnfinishedError("the model cannot be solved at the nominal parameters")
-    return _with_errors(problem, model, front, checkpoint)
+    return _with_errors(problem, model, front, work)
 
 
 def certified_points(
-    problem: UpdatingProblem, points: Labelled, checkpoint: Checkpoint
-) -> Labelled:
-    """Return labelled solutions with the estimated errors of a reduced model, if it is one."""
+    problem: UpdatingProblem, points: Sequence[Point], work: Executor
+) -> list[Point]:
+    """Return points with the estimated errors of a reduced model, if it is one."""
     model = problem.model
     if not isinstance(model, ReducedModel) or not points:
-        return points
-    found = [one for _, one in points]
-    kept = checkpoint("certificates-of-others", lambda: _certified(problem, model, found))
-    return [(label, one) for (label, _), one in zip(points, kept, strict=True)]
+        return list(points)
+    solutions = [point.solution for point in points]
+    task = Task(("certificate", "others"), _certified, (problem, model, solutions))
+    (kept,) = work.run([task])
+    return [replace(point, solution=x) for point, x in zip(points, kept, strict=True)]
 
 
 def certificate_attributes(problem: UpdatingProblem) -> dict[str, str | int | float]:
@@ -194,54 +188,49 @@ class _Taken:
 
 
 def _take_some(
-    problem: UpdatingProblem,
     model: ReducedModel,
     name: str,
     at: Snap,
     front: Front | None,
-    here: Checkpoint,
+    work: Executor,
 ) -> _Taken:
     """Take a snapshot, and others where a front from which it goes on would need them next."""
     error, added = np.inf, False
     for count in range(AHEAD):
         before = model.snapshots
-        taken = here(f"snapshot-{name}-{count + 1}", partial(_take, problem, model, at))
-        if not taken:
+        (taken,) = work.run([Task(("snapshot", name, count + 1), _take, (model, at))])
+        if taken is None:
             return _Taken(error, added, enough=False, full=False)
-        found = {what: float(x[0]) for what, x in taken[0].at.quantities.items()}
-        model.resume([*before, replace(at, modes=int(found["modes"]))])
-        error = found["error"] if count == 0 else error
-        if found["error"] < at.enough:
+        model.resume([*before, replace(at, modes=taken.modes)])
+        error = taken.error if count == 0 else error
+        if taken.error < at.enough:
             return _Taken(error, added, enough=True, full=False)
-        added = added or found["added"] > 0
-        full = found["columns"] >= model.capacity
-        if front is None or full or error > POOR or not found["added"]:
+        added = added or taken.added > 0
+        full = taken.columns >= model.capacity
+        if front is None or full or error > POOR or not taken.added:
             return _Taken(error, added, enough=False, full=full)
         at = _farthest(model, front)
     return _Taken(error, added, enough=False, full=False)
 
 
-def _take(problem: UpdatingProblem, model: ReducedModel, at: Snap) -> list[Solution]:
-    """Take a snapshot and keep the error that it found and how many columns it led to.
+def _take(model: ReducedModel, at: Snap) -> SnapshotTaken | None:
+    """Take a snapshot, which changes the basis of the model.
 
     Where none of its models can be solved, the basis learns that, so that it is not searched there
-    again; nothing is returned where that fails too.
+    again; None is returned where that fails too.
     """
     before, modes = model.columns if model.snapshots else 0, at.modes
     try:
         error = model.take(at)
     except ModelError:
         if not before:
-            return []
+            return None
         try:
             modes, error = 0, model.take(replace(at, modes=0))
         except ModelError:
-            return []
+            return None
     columns = model.columns
-    found = {"error": error, "columns": columns, "added": columns - before, "modes": modes}
-    kept = {name: np.array([float(value)]) for name, value in found.items()}
-    theta = at.models[0]
-    return [begin(replace(infeasible(theta, len(problem.objectives)), quantities=kept))]
+    return SnapshotTaken(float(error), columns, columns - before, modes)
 
 
 def _snap(solutions: Sequence[Solution], enough: float) -> Snap:
@@ -257,10 +246,9 @@ def _farthest(model: ReducedModel, front: Front) -> Snap:
     return _snap(ranked[:MODELS], AIM * model.tolerance)
 
 
-def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Solution]:
+def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Floats]:
     """Return models where the basis lacks modes that measured ones might be paired with."""
-    there = model.lacking(_lowest(problem))[:MODELS]
-    return [begin(infeasible(theta, len(problem.objectives))) for theta in there]
+    return model.lacking(_lowest(problem))[:MODELS]
 
 
 def _lowest(problem: UpdatingProblem) -> int:
@@ -269,10 +257,11 @@ def _lowest(problem: UpdatingProblem) -> int:
 
 
 def _with_errors(
-    problem: UpdatingProblem, model: ReducedModel, front: Front, checkpoint: Checkpoint
+    problem: UpdatingProblem, model: ReducedModel, front: Front, work: Executor
 ) -> Front:
     """Return the front with the estimated errors of all its models."""
-    kept = checkpoint("certificates", lambda: _certified(problem, model, _distinct(front)))
+    task = Task(("certificate", "front"), _certified, (problem, model, _distinct(front)))
+    (kept,) = work.run([task])
     errors = {_key(one): {name: one.at.quantities[name] for name in ERRORS} for one in kept}
 
     def known(one: Solution) -> Solution:
@@ -281,7 +270,7 @@ def _with_errors(
 
     return replace(
         front,
-        points=[(label, known(one)) for label, one in front.points],
+        points=[replace(point, solution=known(point.solution)) for point in front.points],
         edges=[Edge(known(edge.best), list(map(known, edge.minima))) for edge in front.edges],
         optimal=list(map(known, front.optimal)),
         iterated=known(front.iterated) if front.iterated else None,
@@ -345,7 +334,7 @@ def _pairs_alike(
 
 def _of_the_front(front: Front) -> Iterator[Solution]:
     """Return the models that are reported, but for minima that are not the best ones."""
-    yield from (one for _, one in front.points)
+    yield from (point.solution for point in front.points)
     yield from (edge.best for edge in front.edges)
     yield from front.optimal[:1]
     if front.iterated:

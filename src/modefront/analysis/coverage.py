@@ -1,16 +1,17 @@
-"""How well a front is covered: indicators of what was found, for its results."""
+"""Coverage of a front: hypervolume, IGD+ and largest gap."""
 
 from __future__ import annotations
 
 import numpy as np
 
+from modefront.fronts.front import Front
+from modefront.fronts.point import Kind, of_kind
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.indicators import REFERENCE, hypervolume, igd_plus, largest_gap
 from modefront.solvers.refine import pieces
-from modefront.study.run import Front
 
 
-def indicators(front: Front) -> dict[str, float]:
+def coverage(front: Front) -> dict[str, float]:
     """Return hypervolume, IGD+ and largest gap of the Pareto-optimal points of a front.
 
     In units of the ranges of the objectives over the edges, from the utopia point. The reference
@@ -19,11 +20,12 @@ def indicators(front: Front) -> dict[str, float]:
     ranges, as far as the hypervolume reaches. NaN where the front is one point or empty.
     """
     names = ("hypervolume", "igd_plus", "largest_gap")
-    along = [one for label, one in front.points if label.startswith(f"{front.method}-")]
+    along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
     if front.target is None or not along:
         return dict.fromkeys(names, float("nan"))
     utopia, scale = front.target.utopia, front.target.scale
-    found = [one for _, one in front.points] + [one for edge in front.edges for one in edge.minima]
+    found = [point.solution for point in front.points]
+    found += [one for edge in front.edges for one in edge.minima]
     found += [*front.optimal]
     J = np.array([one.at.J for one in along])
     everything = np.array([one.at.J for one in found])

@@ -1,0 +1,81 @@
+"""What a method is that finds the points of a front."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Literal, Protocol
+
+import numpy as np
+
+from modefront._typing import Floats, Ints
+from modefront.solvers.advance import Simplex
+from modefront.solvers.archive import Archive
+from modefront.solvers.explore import Search
+from modefront.solvers.payoff import Payoff
+from modefront.solvers.pieces import Gap
+from modefront.solvers.problem import Problem
+from modefront.solvers.sqp import Solution
+from modefront.study.tables.settings import Pareto
+from modefront.work.task import Executor
+
+
+@dataclass(frozen=True)
+class Setting:
+    """What a method starts from.
+
+    Attributes
+    ----------
+    options : of the study
+    edges : the edge of each objective
+    minima : of each programme solved so far: one objective each, then weighted sums
+    corners : models between which the simplex is spanned, with all minima of single objectives
+    target : utopia point and ranges over the edges
+    lattice : points of the simplex
+    before : points of a front of nearly the same problem
+    seed : of the run
+    search : how global minima are looked for
+    archive : models evaluated so far
+    work : carries out the tasks
+    """
+
+    problem: Problem
+    options: Pareto
+    edges: Sequence[Solution]
+    minima: Sequence[Sequence[Solution]]
+    corners: Sequence[Solution]
+    target: Payoff
+    lattice: Simplex
+    before: Sequence[Solution]
+    seed: int
+    search: Search
+    archive: Archive
+    work: Executor
+
+
+@dataclass(frozen=True)
+class Along:
+    """The points along a front; see `modefront.fronts.front.Front`."""
+
+    points: Sequence[Solution]
+    gaps: Sequence[Gap] = ()
+    lattice: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    places: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+
+
+class FrontMethod(Protocol):
+    """A method that finds the points of a front."""
+
+    @property
+    def name(self) -> str:
+        """Name in ``[pareto] method``, and first part of the labels of its points."""
+
+    @property
+    def programme(self) -> Literal["boundary", "weights"] | None:
+        """Programme that a point solves: of the simplex between edges, of its weights, or none."""
+
+    def extent(self, options: Pareto, lattice: Simplex) -> int:
+        """Return the expected number of tasks."""
+
+    def along(self, setting: Setting) -> Along:
+        """Return the points along the front."""

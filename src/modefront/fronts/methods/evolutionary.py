@@ -1,0 +1,34 @@
+"""Fronts of evolutionary methods, to compare with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront.fronts.methods.base import Along, Setting
+from modefront.solvers.advance import Simplex
+from modefront.solvers.evolutionary import evolve_front
+from modefront.study.tables.settings import Pareto
+from modefront.work.task import seed_sequence
+
+
+@dataclass(frozen=True)
+class Evolutionary:
+    """The front as the last population of an evolutionary method; its points solve nothing."""
+
+    name: str
+    programme: None = None
+
+    def extent(self, options: Pareto, _: Simplex) -> int:
+        """Return the number of generations."""
+        return max(options.evaluations // options.population, 1)
+
+    def along(self, setting: Setting) -> Along:
+        """Return the nondominated models of the last population."""
+        rng = np.random.default_rng(seed_sequence(setting.seed, self.name))
+        options = setting.options
+        population, evaluations = options.population, options.evaluations
+        return Along(
+            evolve_front(setting.problem, self.name, population, evaluations, rng, setting.work)
+        )

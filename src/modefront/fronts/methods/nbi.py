@@ -1,0 +1,127 @@
+"""The front by normal-boundary intersection, explored between its edges, refined, with its gaps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from typing import Literal
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.fronts.methods.base import Along, Setting
+from modefront.solvers.advance import Simplex
+from modefront.solvers.basins import explore_between
+from modefront.solvers.dominance import nondominated
+from modefront.solvers.nbi import nbi
+from modefront.solvers.payoff import Payoff
+from modefront.solvers.pieces import gaps
+from modefront.solvers.refine import refine
+from modefront.solvers.sqp import Solution
+from modefront.study.tables.settings import Pareto
+from modefront.work.task import Within, seed_sequence
+
+TURNS = 3
+"""Refinements of a front at most, each with the gaps that the one before has shown."""
+
+COPY = 1e-5
+"""Distance of two points, over the ranges of the objectives, below which they are copies."""
+
+
+@dataclass(frozen=True)
+class NormalBoundaryIntersection:
+    """The front by normal-boundary intersection (Das & Dennis 1998)."""
+
+    name: str = "nbi"
+    programme: Literal["boundary"] = "boundary"
+
+    def extent(self, _: Pareto, lattice: Simplex) -> int:
+        """Return the number of lattice points."""
+        return len(lattice.counts)
+
+    def along(self, setting: Setting) -> Along:
+        """Return the points, each once; of two objectives with the gaps between them."""
+        problem, target, lattice = setting.problem, setting.target, setting.lattice
+        solved = nbi(
+            problem,
+            setting.edges,
+            target,
+            lattice,
+            setting.work,
+            setting.corners,
+            before=setting.before,
+        )
+        along = explore_between(
+            problem,
+            target,
+            solved,
+            setting.minima,
+            lattice,
+            np.random.default_rng(seed_sequence(setting.seed, "between")),
+            setting.search,
+            setting.work,
+            setting.archive,
+        )
+        front = _without_copies(lattice, solved, along, target)
+        return _branches(setting, front) if len(setting.edges) == 2 else front
+
+
+def _without_copies(
+    lattice: Simplex, solved: Sequence[Solution], along: Sequence[Solution], target: Payoff
+) -> Along:
+    """Return the points of a front, each once, with the lattice points that led to them.
+
+    ``solved`` are the solutions of the lattice points in their order, others after them; ``along``
+    are the points of the front, of which some have taken the places of these.
+    """
+    kept: list[Solution] = []
+    position = []
+    for point in along:
+        copies = (k for k, other in enumerate(kept) if _copies(point, other, target.scale))
+        k = next(copies, len(kept))
+        position.append(k)
+        if k == len(kept):
+            kept.append(point)
+        elif point.converged and not kept[k].converged:
+            kept[k] = point
+    places = []
+    for first in solved[: len(lattice.counts)]:
+        same = (k for k, point in enumerate(along) if point is first or _of_place(point, first))
+        k = next(same, -1)
+        places.append(position[k] if k >= 0 else -1)
+    return Along(kept, (), lattice.beta, np.array(places, dtype=np.intp))
+
+
+def _of_place(point: Solution, other: Solution) -> bool:
+    """Return whether two solutions are of the same point of the simplex."""
+    if point.beta is None or other.beta is None:
+        return False
+    return np.array_equal(point.beta, other.beta)
+
+
+def _copies(point: Solution, other: Solution, scale: Floats) -> bool:
+    return bool((np.abs(point.at.J - other.at.J) <= COPY * scale).all())
+
+
+def _branches(setting: Setting, front: Along) -> Along:
+    """Return a front of two objectives, refined where wanted, with its gaps."""
+    problem, target, refined = setting.problem, setting.target, setting.options.refined
+    along = front.points
+    optimal = nondominated(np.array([point.at.J for point in along]))
+    known = setting.archive.J.copy()
+    breaks = gaps(problem, along, optimal, target.scale, setting.work, known=known)
+    if refined is None:
+        return replace(front, gaps=breaks)
+    for turn in range(TURNS):
+        work = Within(setting.work, turn=("turn", turn + 1))
+        along, jumps = refine(problem, target, along, optimal, breaks, refined, work)
+        optimal = nondominated(np.array([point.at.J for point in along]))
+        before = len(breaks)
+        breaks = gaps(problem, along, optimal, target.scale, work, jumps, known)
+        if len(breaks) == before:
+            break
+    places = [
+        -1 if i < 0 else next(k for k, point in enumerate(along) if point is front.points[i])
+        for i in front.places
+    ]
+    return replace(front, points=along, gaps=breaks, places=np.array(places, dtype=np.intp))

@@ -1,0 +1,28 @@
+"""Minima of weighted sums, for weights on the lattice of the simplex, to compare with."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+from modefront.fronts.methods.base import Along, Setting
+from modefront.solvers.advance import Simplex
+from modefront.solvers.sweep import weight_sweep
+from modefront.study.tables.settings import Pareto
+
+
+@dataclass(frozen=True)
+class WeightSweep:
+    """The front as the minima of weighted sums."""
+
+    name: str = "weights"
+    programme: Literal["weights"] = "weights"
+
+    def extent(self, _: Pareto, lattice: Simplex) -> int:
+        """Return the number of lattice points."""
+        return len(lattice.counts)
+
+    def along(self, setting: Setting) -> Along:
+        """Return the minimum of each weighted sum."""
+        scale, lattice = setting.target.scale, setting.lattice
+        return Along(weight_sweep(setting.problem, setting.edges, scale, lattice, setting.work))

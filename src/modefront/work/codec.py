@@ -1,0 +1,80 @@
+"""Records as JSON and arrays, and back to the last digit.
+
+A record is a frozen dataclass, or an enumeration, that is registered by `record`. Its fields hold
+records, arrays, numbers, texts, None, and tuples, lists and dictionaries of these. Only registered
+classes are made from a file; nothing that is read is executed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import is_dataclass
+from enum import Enum
+from typing import Any, TypeVar
+
+import numpy as np
+
+from modefront._typing import Floats
+
+C = TypeVar("C", bound=type)
+
+_REGISTERED: dict[str, type] = {}
+
+
+def record(kind: C) -> C:
+    """Register a frozen dataclass or an enumeration as one that is kept."""
+    _REGISTERED[kind.__name__] = kind
+    return kind
+
+
+def encode(value: Any, arrays: dict[str, Floats]) -> Any:
+    """Return what JSON holds of a value, with its arrays put into ``arrays``.
+
+    Raises TypeError for an object of a class that is not registered.
+    """
+    if isinstance(value, np.ndarray):
+        name = str(len(arrays))
+        arrays[name] = value
+        return {"array": name}
+    if isinstance(value, np.generic):
+        return value.item()
+    if value is None or isinstance(value, bool | int | float | str):
+        return value
+    if isinstance(value, tuple | list):
+        parts = [encode(part, arrays) for part in value]
+        return {"tuple": parts} if isinstance(value, tuple) else parts
+    if isinstance(value, Mapping):
+        return {"map": [[encode(k, arrays), encode(x, arrays)] for k, x in value.items()]}
+    name = type(value).__name__
+    if _REGISTERED.get(name) is not type(value):
+        raise TypeError(f"expected a registered record, found {type(value)}")
+    if isinstance(value, Enum):
+        return {"enum": name, "member": value.name}
+    named = {x: encode(getattr(value, x), arrays) for x in vars(value)}
+    return {"record": name, "fields": named}
+
+
+def decode(value: Any, arrays: Mapping[str, Floats]) -> Any:
+    """Return the value that `encode` has made this of.
+
+    Raises ValueError, KeyError or TypeError for what `encode` does not make.
+    """
+    if isinstance(value, list):
+        return [decode(part, arrays) for part in value]
+    if not isinstance(value, dict):
+        return value
+    if "array" in value:
+        return arrays[value["array"]]
+    if "tuple" in value:
+        return tuple(decode(part, arrays) for part in value["tuple"])
+    if "map" in value:
+        return {decode(k, arrays): decode(x, arrays) for k, x in value["map"]}
+    if "enum" in value:
+        kind = _REGISTERED[value["enum"]]
+        if not issubclass(kind, Enum):
+            raise ValueError(f"expected an enumeration, found {kind.__name__}")
+        return kind[value["member"]]
+    kind = _REGISTERED[value["record"]]
+    if not is_dataclass(kind):
+        raise ValueError(f"expected a record, found {kind.__name__}")
+    return kind(**{name: decode(part, arrays) for name, part in value["fields"].items()})

@@ -1,0 +1,77 @@
+"""Results of tasks in a folder, one small file a task, so that an interrupted run loses only one.
+
+A file is written under another name and then renamed, so that it is there whole or not at all;
+arrays are stored exactly, so that a run that is continued gives the same results to the last digit
+as one that was not interrupted.
+"""
+
+from __future__ import annotations
+
+import hashlib
+import json
+import os
+import zipfile
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.work.codec import decode, encode
+from modefront.work.costs import Costs
+from modefront.work.task import Task
+
+FOLDER = "pieces"
+"""Folder of the kept results, within that of the results of a run."""
+
+LONGEST = 60
+"""Characters of a key at most in a file name, which ends in a hash."""
+
+
+@dataclass(frozen=True)
+class Store:
+    """Keeps results of tasks in a folder."""
+
+    folder: Path
+
+    def read(self, task: Task[Any]) -> tuple[Any, Costs] | None:
+        """Return the result of a task and what it cost; None where no whole one is kept."""
+        try:
+            with self._path(task).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+                arrays = {key: file[key] for key in file.files}
+            head = json.loads(arrays.pop("head").tobytes())
+            if head["key"] != task.name:
+                return None
+            return decode(head["result"], arrays), Costs(**head["costs"])
+        except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
+            return None
+
+    def write(self, task: Task[Any], result: Any, costs: Costs) -> None:
+        """Keep the result of a task, whole or not at all."""
+        arrays: dict[str, Floats] = {}
+        content = encode(result, arrays)
+        head = json.dumps({"key": task.name, "costs": vars(costs), "result": content})
+        path = self._path(task)
+        path.parent.mkdir(parents=True, exist_ok=True)
+        temporary = path.with_suffix(".tmp")
+        named: dict[str, Any] = dict(arrays)
+        with temporary.open("wb") as stream:
+            np.savez(stream, head=np.frombuffer(head.encode(), np.uint8), **named)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.replace(path)
+
+    def _path(self, task: Task[Any]) -> Path:
+        return self.folder / f"{_file_name(task.name)}.npz"
+
+
+def _file_name(name: str) -> str:
+    """Return a file name that no other key has, whatever its characters and their case."""
+    safe = "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "." for c in name)
+    return f"{safe[:LONGEST]}-{hash_text(name)[:8]}"
+
+
+def hash_text(text: str) -> str:
+    """Return a short hash that does not change between runs."""
+    return hashlib.sha256(text.encode()).hexdigest()[:16]
