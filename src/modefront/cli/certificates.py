@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from modefront.models.base import Counts
+from modefront.work.costs import Costs
 
 
 def certificate_remarks(data: xr.Dataset) -> list[str]:
@@ -40,20 +40,20 @@ def uncertified(data: xr.Dataset) -> np.ndarray:
     return np.asarray(data["label"].values[~data["certified"].values])
 
 
-def cost_lines(counts: Counts) -> list[str]:
+def cost_lines(costs: Costs) -> list[str]:
     """Return what this run has solved, and how long that took."""
     out = [
-        f"this time: {counts.eigenproblems} full eigensolutions in {counts.full_time:.3g} s, "
-        f"{counts.factorisations} factorisations"
+        f"this time: {costs.eigenproblems} full eigensolutions in {costs.full_time:.3g} s, "
+        f"{costs.factorisations} factorisations"
     ]
-    if counts.corrected:
+    if costs.corrected:
         out.append(
-            f"{counts.corrected} corrected with their factors, and derivatives, "
-            f"in {counts.corrected_time:.3g} s"
+            f"{costs.corrected} corrected with their factors, and derivatives, "
+            f"in {costs.corrected_time:.3g} s"
         )
-    if counts.reduced:
+    if costs.reduced:
         out.append(
-            f"{counts.reduced} reduced solutions in {counts.reduced_time:.3g} s, "
-            f"{counts.certificates} certificates in {counts.certificate_time:.3g} s"
+            f"{costs.reduced} reduced solutions in {costs.reduced_time:.3g} s, "
+            f"{costs.certificates} certificates in {costs.certificate_time:.3g} s"
         )
     return out

@@ -83,7 +83,7 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     directory = directory or study.with_name(f"{study.stem}-results")
     with progress_bar(loaded.name) as progress:
         data = run_study(loaded, directory, fresh=fresh, refined=refine, progress=progress)
-    print_summary(data, directory, loaded.problem.model.counts)
+    print_summary(data, directory, progress.spent)
     failed = not_converged(data)
     if failed:
         raise UnfinishedError(f"not converged, kept and marked as such: {', '.join(failed)}")

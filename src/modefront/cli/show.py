@@ -16,10 +16,10 @@ from modefront.cli.certificates import certificate_remarks, cost_lines
 from modefront.cli.predictions import prediction_tables
 from modefront.cli.show_knowledge import print_knowledge
 from modefront.cli.tables import console, safe, table
-from modefront.models.base import Counts
 from modefront.study.check import Findings
 from modefront.study.file import Study
 from modefront.study.results import front_points, not_converged
+from modefront.work.costs import Costs
 
 
 def _print(screen: Console, text: str) -> None:
@@ -84,7 +84,7 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         _print(screen, "no warnings")
 
 
-def print_summary(data: xr.Dataset, folder: Path, counts: Counts) -> None:
+def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
     """Print what a run has found and what this run of it has cost, in a few lines."""
     screen = console()
     front = front_points(data)
@@ -98,7 +98,7 @@ def print_summary(data: xr.Dataset, folder: Path, counts: Counts) -> None:
             f"{data.attrs['model_evaluations']} eigenproblems in all, {cost:.1f} a point",
         )
         _print(screen, f"  {in_numbers(data)}")
-    for line in [*remarks(data, f"modefront show --all {folder}"), *cost_lines(counts)]:
+    for line in [*remarks(data, f"modefront show --all {folder}"), *cost_lines(costs)]:
         _print(screen, f"  {line}")
     _print(screen, f"next: modefront show {folder}")
 

@@ -2,37 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
 
 from modefront._typing import Floats
 from modefront.models.ports import Ports, Transfer
 from modefront.modes.result import Modes
-
-
-@dataclass
-class Counts:
-    """What the evaluations of a model have cost.
-
-    Attributes
-    ----------
-    eigenproblems : how many were solved in full, with derivatives or without
-    corrected : how many were solved in full with the factor of another one, for a reduced basis
-    factorisations : of sparse matrices, for these and for certificates
-    reduced : eigenproblems that were solved in a reduced basis
-    certificates : estimates of the error of reduced solutions
-    full_time, corrected_time, reduced_time, certificate_time : seconds that these took
-    """
-
-    eigenproblems: int = 0
-    corrected: int = 0
-    factorisations: int = 0
-    reduced: int = 0
-    certificates: int = 0
-    full_time: float = 0.0
-    corrected_time: float = 0.0
-    reduced_time: float = 0.0
-    certificate_time: float = 0.0
 
 
 class Model(Protocol):
@@ -53,10 +27,6 @@ class Model(Protocol):
     @property
     def unused(self) -> tuple[str, ...]:
         """Names of parameters on which nothing depends."""
-
-    @property
-    def counts(self) -> Counts:
-        """What was solved so far; counted where it is solved and nowhere else."""
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``, shape (parameters,).

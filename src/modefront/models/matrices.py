@@ -13,7 +13,6 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.models.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
-from modefront.models.base import Counts
 from modefront.models.ports import Pattern, Ports, Transfer
 from modefront.modes import dense, full, sparse
 from modefront.modes.factorisation import Factorisation, Symbolic
@@ -39,10 +38,8 @@ class _Counted:
     """An analysis that counts its factorisations."""
 
     symbolic: Symbolic
-    counts: Counts
 
     def factor(self, values: Floats) -> Factorisation:
-        self.counts.factorisations += 1
         spend(Costs(factorisations=1))
         return self.symbolic.factor(values)
 
@@ -60,7 +57,6 @@ class MatrixModel:
     outputs : weights (N,) of the degrees of freedom at places that are no sensors, by name
     base : motion (N,) of the degrees of freedom with the base, by the name of its direction
     floating : whether the stiffness matrix may be singular: rigid-body modes are wanted
-    counts : what the evaluations have cost so far
     """
 
     parameters: tuple[str, ...]
@@ -71,7 +67,6 @@ class MatrixModel:
     outputs: Mapping[str, Floats] = field(default_factory=dict)
     base: Mapping[str, Floats] = field(default_factory=dict)
     floating: bool = True
-    counts: Counts = field(default_factory=Counts)
 
     @property
     def size(self) -> int:
@@ -91,7 +86,6 @@ class MatrixModel:
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
-        self.counts.eigenproblems += 1
         spend(Costs(eigenproblems=1))
         started = time.perf_counter()
         try:
@@ -100,7 +94,6 @@ class MatrixModel:
                 return dense.modes(self.stiffness, self.mass, selection, theta, count, derivatives)
             return sparse.modes(self.pencil, self.selection, theta, count, derivatives)
         finally:
-            self.counts.full_time += time.perf_counter() - started
             spend(Costs(full_time=time.perf_counter() - started))
 
     def is_singular(self, theta: Floats) -> bool:
@@ -121,7 +114,6 @@ class MatrixModel:
 
     def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
         """Return the model between ``ports``; see `modefront.models.base.Model`."""
-        self.counts.eigenproblems += 1
         spend(Costs(eigenproblems=1))
         outputs = self._patterns(ports.outputs)
         if ports.base is None:
@@ -136,7 +128,6 @@ class MatrixModel:
             else:
                 found = full.sparse_modes(self.pencil, theta, count, loads)
         finally:
-            self.counts.full_time += time.perf_counter() - started
             spend(Costs(full_time=time.perf_counter() - started))
         phi = self.selection @ found.Phi
         empty = np.zeros((count, 0)), np.zeros((*phi.shape, 0))
@@ -170,7 +161,7 @@ class MatrixModel:
         if isinstance(self.stiffness, DenseAffine) or isinstance(self.mass, DenseAffine):
             raise TypeError("stiffness and mass have to be both dense or both sparse")
         found = pencil(self.stiffness, self.mass)
-        return replace(found, symbolic=_Counted(found.symbolic, self.counts))
+        return replace(found, symbolic=_Counted(found.symbolic))
 
 
 def matrices(

@@ -84,17 +84,6 @@ class UpdatingProblem:
         """Names of the groups."""
         return tuple(group.name for group in self.groups)
 
-    @property
-    def counts(self) -> Mapping[str, int]:
-        """What was solved so far."""
-        counts = self.model.counts
-        return {
-            "eigenproblems": counts.eigenproblems,
-            "factorisations": counts.factorisations,
-            "reduced": counts.reduced,
-            "corrected": counts.corrected,
-        }
-
     @cached_property
     def properties(self) -> Floats:
         """Counts a_i of the measured properties of each group, shape (groups,)."""

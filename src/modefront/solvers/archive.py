@@ -60,11 +60,6 @@ class Archive:
         """A first guess, shape (p,)."""
         return self.problem.start
 
-    @property
-    def counts(self) -> Mapping[str, int]:
-        """What the evaluations have cost so far, by name."""
-        return self.problem.counts
-
     def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
         """Return the objectives at ``theta``, and remember them."""
         at = self.problem.evaluate(theta, derivatives=derivatives)

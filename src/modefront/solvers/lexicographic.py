@@ -34,7 +34,6 @@ Q         (rows, k)  combinations of the residuals that parameters change
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -238,11 +237,6 @@ class Held:
     def start(self) -> Floats:
         """The start of the problem itself, shape (p,)."""
         return self.problem.start
-
-    @property
-    def counts(self) -> Mapping[str, int]:
-        """What the evaluations have cost so far, by name."""
-        return self.problem.counts
 
     def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
         """Return the residuals and the other objectives; derivatives are always there."""

@@ -64,7 +64,7 @@ T         (p, d) orthonormal basis of the tangent space, in u
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from enum import Enum
 
@@ -283,10 +283,6 @@ class _Metered:
     @property
     def start(self) -> Floats:
         return self.problem.start
-
-    @property
-    def counts(self) -> Mapping[str, int]:
-        return self.problem.counts
 
     def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
         if self.left <= 0:

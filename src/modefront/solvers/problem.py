@@ -87,10 +87,6 @@ class Problem(Protocol):
     def start(self) -> Floats:
         """A first guess within the bounds, shape (p,)."""
 
-    @property
-    def counts(self) -> Mapping[str, int]:
-        """What the evaluations have cost so far, by name."""
-
     def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
         """Return the objectives at ``theta``; infinite ones where they are not defined.
 

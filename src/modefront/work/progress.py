@@ -10,6 +10,8 @@ import time
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 
+from modefront.work.costs import Costs
+
 
 @dataclass(frozen=True)
 class State:
@@ -45,10 +47,12 @@ class Progress:
     ----------
     report : is called with the state
     clock : returns seconds
+    spent : costs of the tasks computed, without those kept from an earlier run
     """
 
     report: Callable[[State], None] = ignore
     clock: Callable[[], float] = time.monotonic
+    spent: Costs = field(default_factory=Costs)
     _expected: dict[str, int] = field(default_factory=dict)
     _done: dict[str, int] = field(default_factory=dict)
     _running: dict[str, int] = field(default_factory=dict)

@@ -21,13 +21,11 @@ class Serial:
     store : keeps the results; None for none
     progress : is told of every task
     costs : of every task, by its key and turn, kept ones included
-    spent : costs of this run alone
     """
 
     store: Store | None = None
     progress: Progress = field(default_factory=Progress)
     costs: dict[tuple[Any, ...], Costs] = field(default_factory=dict)
-    spent: Costs = field(default_factory=Costs)
 
     def expect(self, stages: Mapping[str, int]) -> None:
         """Take note of how many tasks of each stage are still to come."""
@@ -58,7 +56,7 @@ class Serial:
         with counted() as costs:
             result = task()
         self.costs[name] = costs
-        self.spent.add(costs)
+        self.progress.spent.add(costs)
         if self.store:
             self.store.write(task, result, costs)
         self.progress.end(task.stage, self.progress.clock() - began)

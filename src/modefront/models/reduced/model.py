@@ -5,14 +5,13 @@ from __future__ import annotations
 import time
 from collections.abc import Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from itertools import combinations
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
-from modefront.models.base import Counts
 from modefront.models.matrices import MatrixModel
 from modefront.models.ports import Ports, Transfer
 from modefront.models.reduced import window
@@ -36,7 +35,7 @@ from modefront.modes import dense
 from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.result import Modes
 from modefront.modes.spectrum import Shifted
-from modefront.work.costs import Costs, spend, uncounted
+from modefront.work.costs import Costs, counted, spend, uncounted
 
 SHORTEST = 0.1
 """Length of the shortest direction of the basis, over the square root of the tolerance."""
@@ -112,9 +111,7 @@ class _Taken:
     """A snapshot, what it took, and the error that it found."""
 
     what: Snap
-    solved: int
-    corrected: int
-    factorisations: int
+    costs: Costs
     error: float
 
 
@@ -151,7 +148,6 @@ class ReducedModel:
     tolerance : relative error of eigenvalues that is aimed at
     memory : GiB that the basis may take; one mode is always allowed
     spare : how many of the modes are only there to tell the others from them
-    counts : what the evaluations and the snapshots in use have cost
     """
 
     full: MatrixModel
@@ -162,8 +158,6 @@ class ReducedModel:
     tolerance: float = TOLERANCE
     memory: float = MEMORY
     spare: int = 0
-    counts: Counts = field(default_factory=Counts)
-    _charged: Counts = field(default_factory=Counts)
     _wanted: tuple[Snap, ...] = ()
     _state: _State | None = None
 
@@ -194,13 +188,7 @@ class ReducedModel:
 
     def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
         """Return the full model between ``ports``; see `modefront.models.base.Model`."""
-        before, own = replace(self.full.counts), self.full.counts
-        try:
-            return self.full.transfer(theta, count, ports)
-        finally:
-            self.counts.eigenproblems += own.eigenproblems - before.eigenproblems
-            self.counts.factorisations += own.factorisations - before.factorisations
-            self.counts.full_time += own.full_time - before.full_time
+        return self.full.transfer(theta, count, ports)
 
     @property
     def unused(self) -> tuple[str, ...]:
@@ -230,10 +218,6 @@ class ReducedModel:
     def restart(self) -> None:
         """Use no snapshots. Those at hand are not computed again, but count when taken again."""
         self._wanted = ()
-        self.counts.eigenproblems -= self._charged.eigenproblems
-        self.counts.corrected -= self._charged.corrected
-        self.counts.factorisations -= self._charged.factorisations
-        self._charged = Counts()
 
     def resume(self, snapshots: Sequence[Snap]) -> None:
         """Use these snapshots, which were counted before; they are computed when needed."""
@@ -252,30 +236,18 @@ class ReducedModel:
         except ModelError:
             self._wanted = before
             raise
-        for counts in (self.counts, self._charged):
-            counts.eigenproblems += last.solved
-            counts.corrected += last.corrected
-            counts.factorisations += last.factorisations
-        spend(
-            Costs(
-                eigenproblems=last.solved,
-                corrected=last.corrected,
-                factorisations=last.factorisations,
-            )
-        )
+        spend(last.costs)
         return last.error
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         if count > self.count:
-            return self._in_full(theta, count, derivatives)
+            return self.full.modes(theta, count, derivatives=derivatives)
         state = self._ready()
         started = time.perf_counter()
         K, M = state.space.basis.K, state.space.basis.M
         found = dense.modes(K, M, state.sensed, theta, count, derivatives)
-        self.counts.reduced += 1
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
-        self.counts.reduced_time += time.perf_counter() - started
         return found
 
     def distance(self, theta: Floats) -> float:
@@ -292,7 +264,7 @@ class ReducedModel:
         That is looked for by a factorisation where it is in doubt, and what it proves speaks for
         the other models nearby.
         """
-        space, before = self._ready().space, self.full.counts.factorisations
+        space = self._ready().space
         started = time.perf_counter()
         proofs = list(space.proofs)
         counts = [max(lowest, int(wanted.max()) + 1) for _, wanted in asked]
@@ -301,10 +273,7 @@ class ReducedModel:
         for first in range(0, len(asked), width):
             some = range(first, min(first + width, len(asked)))
             found += self._certified(space, [(*asked[k], counts[k]) for k in some], proofs)
-        self.counts.certificates += len(asked)
         spend(Costs(certificates=len(asked), certificate_time=time.perf_counter() - started))
-        self.counts.factorisations += self.full.counts.factorisations - before
-        self.counts.certificate_time += time.perf_counter() - started
         return found
 
     def lacking(self, lowest: int) -> list[Floats]:
@@ -315,7 +284,7 @@ class ReducedModel:
         no search in the basis would ever see that. Where it is not proved that none of the
         ``lowest`` modes does so, a factorisation tells, of the most doubtful models.
         """
-        space, before = self._ready().space, self.full.counts.factorisations
+        space = self._ready().space
         basis, proofs, doubtful = space.basis, list(space.proofs), []
         for pair in combinations(range(self.nominal.size), 2):
             theta = self.nominal.copy()
@@ -328,13 +297,11 @@ class ReducedModel:
             if last >= 0 and not _knows(basis, proofs, theta, ritz.lam[last]):
                 reach = max(_reach(basis, one, theta) for one in proofs) / ritz.lam[last]
                 doubtful.append((reach, pair, theta, ritz.lam, last))
-        out = [
+        return [
             theta
             for _, _, theta, lam, last in sorted(doubtful, key=lambda one: one[:2])[:PROBES]
             if self._misses(basis, theta, lam, last, proofs)
         ]
-        self.counts.factorisations += self.full.counts.factorisations - before
-        return out
 
     def _certified(
         self, space: _Space, some: Sequence[tuple[Floats, Ints, int]], proofs: list[Complete]
@@ -397,15 +364,6 @@ class ReducedModel:
         proofs.append(Complete(theta, sigma, below))
         return False
 
-    def _in_full(self, theta: Floats, count: int, derivatives: bool) -> Modes:
-        before = self.full.counts.factorisations
-        started = time.perf_counter()
-        found = self.full.modes(theta, count, derivatives=derivatives)
-        self.counts.eigenproblems += 1
-        self.counts.factorisations += self.full.counts.factorisations - before
-        self.counts.full_time += time.perf_counter() - started
-        return found
-
     def _ready(self) -> _State:
         """Return the basis of the snapshots wanted; only those not yet in it are computed."""
         if not self._wanted:
@@ -414,16 +372,20 @@ class ReducedModel:
             self._state = None
         with uncounted():  # `take` counts a snapshot, once
             while self._state is None or len(self._state.taken) < len(self._wanted):
-                self._add(self._wanted[len(self._state.taken) if self._state else 0])
+                what = self._wanted[len(self._state.taken) if self._state else 0]
+                with counted() as costs:
+                    taken, space, error = self._added(what)
+                last = _Taken(what, costs, error)
+                self._state = self._sensed((*taken, last), space)
         return self._state
 
-    def _add(self, what: Snap) -> None:
-        """Compute another snapshot: with the factor at hand, or with factors of its own.
+    def _added(self, what: Snap) -> tuple[tuple[_Taken, ...], _Space, float]:
+        """Return the snapshots before another one, the space with it, and the error that it found.
 
-        Models that have no modes are left out. Raises ModelError where all of them have none.
+        It is computed with the factor at hand, or with factors of its own. Models that have no
+        modes are left out. Raises ModelError where all of them have none.
         """
         taken = self._state.taken if self._state else ()
-        before = self.full.counts.factorisations
         rest, solved, corrected, error = what.models, 0, 0, 0.0
         space = self._state.space if self._state else None
         if not space:
@@ -450,9 +412,8 @@ class ReducedModel:
                 if failed == len(what.models):
                     self._state = self._sensed(taken, space)
                     raise
-        cost = self.full.counts.factorisations - before
-        last = _Taken(what, solved, corrected, cost, error)
-        self._state = self._sensed((*taken, last), space)
+        spend(Costs(eigenproblems=solved, corrected=corrected))
+        return taken, space, error
 
     def _sensed(self, taken: tuple[_Taken, ...], space: _Space) -> _State:
         sensed = np.hstack([self.full.selection @ block for block in space.basis.blocks])
@@ -492,12 +453,12 @@ class ReducedModel:
         lowest = one.modes[:, : self.capacity]  # of directions of equal length, the lowest ones
         basis = extended(pencil, known or empty(pencil, one), lowest, self._shortest, self.capacity)
         solved = time.perf_counter()
-        self.counts.full_time += solved - started
+        spend(Costs(full_time=solved - started))
         factor = Factor(theta, one.below)
         basis = self._with_derivatives(basis, factor, theta, modes)
         bounds = [] if known else self._bounds(basis, theta, one.below.sigma)
         basis = self._at_bounds(basis, factor, bounds)
-        self.counts.corrected_time += time.perf_counter() - solved
+        spend(Costs(corrected_time=time.perf_counter() - solved))
         return _Space(basis, factor, (*proofs, Complete(theta, one.beyond, one.proved))), len(
             bounds
         )
@@ -542,7 +503,7 @@ class ReducedModel:
         if errors.max() >= what.enough:
             worst = here[int(errors.argmax())]
             basis = self._with_derivatives(basis, factor, worst, what.modes)
-        self.counts.corrected_time += time.perf_counter() - started
+        spend(Costs(corrected_time=time.perf_counter() - started))
         return _Space(basis, factor, (*space.proofs, *new)), errors, others
 
     def _is_near(
