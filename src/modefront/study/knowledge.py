@@ -11,6 +11,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.identifiability.combinations import without_effect
+from modefront.identifiability.options import Identifiability
 from modefront.identifiability.scale import scale_at
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.advance import default_points
@@ -26,12 +27,11 @@ from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution, begin, solve
 from modefront.study.doubtful import with_neighbours
 from modefront.study.run import BOUNDED, OPTIMAL, Front, Labelled, generator
-from modefront.study.tables.identifiability import Identifiability
-from modefront.study.tables.uncertainty import Uncertainty
 from modefront.uncertainty.bootstrap import redraw
 from modefront.uncertainty.laplace import Posterior, laplace
 from modefront.uncertainty.linear import Local, front_scatter
 from modefront.uncertainty.noise import Noise, Source, noise
+from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.points import Point, Role, solve_again
 from modefront.uncertainty.scatter import Scatter
 

@@ -13,7 +13,7 @@ from modefront._typing import Bools, Floats
 from modefront.predict import Passage, PeakResponse, Prediction
 from modefront.solvers.advance import default_points
 from modefront.study.asking import Asking
-from modefront.study.file import Study
+from modefront.study.definition import Study
 from modefront.study.store import Arrays
 
 RANGE = ("minimum", "maximum", "spread")

@@ -154,7 +154,7 @@ def pareto_front(
     front that is ``known``, of nearly the same problem, and nowhere else. Raises UnfinishedError
     where no edge can be found.
     """
-    search = (search or Search()) if known is None else Search(0, 0, 0)
+    search = (search or Search()) if known is None else Search.none()
     archive = Archive(problem)
     problem, checkpoint = archive, archive.keeping(checkpoint)
     n = len(problem.objectives)
@@ -199,7 +199,7 @@ def pareto_front(
             search,
             starts=near,
         )
-        models += [(label, one) for one in checkpoint(label, search_from)[:1]]
+        models += [(label, one) for one in checkpoint(f"weighted-{label}", search_from)[:1]]
     edges = _from_models(archive, edges, sizes, [one for _, one in models], checkpoint)
 
     front = _Along([], [], None, np.zeros((0, n)), np.zeros(0, dtype=np.intp))
@@ -368,7 +368,7 @@ def _weighted_from_archive(
             archive.J[first], known.at.J
         ):
             search = partial(_descended, archive, descent, archive.theta[first])
-            (found,) = checkpoint(f"{label}-known", search)
+            (found,) = checkpoint(f"improved-{label}", search)
             if descent.value(found.at.J) < descent.value(known.at.J):
                 best = found
         out.append((label, best))

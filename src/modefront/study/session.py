@@ -6,7 +6,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
 import numpy as np
 from threadpoolctl import threadpool_limits
@@ -15,21 +15,22 @@ import modefront
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError
 from modefront.identifiability.combinations import unchanged_groups
+from modefront.identifiability.options import Identifiability
 from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
+from modefront.solvers.given import Weighted
+from modefront.solvers.pareto import Pareto, ParetoOptions
 from modefront.study.asking import Asking
 from modefront.study.certified import certificate_attributes, certified_front, certified_points
 from modefront.study.check import refuse_unchanged_groups
-from modefront.study.file import Study
+from modefront.study.definition import Study
 from modefront.study.knowledge import learn
 from modefront.study.quality import indicators
 from modefront.study.run import Front, ignore, pareto_front
 from modefront.study.store import PIECES, Store
-from modefront.study.tables.identifiability import Identifiability
-from modefront.study.tables.settings import Pareto
-from modefront.study.tables.uncertainty import Uncertainty
 from modefront.uncertainty.noise import noise_floor
+from modefront.uncertainty.options import Uncertainty
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -46,35 +47,52 @@ class Progress:
 def solve(
     problem: UpdatingProblem,
     *,
-    method: str = Pareto.method,
-    points: int | None = None,
-    refined: float | None = None,
-    population: int = Pareto.population,
-    evaluations: int = Pareto.evaluations,
-    tolerance: float = 0.0,
+    pareto: Pareto | None = None,
+    weighted: Sequence[Weighted] = (),
     seed: int = 0,
     search: Search | None = None,
     identifiability: Identifiability | None = None,
     uncertainty: Uncertainty | None = None,
     predictions: Sequence[Prediction] = (),
+    **front: Unpack[ParetoOptions],
 ) -> xr.Dataset:
     """Return all Pareto-optimal models, edges and weighted models of a problem.
 
-    The arguments are those of the study file, and ``refined``, for two groups, the distance of
-    neighbours on the front above which there are to be more points between them, in units of the
-    ranges of the objectives; ``predictions`` are made with every model. Raises UnfinishedError
-    where no minimum of a group can be found, InputError where no parameter changes a group.
+    The arguments are the options of `modefront.Study`. Those of ``pareto`` may be given by
+    themselves, ``method="weights", points=10``, and then take the place of its own. Raises
+    InputError for options that are not possible and where no parameter changes a group,
+    UnfinishedError where no minimum of a group can be found.
     """
+    study = Study(
+        problem,
+        seed=seed,
+        pareto=replace(pareto or Pareto(), **front),
+        weighted=tuple(weighted),
+        search=search or Search(),
+        identifiability=identifiability or Identifiability(),
+        uncertainty=uncertainty or Uncertainty(),
+        predictions=tuple(predictions),
+    )
+    return in_memory(study)
+
+
+def in_memory(study: Study) -> xr.Dataset:
+    """Return what the work of a study finds, and write nothing.
+
+    What is raised is what `solve` raises.
+    """
+    problem = study.problem
     session = _Session(
         problem,
         Store(None, lambda: problem.counts, ignore, {}),
-        Pareto(method, points, tolerance, population, evaluations),
-        seed,
-        search=search,
-        refined=refined,
-        identifiability=identifiability or Identifiability(),
-        uncertainty=uncertainty or Uncertainty(),
-        predictions=predictions,
+        study.pareto,
+        study.seed,
+        search=study.search,
+        given=[(each.name, each.of(problem.objectives)) for each in study.weighted],
+        refined=study.pareto.refined,
+        identifiability=study.identifiability,
+        uncertainty=study.uncertainty,
+        predictions=study.predictions,
     )
     return session.results()
 
@@ -90,18 +108,21 @@ def run(
     """Do the work of a study, write ``results.nc`` into a folder and return what it holds.
 
     Pieces of work that an earlier run of the same inputs has left there are not done again;
-    ``fresh`` sets them aside; ``refined`` is that of `solve`. Raises InputError where the folder
-    cannot be written to or no parameter changes a group, and UnfinishedError where the work cannot
-    be done.
+    ``fresh`` sets them aside, as is always done with those of a study that was made in Python;
+    ``refined`` takes the place of that of the study. Raises InputError where the folder cannot be
+    written to, the front cannot be refined or no parameter changes a group, and UnfinishedError
+    where the work cannot be done.
     """
     from modefront.study.predictions import pieces_of
     from modefront.study.results import FILE, write
 
     progress = progress or Progress()
+    if refined is not None:
+        study = replace(study, pareto=replace(study.pareto, refined=refined))
     pieces = folder / PIECES / f"{study.work[:12]}-{modefront.__version__}"
     try:
         pieces.mkdir(parents=True, exist_ok=True)
-        if fresh:
+        if fresh or not study.work:
             _set_aside(pieces)
             _set_aside(folder / FILE)
     except OSError as error:
@@ -115,8 +136,8 @@ def run(
         study.pareto,
         study.seed,
         search=study.search,
-        given=[(one.name, np.array(one.weights)) for one in study.weighted],
-        refined=refined,
+        given=[(each.name, each.of(problem.objectives)) for each in study.weighted],
+        refined=study.pareto.refined,
         identifiability=study.identifiability,
         uncertainty=study.uncertainty,
         predictions=study.predictions,
@@ -129,14 +150,6 @@ def run(
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)
     return data
-
-
-def check_refinable(study: Study, refined: float | None) -> None:
-    """Raise InputError where a front is to be refined that is not one of two groups by NBI."""
-    groups = len(study.problem.objectives)
-    if refined is not None and (groups != 2 or study.pareto.method != "nbi"):
-        found = f"{groups} groups, method '{study.pareto.method}'"
-        raise InputError(Fault(str(study.file), "--refine", "two groups and method 'nbi'", found))
 
 
 @dataclass(frozen=True)
