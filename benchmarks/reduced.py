@@ -40,13 +40,13 @@ import xarray as xr
 import modefront as mf
 from modefront import fem
 from modefront._typing import Floats, Ints
+from modefront.identifiability.options import Identifiability
 from modefront.models.affine import DenseAffine
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel
 from modefront.modes import dense
 from modefront.modes.sparse import lowest
-from modefront.study.tables.identifiability import Identifiability
 
 MODES, REGIONS, PARTS, SENSORS, POINTS = 6, 6, 12, 20, 20
 BOUNDS = 0.4, 2.5

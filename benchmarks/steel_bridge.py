@@ -18,9 +18,9 @@ import xarray as xr
 from smu import Structure, frequencies_and_shapes, read
 
 import modefront as mf
+from modefront.identifiability.options import Identifiability
 from modefront.solvers.explore import Search
-from modefront.study.tables.identifiability import Identifiability
-from modefront.study.tables.uncertainty import Uncertainty
+from modefront.uncertainty.options import Uncertainty
 
 
 def front(structure: Structure, points: int, searches: int, *, reduced: bool) -> xr.Dataset:

@@ -17,33 +17,43 @@ if TYPE_CHECKING:
     from modefront.errors import InputError as InputError
     from modefront.errors import ModelError as ModelError
     from modefront.errors import UnfinishedError as UnfinishedError
+    from modefront.fronts.given import Weighted as Weighted
+    from modefront.fronts.options import Pareto as Pareto
     from modefront.identifiability.combinations import combinations as combinations
+    from modefront.identifiability.options import Identifiability as Identifiability
     from modefront.models.chain import chain as chain
     from modefront.models.matrices import matrices as matrices
+    from modefront.models.parameters import Parameter as Parameter
+    from modefront.models.reduced.options import Reduction as Reduction
     from modefront.pairing.mac import mac as mac
     from modefront.pairing.match import Pairing as Pairing
     from modefront.residuals.groups import Group as Group
     from modefront.residuals.problem import UpdatingProblem as UpdatingProblem
     from modefront.residuals.problem import updating_problem as updating_problem
     from modefront.solvers.explore import Search as Search
+    from modefront.study.definition import Study as Study
     from modefront.study.file import load as load
     from modefront.study.results import read as read_results
     from modefront.study.session import run as run
     from modefront.study.session import solve as solve
-    from modefront.study.tables.identifiability import Identifiability as Identifiability
-    from modefront.study.tables.uncertainty import Uncertainty as Uncertainty
+    from modefront.uncertainty.options import Uncertainty as Uncertainty
 
 _HOMES = {
     "Group": "residuals.groups",
-    "Identifiability": "study.tables.identifiability",
+    "Identifiability": "identifiability.options",
     "InputError": "errors",
     "ModalData": "data.modal",
     "ModelError": "errors",
     "Pairing": "pairing.match",
+    "Parameter": "models.parameters",
+    "Pareto": "fronts.options",
+    "Reduction": "models.reduced.options",
     "Search": "solvers.explore",
-    "Uncertainty": "study.tables.uncertainty",
+    "Study": "study.definition",
+    "Uncertainty": "uncertainty.options",
     "UnfinishedError": "errors",
     "UpdatingProblem": "residuals.problem",
+    "Weighted": "fronts.given",
     "chain": "models.chain",
     "combinations": "identifiability.combinations",
     "load": "study.file",
@@ -64,10 +74,15 @@ __all__ = [
     "ModalData",
     "ModelError",
     "Pairing",
+    "Parameter",
+    "Pareto",
+    "Reduction",
     "Search",
+    "Study",
     "Uncertainty",
     "UnfinishedError",
     "UpdatingProblem",
+    "Weighted",
     "chain",
     "combinations",
     "load",

@@ -9,7 +9,10 @@ from dataclasses import dataclass
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing that is wrong: the file, the place in it, what was expected, what was found."""
+    """One thing that is wrong: the file, the place in it, what was expected, what was found.
+
+    The file is empty where an option was given in Python; the place is the option's name then.
+    """
 
     file: str
     place: str
@@ -17,15 +20,22 @@ class Fault:
     found: str
 
     def __str__(self) -> str:
-        return f"{self.file}: {self.place}: expected {self.expected}, found {self.found}"
+        where = "".join(f"{part}: " for part in (self.file, self.place) if part)
+        return f"{where}expected {self.expected}, found {self.found}"
 
 
 class InputError(ValueError):
-    """The input is wrong; carries every fault that was found, not only the first."""
+    """The input, a file or an option in Python, is wrong; carries every fault that was found."""
 
     def __init__(self, faults: Fault | Iterable[Fault]) -> None:
         self.faults = (faults,) if isinstance(faults, Fault) else tuple(faults)
         super().__init__("\n".join(map(str, self.faults)))
+
+
+def refuse(faults: Iterable[Fault]) -> None:
+    """Raise InputError where there are faults."""
+    if found := tuple(faults):
+        raise InputError(found)
 
 
 class ModelError(ValueError):

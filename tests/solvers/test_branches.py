@@ -47,7 +47,7 @@ class Switching:
 
 @pytest.mark.parametrize(("follows", "least"), [(True, 0.0), (False, 0.05)])
 def test_a_start_is_followed_on_its_own_piece_too(follows: bool, least: float) -> None:
-    search = Search(starts=0, limit=0, evolutions=0)
+    search = Search.none()
     descent = Descent(weighted(np.ones(1)))
     found = explore(Switching(follows=follows), descent, np.random.default_rng(0), search)
     assert found[0].at.J[0] == pytest.approx(least, abs=1e-9)

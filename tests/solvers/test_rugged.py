@@ -161,7 +161,7 @@ def test_no_starts_mean_no_exploration() -> None:
     assert front.target is not None
     points = [one for label, one in front.points if label.startswith("nbi")]
     before = problem.counts["eigenproblems"]
-    none = Search(0, 0, 0)
+    none = Search.none()
     rng = np.random.default_rng(0)
     same = explore_between(
         problem, front.target, points, [], simplex(2, 3), rng, none, compute_always

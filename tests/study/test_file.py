@@ -13,10 +13,11 @@ from modefront.models.chain import chain
 from modefront.models.files import read_matrix
 from modefront.pairing.match import Pairing
 from modefront.residuals.groups import Group
-from modefront.solvers.explore import Search
-from modefront.study.file import Study, load
-from modefront.study.tables.settings import Pareto
-from modefront.study.tables.weighted import Weighted
+from modefront.solvers.explore import LIMIT, Search
+from modefront.fronts.given import Weighted
+from modefront.fronts.options import Pareto
+from modefront.study.definition import Study
+from modefront.study.file import load
 
 HEAD = """
 [study]
@@ -132,14 +133,14 @@ def test_the_rest(study: Callable[[str], Study]) -> None:
         evolutions = 0
         """
     )
-    assert read.weighted == (Weighted("by hand", (0.5, 2.0)),)
+    assert read.weighted == (Weighted("by hand", {"second": 2.0, "frequencies": 0.5}),)
     assert read.pareto.points == 7
     assert read.problem.pairing == Pairing("order", 2.0, 4)
     assert read.search == Search(5, 50, 0)
 
 
 def test_more_starts_than_the_usual_limit_raise_it(study: Callable[[str], Study]) -> None:
-    many = Search.limit + 1
+    many = LIMIT + 1
     assert study(f"{HEAD}{CHAIN}[search]\nstarts = {many}").search.limit == many
 
 

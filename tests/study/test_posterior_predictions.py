@@ -257,7 +257,7 @@ def test_what_there_is_no_posterior_or_no_prediction_of_is_not_there(drawn: xr.D
     assert len(of_them) == 15
     exact = solved(exact_problem(), [replace(PEAK, band=(0.5, 20.0))], draws=3)
     assert "frf_peak" in exact
-    plain = solved(problem_of(), [], draws=3)
+    plain = solved(problem_of(), [])
     undrawn = solved(problem_of(), [PEAK])
     for data in (exact, plain, undrawn):
         assert "draw" not in data.sizes
@@ -267,6 +267,8 @@ def test_what_there_is_no_posterior_or_no_prediction_of_is_not_there(drawn: xr.D
     missing = "there is no posterior: no models are drawn from it"
     assert missing in remarks(exact)
     assert missing not in remarks(plain)
+    with pytest.raises(mf.InputError, match="draws: expected 0 without predictions, found 3"):
+        solved(problem_of(), [], draws=3)
 
 
 def test_models_that_cannot_be_solved_are_counted() -> None:

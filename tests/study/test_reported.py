@@ -14,6 +14,7 @@ import xarray as xr
 import modefront as mf
 from modefront._typing import Floats
 from modefront.cli.show import as_json, print_results, remarks
+from modefront.identifiability.options import Identifiability
 from modefront.solvers.advance import Simplex, simplex
 from modefront.solvers.explore import Search
 from modefront.solvers.flat import Identifiable
@@ -24,7 +25,6 @@ from modefront.solvers.sqp import Solution, Status, begin
 from modefront.study import knowledge, run
 from modefront.study.examples import write_example
 from modefront.study.results import _lattice
-from modefront.study.tables.identifiability import Identifiability
 
 
 def on_a_line(theta: Floats) -> tuple[Floats, Floats, Floats]:

@@ -59,5 +59,5 @@ def test_values_are_drawn_with_their_standard_deviations() -> None:
 
 
 def test_a_source_that_the_data_do_not_have_is_refused() -> None:
-    with pytest.raises(ValueError, match=r"expected one of .* as the source, found 'sets'"):
+    with pytest.raises(mf.InputError, match="source: expected a mode measured in two data sets"):
         mf.Uncertainty("sets").of(data_of(1))

@@ -12,8 +12,10 @@ from modefront.analysis.neighbours import with_neighbours
 from modefront.errors import ModelError
 from modefront.fronts.front import Front
 from modefront.fronts.methods import METHODS
+from modefront.fronts.options import Pareto
 from modefront.fronts.point import Kind, Point, label, of_kind
 from modefront.identifiability.combinations import without_effect
+from modefront.identifiability.options import Identifiability
 from modefront.identifiability.scale import scale_at
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.advance import default_points
@@ -25,13 +27,11 @@ from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution, begin, solve
-from modefront.study.tables.identifiability import Identifiability
-from modefront.study.tables.settings import Pareto
-from modefront.study.tables.uncertainty import Uncertainty
 from modefront.uncertainty.bootstrap import redraw
 from modefront.uncertainty.laplace import Posterior, laplace
 from modefront.uncertainty.linear import Local, front_scatter
 from modefront.uncertainty.noise import Noise, Source, noise
+from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.points import Role, SolvedPoint, solve_again
 from modefront.uncertainty.scatter import Scatter
 from modefront.work.task import Executor, Task, seed_sequence

@@ -8,12 +8,17 @@ from __future__ import annotations
 
 import os
 import sys
+from dataclasses import replace
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import click
 
 from modefront import __version__
 from modefront.errors import InputError, UnfinishedError
+
+if TYPE_CHECKING:
+    from modefront.study.definition import Study
 
 OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 
@@ -75,14 +80,12 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     from modefront.cli.show import print_summary
     from modefront.study.file import load
     from modefront.study.results import not_converged
-    from modefront.study.session import check_refinable
     from modefront.study.session import run as run_study
 
-    loaded = load(study)
-    check_refinable(loaded, refine)
+    loaded = _refined(load(study), refine)
     directory = directory or study.with_name(f"{study.stem}-results")
     with progress_bar(loaded.name) as progress:
-        data = run_study(loaded, directory, fresh=fresh, refined=refine, progress=progress)
+        data = run_study(loaded, directory, fresh=fresh, progress=progress)
     print_summary(data, directory, progress.spent)
     failed = not_converged(data)
     if failed:
@@ -163,6 +166,18 @@ def identify(
     if band and band[0] >= band[1]:
         raise click.UsageError(f"--band: expected LOW below HIGH, found {band[0]:g} {band[1]:g}")
     run_identify(test, output, band, figures)
+
+
+def _refined(study: Study, size: float | None) -> Study:
+    """Return a study whose front is refined; what is wrong with that is said of the option."""
+    if size is None:
+        return study
+    try:
+        return replace(study, pareto=replace(study.pareto, refined=size))
+    except InputError as error:
+        file = str(study.file)
+        faults = [replace(fault, file=file, place="--refine") for fault in error.faults]
+        raise InputError(faults) from None
 
 
 def main() -> None:

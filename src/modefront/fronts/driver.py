@@ -12,6 +12,7 @@ from modefront.errors import UnfinishedError
 from modefront.fronts.front import Front
 from modefront.fronts.methods import METHODS
 from modefront.fronts.methods.base import Along, Setting
+from modefront.fronts.options import Pareto
 from modefront.fronts.point import Kind, Point, label, of_kind
 from modefront.solvers.advance import Simplex, default_points, simplex
 from modefront.solvers.archive import Archive, Archiving
@@ -31,7 +32,6 @@ from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Options, Solution, begin
 from modefront.solvers.weights import accepted, iterate_weights, least_along, optimal_minima
-from modefront.study.tables.settings import Pareto
 from modefront.work.task import IMMEDIATE, Executor, Key, Task, Within, seed_sequence
 
 MOVED = 0.1
@@ -67,7 +67,7 @@ def pareto_front(
         a,
         options or Pareto(),
         seed,
-        (search or Search()) if known is None else Search(0, 0, 0),
+        (search or Search()) if known is None else Search.none(),
         tuple(given),
         floor,
         archive,

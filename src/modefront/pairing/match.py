@@ -9,13 +9,14 @@ paired in their order: measured mode r is model mode r.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
 
 import numpy as np
 from scipy.optimize import linear_sum_assignment
 
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
+from modefront.options import check_fields, number, whole
 
 OUTSIDE = 1e3
 """Cost of a candidate outside the window of frequencies."""
@@ -23,10 +24,14 @@ OUTSIDE = 1e3
 UNSEEN = 1e-6
 """Greatest component of a mode at the sensors, over that of all modes, below which it is noise."""
 
+WINDOW = number("a ratio of frequencies above 1", lambda x: x > 1)
+
 
 @dataclass(frozen=True)
 class Pairing:
     """How modes are paired.
+
+    Raises InputError for values that are not possible.
 
     Attributes
     ----------
@@ -36,8 +41,11 @@ class Pairing:
     """
 
     method: Literal["mac", "order"] = "mac"
-    window: float | None = None
-    spare: int = 3
+    window: Annotated[float, WINDOW] | None = None
+    spare: Annotated[int, whole(0, 1000)] = 3
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
 
 @dataclass(frozen=True)

@@ -35,6 +35,8 @@ from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.base import Model
+from modefront.models.parameters import Parameter, in_order, parameters_of
+from modefront.models.reduced.options import Reduction
 from modefront.modes.result import Modes
 from modefront.pairing.match import Pairing, Pairs, match, mean_mac, modes_needed
 from modefront.residuals.groups import (
@@ -273,29 +275,33 @@ def updating_problem(
     model: Model,
     data: ModalData,
     groups: Sequence[Group],
-    bounds: Mapping[str, tuple[float, float]],
-    nominal: Mapping[str, float],
+    bounds: Mapping[str, tuple[float, float]] | None = None,
+    nominal: Mapping[str, float] | None = None,
     pairing: Pairing | None = None,
+    *,
+    parameters: Sequence[Parameter] = (),
+    reduction: Reduction | None = None,
 ) -> UpdatingProblem:
-    """Return the problem of updating a model, with bounds and nominal values by parameter name.
+    """Return the problem of updating a model.
 
-    Raises ValueError where a parameter has no bounds or no nominal value within them, a group
-    has no members, or data and model differ in their sensors.
+    Its parameters are given as such, in any order, or as bounds and nominal values by their names;
+    it is solved in full unless a ``reduction`` says otherwise. Raises ValueError where a parameter
+    is not given once, has bounds of no width or a nominal value beyond them, a group has no
+    members, or data and model differ in their sensors.
     """
     if data.sensors != model.sensors:
         raise ValueError(f"expected data at sensors {model.sensors}, found {data.sensors}")
-    for name in model.parameters:
-        if name not in bounds or name not in nominal:
-            raise ValueError(f"expected bounds and a nominal value of '{name}', found none")
-        if not bounds[name][0] <= nominal[name] <= bounds[name][1]:
-            raise ValueError(f"expected '{name}' within {bounds[name]}, found {nominal[name]}")
+    given = parameters or parameters_of(bounds or {}, nominal or {})
+    chosen = in_order(given, model.parameters)
+    if reduction is not None:
+        model = reduction.of(model, data, pairing or Pairing(), chosen)
     return UpdatingProblem(
         model,
         data,
         tuple(groups),
-        np.array([bounds[name][0] for name in model.parameters], dtype=float),
-        np.array([bounds[name][1] for name in model.parameters], dtype=float),
-        np.array([nominal[name] for name in model.parameters], dtype=float),
+        np.array([each.lower for each in chosen]),
+        np.array([each.upper for each in chosen]),
+        np.array([each.nominal for each in chosen]),
         pairing or Pairing(),
     )
 

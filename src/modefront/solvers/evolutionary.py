@@ -27,8 +27,6 @@ from modefront.solvers.sqp import Solution, Status
 from modefront.work.codec import record
 from modefront.work.task import IMMEDIATE, Executor, Task
 
-EVOLUTIONARY = ("spea2", "nsga2")
-
 UNDEFINED = 1e20
 """What an objective counts as where the model cannot be evaluated; pymoo takes no infinity."""
 

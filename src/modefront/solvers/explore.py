@@ -21,11 +21,13 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
-from typing import Protocol
+from typing import Annotated, Protocol, cast
 
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.errors import Fault, refuse
+from modefront.options import check_fields, number, plain, whole
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Scalarisation
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
@@ -47,24 +49,54 @@ NEAR = 2e-2
 """Distance of a half-finished search from a minimum below which it is on its way there."""
 
 
+LIMIT = 60
+"""Local searches at most, where nothing else is said and no more of them are wanted at least."""
+
+MOST = 10**6
+"""Local searches, runs and generations that may be asked for."""
+
+NO_STARTS = (0, 0, 0)
+"""Starts, limit and evolutions of a search from known models only."""
+
+SPREAD = number("a share of the ranges above 0", lambda x: x > 0)
+
+
 @dataclass(frozen=True)
 class Search:
-    """How hard is looked for global minima.
+    """How many local searches and runs of an evolution strategy seek global minima.
+
+    Raises InputError for values that are not possible, alone or together.
 
     Attributes
     ----------
     starts : local searches at least, where no starts are known
-    limit : local searches at most
+    limit : local searches at most; unless given, 60 or as many as ``starts``
     evolutions : runs of the evolution strategy at most, where the limit did not suffice
     generations : generations of one run at most
     spread : standard deviation, over the range of the parameters, at which a run hands over
     """
 
-    starts: int = 12
-    limit: int = 60
-    evolutions: int = 4
-    generations: int = 30
-    spread: float = 0.05
+    starts: Annotated[int, whole(1, MOST)] = 12
+    limit: Annotated[int, whole(1, MOST)] = cast("int", None)  # filled in on construction
+    evolutions: Annotated[int, whole(0, MOST)] = 4
+    generations: Annotated[int, whole(1, MOST)] = 30
+    spread: Annotated[float, SPREAD] = 0.05
+
+    def __post_init__(self) -> None:
+        if (self.starts, self.limit, self.evolutions) == NO_STARTS:
+            return
+        if self.limit is None:
+            starts = plain(self.starts)
+            usual = max(LIMIT, min(starts, MOST)) if isinstance(starts, int) else LIMIT
+            object.__setattr__(self, "limit", usual)
+        check_fields(self)
+        if self.limit < self.starts:
+            refuse([Fault("", "limit", f"at least starts, {self.starts}", str(self.limit))])
+
+    @classmethod
+    def none(cls) -> Search:
+        """Return the search that starts from known models only."""
+        return cls(*NO_STARTS)
 
 
 class LocalSearch(Protocol):

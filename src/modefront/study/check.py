@@ -31,7 +31,7 @@ from modefront.identifiability.words import (
 from modefront.models.reduced.model import ReducedModel
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.problem import Evaluation
-from modefront.study.file import Study
+from modefront.study.definition import Study
 
 AGREEMENT = 1e-5
 """Greatest relative error of derivatives that finite differences explain."""

@@ -6,105 +6,68 @@ import hashlib
 import json
 import tomllib
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
+from modefront.data.modal import ModalData
 from modefront.errors import Fault, InputError, ModelError
+from modefront.fronts.options import Pareto
+from modefront.identifiability.options import Identifiability
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.model import MEMORY, ReducedModel
-from modefront.predict import Prediction
+from modefront.models.reduced.model import ReducedModel
+from modefront.pairing.match import Pairing
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
+from modefront.study.definition import Origin, Study, undrawn
+from modefront.study.labels import labels_of
 from modefront.study.reader import Table
 from modefront.study.tables.data import read_data
 from modefront.study.tables.groups import read_groups
-from modefront.study.tables.identifiability import Identifiability, read_identifiability
 from modefront.study.tables.model import read_model
-from modefront.study.tables.parameters import Parameter, read_parameters
+from modefront.study.tables.options import note, read_options
+from modefront.study.tables.parameters import read_parameters
 from modefront.study.tables.predict import complete, read_predictions
-from modefront.study.tables.reduction import fallback, read_memory, reduced
-from modefront.study.tables.settings import (
-    Pareto,
-    check_size,
-    read_pairing,
-    read_pareto,
-    read_search,
-)
-from modefront.study.tables.uncertainty import Uncertainty, read_uncertainty
-from modefront.study.tables.weighted import Weighted, read_weights
+from modefront.study.tables.weighted import read_weights
+from modefront.uncertainty.options import Uncertainty
 
 
-@dataclass(frozen=True)
-class Study:
-    """All that a study file says.
-
-    Attributes
-    ----------
-    file : where it was read
-    digest : hash of this file and of all files that it names
-    work : the same for what the front depends on: all that it says but for predictions and draws
-    pareto : how the front is found
-    weighted : models wanted with given weights, besides equal and optimal ones
-    identifiability : what is done about what the data do not determine
-    uncertainty : what is done about errors of the data
-    predictions : what all models that are found are to predict
-    remark : why what was asked for is not done
-    """
-
-    file: Path
-    name: str
-    seed: int
-    digest: str
-    work: str
-    parameters: tuple[Parameter, ...]
-    problem: UpdatingProblem
-    pareto: Pareto
-    weighted: tuple[Weighted, ...]
-    search: Search
-    identifiability: Identifiability
-    uncertainty: Uncertainty
-    predictions: tuple[Prediction, ...]
-    remark: str = ""
-
-
-def load(path: Path) -> Study:
-    """Read a study file and all files that it names.
+def load(path: Path | str) -> Study:
+    """Return the study that a file, with all files that it names, describes.
 
     Raises InputError with everything that is wrong.
     """
+    path = Path(path)
     values, content = _parse(path)
     faults: list[Fault] = []
     root = Table(str(path), "", values, faults)
     header = root.table("study", "a table [study]")
-    title, seed, memory = "", 0, MEMORY
-    if header:
-        title = header.text("name") or ""
-        seed = header.integer("seed", 0, 2**63 - 1, default=0)
-        memory = read_memory(header)
-        header.close()
-    parameters = read_parameters(root)
-    names = [one.name for one in parameters]
-    model, reduction = read_model(root, names, path.parent)
+    names, parameters = read_parameters(root)
+    model, reduction = read_model(root, header, names, path.parent)
+    title, seed = _read_header(header)
     data, data_file = read_data(root, model, path.parent)
     groups = read_groups(root, data)
-    weights = read_weights(root, [group.name for group in groups if group.name])
-    pareto, pairing, search = read_pareto(root), read_pairing(root), read_search(root)
-    identifiability, uncertainty = read_identifiability(root), read_uncertainty(root, data)
+    objectives = [group.name for group in groups if group.name]
+    pareto = read_options(root, "pareto", Pareto)
+    weighted = read_weights(root, objectives, labels_of(objectives))
+    search = read_options(root, "search", Search)
+    identifiability = read_options(root, "identifiability", Identifiability)
+    uncertainty = _read_uncertainty(root, data)
+    pairing = read_options(root, "pairing", Pairing)
     drafts = read_predictions(root, model, data)
-    check_size(root, pareto, len(groups))
+    note(_place(root, "[pareto]"), pareto.faults(len(groups)))
     root.close()
     if faults or model is None or data is None:
         raise InputError(faults)
     problem = UpdatingProblem(
-        reduced(model, reduction, memory, data, pairing, parameters),
+        reduction.of(model, data, pairing, parameters),
         data,
         groups,
-        np.array([one.lower for one in parameters]),
-        np.array([one.upper for one in parameters]),
-        np.array([one.nominal for one in parameters]),
+        np.array([each.lower for each in parameters]),
+        np.array([each.upper for each in parameters]),
+        np.array([each.nominal for each in parameters]),
         pairing,
     )
     _try_model(root, problem)
@@ -112,14 +75,43 @@ def load(path: Path) -> Study:
     if faults:
         raise InputError(faults)
     files = [data_file, *_model_files(values)]
-    digest = _digest(content, path.parent, files)
-    rest = json.dumps(_without_predictions(values), sort_keys=True)
-    work = _digest(rest.encode(), path.parent, files)
-    remark = fallback(problem.model, reduction)
-    return Study(
-        *(path, title, seed, digest, work, parameters, problem, pareto, weights, search),
-        *(identifiability, uncertainty, predictions, remark),
+    front = json.dumps(_without_predictions(values), sort_keys=True)
+    origin = Origin(
+        path,
+        _digest(content, path.parent, files),
+        _digest(front.encode(), path.parent, files),
+        problem,
+        reduction.fallback(problem.model),
     )
+    return Study(
+        *(problem, title, seed, pareto, weighted, search, identifiability, uncertainty),
+        *(predictions, origin),
+    )
+
+
+def _read_header(header: Table | None) -> tuple[str, int]:
+    """Return name and seed of the table ``[study]``, what it says of memory being read."""
+    if header is None:
+        return "", 0
+    name = header.text("name") or ""
+    seed: int = header.integer("seed", 0, 2**63 - 1, default=0)
+    header.close()
+    return name, seed
+
+
+def _read_uncertainty(root: Table, data: ModalData | None) -> Uncertainty:
+    """Return how errors of the data are carried; these have to be known."""
+    uncertainty = read_options(root, "uncertainty", Uncertainty)
+    place = _place(root, "[uncertainty]")
+    note(place, undrawn(uncertainty, len(root.values.get("predict") or ())))
+    if data is not None:
+        note(place, uncertainty.faults(data))
+    return uncertainty
+
+
+def _place(root: Table, place: str) -> Table:
+    """Return where faults of a table are noted that is read already."""
+    return replace(root, place=place)
 
 
 def _parse(path: Path) -> tuple[dict[str, Any], bytes]:

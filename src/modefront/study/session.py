@@ -6,9 +6,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Unpack
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 import modefront
@@ -23,19 +22,20 @@ from modefront.analysis.front import AnalysisOptions, analyse_front
 from modefront.errors import Fault, InputError
 from modefront.fronts.driver import pareto_front
 from modefront.fronts.front import Front
+from modefront.fronts.given import Weighted
+from modefront.fronts.options import Pareto, ParetoOptions
 from modefront.fronts.point import Kind, Point
 from modefront.identifiability.combinations import unchanged_groups
+from modefront.identifiability.options import Identifiability
 from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.solvers.sqp import Solution, given
 from modefront.study.check import refuse_unchanged_groups
-from modefront.study.file import Study
+from modefront.study.definition import Study
 from modefront.study.prediction_runner import PredictionRunner
-from modefront.study.tables.identifiability import Identifiability
-from modefront.study.tables.settings import Pareto
-from modefront.study.tables.uncertainty import Uncertainty
 from modefront.uncertainty.noise import noise_floor
+from modefront.uncertainty.options import Uncertainty
 from modefront.work.progress import Progress
 from modefront.work.serial import Serial
 from modefront.work.store import FOLDER, Store
@@ -48,36 +48,41 @@ if TYPE_CHECKING:
 def solve(
     problem: UpdatingProblem,
     *,
-    method: str = Pareto.method,
-    points: int | None = None,
-    refined: float | None = None,
-    population: int = Pareto.population,
-    evaluations: int = Pareto.evaluations,
-    tolerance: float = 0.0,
+    pareto: Pareto | None = None,
+    weighted: Sequence[Weighted] = (),
     seed: int = 0,
     search: Search | None = None,
     identifiability: Identifiability | None = None,
     uncertainty: Uncertainty | None = None,
     predictions: Sequence[Prediction] = (),
+    **front: Unpack[ParetoOptions],
 ) -> xr.Dataset:
     """Return all Pareto-optimal models, edges and weighted models of a problem.
 
-    The arguments are those of the study file, and ``refined``, for two groups, the distance of
-    neighbours on the front above which there are to be more points between them, in units of the
-    ranges of the objectives; ``predictions`` are made with every model. Raises UnfinishedError
-    where no minimum of a group can be found, InputError where no parameter changes a group.
+    The arguments are the options of `modefront.Study`. Those of ``pareto`` may be given by
+    themselves, ``method="weights", points=10``, and then take the place of its own. Raises
+    InputError for options that are not possible and where no parameter changes a group,
+    UnfinishedError where no minimum of a group can be found.
     """
-    session = _Session(
+    study = Study(
         problem,
-        Serial(),
-        Pareto(method, points, tolerance, population, evaluations, refined),
-        seed,
-        search=search,
+        seed=seed,
+        pareto=replace(pareto or Pareto(), **front),
+        weighted=tuple(weighted),
+        search=search or Search(),
         identifiability=identifiability or Identifiability(),
         uncertainty=uncertainty or Uncertainty(),
-        predictions=predictions,
+        predictions=tuple(predictions),
     )
-    return session.results()
+    return in_memory(study)
+
+
+def in_memory(study: Study) -> xr.Dataset:
+    """Return the results of a study, and write nothing.
+
+    Raises what `solve` raises.
+    """
+    return _Session(study, Serial()).results()
 
 
 def run(
@@ -88,65 +93,40 @@ def run(
     refined: float | None = None,
     progress: Progress | None = None,
 ) -> xr.Dataset:
-    """Do the work of a study, write ``results.nc`` into a folder and return what it holds.
+    """Write the results of a study to ``results.nc`` in a folder, and return them.
 
-    Tasks that an earlier run of the same inputs has done are not done again; ``fresh`` sets their
-    results aside; ``refined`` is that of `solve`. Raises InputError where the folder cannot be
-    written to or no parameter changes a group, and UnfinishedError where the work cannot be done.
+    Tasks that an earlier run of the same inputs has done are not done again. ``fresh`` sets their
+    results aside, as is always done with those of a study that was made in Python. ``refined``
+    takes the place of that of the study. Raises InputError where the folder cannot be written to,
+    the front cannot be refined or no parameter changes a group, and UnfinishedError where the work
+    cannot be done.
     """
     from modefront.study.results import FILE, write
 
+    if refined is not None:
+        study = replace(study, pareto=replace(study.pareto, refined=refined))
     tasks = folder / FOLDER / f"{study.work[:12]}-{modefront.__version__}"
     try:
         tasks.mkdir(parents=True, exist_ok=True)
-        if fresh:
+        if fresh or not study.work:
             _set_aside(tasks)
             _set_aside(folder / FILE)
     except OSError as error:
         fault = Fault(str(folder), "folder", "a folder that can be written to", str(error))
         raise InputError(fault) from None
-    pareto = study.pareto if refined is None else replace(study.pareto, refined=refined)
-    session = _Session(
-        study.problem,
-        Serial(Store(tasks), progress or Progress()),
-        pareto,
-        study.seed,
-        search=study.search,
-        given=[(weights.name, np.array(weights.weights)) for weights in study.weighted],
-        identifiability=study.identifiability,
-        uncertainty=study.uncertainty,
-        predictions=study.predictions,
-        file=study.file,
-    )
-    data = session.results()
+    data = _Session(study, Serial(Store(tasks), progress or Progress())).results()
     data.attrs |= {"study": study.name, "inputs": study.digest, "remark": study.remark}
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)
     return data
 
 
-def check_refinable(study: Study, refined: float | None) -> None:
-    """Raise InputError where a front is to be refined that is not one of two groups by NBI."""
-    groups = len(study.problem.objectives)
-    if refined is not None and (groups != 2 or study.pareto.method != "nbi"):
-        found = f"{groups} groups, method '{study.pareto.method}'"
-        raise InputError(Fault(str(study.file), "--refine", "two groups and method 'nbi'", found))
-
-
 @dataclass(frozen=True)
 class _Session:
-    """All the work on a problem, by an executor."""
+    """The work of a study, and who does it."""
 
-    problem: UpdatingProblem
+    study: Study
     work: Serial
-    pareto: Pareto
-    seed: int
-    search: Search | None
-    identifiability: Identifiability
-    uncertainty: Uncertainty
-    predictions: Sequence[Prediction]
-    given: Sequence[tuple[str, Floats]] = ()
-    file: Path = Path("study")
 
     def results(self) -> xr.Dataset:
         """Do the work and return its results.
@@ -154,10 +134,10 @@ class _Session:
         Raises InputError where no parameter changes a group.
         Dense problems of a hundred unknowns are slower on several threads of the BLAS than on one.
         """
+        problem = self.study.problem
         with threadpool_limits(1, user_api="blas"):
-            task = Task(("check-groups",), unchanged_groups, (self.problem,))
-            (unchanged,) = self.work.run([task])
-            refuse_unchanged_groups(self.problem, str(self.file), unchanged)
+            (unchanged,) = self.work.run([Task(("check-groups",), unchanged_groups, (problem,))])
+            refuse_unchanged_groups(problem, str(self.study.file), unchanged)
             return self._results()
 
     def _results(self) -> xr.Dataset:
@@ -165,37 +145,41 @@ class _Session:
         from modefront.study.predictions import extent, predicted
         from modefront.study.results import dataset
 
-        problem, work = self.problem, self.work
+        study, work = self.study, self.work
+        problem = study.problem
         search = partial(
             pareto_front,
             problem,
             problem.properties,
-            self.pareto,
-            seed=self.seed,
-            search=self.search,
-            given=self.given,
+            study.pareto,
+            seed=study.seed,
+            search=study.search,
+            given=[(each.name, each.of(problem.objectives)) for each in study.weighted],
             floor=self._noise_floor(),
         )
         front = certified_front(problem, search, work)
-        options = AnalysisOptions(self.pareto, self.identifiability, self.uncertainty, self.seed)
+        options = AnalysisOptions(
+            study.pareto, study.identifiability, study.uncertainty, study.seed
+        )
         analysis = analyse_front(problem, front, options, work)
         (nominal,) = work.run([Task(("nominal",), _nominal, (problem,))])
         extra = [*analysis.points, Point(Kind.NOMINAL, nominal)]
         analysis = replace(analysis, points=certified_points(problem, extra, work))
         data = dataset(problem, front, analysis)
-        runner = PredictionRunner(problem, self.predictions, self.seed, work, self.file)
-        near = around(data, runner, analysis.posterior, self.uncertainty.draws)
-        work.expect(extent(self.predictions, data.sizes["point"] + near.models))
+        runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file)
+        near = around(data, runner, analysis.posterior, study.uncertainty.draws)
+        work.expect(extent(study.predictions, data.sizes["point"] + near.models))
         data = predicted_around(predicted(data, runner), runner, near)
         data.attrs |= self._attributes(front)
         return data
 
     def _noise_floor(self) -> Floats | None:
         """Return the objectives that errors of the data explain; None where one is not known."""
-        source = self.uncertainty.of(self.problem.data)
+        problem = self.study.problem
+        source = self.study.uncertainty.of(problem.data)
         if source is None:
             return None
-        floor = noise_floor(self.problem, source)
+        floor = noise_floor(problem, source)
         return floor if (floor > 0).all() else None
 
     def _attributes(self, front: Front) -> dict[str, str | int | float]:
@@ -203,9 +187,10 @@ class _Session:
         total = self.work.total()
         along = self.work.total(lambda stage: stage == "front")
         predictions = self.work.total(lambda stage: stage == "predict")
+        refined = self.study.pareto.refined
         out: dict[str, str | int | float] = {
             "version": modefront.__version__,
-            "seed": self.seed,
+            "seed": self.study.seed,
             "model_evaluations": total.model_evaluations,
             "method": front.method,
             "front_evaluations": along.model_evaluations,
@@ -216,10 +201,10 @@ class _Session:
             "factorisations": total.factorisations,
             "reduced_solutions": total.reduced,
             "front_is_a_point": int(front.target is None),
-            **({} if self.pareto.refined is None else {"refined": self.pareto.refined}),
+            **({} if refined is None else {"refined": refined}),
             **coverage(front),
         }
-        return out | certificate_attributes(self.problem)
+        return out | certificate_attributes(self.study.problem)
 
 
 def _nominal(problem: UpdatingProblem) -> Solution:

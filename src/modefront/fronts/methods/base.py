@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import Literal, Protocol
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 
@@ -16,8 +16,10 @@ from modefront.solvers.payoff import Payoff
 from modefront.solvers.pieces import Gap
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
-from modefront.study.tables.settings import Pareto
 from modefront.work.task import Executor
+
+if TYPE_CHECKING:
+    from modefront.fronts.options import Pareto
 
 
 @dataclass(frozen=True)
@@ -73,6 +75,10 @@ class FrontMethod(Protocol):
     @property
     def programme(self) -> Literal["boundary", "weights"] | None:
         """Programme that a point solves: of the simplex between edges, of its weights, or none."""
+
+    @property
+    def missing(self) -> str | None:
+        """The package that the method needs and that is not installed, and how to install it."""
 
     def extent(self, options: Pareto, lattice: Simplex) -> int:
         """Return the expected number of tasks."""

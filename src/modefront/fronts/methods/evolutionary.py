@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from modefront.fronts.methods.base import Along, Setting
 from modefront.solvers.advance import Simplex
-from modefront.solvers.evolutionary import evolve_front
-from modefront.study.tables.settings import Pareto
+from modefront.solvers.evolutionary import available, evolve_front
 from modefront.work.task import seed_sequence
+
+if TYPE_CHECKING:
+    from modefront.fronts.options import Pareto
 
 
 @dataclass(frozen=True)
@@ -19,6 +22,11 @@ class Evolutionary:
 
     name: str
     programme: None = None
+
+    @property
+    def missing(self) -> str | None:
+        """Pymoo, where it is not installed."""
+        return None if available() else "pymoo: pip install modefront[evolutionary]"
 
     def extent(self, options: Pareto, _: Simplex) -> int:
         """Return the number of generations."""

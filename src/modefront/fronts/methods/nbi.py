@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -18,8 +18,10 @@ from modefront.solvers.payoff import Payoff
 from modefront.solvers.pieces import gaps
 from modefront.solvers.refine import refine
 from modefront.solvers.sqp import Solution
-from modefront.study.tables.settings import Pareto
 from modefront.work.task import Within, seed_sequence
+
+if TYPE_CHECKING:
+    from modefront.fronts.options import Pareto
 
 TURNS = 3
 """Refinements of a front at most, each with the gaps that the one before has shown."""
@@ -34,6 +36,10 @@ class NormalBoundaryIntersection:
 
     name: str = "nbi"
     programme: Literal["boundary"] = "boundary"
+
+    @property
+    def missing(self) -> None:
+        """None: nothing else has to be installed."""
 
     def extent(self, _: Pareto, lattice: Simplex) -> int:
         """Return the number of lattice points."""

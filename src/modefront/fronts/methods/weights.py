@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 from modefront.fronts.methods.base import Along, Setting
 from modefront.solvers.advance import Simplex
 from modefront.solvers.sweep import weight_sweep
-from modefront.study.tables.settings import Pareto
+
+if TYPE_CHECKING:
+    from modefront.fronts.options import Pareto
 
 
 @dataclass(frozen=True)
@@ -17,6 +19,10 @@ class WeightSweep:
 
     name: str = "weights"
     programme: Literal["weights"] = "weights"
+
+    @property
+    def missing(self) -> None:
+        """None: nothing else has to be installed."""
 
     def extent(self, _: Pareto, lattice: Simplex) -> int:
         """Return the number of lattice points."""

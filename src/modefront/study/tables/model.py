@@ -6,22 +6,24 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from modefront.models.base import Model
+from modefront.models.reduced.options import Reduction
 from modefront.study.kinds import KINDS
 from modefront.study.reader import Table
 from modefront.study.tables.reduction import read_reduction
 
 
 def read_model(
-    root: Table, parameters: Sequence[str], folder: Path
-) -> tuple[Model | None, float | str]:
-    """Return the model that a study describes, None where it has faults, and its reduction."""
+    root: Table, header: Table | None, parameters: Sequence[str], folder: Path
+) -> tuple[Model | None, Reduction]:
+    """Return the model that a study describes, None where it has faults, and its reduction.
+
+    ``header`` is the table ``[study]``, which says how much memory a basis may take.
+    """
     table = root.table("model", "a table [model]")
-    if table is None:
-        return None, ""
-    kind = table.choice("kind", tuple(KINDS))
-    if kind is None:
-        return None, ""
-    reduction = read_reduction(table, kind)
+    kind = None if table is None else table.choice("kind", tuple(KINDS))
+    reduction = read_reduction(table if kind else None, header)
+    if table is None or kind is None:
+        return None, reduction
     model = KINDS[kind](table, parameters, folder)
     table.close()
     return model, reduction

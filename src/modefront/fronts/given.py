@@ -1,0 +1,59 @@
+"""Weights that the user gives."""
+
+from __future__ import annotations
+
+from collections.abc import Container, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.errors import Fault, refuse, suggestion
+from modefront.options import Requirement, check_fields, number, shown, text
+
+WEIGHT = number("a weight above 0", lambda x: x > 0)
+
+WEIGHTS = Requirement(
+    "a table of weights, group = weight above 0", lambda value: isinstance(value, dict)
+)
+
+
+@dataclass(frozen=True)
+class Weighted:
+    """Weights w_i of the objectives; the name labels the model that minimises sum w_i J_i.
+
+    Raises InputError for weights that are not numbers above 0.
+    """
+
+    name: Annotated[str, text("a label for the model found with these weights")]
+    weights: Annotated[Mapping[str, float], WEIGHTS]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        refuse(
+            Fault("", f"weights {group}", WEIGHT.expected, shown(weight))
+            for group, weight in self.weights.items()
+            if not WEIGHT.holds(weight)
+        )
+
+    def faults(self, groups: Sequence[str]) -> Iterator[Fault]:
+        """Yield names of groups that there are not, and groups without a weight."""
+        for group in self.weights:
+            if group not in groups:
+                found = suggestion(group, groups)
+                yield Fault("", f"weights {group}", "the name of a group", found)
+        for group in groups:
+            if group not in self.weights:
+                yield Fault("", f"weights {group}", WEIGHT.expected, "nothing")
+
+    def of(self, groups: Sequence[str]) -> Floats:
+        """Return the weights in the order of the groups, shape (groups,)."""
+        return np.array([self.weights[group] for group in groups], dtype=float)
+
+
+def label_faults(names: Sequence[str], labels: Container[str]) -> Iterator[Fault]:
+    """Yield names that equal a label which results give to other models."""
+    for name in names:
+        if name in labels:
+            yield Fault("", "name", "another name than the labels of a study's models", f"'{name}'")

@@ -1,0 +1,75 @@
+"""How a front is to be found."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, TypedDict
+
+from modefront.errors import Fault, refuse
+from modefront.fronts.methods import METHODS
+from modefront.options import check_fields, number, one_of, whole
+from modefront.solvers.advance import size
+
+MOST = 10_000
+"""Points of a front at most."""
+
+
+@dataclass(frozen=True)
+class Pareto:
+    """How the front is found.
+
+    Raises InputError for values that are not possible, alone or together.
+
+    Attributes
+    ----------
+    method : normal-boundary intersection, weight sweep, or one of the evolutionary methods
+    points : along each edge of the simplex of objectives; None leaves it to their number
+    tolerance : share by which an edge may exceed the least value of its group
+    population, evaluations : size of a generation and budget of an evolutionary method
+    refined : distance of neighbours on the front, over the ranges of the objectives, above which
+        more points are put between them; None for no more points
+    """
+
+    method: Annotated[str, one_of(*METHODS)] = "nbi"
+    points: Annotated[int, whole(2, MOST)] | None = None
+    tolerance: Annotated[float, number("a share from 0 to 1", lambda x: 0 <= x <= 1)] = 0.0
+    population: Annotated[int, whole(4, 10**6)] = 100
+    evaluations: Annotated[int, whole(4, 10**9)] = 10_000
+    refined: (
+        Annotated[float, number("a distance from 0.001 to 1", lambda x: 1e-3 <= x <= 1)] | None
+    ) = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        refuse(self._contradictions())
+
+    def _contradictions(self) -> Iterator[Fault]:
+        if missing := METHODS[self.method].missing:
+            package, _, how = missing.partition(": ")
+            expected = f"the package {package} for '{self.method}': {how}"
+            yield Fault("", "method", expected, "none installed")
+        if self.evaluations < self.population:
+            least = f"at least the population, {self.population}"
+            yield Fault("", "evaluations", least, str(self.evaluations))
+
+    def faults(self, groups: int) -> Iterator[Fault]:
+        """Yield what is wrong with these options for a number of groups."""
+        if self.refined is not None and (groups != 2 or self.method != "nbi"):
+            found = f"{groups} group{'s' * (groups > 1)}, method '{self.method}'"
+            yield Fault("", "refined", "two groups and method 'nbi'", found)
+        if self.points and groups > 1 and size(groups, self.points) > MOST:
+            expected = f"a number with at most {MOST} points on the simplex of {groups} groups"
+            found = f"{self.points}, which are {size(groups, self.points)}"
+            yield Fault("", "points", expected, found)
+
+
+class ParetoOptions(TypedDict, total=False):
+    """The fields of `Pareto` as keywords of a function."""
+
+    method: str
+    points: int | None
+    tolerance: float
+    population: int
+    evaluations: int
+    refined: float | None

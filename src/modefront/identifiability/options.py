@@ -1,0 +1,33 @@
+"""What is done about parameters that the data do not determine."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from modefront.options import check_fields, number, whole
+
+SHARE = number("a share from 0 to 1", lambda x: 0 <= x <= 1)
+STEP = number("a share of the ranges from 0.001 to 0.5", lambda x: 1e-3 <= x <= 0.5)
+
+
+@dataclass(frozen=True)
+class Identifiability:
+    """Which flat parts of the front and which equivalent models are sought.
+
+    Raises InputError for values that are not possible.
+
+    Attributes
+    ----------
+    flat : share by which an objective may exceed its least value in a flat part of the front; 0
+        looks for none
+    models : at most so many on each manifold of equivalent ones; 0 follows none
+    step : distance of neighbours among them, over the ranges of the parameters
+    """
+
+    flat: Annotated[float, SHARE] = 0.01
+    models: Annotated[int, whole(0, 10**6)] = 100
+    step: Annotated[float, STEP] = 0.05
+
+    def __post_init__(self) -> None:
+        check_fields(self)

@@ -1,0 +1,76 @@
+"""The parameters that are updated."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+from modefront.errors import Fault, InputError, refuse
+from modefront.options import check_fields, each_once, number, numbers, text
+
+BOUNDS = numbers(
+    "[lower, upper], two finite numbers with lower < upper",
+    lambda x: len(x) == 2 and x[0] < x[1],
+)
+
+
+@dataclass(frozen=True)
+class Parameter:
+    """A parameter of a model: its nominal value, where the search starts, and its bounds.
+
+    Raises InputError for bounds of no width and for a nominal value beyond them.
+    """
+
+    name: Annotated[str, text("the name of the parameter")]
+    nominal: Annotated[float, number("a finite number")]
+    bounds: Annotated[tuple[float, float], BOUNDS]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        if not self.lower <= self.nominal <= self.upper:
+            inside = f"a value within its bounds, {self.lower:g} to {self.upper:g}"
+            refuse([Fault("", "nominal", inside, f"{self.nominal:g}")])
+
+    @property
+    def lower(self) -> float:
+        """The lower bound."""
+        return self.bounds[0]
+
+    @property
+    def upper(self) -> float:
+        """The upper bound."""
+        return self.bounds[1]
+
+
+def parameters_of(
+    bounds: Mapping[str, tuple[float, float]], nominal: Mapping[str, float]
+) -> list[Parameter]:
+    """Return the parameters of which bounds and nominal values are given by name.
+
+    Raises InputError with all that is wrong with them.
+    """
+    out, faults = [], []
+    for name in dict.fromkeys([*bounds, *nominal]):
+        given = {"bounds": bounds, "nominal": nominal}
+        for what in (what for what, values in given.items() if name not in values):
+            faults.append(Fault("", f"{what} of '{name}'", f"{what} of each parameter", "nothing"))
+        if name in bounds and name in nominal:
+            try:
+                out.append(Parameter(name, nominal[name], bounds[name]))
+            except InputError as error:
+                faults += [replace(x, place=f"{x.place} of '{name}'") for x in error.faults]
+    refuse(faults)
+    return out
+
+
+def in_order(parameters: Sequence[Parameter], names: Sequence[str]) -> list[Parameter]:
+    """Return the parameters of these names, in this order.
+
+    Raises InputError where one is missing or given twice. Others are left out.
+    """
+    given = {parameter.name: parameter for parameter in parameters}
+    missing = [name for name in names if name not in given]
+    twice = each_once("parameters", [parameter.name for parameter in parameters])
+    refuse([*twice, *(Fault("", "parameters", f"one called '{x}'", "none") for x in missing)])
+    return [given[name] for name in names]

@@ -1,0 +1,84 @@
+"""Whether a model is solved in a reduced basis, and how exactly."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+import numpy as np
+
+from modefront.data.modal import ModalData
+from modefront.models.base import Model
+from modefront.models.matrices import MatrixModel
+from modefront.models.parameters import Parameter
+from modefront.models.reduced.model import MEMORY, TOLERANCE, ReducedModel
+from modefront.options import Requirement, check_fields, number
+from modefront.pairing.match import Pairing, modes_needed
+
+PAYS = 2000
+"""Degrees of freedom from which ``"auto"`` takes a basis; smaller models are solved in full."""
+
+LEAST, MOST = 1e-12, 1e-2
+"""Tolerances that may be asked for."""
+
+_TOLERANCE = number("", lambda x: LEAST <= x <= MOST)
+
+REDUCTION = Requirement(
+    f"'auto', 'off' or a relative error of eigenvalues from {LEAST:g} to {MOST:g}",
+    lambda value: value in ("auto", "off") if isinstance(value, str) else _TOLERANCE.holds(value),
+    lambda value: value if isinstance(value, str) else float(value),
+)
+
+GIB = number("GiB for a reduced basis, above 0", lambda x: x > 0)
+
+
+@dataclass(frozen=True)
+class Reduction:
+    """Whether a model is solved in a reduced basis, and how exactly.
+
+    Raises InputError for values that are not possible.
+
+    Attributes
+    ----------
+    reduction : relative error of eigenvalues that a basis has to keep to; ``"auto"`` takes a basis
+        where it pays, ``"off"`` none
+    memory : GiB that a basis may take
+    """
+
+    reduction: Annotated[float | Literal["auto", "off"], REDUCTION] = "auto"
+    memory: Annotated[float, GIB] = MEMORY
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+    def of(
+        self, model: Model, data: ModalData, pairing: Pairing, parameters: Sequence[Parameter]
+    ) -> Model:
+        """Return the model in a reduced basis, or as it is: by wish, or where nothing is gained.
+
+        A basis needs matrices that are affine in functions of the parameters, and sparse.
+        """
+        if self.reduction == "off" or not isinstance(model, MatrixModel) or not model.is_sparse:
+            return model
+        if self.reduction == "auto" and model.size < PAYS:
+            return model
+        count = modes_needed(pairing, data, model.size)
+        return ReducedModel(
+            model,
+            count,
+            np.array([each.nominal for each in parameters]),
+            np.array([each.lower for each in parameters]),
+            np.array([each.upper for each in parameters]),
+            tolerance=TOLERANCE if isinstance(self.reduction, str) else self.reduction,
+            memory=self.memory,
+            spare=count - len(data.modes),
+        )
+
+    def fallback(self, model: Model) -> str:
+        """Return why a model is solved in full though a tolerance was asked for, or nothing."""
+        if isinstance(self.reduction, str) or isinstance(model, ReducedModel):
+            return ""
+        if isinstance(model, MatrixModel):
+            return f"no reduced basis: the model has only {model.size} degrees of freedom"
+        return "no reduced basis: the matrices are not known as affine functions of the parameters"

@@ -1,0 +1,173 @@
+"""Options that check themselves, with the same words in Python and in a study file.
+
+An option is a field of a frozen dataclass. Its annotation says what it may be: a ``Literal``, or
+``Annotated`` with a `Requirement`; ``None`` besides, where the annotation has it. `check_fields`,
+called from ``__post_init__``, compares all fields with their requirements and brings their values
+into plain Python: the same record is made from TOML, from literals and from numpy scalars. A reader
+of files takes `requirements` for the keys of a table.
+"""
+
+from __future__ import annotations
+
+import math
+import types
+import typing
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import MISSING, dataclass, fields
+from enum import Enum
+from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
+
+import numpy as np
+
+from modefront.errors import Fault, refuse
+from modefront.study.reader import describe, is_name, is_number, repeated
+
+
+@dataclass(frozen=True)
+class Requirement:
+    """What a value has to be.
+
+    Attributes
+    ----------
+    expected : the same in words
+    holds : whether a value in plain Python is so
+    convert : brings such a value into the form that is kept
+    record : the class of a nested record, read from a table within the table; None for a value
+    """
+
+    expected: str
+    holds: Callable[[Any], bool]
+    convert: Callable[[Any], Any] = lambda value: value
+    record: type | None = None
+
+
+def one_of(*choices: str) -> Requirement:
+    """Return the requirement of one of several texts."""
+    expected = "one of " + ", ".join(f"'{choice}'" for choice in choices)
+    return Requirement(expected, lambda value: isinstance(value, str) and value in choices)
+
+
+def whole(least: int, most: int) -> Requirement:
+    """Return the requirement of a whole number within limits."""
+    return Requirement(
+        f"a whole number from {least} to {most}",
+        lambda value: (
+            isinstance(value, int) and not isinstance(value, bool) and least <= value <= most
+        ),
+    )
+
+
+def number(expected: str, holds: Callable[[float], bool] = math.isfinite) -> Requirement:
+    """Return the requirement of a finite number that passes a test."""
+    return Requirement(expected, lambda value: is_number(value) and holds(value), float)
+
+
+def numbers(expected: str, holds: Callable[[list[float]], bool]) -> Requirement:
+    """Return the requirement of a list of finite numbers that passes a test."""
+    return Requirement(
+        expected,
+        lambda value: isinstance(value, list) and all(map(is_number, value)) and holds(value),
+        lambda value: tuple(map(float, value)),
+    )
+
+
+def text(expected: str) -> Requirement:
+    """Return the requirement of a text of printable characters that is not blank."""
+    return Requirement(expected, is_name)
+
+
+def nested(expected: str, record: type) -> Requirement:
+    """Return the requirement of another record of options."""
+    return Requirement(expected, lambda value: isinstance(value, record), record=record)
+
+
+TRUE_OR_FALSE = Requirement("true or false", lambda value: isinstance(value, bool))
+
+
+@dataclass(frozen=True)
+class Option:
+    """A field of a record of options.
+
+    Attributes
+    ----------
+    name : of the field, and of the key of a table
+    requirement : what its value has to be
+    optional : whether None is right as well
+    required : whether it has no default
+    """
+
+    name: str
+    requirement: Requirement
+    optional: bool
+    required: bool
+
+    def fault(self, value: object) -> Fault | None:
+        """Return what is wrong with a value, None where nothing is."""
+        if (value is None and self.optional) or self.requirement.holds(plain(value)):
+            return None
+        return Fault("", self.name, self.requirement.expected, shown(value))
+
+
+def options(record: type) -> tuple[Option, ...]:
+    """Return the fields of a class of records that have requirements."""
+    hints = get_type_hints(record, include_extras=True)
+    out = []
+    for field in fields(record):
+        requirement = _requirement(hints[field.name])
+        if requirement is not None:
+            required = field.default is MISSING and field.default_factory is MISSING
+            optional = types.NoneType in get_args(hints[field.name])
+            out.append(Option(field.name, requirement, optional, required))
+    return tuple(out)
+
+
+def _requirement(hint: Any) -> Requirement | None:
+    """Return what an annotation requires, None where it says nothing."""
+    if get_origin(hint) is Literal:
+        return one_of(*get_args(hint))
+    if get_origin(hint) is Annotated:
+        found = (each for each in get_args(hint)[1:] if isinstance(each, Requirement))
+        return next(found, None)
+    if get_origin(hint) in (types.UnionType, typing.Union):
+        known = (_requirement(part) for part in get_args(hint))
+        return next((each for each in known if each is not None), None)
+    return None
+
+
+def check_fields(record: Any) -> None:
+    """Bring the fields of a record into plain Python.
+
+    Raises InputError with everything that is wrong with single fields.
+    """
+    chosen = options(type(record))
+    found = [option.fault(getattr(record, option.name)) for option in chosen]
+    refuse(fault for fault in found if fault is not None)
+    for option in chosen:
+        value = getattr(record, option.name)
+        if value is not None:
+            # The record is frozen for everybody else; it is not finished before this.
+            object.__setattr__(record, option.name, option.requirement.convert(plain(value)))
+
+
+def each_once(place: str, names: Iterable[str]) -> list[Fault]:
+    """Return the faults of names that repeat."""
+    return [Fault("", place, "each name once", f"'{name}' twice") for name in repeated(names)]
+
+
+def plain(value: Any) -> Any:
+    """Return numpy scalars and arrays, tuples and enumerations in the types that TOML knows."""
+    if isinstance(value, np.generic | np.ndarray):
+        return value.tolist()
+    if isinstance(value, Enum):
+        return value.value
+    if isinstance(value, Mapping):
+        return {key: plain(each) for key, each in value.items()}
+    if isinstance(value, Sequence) and not isinstance(value, str | bytes):
+        return [plain(each) for each in value]
+    return value
+
+
+def shown(value: object) -> str:
+    """Return a value as a message shows it."""
+    known = plain(value)
+    return repr(known) if isinstance(known, str) else describe(known)

@@ -1,0 +1,165 @@
+"""A study: an updating problem and all that is done with it."""
+
+from __future__ import annotations
+
+import hashlib
+from collections.abc import Iterator
+from dataclasses import dataclass, field, replace
+from pathlib import Path
+from typing import TYPE_CHECKING, Annotated
+
+from modefront.errors import Fault, InputError, refuse
+from modefront.fronts.given import Weighted, label_faults
+from modefront.fronts.options import Pareto
+from modefront.identifiability.options import Identifiability
+from modefront.models.parameters import Parameter, parameters_of
+from modefront.options import check_fields, each_once, text, whole
+from modefront.predict import Prediction
+from modefront.residuals.problem import UpdatingProblem
+from modefront.solvers.explore import Search
+from modefront.study.labels import labels_of
+from modefront.uncertainty.options import Uncertainty
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+
+@dataclass(frozen=True)
+class Origin:
+    """Where a study was read.
+
+    Attributes
+    ----------
+    file : the study file
+    digest : hash of this file and of all files that it names
+    work : the same for what the front depends on: all that it says but for predictions and draws
+    problem : what was read; a study of another problem has another origin
+    remark : why what was asked for is not done
+    """
+
+    file: Path
+    digest: str
+    work: str
+    problem: UpdatingProblem
+    remark: str = ""
+
+
+@dataclass(frozen=True)
+class Study:
+    """A problem, and how it is solved.
+
+    Raises InputError with all options that contradict the problem or one another.
+
+    Attributes
+    ----------
+    problem : model, data, groups and parameters
+    name : a title
+    seed : of everything random
+    pareto : how the front is found
+    weighted : models wanted with given weights, besides equal and optimal ones
+    search : how global minima are sought
+    identifiability : what is done about what the data do not determine
+    uncertainty : what is done about errors of the data
+    predictions : what all models that are found are to predict
+    origin : where the study was read; None for one that was made in Python
+    """
+
+    problem: UpdatingProblem
+    name: Annotated[str, text("a text")] = "study"
+    seed: Annotated[int, whole(0, 2**63 - 1)] = 0
+    pareto: Pareto = field(default_factory=Pareto)
+    weighted: tuple[Weighted, ...] = ()
+    search: Search = field(default_factory=Search)
+    identifiability: Identifiability = field(default_factory=Identifiability)
+    uncertainty: Uncertainty = field(default_factory=Uncertainty)
+    predictions: tuple[Prediction, ...] = ()
+    origin: Origin | None = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        object.__setattr__(self, "weighted", tuple(self.weighted))
+        object.__setattr__(self, "predictions", tuple(self.predictions))
+        refuse(self._contradictions())
+
+    def _contradictions(self) -> Iterator[Fault]:
+        try:
+            _ = self.parameters
+        except InputError as error:
+            yield from error.faults
+        groups = self.problem.objectives
+        yield from each_once("groups", groups)
+        yield from self.pareto.faults(len(groups))
+        for weighted in self.weighted:
+            faults = [*weighted.faults(groups), *label_faults([weighted.name], labels_of(groups))]
+            for fault in faults:
+                yield replace(fault, place=f"weighted '{weighted.name}' {fault.place}")
+        yield from each_once("weighted", [weighted.name for weighted in self.weighted])
+        yield from self.uncertainty.faults(self.problem.data)
+        yield from undrawn(self.uncertainty, len(self.predictions))
+        yield from each_once("predictions", [prediction.name for prediction in self.predictions])
+
+    @property
+    def parameters(self) -> tuple[Parameter, ...]:
+        """The parameters that are updated."""
+        problem, names = self.problem, self.problem.model.parameters
+        bounds = zip(problem.lower.tolist(), problem.upper.tolist(), strict=True)
+        nominal = dict(zip(names, problem.start.tolist(), strict=True))
+        return tuple(parameters_of(dict(zip(names, bounds, strict=True)), nominal))
+
+    @property
+    def file(self) -> Path:
+        """The study file; named like the study where there is none."""
+        return self.origin.file if self.origin else Path(self.name)
+
+    @property
+    def work(self) -> str:
+        """Hash of all that the front depends on; empty where the problem is not read from a file.
+
+        Refinement is left out: it adds to a front that is there.
+        """
+        if self.origin is None or self.origin.problem is not self.problem:
+            return ""
+        pareto = replace(self.pareto, refined=None)
+        uncertainty = replace(self.uncertainty, draws=0)
+        options = (self.seed, pareto, self.weighted, self.search, self.identifiability, uncertainty)
+        return hashlib.sha256(f"{self.origin.work} {options}".encode()).hexdigest()
+
+    @property
+    def digest(self) -> str:
+        """Hash of all inputs; empty where the problem is not read from a file."""
+        if self.origin is None or not self.work:
+            return ""
+        options = (self.name, self.uncertainty.draws, self.predictions)
+        text = f"{self.origin.digest} {self.work} {options}"
+        return hashlib.sha256(text.encode()).hexdigest()
+
+    @property
+    def remark(self) -> str:
+        """Why what was asked for is not done, or nothing."""
+        return self.origin.remark if self.origin else ""
+
+    def solve(self) -> xr.Dataset:
+        """Return all Pareto-optimal models, edges and weighted models.
+
+        Raises UnfinishedError where no minimum of a group can be found, InputError where no
+        parameter changes a group.
+        """
+        from modefront.study.session import in_memory
+
+        return in_memory(self)
+
+    def run(self, folder: Path | str) -> xr.Dataset:
+        """Do the work, write ``results.nc`` into a folder and return what it holds.
+
+        Work of an interrupted run is continued where the study was read from a file. What is
+        raised is what `modefront.run` raises.
+        """
+        from modefront.study.session import run
+
+        return run(self, Path(folder))
+
+
+def undrawn(uncertainty: Uncertainty, predictions: int) -> Iterator[Fault]:
+    """Yield what is wrong with draws where there is nothing to predict."""
+    if uncertainty.draws and not predictions:
+        yield Fault("", "draws", "0 without predictions", str(uncertainty.draws))
