@@ -120,7 +120,7 @@ def measured(kind: Model, seed: int = 0) -> mf.ModalData:
 
 def problem_of(model: MatrixModel | ReducedModel, data: mf.ModalData) -> mf.UpdatingProblem:
     """Return the problem of fitting the measured frequencies and shapes."""
-    groups = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     return mf.updating_problem(
         model, data, groups, dict.fromkeys(NAMES, BOUNDS), dict.fromkeys(NAMES, 1.0)
     )

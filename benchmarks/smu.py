@@ -17,7 +17,7 @@ from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.pairing.match import modes_needed
-from modefront.residuals.groups import Scale
+from modefront.residuals.base import Scale
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Options, Solution, begin, solve
 from modefront.study.certified import POOR
