@@ -12,6 +12,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
+from modefront.linalg.factorisation import SingularMatrixError
 from modefront.models.base import Counts
 from modefront.models.matrices import MatrixModel
 from modefront.models.ports import Ports, Transfer
@@ -33,7 +34,6 @@ from modefront.models.reduced.corrections import (
 )
 from modefront.models.reduced.instability import unstable
 from modefront.modes import dense
-from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.result import Modes
 from modefront.modes.spectrum import Shifted
 
