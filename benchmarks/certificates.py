@@ -29,7 +29,7 @@ import scipy.sparse
 from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
-from modefront.models.affine import Monomials, sparse_affine
+from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.models.matrices import MatrixModel, affine_model
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel, Snap

@@ -42,7 +42,7 @@ def chain_problem(stories: int) -> mf.UpdatingProblem:
     modes = real.modes(rng.uniform(0.7, 1.4, stories), stories)
     shape = modes.phi.T * (1 + 0.05 * rng.normal(size=modes.phi.T.shape))
     data = mf.modal_data(modes.frequency, shape, model.sensors)
-    groups = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     bounds, nominal = dict.fromkeys(names, (0.2, 5.0)), dict.fromkeys(names, 1.0)
     return mf.updating_problem(model, data, groups, bounds, nominal)
 

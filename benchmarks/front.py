@@ -43,7 +43,7 @@ def problem_of(model: str) -> mf.UpdatingProblem:
         stiffness_parameters=NAMES,
     )
     data = mf.modal_data(np.array(FREQUENCY[model]), np.array(SHAPE[model]), chain.sensors)
-    groups = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     return mf.updating_problem(
         chain, data, groups, dict.fromkeys(NAMES, (0.2, 5.0)), dict.fromkeys(NAMES, 1.0)
     )

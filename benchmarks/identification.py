@@ -28,9 +28,9 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Complexes, Floats
 from modefront.identification.identify import Identification, identify
-from modefront.identification.responses import Complexes, frequency_responses
+from modefront.identification.responses import frequency_responses
 
 F = np.arange(0.05, 30.05, 0.05)
 BLOWS = 5

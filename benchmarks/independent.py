@@ -34,13 +34,13 @@ from functools import cached_property
 
 import numpy as np
 import scipy.linalg
+from modefront.study.run import generator
 from scipy.optimize import linear_sum_assignment, lsq_linear, minimize
 from updating_problems import Affine, Case
 
 from modefront._typing import Floats, Ints
-from modefront.residuals.groups import Members
+from modefront.residuals.groups import ModeNumbers
 from modefront.solvers.edges import sample
-from modefront.study.run import generator
 
 SEED = 1
 """Seed of the runs of modefront."""
@@ -126,10 +126,13 @@ class Equation:
     def _groups(self) -> list[tuple[list[int], list[int]]]:
         modes = range(1, len(self.case.problem.data.modes) + 1)
 
-        def positions(chosen: Members) -> list[int]:
+        def positions(chosen: ModeNumbers) -> list[int]:
             return [m - 1 for m in (modes if chosen == "all" else chosen)]
 
-        return [(positions(x.frequency), positions(x.shape)) for x in self.case.problem.groups]
+        return [
+            (positions(x.modes_of("frequency")), positions(x.modes_of("shape")))
+            for x in self.case.problem.groups
+        ]
 
     def J(self, theta: Floats) -> Floats:
         """Return the objectives, infinite where the stiffness matrix is not positive definite."""

@@ -23,7 +23,7 @@ import scipy.sparse
 import scipy.sparse.linalg
 
 from modefront._typing import Floats
-from modefront.models.affine import Monomials, sparse_affine
+from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.models.matrices import MatrixModel, affine_model
 
 SHAPES = {546: (13, 7, 2), 4998: (34, 7, 7), 49980: (70, 34, 7), 199920: (119, 80, 7)}

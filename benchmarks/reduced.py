@@ -41,7 +41,7 @@ import modefront as mf
 from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.identifiability.options import Identifiability
-from modefront.models.affine import DenseAffine
+from modefront.linalg.affine import DenseAffine
 from modefront.models.matrices import MatrixModel
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel
@@ -120,7 +120,7 @@ def measured(kind: Model, seed: int = 0) -> mf.ModalData:
 
 def problem_of(model: MatrixModel | ReducedModel, data: mf.ModalData) -> mf.UpdatingProblem:
     """Return the problem of fitting the measured frequencies and shapes."""
-    groups = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     return mf.updating_problem(
         model, data, groups, dict.fromkeys(NAMES, BOUNDS), dict.fromkeys(NAMES, 1.0)
     )

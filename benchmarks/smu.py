@@ -10,6 +10,7 @@ from pathlib import Path
 
 import numpy as np
 import scipy.sparse
+from modefront.study.certified import POOR
 
 from modefront import Group, ModalData, Pairing, UpdatingProblem, matrices, modal_data
 from modefront._typing import Floats
@@ -17,10 +18,9 @@ from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.pairing.match import modes_needed
-from modefront.residuals.groups import Scale
+from modefront.residuals.base import Scale
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Options, Solution, begin, solve
-from modefront.study.certified import POOR
 
 FOLDER = Path(__file__).resolve().parents[1].parent / "shared" / "data" / "smu"
 

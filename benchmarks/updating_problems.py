@@ -369,14 +369,14 @@ def _groups(grouping: str, modes: int) -> list[mf.Group]:
     """Return frequencies and shapes, lower and higher modes, or three groups."""
     lower, higher = [range(1, modes // 2 + 1), range(modes // 2 + 1, modes + 1)]
     if grouping == "kinds":
-        return [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+        return [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     if grouping == "modes":
         return [
-            mf.Group("lower", list(lower), list(lower)),
-            mf.Group("higher", list(higher), list(higher)),
+            mf.Group("lower", frequency=list(lower), shape=list(lower)),
+            mf.Group("higher", frequency=list(higher), shape=list(higher)),
         ]
     return [
-        mf.Group("frequencies", "all"),
-        mf.Group("lower-shapes", (), list(lower)),
-        mf.Group("higher-shapes", (), list(higher)),
+        mf.Group("frequencies", frequency="all"),
+        mf.Group("lower-shapes", shape=list(lower)),
+        mf.Group("higher-shapes", shape=list(higher)),
     ]

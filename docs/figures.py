@@ -153,7 +153,7 @@ def three_groups(path: Path) -> None:
     """Draw a front of three groups as seen along the normal of its simplex."""
     base = example("c1")
     groups = (
-        mf.Group("frequencies", "all"),
+        mf.Group("frequencies", frequency="all"),
         mf.Group("shape 1", shape=[1]),
         mf.Group("shapes 2 and 3", shape=[2, 3]),
     )

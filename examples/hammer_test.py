@@ -12,8 +12,9 @@ from pathlib import Path
 
 import numpy as np
 import scipy.linalg as la
+from numpy.typing import NDArray
 
-from modefront.identification.responses import Complexes
+Complexes = NDArray[np.complex128]
 
 FOLDER = Path(__file__).parents[1] / "src" / "modefront" / "study" / "examples" / "hammer-test"
 

@@ -5,13 +5,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from modefront._typing import Floats
+from modefront._typing import Complexes, Floats
 from modefront.data.csv import read_csv, write_csv
 from modefront.data.modal import modal_data
 from modefront.data.modal_test import read_test
 from modefront.data.uff import blocks, read_uff
 from modefront.errors import InputError
-from modefront.identification.responses import Complexes
 
 UFF = Path(__file__).parents[3] / "shared" / "data" / "uff"
 

@@ -9,20 +9,21 @@ from scipy import linalg, sparse
 from scipy.sparse.linalg import eigsh
 
 from modefront import fem
+from modefront._typing import Floats, Ints
 from modefront.fem.elements.beam import beam
 from modefront.fem.elements.brick import brick
 from modefront.fem.elements.kit import ElementMatrices
-from modefront.fem.elements.shapes import TETRAHEDRON_EDGES, FloatArray, IntArray
+from modefront.fem.elements.shapes import TETRAHEDRON_EDGES
 from modefront.fem.elements.shell import shell
 from modefront.fem.elements.tetrahedron import tetrahedron
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
 
 
-def frequencies(model: fem.AffineMatrices, count: int, shift: float = 0.0) -> FloatArray:
+def frequencies(model: fem.StructureMatrices, count: int, shift: float = 0.0) -> Floats:
     """Lowest circular frequencies (count,) at theta = 1."""
     theta = np.ones(len(model.parameters))
-    K, M = model.stiffness(theta), model.mass(theta)
+    K, M = model.stiffness.at(theta), model.mass.at(theta)
     if K.shape[0] < 200:
         # Massless DOFs are infinite frequencies: solve M phi = mu K phi for the largest mu.
         mu = linalg.eigh(M.toarray(), (K + shift * M).toarray(), eigvals_only=True)[::-1][:count]
@@ -31,7 +32,7 @@ def frequencies(model: fem.AffineMatrices, count: int, shift: float = 0.0) -> Fl
     return np.asarray(np.sqrt(np.abs(np.sort(lam))))
 
 
-def rigid_motions(X: FloatArray, directions: int) -> FloatArray:
+def rigid_motions(X: Floats, directions: int) -> Floats:
     """Six rigid motions (nodes x directions, 6) of nodes X (nodes, 3)."""
     motions = np.zeros((len(X), 6, 6))
     for d in range(3):
@@ -40,14 +41,14 @@ def rigid_motions(X: FloatArray, directions: int) -> FloatArray:
     return motions[:, :directions].reshape(-1, 6)
 
 
-def rotation(rng: np.random.Generator) -> FloatArray:
+def rotation(rng: np.random.Generator) -> Floats:
     """Random proper rotation (3, 3)."""
     Q, R = np.linalg.qr(rng.normal(size=(3, 3)))
     Q = Q * np.sign(np.diag(R))
     return np.asarray(Q * np.linalg.det(Q))
 
 
-def move_inner(X: FloatArray, step: FloatArray, amplitude: float, seed: int) -> FloatArray:
+def move_inner(X: Floats, step: Floats, amplitude: float, seed: int) -> Floats:
     """Nodes inside the bounding box moved at random by up to `amplitude` steps."""
     rng = np.random.default_rng(seed)
     low, high = X.min(0), X.max(0)
@@ -60,7 +61,7 @@ def move_inner(X: FloatArray, step: FloatArray, amplitude: float, seed: int) -> 
     return moved
 
 
-def _tetrahedron_nodes() -> FloatArray:
+def _tetrahedron_nodes() -> Floats:
     corners = np.array([[0, 0, 0], [1.2, 0.1, -0.1], [0.2, 0.9, 0.1], [0.1, 0.3, 1.1]])
     return np.concatenate([corners, [(corners[i] + corners[j]) / 2 for i, j in TETRAHEDRON_EDGES]])
 
@@ -70,14 +71,14 @@ BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1]
 SECTION = fem.rectangle(0.1, 0.2)
 
 
-def _beam(X: FloatArray, r: FloatArray) -> ElementMatrices:
+def _beam(X: Floats, r: Floats) -> ElementMatrices:
     axis = X[:, 1] - X[:, 0]
     side = np.cross(axis, axis[:, [1, 2, 0]] + np.array([0.3, 0, 0]))
     return beam(X, STEEL, SECTION, side, r)
 
 
 # name: (nodes, directions of each node, element)
-ELEMENTS: dict[str, tuple[FloatArray, int, Callable[[FloatArray], ElementMatrices]]] = {
+ELEMENTS: dict[str, tuple[Floats, int, Callable[[Floats], ElementMatrices]]] = {
     "beam": (np.array([[0, 0, 0], [1.0, 0.5, 0.2]]), 6, lambda X: _beam(X, np.zeros((2, 3)))),
     "beam, eccentric": (
         np.array([[0, 0, 0], [1.0, 0.5, 0.2]]),
@@ -118,21 +119,21 @@ ELEMENTS: dict[str, tuple[FloatArray, int, Callable[[FloatArray], ElementMatrice
 }
 
 
-def total(parts: tuple[fem.elements.kit.Part, ...]) -> FloatArray:
+def total(parts: tuple[fem.elements.kit.Part, ...]) -> Floats:
     """Sum of the parts of the first element."""
     return np.asarray(sum(part.matrices[0] for part in parts))
 
 
-def boundary(X: FloatArray, dims: tuple[int, ...]) -> IntArray:
+def boundary(X: Floats, dims: tuple[int, ...]) -> Ints:
     """Nodes on the faces of the bounding box across the given axes."""
     low, high = X.min(0), X.max(0)
     on = [(np.isclose(X[:, d], low[d]) | np.isclose(X[:, d], high[d])) for d in dims]
     return np.flatnonzero(np.any(on, axis=0))
 
 
-def solve_inner(model: fem.AffineMatrices, u: FloatArray, given: FloatArray) -> FloatArray:
+def solve_inner(model: fem.StructureMatrices, u: Floats, given: Floats) -> Floats:
     """Displacements (nodes, 6) in equilibrium where the DOFs `given` have the values of u."""
-    K = model.stiffness(np.ones(len(model.parameters)))
+    K = model.stiffness.at(np.ones(len(model.parameters)))
     node, direction = model.dofs.free.T
     fixed = given[node, direction]
     q = np.where(fixed, u[node, direction], 0.0)
@@ -144,7 +145,7 @@ def solve_inner(model: fem.AffineMatrices, u: FloatArray, given: FloatArray) -> 
     return found
 
 
-def rate(errors: list[float], refinement: float = 2.0) -> FloatArray:
+def rate(errors: list[float], refinement: float = 2.0) -> Floats:
     """Orders of convergence between successive refinements."""
     e = np.abs(errors)
     return np.asarray(np.log(e[:-1] / e[1:]) / np.log(refinement))

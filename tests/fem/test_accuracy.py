@@ -10,15 +10,15 @@ from scipy.sparse.linalg import spsolve
 from structures import STEEL, boundary, frequencies, move_inner, rate, rotation, solve_inner
 
 from modefront import fem
-from modefront.fem.elements.shapes import FloatArray
+from modefront._typing import Floats
 
 # Roots of cos(x) cosh(x) = -1.
 CANTILEVER = np.array([1.875104068711961, 4.694091132974175])
 
 
 def _beam_model(
-    count: int, section: fem.Section, supports: tuple[fem.Support, ...], Q: FloatArray
-) -> fem.AffineMatrices:
+    count: int, section: fem.Section, supports: tuple[fem.Support, ...], Q: Floats
+) -> fem.StructureMatrices:
     X, cells = fem.grids.line(np.zeros(3), np.array([1.0, 0, 0]), count)
     group = fem.Beams("b", cells, STEEL, section, orientation=Q[:, 1].tolist())
     return fem.assemble(fem.Structure(X @ Q.T, (group,), supports))
@@ -68,7 +68,7 @@ def test_hinged_stocky_timoshenko_beam_converges_with_order_2() -> None:
 def test_beam_is_exact_in_statics_with_one_element() -> None:
     L, F, section = 1.0, 1000.0, fem.hollow_rectangle(0.2, 0.1, 0.01)
     model = _beam_model(1, section, (fem.Support(0),), np.eye(3))
-    K = model.stiffness([]).tocsc()
+    K = model.stiffness.at(np.zeros(0)).tocsc()
     for d, inertia, kappa in ((1, section.I_z, section.kappa_y), (2, section.I_y, section.kappa_z)):
         u = spsolve(K, F * (np.arange(6) == d))
         exact = F * L**3 / (3 * STEEL.E * inertia) + F * L / (kappa * STEEL.G * section.A)
@@ -76,7 +76,7 @@ def test_beam_is_exact_in_statics_with_one_element() -> None:
     assert spsolve(K, F * (np.arange(6) == 3))[3] == pytest.approx(F * L / STEEL.G / section.J)
 
 
-def _plate_errors(n: int, amplitude: float, seed: int, triangles: bool) -> FloatArray:
+def _plate_errors(n: int, amplitude: float, seed: int, triangles: bool) -> Floats:
     """Relative errors of four frequencies of a simply supported square, h / a = 1/200."""
     X, cells = fem.grids.plate(1.0, 1.0, n, n)
     X = move_inner(X, np.array([1 / n, 1 / n, 0]), amplitude, seed)
@@ -126,7 +126,7 @@ def test_shell_bends_in_its_plane_exactly(length: int, triangles: bool) -> None:
     assert error < (5e-3 if triangles else 1e-9) * np.abs(u).max()
     node, direction = model.dofs.free.T
     q = u[node, direction]
-    energy = q @ (model.stiffness([]) @ q) / 2
+    energy = q @ (model.stiffness.at(np.zeros(0)) @ q) / 2
     assert energy == pytest.approx(STEEL.E * t * b**3 / 12 * L / 2, rel=1e-9)
 
 
@@ -152,7 +152,7 @@ def test_twisted_beam_of_warped_shells() -> None:
             sensors=sensors,
         )
     )
-    K = model.stiffness([]).tocsc()
+    K = model.stiffness.at(np.zeros(0)).tocsc()
     S = model.selection.toarray()
     flexibility = S @ spsolve(K, S.T)
     # At the tip the section stands along z: z is in its plane, y across it.
@@ -176,8 +176,8 @@ def test_cylindrical_roof_under_its_weight() -> None:
     sensor = (fem.Sensor("edge", tuple(roof[-1].tolist()), "z"),)
     model = fem.assemble(fem.Structure(roof, group, supports, sensors=sensor))
     weight = np.where(model.dofs.free[:, 1] == 2, 1.0, 0.0)
-    load = model.mass([]) @ weight * (-90.0 / t)
-    u = spsolve(model.stiffness([]).tocsc(), load)
+    load = model.mass.at(np.zeros(0)) @ weight * (-90.0 / t)
+    u = spsolve(model.stiffness.at(np.zeros(0)).tocsc(), load)
     assert (model.selection @ u)[0] == pytest.approx(-0.3024, rel=0.01)
 
 

@@ -8,13 +8,14 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from structures import BOX, ELEMENTS, SECTION, STEEL, rigid_motions, rotation, total
 
-from modefront.fem.elements.shapes import FloatArray, gauss_box, gauss_simplex, square_8
+from modefront._typing import Floats
+from modefront.fem.elements.shapes import gauss_box, gauss_simplex, square_8
 
 NAMES = list(ELEMENTS)
 seeds = st.integers(0, 2**32 - 1)
 
 
-def _placed(name: str, seed: int) -> tuple[FloatArray, int]:
+def _placed(name: str, seed: int) -> tuple[Floats, int]:
     """Nodes of an element somewhere in space, and its directions."""
     X, directions, _ = ELEMENTS[name]
     rng = np.random.default_rng(seed)

@@ -7,12 +7,12 @@ import pytest
 from structures import STEEL, boundary, move_inner, solve_inner
 
 from modefront import fem
-from modefront.fem.elements.shapes import FloatArray, IntArray
+from modefront._typing import Floats, Ints
 
 GRADIENT = 1e-3 * np.array([[0.7, 0.3, -0.2], [0.1, -0.5, 0.4], [-0.3, 0.2, 0.6]])
 
 
-def _plate(kind: str, seed: int) -> tuple[FloatArray, IntArray]:
+def _plate(kind: str, seed: int) -> tuple[Floats, Ints]:
     X, cells = fem.grids.plate(2.0, 1.5, 4, 3)
     X = move_inner(X, np.array([0.5, 0.5, 0]), 0.3, seed)
     return X, fem.grids.triangles(cells) if kind == "triangle" else cells

@@ -23,7 +23,7 @@ def chain() -> mf.UpdatingProblem:
     model = mf.chain(NAMES, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=NAMES)
     at = model.modes(np.array([1.2, 0.8, 1.1]), 3)
     data = mf.modal_data(at.frequency * [1.01, 0.98, 1.02], at.phi.T, model.sensors)
-    groups = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     return mf.updating_problem(
         model, data, groups, dict.fromkeys(NAMES, (0.1, 9.0)), dict.fromkeys(NAMES, 1.0)
     )

@@ -29,7 +29,7 @@ from modefront.models.matrices import MatrixModel
 from modefront.study.check import determined, refuse_unchanged_groups
 
 K0 = 3e3
-GROUPS = (mf.Group("frequencies", "all"), mf.Group("shapes", shape="all"))
+GROUPS = (mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all"))
 FORMS = ("k", "alpha", "N/m")
 
 
@@ -119,7 +119,7 @@ def test_the_unit_is_that_of_the_generalised_eigenproblem_for_sparse_matrices_to
     assert model.is_sparse
     at = model.modes(np.ones(3), 2)
     data = mf.modal_data(at.frequency, at.phi.T, model.sensors)
-    groups = [mf.Group("frequencies", "all")]
+    groups = [mf.Group("frequencies", frequency="all")]
     bounds = dict.fromkeys(names, (0.01, 100.0))
     problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(names, 1.0))
     theta = np.array([1.0, 0.6, 3.0])
@@ -313,7 +313,7 @@ def test_a_derivative_that_vanishes_for_symmetry_is_no_reason_to_refuse() -> Non
     model = mf.matrices(["x"], {"base": A, "x": tilt}, {"base": np.eye(2)}, {"a": 0, "b": 1})
     at = model.modes(np.zeros(1), 2)
     data = mf.modal_data(at.frequency, at.phi.T, model.sensors)
-    groups = [mf.Group("frequencies", "all")]
+    groups = [mf.Group("frequencies", frequency="all")]
     problem = mf.updating_problem(model, data, groups, {"x": (-0.5, 0.5)}, {"x": 0.0})
     assert np.abs(problem.evaluate(problem.start).H).max() < 1e-20
     assert unchanged_groups(problem) == []

@@ -6,8 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from modefront._typing import Floats
-from modefront.identification.responses import Complexes
+from modefront._typing import Complexes, Floats
 
 THREE_STORY = np.array([4.64600069, 12.77689009, 17.89378185])  # Hz
 THREE_STORY_DAMPING = np.array([0.01, 0.012, 0.008])

@@ -13,7 +13,8 @@ import scipy.sparse
 from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
-from modefront.models.affine import DenseAffine, Monomials, sparse_affine
+from modefront.linalg.affine import DenseAffine, Monomials, sparse_affine
+from modefront.linalg.factorisation import SingularMatrixError
 from modefront.models.base import Counts
 from modefront.models.matrices import MatrixModel, affine_model, matrices
 from modefront.models.mesh import mesh_model
@@ -21,7 +22,6 @@ from modefront.models.reduced import window
 from modefront.models.reduced.basis import snapshot
 from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.modes import derivatives as exact
-from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.sparse import lowest
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
@@ -392,7 +392,7 @@ def test_an_estimate_that_does_not_settle_takes_a_factor_of_its_own(
     def singular(*_: object) -> None:
         raise SingularMatrixError("pivot of zero")
 
-    monkeypatch.setattr("modefront.modes.pencil.Pencil.factor", singular)
+    monkeypatch.setattr("modefront.linalg.pencil.Pencil.factor", singular)
     (unknown,) = model.certify([(theta, wanted)])
     assert np.isinf(unknown.eigenvalue).all(), "no number is better than a wrong one"
 

@@ -8,7 +8,7 @@ from hypothesis import strategies as st
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
-from modefront.models.affine import DenseAffine, Monomials
+from modefront.linalg.affine import DenseAffine, Monomials
 from modefront.modes.dense import modes
 from modefront.modes.result import Modes
 

@@ -16,13 +16,13 @@ from hypothesis import strategies as st
 from modefront import fem
 from modefront._typing import Floats
 from modefront.errors import ModelError
-from modefront.models.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
+from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
+from modefront.linalg.factorisation import rslab_ldl, superlu
+from modefront.linalg.pencil import Pencil, pencil
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.mesh import mesh_model
 from modefront.modes import dense, derivatives, sparse
-from modefront.modes.factorisation import rslab_ldl, superlu
 from modefront.modes.lanczos import Ritz, greatest
-from modefront.modes.pencil import Pencil, pencil
 from modefront.modes.result import Modes
 from modefront.modes.spectrum import Shifted
 
@@ -190,7 +190,7 @@ def nelson(K: SparseAffine, M: SparseAffine, theta: Floats, lam: float, phi: Flo
 
 @pytest.mark.parametrize("analyse", [rslab_ldl.analyse, superlu.analyse])
 def test_nelson(analyse: Callable[..., Any], monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("modefront.modes.pencil.analyse", analyse)
+    monkeypatch.setattr("modefront.linalg.pencil.analyse", analyse)
     K, M = lattice(9, 4, 3)
     theta = np.array([1.0, 1.3, 0.8])
     engine = pencil(K, M)
@@ -227,7 +227,7 @@ def test_superlu_alone_gives_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     K, M = lattice(9, 4, 3)
     theta = np.array([1.0, 1.3, 0.8]) * 1e9
     expected = sparse.modes(pencil(K, M), np.eye(K.size), theta, 4, True)
-    monkeypatch.setattr("modefront.modes.pencil.analyse", superlu.analyse)
+    monkeypatch.setattr("modefront.linalg.pencil.analyse", superlu.analyse)
     found = sparse.modes(pencil(K, M), np.eye(K.size), theta, 4, True)
     assert found.lam == pytest.approx(expected.lam, rel=1e-11)
     assert np.abs(found.dphi) == pytest.approx(np.abs(expected.dphi), abs=1e-17)

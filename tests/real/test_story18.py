@@ -36,14 +36,16 @@ def frame() -> mf.UpdatingProblem:
     model = mf.matrices(NAMES, stiffness, {"base": matrix("M")}, sensors)
     frequencies = np.sqrt(found["lambda_exp"]) / (2 * np.pi)
     data = mf.modal_data(frequencies, found["psi_exp"].T, tuple(sensors))
-    groups = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     bounds = dict.fromkeys(NAMES, (0.7, 1.3))
     return mf.updating_problem(model, data, groups, bounds, dict.fromkeys(NAMES, 1.0))
 
 
 def first_two(frame: mf.UpdatingProblem) -> mf.UpdatingProblem:
     """The two modes that the authors of the data use."""
-    return replace(frame, groups=(mf.Group("frequencies", [1, 2]), mf.Group("shapes", (), [1, 2])))
+    return replace(
+        frame, groups=(mf.Group("frequencies", frequency=[1, 2]), mf.Group("shapes", shape=[1, 2]))
+    )
 
 
 def ranks(frame: mf.UpdatingProblem) -> list[int]:

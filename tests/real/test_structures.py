@@ -12,7 +12,7 @@ from smu import FOLDER, Structure, frequencies_and_shapes, read
 
 from modefront import ModalData, Pairing
 from modefront.cli.show import remarks
-from modefront.models.affine import SparseAffine
+from modefront.linalg.affine import SparseAffine
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import begin
 from modefront.solvers.sqp import solve as descend

@@ -16,7 +16,7 @@ FREQUENCY = np.array([4.646, 13.81, 19.48])
 SHAPE = np.array([[0.4561, 0.8069, 1.0], [1.0, 0.3009, -0.9026], [-0.7801, 1.0, -0.6448]])
 FLOORS = ("floor1", "floor2", "floor3")
 NAMES = ("k1", "k2", "k3", "m1")
-ALL = (Group("frequencies", "all"), Group("shapes", shape="all"))
+ALL = (Group("frequencies", frequency="all"), Group("shapes", shape="all"))
 
 
 def problem_of(data: ModalData, groups: tuple[Group, ...] = ALL) -> UpdatingProblem:
@@ -76,7 +76,11 @@ def test_objectives_and_gradients_agree_with_50_digit_arithmetic(values: list[fl
 def test_counts_are_of_what_was_measured() -> None:
     data = modal_data(FREQUENCY, SHAPE, FLOORS)
     assert problem_of(data).properties.tolist() == [3, 9]
-    single = (Group("f1 and shape 3", [1], [3]), Group("f2", [2]), Group("again", [1, 2]))
+    single = (
+        Group("f1 and shape 3", frequency=[1], shape=[3]),
+        Group("f2", frequency=[2]),
+        Group("again", frequency=[1, 2]),
+    )
     assert problem_of(data, single).properties.tolist() == [4, 1, 2]
 
 
@@ -129,7 +133,7 @@ def test_shapes_do_not_change_when_all_stiffnesses_are_scaled() -> None:
 def test_errors_of_modes_bound_those_of_objectives(step: list[float]) -> None:
     std = np.linspace(0.01, 0.05, 9).reshape(3, 3)
     data = modal_data(FREQUENCY, SHAPE, FLOORS, frequency_std=0.02 * FREQUENCY, shape_std=std)
-    groups = (*ALL, Group("weighted", "all", shape=(2,), scale="std"))
+    groups = (*ALL, Group("weighted", frequency="all", shape=(2,), scale="std"))
     problem = problem_of(data, groups)
     theta = np.array([1.1, 0.9, 1.2, 1.0])
     other = theta + np.array(step)
@@ -162,9 +166,12 @@ def test_a_model_without_modes_is_infeasible_not_an_error() -> None:
 @pytest.mark.parametrize(
     ("group", "message"),
     [
-        (Group("empty"), "group 'empty': at least one member, found none"),
-        (Group("f9", [9]), "found 9"),
-        (Group("twice", [1, 1]), "each mode once"),
+        (
+            Group("empty"),
+            "group 'empty': expected frequency or shape .* one measured mode, found nothing",
+        ),
+        (Group("f9", frequency=[9]), "found 9"),
+        (Group("twice", frequency=[1, 1]), "each mode once"),
     ],
 )
 def test_wrong_groups_are_refused(group: Group, message: str) -> None:

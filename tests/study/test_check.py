@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from modefront.residuals.groups import Group
 from modefront.study.check import check, derivative_error
 from modefront.study.definition import Study
 from modefront.study.examples import write_example
@@ -46,8 +47,7 @@ def test_a_nominal_value_at_a_bound_and_parameters_alike_are_warned_of(study: St
     problem = study.problem
     at_bound = replace(study, problem=replace(problem, lower=problem.start))
     assert "the nominal value of theta1 is one of its bounds, 1" in check(at_bound).warnings
-    (group,) = (group for group in problem.groups if group.name == "frequencies")
-    first = replace(problem, groups=(replace(group, frequency=(1,)),))
+    first = replace(problem, groups=(Group("first", frequency=[1]),))
     warnings = check(replace(study, problem=first)).warnings
     assert sum("do not determine" in text for text in warnings) == 2
     assert sum("act nearly alike" in text for text in warnings) == 3

@@ -31,7 +31,7 @@ def problem_of(*, sets: int = 1, std: float = 0.0, seed: int = 0) -> mf.Updating
         size = np.abs(phi).max(axis=2, keepdims=True) * np.ones(phi.shape)
         known = {"frequency_std": std * f, "shape_std": std * size}
     data = mf.modal_data(f, phi, MODEL.sensors, **known)
-    groups = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     return mf.updating_problem(
         MODEL, data, groups, dict.fromkeys(NAMES, (0.1, 9.0)), dict.fromkeys(NAMES, 1.0)
     )
@@ -119,7 +119,7 @@ def test_points_of_three_groups_scatter_as_synthetic_data_do() -> None:
     """30 drawings tell a standard deviation to 13 %: within the simplex, on its border, beyond."""
     base = problem_of(std=0.002)
     groups = (
-        mf.Group("frequencies", "all"),
+        mf.Group("frequencies", frequency="all"),
         mf.Group("shape 1", shape=[1]),
         mf.Group("others", shape=[2, 3]),
     )

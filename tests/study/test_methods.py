@@ -119,7 +119,7 @@ def test_refining_finds_a_gap_that_few_points_step_over() -> None:
 def test_edges_of_three_groups_are_pareto_optimal() -> None:
     """Next to an edge, what is lost in its own objective is of the second order."""
     groups = (
-        mf.Group("frequencies", "all"),
+        mf.Group("frequencies", frequency="all"),
         mf.Group("shape 1", shape=[1]),
         mf.Group("shapes 2 and 3", shape=[2, 3]),
     )
@@ -130,7 +130,7 @@ def test_edges_of_three_groups_are_pareto_optimal() -> None:
 
 def test_three_groups_are_covered_within_and_beyond_the_simplex() -> None:
     groups = (
-        mf.Group("frequencies", "all"),
+        mf.Group("frequencies", frequency="all"),
         mf.Group("shape 1", shape=[1]),
         mf.Group("shapes 2 and 3", shape=[2, 3]),
     )
@@ -144,7 +144,7 @@ def test_three_groups_are_covered_within_and_beyond_the_simplex() -> None:
 
 
 def test_each_property_a_group() -> None:
-    groups = [mf.Group(f"f{r}", [r]) for r in (1, 2, 3)]
+    groups = [mf.Group(f"f{r}", frequency=[r]) for r in (1, 2, 3)]
     groups += [mf.Group(f"s{r}", shape=[r]) for r in (1, 2, 3)]
     data = mf.solve(grouped("c1", *groups), points=2, seed=1)
     J = front(data)

@@ -21,7 +21,7 @@ from modefront.uncertainty.noise import noise_floor
 NAMES = tuple(f"k{i + 1}" for i in range(6))
 SEARCH = Search(starts=1, limit=2, evolutions=0)
 TRUTH = np.array([1.2, 0.8, 1.1, 0.9, 1.3, 0.75])
-GROUPS = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+GROUPS = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
 
 
 def problem(*, std: bool) -> mf.UpdatingProblem:

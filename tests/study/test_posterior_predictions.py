@@ -40,7 +40,7 @@ def problem_of(
     """A structure of one mass, whose frequency differs from set to set."""
     f = np.sqrt(K / MASS) / (2 * np.pi) * (1 + scatter * np.array([-1.5, -0.5, 0.5, 1.5]))
     data = mf.modal_data(f[:, None], np.ones((4, 1, 1)), ONE_MASS.sensors)
-    groups = [mf.Group("frequencies", "all")]
+    groups = [mf.Group("frequencies", frequency="all")]
     return mf.updating_problem(
         ONE_MASS, data, groups, {"k": (lower, upper)}, {"k": min(1.0, upper)}
     )
@@ -247,7 +247,7 @@ def exact_problem() -> mf.UpdatingProblem:
     """Two masses whose data a model fits exactly, so that there is no regular optimum."""
     modes = TWO_MASSES.modes(np.array([1.2, 0.8]), 2)
     data = mf.modal_data(modes.frequency[None], modes.phi.T[None], TWO_MASSES.sensors)
-    groups = [mf.Group("frequencies", "all"), mf.Group("shapes", shape="all")]
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     bounds = {"k1": (0.2, 5.0), "k2": (0.2, 5.0)}
     return mf.updating_problem(TWO_MASSES, data, groups, bounds, {"k1": 1.0, "k2": 1.0})
 

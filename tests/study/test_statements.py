@@ -13,7 +13,7 @@ from modefront.cli.show import MOST, digest, remarks
 from modefront.study.file import load
 
 SEARCH = mf.Search(starts=2, limit=6, evolutions=0)
-GROUPS = (mf.Group("frequencies", "all"), mf.Group("shapes", shape="all"))
+GROUPS = (mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all"))
 
 
 def stiffnesses_and_masses() -> mf.UpdatingProblem:

@@ -22,7 +22,7 @@ SHAPE = {
 }
 FLOORS = ("floor1", "floor2", "floor3")
 NAMES = ("k1", "k2", "k3")
-GROUPS = (mf.Group("frequencies", "all"), mf.Group("shapes", shape="all"))
+GROUPS = (mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all"))
 
 
 def problem_of(
@@ -209,7 +209,10 @@ def test_matrices_give_the_same_front_as_the_chain() -> None:
 
 
 def test_single_modes_as_groups() -> None:
-    groups = [mf.Group("mode 1", [1], [1]), mf.Group("modes 2 and 3", [2, 3], [2, 3])]
+    groups = [
+        mf.Group("mode 1", frequency=[1], shape=[1]),
+        mf.Group("modes 2 and 3", frequency=[2, 3], shape=[2, 3]),
+    ]
     base = problem_of("M1")
     problem = mf.UpdatingProblem(
         base.model, base.data, tuple(groups), base.lower, base.upper, base.start

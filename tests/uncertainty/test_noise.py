@@ -7,7 +7,7 @@ import pytest
 
 import modefront as mf
 from modefront.data.modal import ModalData
-from modefront.residuals.groups import Scale
+from modefront.residuals.base import Scale
 from modefront.solvers.problem import Evaluation
 from modefront.uncertainty.noise import Source, available, noise, noise_floor
 
@@ -30,9 +30,9 @@ def measured(sets: int, seed: int = 0) -> ModalData:
 
 def problem_of(data: ModalData, scale: Scale) -> mf.UpdatingProblem:
     groups = [
-        mf.Group("frequencies", "all", scale=scale),
+        mf.Group("frequencies", frequency="all", scale=scale),
         mf.Group("shapes", shape="all", scale=scale),
-        mf.Group("first", [1], [1], scale=scale),
+        mf.Group("first", frequency=[1], shape=[1], scale=scale),
     ]
     return mf.updating_problem(
         MODEL, data, groups, dict.fromkeys(NAMES, (0.1, 9.0)), dict.fromkeys(NAMES, 1.0)
@@ -102,7 +102,7 @@ def test_data_sets_scatter_as_the_mean_of_their_objectives() -> None:
 def test_a_mode_measured_once_counts_as_exact() -> None:
     data = measured(2)
     assert np.isfinite(data.frequency[:, 2]).sum() == 1
-    alone = replace(problem_of(data, "measured"), groups=(mf.Group("third", [3]),))
+    alone = replace(problem_of(data, "measured"), groups=(mf.Group("third", frequency=[3]),))
     assert not noise(alone, THETA, "sets").J.any()
 
 

@@ -10,9 +10,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-from numpy.typing import NDArray
 
-from modefront._typing import Floats
+from modefront._typing import Bools, Complexes, Floats
 from modefront.errors import Fault, InputError
 from modefront.identification.responses import FrequencyResponses, frequency_responses
 
@@ -42,7 +41,7 @@ class Channel:
     reference: str
     response: str
     frequency: Floats
-    H: NDArray[np.complex128]
+    H: Complexes
     quantity: str = ""
     coherence: Floats | None = None
 
@@ -157,12 +156,12 @@ def _check_values(channels: Sequence[Channel]) -> None:
 
 def _warnings(
     name: str,
-    H: NDArray[np.complex128],
+    H: Complexes,
     frequency: Floats,
     references: tuple[str, ...],
     responses: tuple[str, ...],
     groups: dict[tuple[int, int], list[Channel]],
-    dead: NDArray[np.bool_],
+    dead: Bools,
 ) -> list[str]:
     out = []
     if looks_like_circular(frequency):
@@ -189,7 +188,7 @@ def _warnings(
 
 def _reciprocity(
     name: str,
-    H: NDArray[np.complex128],
+    H: Complexes,
     references: tuple[str, ...],
     responses: tuple[str, ...],
 ) -> list[str]:

@@ -12,12 +12,12 @@
 ...     parameters=(fem.Parameter("k", "E", ("beam",)),),
 ... )
 >>> model = fem.assemble(beam)
->>> model.stiffness([1.1]).shape
+>>> model.stiffness.at(np.array([1.1])).shape
 (48, 48)
 """
 
 from modefront.fem import grids
-from modefront.fem.affine import AffineMatrices, assemble
+from modefront.fem.assembly import StructureMatrices, assemble
 from modefront.fem.dofs import DIRECTIONS, Dofs
 from modefront.fem.errors import FemError
 from modefront.fem.material import Material
@@ -40,7 +40,6 @@ from modefront.fem.structure import (
 __all__ = [
     "ALL",
     "DIRECTIONS",
-    "AffineMatrices",
     "Beams",
     "Direction",
     "Dofs",
@@ -55,6 +54,7 @@ __all__ = [
     "Solids",
     "Spring",
     "Structure",
+    "StructureMatrices",
     "Support",
     "assemble",
     "circle",

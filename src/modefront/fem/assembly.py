@@ -1,21 +1,19 @@
-r"""Assembly of all terms on one sparsity pattern.
+r"""Matrices of a structure as affine functions of its parameters, `modefront.linalg.affine`.
 
-Elements couple nodes, so the pattern is found on nodes, a few entries an element, and then
-blown up: the DOFs of node i and neighbour j form a block of d_i x d_j entries. The entry
-(a of i, b of j) lies at
+    K(theta) = sum_j c_j(theta) K_j,   M(theta) = sum_j d_j(theta) M_j,
+    c_j(theta) = prod_i theta_i ** e_ji.
 
-    start(i, a) + block(i, j) + b,
+A parameter multiplies a property of named members (theta = 1 is the structure as given): Young's
+modulus and density enter once, thickness as t (membrane, translational mass) and t^3 (bending,
+rotary inertia). Terms of equal exponents are one term.
 
-start being the CSR row pointer and block the sum of d over the neighbours of i before j. Each
-element entry's place is so found once, by additions, and each term is one weighted count.
-
-========  =====================================================================
-symbol    meaning
-========  =====================================================================
-number    (nodes, 6) number of each kept DOF, -1 where there is none
-d         kept DOFs of each node
-slot      place of each element entry in the data; `nnz` where it is dropped
-========  =====================================================================
+==========  ================================================================
+symbol      meaning
+==========  ================================================================
+theta       parameters, factors on nominal values
+e_ji        exponent of parameter i in term j
+T           (6 nodes, free DOFs): all displacements from the free ones
+==========  ================================================================
 """
 
 from __future__ import annotations
@@ -26,148 +24,158 @@ from dataclasses import dataclass
 import numpy as np
 from scipy import sparse
 
-from modefront.fem.dofs import BoolArray
-from modefront.fem.elements.kit import ElementMatrices
-from modefront.fem.elements.shapes import FloatArray, IntArray
+from modefront._typing import Bools, Floats, Ints
+from modefront.fem.blocks import element_blocks, mass_blocks, spring_blocks
+from modefront.fem.check import check_names, check_parameters, check_points, node_list
+from modefront.fem.dofs import Dofs, LinkRows, direction_indices, link_rows, number_dofs
+from modefront.fem.elements.kit import Part
+from modefront.fem.errors import FemError
+from modefront.fem.mechanism import check_mechanisms
+from modefront.fem.scatter import Block, Pattern, condense_links, scatter, scatter_plan
+from modefront.fem.sensors import selection_matrix
+from modefront.fem.structure import Parameter, Structure
+from modefront.linalg.affine import Monomials, SparseAffine
 
 
 @dataclass(frozen=True)
-class Block:
-    """Elements of one kind and group with their matrices.
+class StructureMatrices:
+    """Matrices of a structure at its free degrees of freedom.
 
     Attributes
     ----------
-    name
-        Of the group, spring or mass.
-    cells
-        Nodes (elements, k).
-    directions
-        The d DOFs of each node that the matrices have, ascending.
-    matrices
-        Of size k d.
+    stiffness, mass : K(theta) and M(theta), each on its own pattern, since masses couple far fewer
+        degrees of freedom than stiffnesses; a constant term comes first
+    parameters : names of the parameters, in the order of theta
+    sensors : names of the sensors
+    selection : (sensors, free degrees of freedom) displacement at each sensor
+    dofs : numbering; ``dofs.T`` gives all displacements from the free ones
     """
 
-    name: str
-    cells: IntArray
-    directions: tuple[int, ...]
-    matrices: ElementMatrices
+    stiffness: SparseAffine
+    mass: SparseAffine
+    parameters: tuple[str, ...]
+    sensors: tuple[str, ...]
+    selection: sparse.csr_array
+    dofs: Dofs
 
 
-@dataclass(frozen=True)
-class Pattern:
-    """CSR pattern: full, symmetric, columns ascending, every diagonal entry present."""
-
-    indptr: IntArray
-    indices: IntArray
-
-    @property
-    def nnz(self) -> int:
-        """Count of entries."""
-        return len(self.indices)
-
-
-def scatter_plan(number: IntArray, blocks: Sequence[Block]) -> tuple[Pattern, list[IntArray]]:
-    """Pattern of the kept DOFs and, for each block, the slots of its element entries."""
-    nodes = len(number)
-    d = (number >= 0).sum(1)
-    first = np.concatenate([[0], np.cumsum(d)])
-    rank = np.where(number >= 0, number - first[:-1, None], 0)
-
-    alive = np.flatnonzero(d)
-    pairs = [alive * nodes + alive]
-    for block in blocks:
-        pairs.append((block.cells[:, :, None] * nodes + block.cells[:, None, :]).ravel())
-    keys = np.unique(np.concatenate(pairs))
-    i, j = np.divmod(keys, nodes)
-    before = np.concatenate([[0], np.cumsum(d[j])])
-    row_start = before[np.searchsorted(i, np.arange(nodes))]
-    block_start = before[:-1] - row_start[i]
-    length = np.bincount(i, weights=d[j], minlength=nodes).astype(np.int64)
-    indptr = np.concatenate([[0], np.cumsum(np.repeat(length, d))])
-
-    size = d[i] * d[j]
-    pair = np.repeat(np.arange(len(keys)), size)
-    entry = np.arange(size.sum()) - np.repeat(np.cumsum(size) - size, size)
-    a, b = np.divmod(entry, d[j][pair])
-    indices = np.empty(indptr[-1], dtype=np.int64)
-    indices[indptr[first[i][pair] + a] + block_start[pair] + b] = first[j][pair] + b
-
-    slots = []
-    for block, block_pairs in zip(blocks, pairs[1:], strict=True):
-        count, k = block.cells.shape
-        dof = number[block.cells][:, :, list(block.directions)]
-        offset = rank[block.cells][:, :, list(block.directions)]
-        blocks_at = block_start[np.searchsorted(keys, block_pairs)].reshape(count, k, k)
-        slot = (
-            indptr[dof][:, :, :, None, None]
-            + blocks_at[:, :, None, :, None]
-            + offset[:, None, None, :, :]
-        )
-        held = dof < 0
-        if held.any():
-            slot[held] = indptr[-1]
-            np.moveaxis(slot, (3, 4), (1, 2))[held] = indptr[-1]
-        slots.append(slot.ravel())
-    return Pattern(indptr, indices), slots
-
-
-def scatter(pattern: Pattern, slot: IntArray, matrices: FloatArray) -> FloatArray:
-    """Data (nnz,) of the sum of element matrices."""
-    sums = np.bincount(slot, weights=matrices.ravel(), minlength=pattern.nnz + 1)
-    return sums[:-1].astype(np.float64, copy=False)
-
-
-def condense_links(
-    pattern: Pattern, data: FloatArray, T: sparse.csr_array, slave: BoolArray
-) -> tuple[Pattern, FloatArray]:
-    """T^T K T for all terms at once, on their common pattern.
-
-    Each entry (i, j) of K adds T_ia K_ij T_jb to (a, b). Where neither i nor j is a slave, that
-    is the entry itself under a new number, and the order of the entries stays.
+def assemble(structure: Structure, *, floating: bool = False) -> StructureMatrices:
+    """Check a structure and assemble its terms.
 
     Parameters
     ----------
-    pattern, data
-        Kept DOFs; data (terms, nnz).
-    T
-        (kept, free); rows of DOFs that are no slaves have one entry, 1, in ascending columns.
-    slave
-        (kept,)
+    structure
+        What to assemble.
+    floating
+        Whether the structure as a whole may move as a rigid body (as if hung in soft cords).
+
+    Raises
+    ------
+    FemError
+        If the structure is wrong or a mechanism: says where, what was expected and found.
     """
-    n = T.shape[1]
-    count = np.diff(T.indptr)
-    rows = np.repeat(np.arange(len(count)), np.diff(pattern.indptr))
-    linked = slave[rows] | slave[pattern.indices]
-    number = np.zeros(len(count), dtype=np.int64)
-    number[~slave] = T.indices[T.indptr[:-1][~slave]]
-    plain = number[rows[~linked]] * n + number[pattern.indices[~linked]]
+    X = check_points(structure.nodes)
+    check_names(structure)
+    check_parameters(structure)
+    elements = element_blocks(X, structure.groups)
+    springs = spring_blocks(X, structure.springs)
+    blocks = [*elements, *springs, *mass_blocks(X, structure.masses)]
+    links = _links(X, structure)
+    held = _held(X, structure)
+    exists = _existing(X, blocks, links)
+    dofs = number_dofs(exists, held, links)
+    check_mechanisms(X, elements, springs, links, held, exists, floating)
+    if len(dofs.free) == 0:
+        raise FemError("structure: no degree of freedom is free; expected at least one")
+    pattern, slots = scatter_plan(dofs.kept, blocks)
+    K, K_exponents = _terms(
+        pattern,
+        [(b, s, b.matrices.stiffness) for b, s in zip(blocks, slots, strict=True)],
+        structure.parameters,
+        ("E", "spring"),
+    )
+    M, M_exponents = _terms(
+        pattern,
+        [(b, s, b.matrices.mass) for b, s in zip(blocks, slots, strict=True)],
+        structure.parameters,
+        ("density", "mass"),
+    )
+    if pattern.nnz >= np.iinfo(np.int32).max:
+        raise FemError(f"structure: {pattern.nnz} entries in K, expected fewer than 2^31")
+    if dofs.slave.any():
+        T = dofs.T[np.flatnonzero(dofs.kept.ravel() >= 0)]
+        pattern, data = condense_links(pattern, np.concatenate([K, M]), T, dofs.slave)
+        K, M = data[: len(K)], data[len(K) :]
+    return StructureMatrices(
+        stiffness=_affine(pattern, K, K_exponents),
+        mass=_affine(pattern, M, M_exponents),
+        parameters=tuple(p.name for p in structure.parameters),
+        sensors=tuple(s.name for s in structure.sensors),
+        selection=selection_matrix(X, structure.sensors, np.flatnonzero(exists.any(1)), dofs),
+        dofs=dofs,
+    )
 
-    i, j = rows[linked], pattern.indices[linked]
-    size = count[i] * count[j]
-    source = np.repeat(np.arange(len(i)), size)
-    entry = np.arange(len(source)) - np.repeat(np.cumsum(size) - size, size)
-    at_i, at_j = np.divmod(entry, count[j][source])
-    at_i, at_j = T.indptr[i][source] + at_i, T.indptr[j][source] + at_j
-    keys = T.indices[at_i].astype(np.int64) * n + T.indices[at_j]
-    weight = T.data[at_i] * T.data[at_j]
 
-    # Masters may be without elements of their own: their diagonal entries are new as well.
-    wanted = np.unique(np.concatenate([keys, np.arange(n, dtype=np.int64) * (n + 1)]))
-    place = np.searchsorted(plain, wanted)
-    new = np.append(plain, -1)[place] != wanted
-    merged = np.insert(plain, place[new], wanted[new])
-    stays = np.ones(len(merged), dtype=bool)
-    stays[place[new] + np.arange(int(new.sum()))] = False
+def _affine(pattern: Pattern, data: Floats, exponents: Ints) -> SparseAffine:
+    """Return the matrix of terms (terms, nnz) on the entries that are not zero in all of them."""
+    kept = data.any(axis=0)
+    indptr = np.append(0, np.cumsum(kept, dtype=np.int32))[pattern.indptr].astype(np.int32)
+    terms = sparse.csc_array(data[:, kept].T)
+    coefficients = Monomials(exponents.astype(float))
+    return SparseAffine(indptr, pattern.indices[kept].astype(np.int32), terms, coefficients)
 
-    row, column = np.divmod(wanted, n)
-    slot = np.searchsorted(wanted, keys)
-    mirror = np.searchsorted(wanted, column * n + row)
-    at = np.searchsorted(merged, wanted)
-    condensed = np.zeros((len(data), len(merged)))
-    for out, term in zip(condensed, data, strict=True):
-        out[stays] = term[~linked]
-        added = np.bincount(slot, weights=weight * term[linked][source], minlength=len(wanted))
-        # The two halves were summed in different orders: make them equal to the last digit.
-        out[at] += (added + added[mirror]) / 2
-    indptr = np.searchsorted(merged, np.arange(n + 1, dtype=np.int64) * n)
-    return Pattern(indptr, merged % n), condensed
+
+def _links(X: Floats, structure: Structure) -> list[LinkRows]:
+    rows = []
+    for n, link in enumerate(structure.links):
+        place = f"link {n}"
+        master = node_list(link.master, len(X), place)
+        slaves = node_list(link.slaves, len(X), place)
+        rows.append(link_rows(X, master[0], slaves, direction_indices(link.directions, place)))
+    return rows
+
+
+def _held(X: Floats, structure: Structure) -> Bools:
+    held = np.zeros((len(X), 6), dtype=bool)
+    for n, support in enumerate(structure.supports):
+        place = f"support {n}"
+        nodes = node_list(support.nodes, len(X), place)
+        held[nodes[:, None], direction_indices(support.directions, place)] = True
+    return held
+
+
+def _existing(X: Floats, blocks: list[Block], links: list[LinkRows]) -> Bools:
+    exists = np.zeros((len(X), 6), dtype=bool)
+    for block in blocks:
+        exists[np.unique(block.cells)[:, None], list(block.directions)] = True
+    for link in links:
+        exists.ravel()[link.slave] = True
+        exists.ravel()[link.master[link.weight != 0]] = True
+    return exists
+
+
+def _terms(
+    pattern: Pattern,
+    contributions: list[tuple[Block, Ints, tuple[Part, ...]]],
+    parameters: Sequence[Parameter],
+    linear: tuple[str, str],
+) -> tuple[Floats, Ints]:
+    """Data (terms, nnz) and exponents (terms, parameters); `linear` are the plain factors."""
+    terms: dict[tuple[int, ...], Floats] = {}
+    for block, slot, parts in contributions:
+        for part in parts:
+            exponents = tuple(
+                (1 if p.quantity in linear else part.power if p.quantity == "thickness" else 0)
+                * (block.name in p.of)
+                for p in parameters
+            )
+            data = scatter(pattern, slot, part.matrices)
+            if exponents in terms:
+                terms[exponents] += data
+            else:
+                terms[exponents] = data
+    order = sorted(terms, key=lambda e: (sum(e) > 0, [-k for k in e]))
+    return (
+        np.array([terms[e] for e in order]).reshape(len(order), pattern.nnz),
+        np.array(order, dtype=np.int64).reshape(len(order), len(parameters)),
+    )

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from modefront.fem.assembly import Block
+from modefront._typing import Floats
 from modefront.fem.check import (
     cell_array,
     check_positive,
@@ -19,17 +19,17 @@ from modefront.fem.check import (
 from modefront.fem.elements.beam import beam
 from modefront.fem.elements.brick import brick
 from modefront.fem.elements.point import lumped_mass, spring
-from modefront.fem.elements.shapes import FloatArray
 from modefront.fem.elements.shell import shell
 from modefront.fem.elements.tetrahedron import tetrahedron
 from modefront.fem.errors import FemError
+from modefront.fem.scatter import Block
 from modefront.fem.structure import Beams, Mass, Shells, Solids, Spring
 
 TRANSLATIONS = (0, 1, 2)
 SIX = (0, 1, 2, 3, 4, 5)
 
 
-def element_blocks(X: FloatArray, groups: Sequence[Beams | Shells | Solids]) -> list[Block]:
+def element_blocks(X: Floats, groups: Sequence[Beams | Shells | Solids]) -> list[Block]:
     """One block for each group of elements."""
     blocks = []
     for group in groups:
@@ -43,7 +43,7 @@ def element_blocks(X: FloatArray, groups: Sequence[Beams | Shells | Solids]) -> 
     return blocks
 
 
-def _beams(X: FloatArray, group: Beams, place: str) -> Block:
+def _beams(X: Floats, group: Beams, place: str) -> Block:
     cells = cell_array(group.cells, (2,), len(X), place)
     r = np.asarray(group.offsets, dtype=float)
     if r.shape != (2, 3):
@@ -75,7 +75,7 @@ def _beams(X: FloatArray, group: Beams, place: str) -> Block:
     return Block(group.name, cells, SIX, beam(X[cells], group.material, section, orientation, r))
 
 
-def _shells(X: FloatArray, group: Shells, place: str) -> Block:
+def _shells(X: Floats, group: Shells, place: str) -> Block:
     cells = cell_array(group.cells, (3, 4), len(X), place)
     check_positive(group.thickness, "thickness", place)
     check_sizes(shell_sizes(X[cells]), cells, "area", place)
@@ -84,7 +84,7 @@ def _shells(X: FloatArray, group: Shells, place: str) -> Block:
     )
 
 
-def _solids(X: FloatArray, group: Solids, place: str) -> Block:
+def _solids(X: Floats, group: Solids, place: str) -> Block:
     if np.ndim(group.cells) == 2 and np.shape(group.cells)[1] == 4:
         raise FemError(
             f"{place}: tetrahedra of 4 nodes are far too stiff in bending; mesh with second-order"
@@ -96,12 +96,12 @@ def _solids(X: FloatArray, group: Solids, place: str) -> Block:
     return Block(group.name, cells, TRANSLATIONS, element(X[cells], group.material))
 
 
-def spring_blocks(X: FloatArray, springs: Sequence[Spring]) -> list[Block]:
+def spring_blocks(X: Floats, springs: Sequence[Spring]) -> list[Block]:
     """One block for each named set of springs."""
     return [_springs(X, s, f"spring {s.name!r}") for s in springs]
 
 
-def _springs(X: FloatArray, member: Spring, place: str) -> Block:
+def _springs(X: Floats, member: Spring, place: str) -> Block:
     nodes = node_list(member.nodes, len(X), place)[:, None]
     check_positive(member.stiffness, "stiffness", place)
     gap = np.zeros((len(nodes), 3))
@@ -132,12 +132,12 @@ def _springs(X: FloatArray, member: Spring, place: str) -> Block:
     return Block(member.name, nodes, used, matrices)
 
 
-def mass_blocks(X: FloatArray, masses: Sequence[Mass]) -> list[Block]:
+def mass_blocks(X: Floats, masses: Sequence[Mass]) -> list[Block]:
     """One block for each named set of lumped masses."""
     return [_masses(X, m, f"mass {m.name!r}") for m in masses]
 
 
-def _masses(X: FloatArray, member: Mass, place: str) -> Block:
+def _masses(X: Floats, member: Mass, place: str) -> Block:
     nodes = node_list(member.nodes, len(X), place)[:, None]
     inertia, c = np.asarray(member.inertia, dtype=float), np.asarray(member.offset, dtype=float)
     if inertia.shape == (3,):

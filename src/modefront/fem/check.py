@@ -12,14 +12,13 @@ from difflib import get_close_matches
 import numpy as np
 import numpy.typing as npt
 
+from modefront._typing import Floats, Ints
 from modefront.fem.dofs import direction_indices
 from modefront.fem.elements import shell
 from modefront.fem.elements.shapes import (
     CUBE,
     SQUARE,
     TETRAHEDRON_EDGES,
-    FloatArray,
-    IntArray,
     cube_8,
     gauss_tetrahedron_4,
     jacobian,
@@ -32,7 +31,7 @@ from modefront.fem.structure import Direction, Shells, Structure
 FLAT = 1e-8
 
 
-def check_points(nodes: npt.ArrayLike) -> FloatArray:
+def check_points(nodes: npt.ArrayLike) -> Floats:
     """Nodes as finite floats (nodes, 3)."""
     X = np.asarray(nodes, dtype=float)
     if X.ndim != 2 or X.shape[1] != 3 or len(X) == 0:
@@ -43,14 +42,14 @@ def check_points(nodes: npt.ArrayLike) -> FloatArray:
     return X
 
 
-def check_range(nodes: IntArray, count: int, place: str) -> None:
+def check_range(nodes: Ints, count: int, place: str) -> None:
     """All of `nodes` are nodes of a model of `count`."""
     wrong = nodes[(nodes < 0) | (nodes >= count)]
     if wrong.size:
         raise FemError(f"{place}: expected nodes from 0 to {count - 1}, found {wrong[0]}")
 
 
-def node_list(nodes: npt.ArrayLike, count: int, place: str) -> IntArray:
+def node_list(nodes: npt.ArrayLike, count: int, place: str) -> Ints:
     """One node or a list of nodes as an array."""
     array = np.atleast_1d(np.asarray(nodes))
     if array.ndim != 1 or array.size == 0 or not np.issubdtype(array.dtype, np.integer):
@@ -59,7 +58,7 @@ def node_list(nodes: npt.ArrayLike, count: int, place: str) -> IntArray:
     return array.astype(np.int64)
 
 
-def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int, place: str) -> IntArray:
+def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int, place: str) -> Ints:
     """Cells as integers (elements, k) with k one of `sizes` and nodes below `count`."""
     array = np.asarray(cells)
     integer = np.issubdtype(array.dtype, np.integer)
@@ -72,7 +71,7 @@ def cell_array(cells: npt.ArrayLike, sizes: tuple[int, ...], count: int, place: 
     return array.astype(np.int64)
 
 
-def unit_vector(direction: Direction, place: str) -> FloatArray:
+def unit_vector(direction: Direction, place: str) -> Floats:
     """Unit vector (6,) in (u, r) of a named direction or a vector of displacement."""
     vector = np.zeros(6)
     if isinstance(direction, str):
@@ -93,7 +92,7 @@ def check_positive(value: float, what: str, place: str) -> None:
         raise FemError(f"{place}: {what} must be > 0, found {value!r}")
 
 
-def check_sizes(relative: FloatArray, cells: IntArray, what: str, place: str) -> None:
+def check_sizes(relative: Floats, cells: Ints, what: str, place: str) -> None:
     """No element has a relative length, area or volume of zero or less.
 
     Parameters
@@ -113,7 +112,7 @@ def check_sizes(relative: FloatArray, cells: IntArray, what: str, place: str) ->
         )
 
 
-def shell_sizes(X: FloatArray) -> FloatArray:
+def shell_sizes(X: Floats) -> Floats:
     """Smallest relative det J of each shell X (elements, 3 or 4, 3)."""
     extent = np.linalg.norm(np.ptp(X, axis=1), axis=1)
     extent = np.where(extent > 0, extent, 1)
@@ -128,7 +127,7 @@ def shell_sizes(X: FloatArray) -> FloatArray:
     return np.where(flat, 0.0, det / extent**2)
 
 
-def solid_sizes(X: FloatArray) -> FloatArray:
+def solid_sizes(X: Floats) -> Floats:
     """Smallest relative det J of each solid X (elements, 8 or 10, 3)."""
     extent = np.linalg.norm(np.ptp(X, axis=1), axis=1)
     extent = np.where(extent > 0, extent, 1)

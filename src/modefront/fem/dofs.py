@@ -23,14 +23,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
-import numpy.typing as npt
 from scipy import sparse
 
+from modefront._typing import Bools, Floats, Ints
 from modefront.fem.elements.kit import cross_matrix
-from modefront.fem.elements.shapes import FloatArray, IntArray
 from modefront.fem.errors import FemError
 
-BoolArray = npt.NDArray[np.bool_]
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 
 
@@ -66,10 +64,10 @@ class Dofs:
         (kept,) whether the DOF follows others.
     """
 
-    kept: IntArray
-    free: IntArray
+    kept: Ints
+    free: Ints
     T: sparse.csr_array
-    slave: BoolArray
+    slave: Bools
 
     def name(self, q: int) -> str:
         """Readable name of the free DOF q."""
@@ -89,12 +87,12 @@ class LinkRows:
         (rows, 3): 6 node + direction and factor; unused entries have weight 0.
     """
 
-    slave: IntArray
-    master: IntArray
-    weight: FloatArray
+    slave: Ints
+    master: Ints
+    weight: Floats
 
 
-def link_rows(X: FloatArray, master: int, slaves: IntArray, directions: Sequence[int]) -> LinkRows:
+def link_rows(X: Floats, master: int, slaves: Ints, directions: Sequence[int]) -> LinkRows:
     """Rows of one rigid link from `master` to `slaves` in the given directions."""
     lever = -cross_matrix(X[slaves] - X[master])
     slave, masters, weight = [], [], []
@@ -111,7 +109,7 @@ def link_rows(X: FloatArray, master: int, slaves: IntArray, directions: Sequence
     return LinkRows(np.concatenate(slave), np.concatenate(masters), np.concatenate(weight))
 
 
-def number_dofs(exists: BoolArray, held: BoolArray, links: Sequence[LinkRows]) -> Dofs:
+def number_dofs(exists: Bools, held: Bools, links: Sequence[LinkRows]) -> Dofs:
     """Number the DOFs node by node and build T.
 
     Parameters
@@ -131,7 +129,7 @@ def number_dofs(exists: BoolArray, held: BoolArray, links: Sequence[LinkRows]) -
     masters = np.concatenate([link.master for link in links] + [np.zeros((0, 3), np.int64)])
     weight = np.concatenate([link.weight for link in links] + [np.zeros((0, 3))])
 
-    def refuse(wrong: IntArray, what: str) -> None:
+    def refuse(wrong: Ints, what: str) -> None:
         if len(wrong):
             node, direction = divmod(int(wrong[0]), 6)
             raise FemError(f"link: node {node}, {DIRECTIONS[direction]} is a slave and {what}")

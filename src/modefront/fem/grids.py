@@ -4,20 +4,21 @@ from __future__ import annotations
 
 import numpy as np
 
-from modefront.fem.elements.shapes import TETRAHEDRON_EDGES, FloatArray, IntArray
+from modefront._typing import Floats, Ints
+from modefront.fem.elements.shapes import TETRAHEDRON_EDGES
 
 # Kuhn's division of the cube along one diagonal; it matches from cube to cube.
 KUHN = ((0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6))
 
 
-def line(start: FloatArray, end: FloatArray, count: int) -> tuple[FloatArray, IntArray]:
+def line(start: Floats, end: Floats, count: int) -> tuple[Floats, Ints]:
     """Nodes (count + 1, 3) and cells (count, 2) of a straight line."""
     s = np.linspace(0, 1, count + 1)[:, None]
     n = np.arange(count)
     return (1 - s) * np.asarray(start) + s * np.asarray(end), np.stack([n, n + 1], 1)
 
 
-def plate(a: float, b: float, n_x: int, n_y: int) -> tuple[FloatArray, IntArray]:
+def plate(a: float, b: float, n_x: int, n_y: int) -> tuple[Floats, Ints]:
     """Nodes and quadrilaterals of the rectangle [0, a] x [0, b] at z = 0; y runs fastest."""
     X = _lattice(np.linspace(0, a, n_x + 1), np.linspace(0, b, n_y + 1), np.zeros(1))
     i, j = (g.ravel() for g in np.meshgrid(np.arange(n_x), np.arange(n_y), indexing="ij"))
@@ -25,14 +26,12 @@ def plate(a: float, b: float, n_x: int, n_y: int) -> tuple[FloatArray, IntArray]
     return X, np.stack([q, q + n_y + 1, q + n_y + 2, q + 1], 1)
 
 
-def triangles(quadrilaterals: IntArray) -> IntArray:
+def triangles(quadrilaterals: Ints) -> Ints:
     """Each quadrilateral cut along a diagonal."""
     return np.concatenate([quadrilaterals[:, [0, 1, 2]], quadrilaterals[:, [0, 2, 3]]])
 
 
-def box(
-    size: tuple[float, float, float], counts: tuple[int, int, int]
-) -> tuple[FloatArray, IntArray]:
+def box(size: tuple[float, float, float], counts: tuple[int, int, int]) -> tuple[Floats, Ints]:
     """Nodes and bricks of a box from the origin; z runs fastest."""
     X = _lattice(*(np.linspace(0, s, n + 1) for s, n in zip(size, counts, strict=True)))
     i, j, k = (g.ravel() for g in np.meshgrid(*(np.arange(n) for n in counts), indexing="ij"))
@@ -43,7 +42,7 @@ def box(
     return X, np.concatenate([bottom, bottom + 1], 1)
 
 
-def tetrahedra(X: FloatArray, bricks: IntArray) -> tuple[FloatArray, IntArray]:
+def tetrahedra(X: Floats, bricks: Ints) -> tuple[Floats, Ints]:
     """Each brick as six tetrahedra of 10 nodes; nodes at midpoints of edges are added."""
     corners = bricks[:, KUHN].reshape(-1, 4)
     i, j = np.array(TETRAHEDRON_EDGES).T
@@ -53,5 +52,5 @@ def tetrahedra(X: FloatArray, bricks: IntArray) -> tuple[FloatArray, IntArray]:
     return np.concatenate([X, X[edges].mean(1)]), np.concatenate([corners, middle], 1)
 
 
-def _lattice(x: FloatArray, y: FloatArray, z: FloatArray) -> FloatArray:
+def _lattice(x: Floats, y: Floats, z: Floats) -> Floats:
     return np.stack(np.meshgrid(x, y, z, indexing="ij"), -1).reshape(-1, 3)

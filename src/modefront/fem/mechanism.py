@@ -29,10 +29,10 @@ from scipy import sparse
 from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
-from modefront.fem.assembly import Block
-from modefront.fem.dofs import DIRECTIONS, BoolArray, LinkRows
-from modefront.fem.elements.shapes import FloatArray, IntArray
+from modefront._typing import Bools, Floats, Ints
+from modefront.fem.dofs import DIRECTIONS, LinkRows
 from modefront.fem.errors import FemError
+from modefront.fem.scatter import Block
 
 BRICK_FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 TETRAHEDRON_FACES = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
@@ -56,21 +56,21 @@ class Bodies:
         (bodies, 6) whether the motion exists: a lone node may lack rotations.
     """
 
-    home: IntArray
-    shared: IntArray
-    centre: FloatArray
-    extent: FloatArray
-    moves: BoolArray
+    home: Ints
+    shared: Ints
+    centre: Floats
+    extent: Floats
+    moves: Bools
 
 
-def rigid_bodies(X: FloatArray, elements: Sequence[Block], exists: BoolArray) -> Bodies:
+def rigid_bodies(X: Floats, elements: Sequence[Block], exists: Bools) -> Bodies:
     """Bodies of the elements and of the nodes that belong to none."""
     nodes = len(X)
     counts = [len(block.cells) for block in elements]
     first = nodes + np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
     pairs = [np.zeros((0, 2), np.int64)]
     solid_pairs = [np.zeros((0, 2), np.int64)]
-    faces: dict[int, list[tuple[IntArray, IntArray]]] = {3: [], 4: []}
+    faces: dict[int, list[tuple[Ints, Ints]]] = {3: [], 4: []}
     for block, start in zip(elements, first, strict=False):
         count, k = block.cells.shape
         vertex = start + np.arange(count)
@@ -130,17 +130,17 @@ def rigid_bodies(X: FloatArray, elements: Sequence[Block], exists: BoolArray) ->
 
 
 def constraint_rows(
-    X: FloatArray,
+    X: Floats,
     bodies: Bodies,
     springs: Sequence[Block],
     links: Sequence[LinkRows],
-    held: BoolArray,
+    held: Bools,
 ) -> sparse.csr_array:
     """C (rows, 6 bodies), rows of unit length."""
     data, columns, rows = [], [], []
     total = 0
 
-    def add(terms: Sequence[tuple[IntArray, IntArray, FloatArray]]) -> None:
+    def add(terms: Sequence[tuple[Ints, Ints, Floats]]) -> None:
         """Add rows that are sums over (nodes, bodies, components in (u, r))."""
         nonlocal total
         for node, body, a in terms:
@@ -183,7 +183,7 @@ def constraint_rows(
     return sparse.diags_array(1 / np.where(norm > 0, norm, 1)).tocsr() @ C
 
 
-def null_space(C: sparse.csr_array, columns: IntArray) -> FloatArray:
+def null_space(C: sparse.csr_array, columns: Ints) -> Floats:
     """Orthonormal null space (columns, k) of C at the given columns."""
     part = C[:, columns]
     gram = (part.T @ part).toarray()
@@ -192,12 +192,12 @@ def null_space(C: sparse.csr_array, columns: IntArray) -> FloatArray:
 
 
 def check_mechanisms(
-    X: FloatArray,
+    X: Floats,
     elements: Sequence[Block],
     springs: Sequence[Block],
     links: Sequence[LinkRows],
-    held: BoolArray,
-    exists: BoolArray,
+    held: Bools,
+    exists: Bools,
     floating: bool,
 ) -> None:
     """Refuse structures with a motion that nothing resists.
@@ -244,7 +244,7 @@ def check_mechanisms(
             raise FemError(_describe(X, bodies, columns, N, parts))
 
 
-def _common_motions(bodies: Bodies, inside: IntArray) -> FloatArray:
+def _common_motions(bodies: Bodies, inside: Ints) -> Floats:
     """Motions (6 bodies, 6) in which the bodies `inside` move as one, scaled like C."""
     origin = bodies.centre[inside].mean(0)
     size = float(np.max(np.linalg.norm(bodies.centre[inside] - origin, axis=1)))
@@ -259,10 +259,10 @@ def _common_motions(bodies: Bodies, inside: IntArray) -> FloatArray:
 
 
 def _describe(
-    X: FloatArray,
+    X: Floats,
     bodies: Bodies,
-    columns: IntArray,
-    N: FloatArray,
+    columns: Ints,
+    N: Floats,
     parts: int,
 ) -> str:
     """Message that names the nodes that move, how, and a likely reason."""

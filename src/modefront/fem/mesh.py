@@ -15,7 +15,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from modefront.fem.elements.shapes import FloatArray, IntArray
+from modefront._typing import Floats, Ints
 from modefront.fem.errors import FemError
 
 Kind = Literal["beam", "shell", "solid"]
@@ -42,18 +42,18 @@ class CellBlock:
 
     group: str
     type: str
-    cells: IntArray
+    cells: Ints
 
 
 @dataclass(frozen=True)
 class Mesh:
     """Nodes (nodes, 3), blocks of cells and named sets of nodes."""
 
-    nodes: FloatArray
+    nodes: Floats
     blocks: tuple[CellBlock, ...]
-    node_sets: Mapping[str, IntArray]
+    node_sets: Mapping[str, Ints]
 
-    def cells_of(self, group: str, kind: Kind) -> tuple[IntArray, ...]:
+    def cells_of(self, group: str, kind: Kind) -> tuple[Ints, ...]:
         """Cells of a group, an array for each type, for elements of the given kind.
 
         Raises
@@ -73,7 +73,7 @@ class Mesh:
                 )
         return tuple(b.cells for b in blocks)
 
-    def nodes_of(self, name: str) -> IntArray:
+    def nodes_of(self, name: str) -> Ints:
         """Nodes of a set, or of the cells of a group, ascending.
 
         Raises
@@ -120,7 +120,7 @@ def read_mesh(path: str | Path) -> Mesh:
     points = np.asarray(raw.points, dtype=float)
     if points.ndim != 2 or not 1 <= points.shape[1] <= 3 or len(points) == 0:
         raise FemError(f"{path}: expected nodes in up to 3 dimensions, found {points.shape}")
-    blocks: dict[tuple[str, str], list[IntArray]] = {}
+    blocks: dict[tuple[str, str], list[Ints]] = {}
     for name, kind, cells in _named_cells(raw):
         blocks.setdefault((name, kind), []).append(cells)
     return Mesh(
@@ -130,7 +130,7 @@ def read_mesh(path: str | Path) -> Mesh:
     )
 
 
-def _named_cells(raw: Any) -> Iterator[tuple[str, str, IntArray]]:
+def _named_cells(raw: Any) -> Iterator[tuple[str, str, Ints]]:
     """Group, type and cells of every part of a meshio mesh that has a name."""
     cells = [np.asarray(block.data, dtype=np.int64) for block in raw.cells]
     sets = {name: s for name, s in raw.cell_sets.items() if not name.startswith("gmsh:")}

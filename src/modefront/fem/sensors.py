@@ -12,15 +12,15 @@ import numpy as np
 from scipy import sparse
 from scipy.spatial import KDTree
 
+from modefront._typing import Floats, Ints
 from modefront.fem.check import node_list, unit_vector
 from modefront.fem.dofs import Dofs
-from modefront.fem.elements.shapes import FloatArray, IntArray
 from modefront.fem.errors import FemError
 from modefront.fem.structure import Sensor
 
 
 def selection_matrix(
-    X: FloatArray, sensors: Sequence[Sensor], used: IntArray, dofs: Dofs
+    X: Floats, sensors: Sequence[Sensor], used: Ints, dofs: Dofs
 ) -> sparse.csr_array:
     """L, CSR (sensors, free DOFs); coordinates are looked for among the nodes `used`.
 
@@ -52,9 +52,7 @@ def selection_matrix(
     return selection
 
 
-def _node(
-    X: FloatArray, sensor: Sensor, place: str, used: IntArray, tree: KDTree, diagonal: float
-) -> int:
+def _node(X: Floats, sensor: Sensor, place: str, used: Ints, tree: KDTree, diagonal: float) -> int:
     if isinstance(sensor.at, int | np.integer):
         return int(node_list(sensor.at, len(X), place)[0])
     point = np.asarray(sensor.at, dtype=float)

@@ -1,6 +1,6 @@
 r"""A structure as a value: nodes, members, supports, links, sensors and parameters.
 
-Every class is plain data; `modefront.fem.affine.assemble` checks it and turns it into
+Every class is plain data; `modefront.fem.assembly.assemble` checks it and turns it into
 matrices. Nodes and elements are counted from 0. Units are consistent ones, such as SI.
 """
 

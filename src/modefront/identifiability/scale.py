@@ -41,11 +41,11 @@ import scipy.linalg
 import scipy.sparse
 
 from modefront._typing import Bools, Floats
-from modefront.models.affine import DenseAffine, SparseAffine
+from modefront.linalg.affine import DenseAffine, SparseAffine
+from modefront.linalg.factorisation import Factorisation, SingularMatrixError
 from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
-from modefront.modes.factorisation import Factorisation, SingularMatrixError
 from modefront.residuals.problem import UpdatingProblem
 
 STEPS = 12

@@ -38,10 +38,9 @@ def in_words(combination: Combination, names: Sequence[str]) -> str:
 
 
 def measured_thing(groups: Sequence[Group]) -> str:
-    """Return what is measured of these groups: "shape", "frequency" or "residual"."""
-    if not any(group.frequency for group in groups):
-        return "shape"
-    return "residual" if any(group.shape for group in groups) else "frequency"
+    """Return what is measured of these groups: the kind of residual, "residual" for several."""
+    kinds = {kind for group in groups for kind, _ in group.chosen}
+    return kinds.pop() if len(kinds) == 1 else "residual"
 
 
 def determined(combinations: Sequence[Combination]) -> tuple[int, int]:

@@ -26,8 +26,8 @@ from typing import Literal
 import numpy as np
 import scipy.fft
 
-from modefront._typing import Floats
-from modefront.identification.responses import Complexes, FrequencyResponses, frequency_responses
+from modefront._typing import Complexes, Floats
+from modefront.identification.responses import FrequencyResponses, frequency_responses
 
 Estimator = Literal["H1", "H2", "Hv"]
 

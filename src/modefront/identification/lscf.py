@@ -47,8 +47,7 @@ from dataclasses import dataclass
 import numpy as np
 import scipy.linalg as la
 
-from modefront._typing import Floats
-from modefront.identification.responses import Complexes
+from modefront._typing import Complexes, Floats
 
 ARC = 0.92
 """Share of the unit circle that the band covers: all of it would join its ends."""

@@ -25,8 +25,8 @@ from __future__ import annotations
 import numpy as np
 from scipy.ndimage import median_filter
 
-from modefront._typing import Floats
-from modefront.identification.responses import Complexes, FrequencyResponses
+from modefront._typing import Complexes, Floats
+from modefront.identification.responses import FrequencyResponses
 
 DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 

@@ -19,11 +19,8 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
-from modefront._typing import Floats
-
-Complexes = NDArray[np.complex128]
+from modefront._typing import Bools, Complexes, Floats
 
 ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2}
 """How often the displacement is differentiated in each quantity."""
@@ -65,7 +62,7 @@ class FrequencyResponses:
             raise ValueError("expected ascending frequencies")
 
     @property
-    def measured(self) -> NDArray[np.bool_]:
+    def measured(self) -> Bools:
         """Which lines of which functions were measured, of the shape of ``H``."""
         return np.isfinite(self.H)
 

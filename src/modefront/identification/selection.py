@@ -28,7 +28,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Bools, Complexes, Floats
 from modefront.identification.modal_model import (
     CHUNK,
     COARSE,
@@ -40,7 +40,6 @@ from modefront.identification.modal_model import (
     primitives,
     synthesise,
 )
-from modefront.identification.responses import Complexes
 from modefront.identification.stabilisation import Cluster
 
 LIKELY = 0.5

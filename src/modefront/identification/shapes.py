@@ -25,8 +25,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modefront._typing import Floats
-from modefront.identification.responses import Complexes
+from modefront._typing import Complexes, Floats
 
 TINY = float(np.finfo(float).tiny)
 

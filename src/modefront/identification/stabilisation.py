@@ -35,9 +35,8 @@ import scipy.linalg as la
 from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Bools, Complexes, Floats, Ints
 from modefront.identification.lscf import Poles
-from modefront.identification.responses import Complexes
 
 CUT = 0.02, 0.08
 """Limits of the distance within which poles belong to one cluster."""

@@ -47,7 +47,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Complexes, Floats
 from modefront.identification.modal_model import (
     CHUNK,
     Fit,
@@ -58,7 +58,6 @@ from modefront.identification.modal_model import (
     primitives,
     synthesise,
 )
-from modefront.identification.responses import Complexes
 from modefront.identification.shapes import RealShape, real_shape
 
 SIGNIFICANT = 3.0

@@ -12,12 +12,12 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.models.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
+from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
+from modefront.linalg.factorisation import Factorisation, Symbolic
+from modefront.linalg.pencil import Pencil, pencil
+from modefront.linalg.products import gram
 from modefront.models.ports import Pattern, Ports, Transfer
 from modefront.modes import dense, full, sparse
-from modefront.modes.factorisation import Factorisation, Symbolic
-from modefront.modes.pencil import Pencil, pencil
-from modefront.modes.products import gram
 from modefront.modes.result import Modes
 from modefront.work.costs import Costs, spend
 

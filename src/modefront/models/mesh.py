@@ -6,11 +6,10 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import scipy.sparse
 
 from modefront import fem
-from modefront._typing import Floats, Ints
-from modefront.models.affine import Monomials, SparseAffine
+from modefront._typing import Floats
+from modefront.linalg.affine import Monomials, SparseAffine
 from modefront.models.matrices import MatrixModel, affine_model
 
 
@@ -33,20 +32,17 @@ def mesh_model(
     sensors, others = np.split(np.arange(len(built.sensors)), [len(structure.sensors)])
     columns = [list(parameters).index(name) for name in built.parameters]
 
-    def affine(data: Floats, exponents: Ints) -> SparseAffine:
-        placed = np.zeros((len(exponents), len(parameters)))
-        placed[:, columns] = exponents
-        there = data.any(axis=0)  # masses couple far fewer degrees of freedom than stiffnesses
-        indptr = np.append(0, np.cumsum(there, dtype=np.int32))[built.indptr].astype(np.int32)
-        terms = scipy.sparse.csc_array(data[:, there].T)
-        return SparseAffine(indptr, built.indices[there], terms, Monomials(placed))
+    def placed(matrix: SparseAffine) -> SparseAffine:
+        exponents = np.zeros((len(matrix.coefficients.exponents), len(parameters)))
+        exponents[:, columns] = matrix.coefficients.exponents
+        return replace(matrix, coefficients=Monomials(exponents))
 
     return affine_model(
         parameters,
         [built.sensors[i] for i in sensors],
         built.selection[sensors],
-        affine(built.stiffness_data, built.stiffness_exponents),
-        affine(built.mass_data, built.mass_exponents),
+        placed(built.stiffness),
+        placed(built.mass),
         outputs={built.sensors[i]: built.selection[[i]].toarray()[0] for i in others},
         base={name: motion for name, motion in _motions(built.dofs).items() if motion.any()},
     )

@@ -34,7 +34,7 @@ import scipy.linalg
 
 from modefront._typing import Bools, Floats
 from modefront.errors import ModelError
-from modefront.models.affine import DenseAffine, first_axis
+from modefront.linalg.affine import DenseAffine, first_axis
 from modefront.modes.result import Modes
 
 CLOSE = 1e-2

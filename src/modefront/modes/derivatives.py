@@ -47,8 +47,8 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
-from modefront.modes.pencil import Pencil
-from modefront.modes.products import combine, gram, times
+from modefront.linalg.pencil import Pencil
+from modefront.linalg.products import combine, gram, times
 from modefront.modes.spectrum import Shifted, Spectrum
 
 COINCIDENT = 1e-6

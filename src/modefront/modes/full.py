@@ -21,9 +21,9 @@ import scipy.linalg
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
-from modefront.models.affine import DenseAffine
+from modefront.linalg.affine import DenseAffine
+from modefront.linalg.pencil import Pencil
 from modefront.modes import dense, sparse
-from modefront.modes.pencil import Pencil
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
-from modefront.modes.products import combine, gram, times
+from modefront.linalg.products import combine, gram, times
 
 TOLERANCE = 1e-7
 """Residual of a Ritz pair over its mu; modes are usually refined once more with another shift."""

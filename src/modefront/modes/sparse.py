@@ -31,11 +31,11 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
+from modefront.linalg.factorisation import Factorisation, SingularMatrixError
+from modefront.linalg.pencil import Pencil
+from modefront.linalg.products import combine, gram, times
 from modefront.modes import derivatives as exact
-from modefront.modes.factorisation import Factorisation, SingularMatrixError
 from modefront.modes.lanczos import greatest
-from modefront.modes.pencil import Pencil
-from modefront.modes.products import combine, gram, times
 from modefront.modes.result import Modes
 from modefront.modes.spectrum import Shifted, Spectrum
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.modes.factorisation import Factorisation
+from modefront.linalg.factorisation import Factorisation
 
 
 @dataclass(frozen=True)

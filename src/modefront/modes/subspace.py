@@ -6,7 +6,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.modes.products import combine, gram, times
+from modefront.linalg.products import combine, gram, times
 
 LOST = 1e-10
 """Square of what a normalised direction adds to a space below which it is left out."""

@@ -2,15 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Any
-
 import numpy as np
-from numpy.typing import NDArray
 
-from modefront._typing import Floats
+from modefront._typing import Complexes, Floats
 
 
-def mac(phi: NDArray[Any], psi: NDArray[Any]) -> Floats:
+def mac(phi: Floats | Complexes, psi: Floats | Complexes) -> Floats:
     r"""Return the MAC of each column of ``phi`` with each column of ``psi``.
 
     .. math:: \mathrm{MAC} = |\varphi^H \psi|^2 / (\varphi^H \varphi\; \psi^H \psi)

@@ -2,58 +2,138 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from typing import Literal
-
-import numpy as np
+from typing import Literal, get_args
 
 from modefront.data.modal import ModalData
+from modefront.errors import suggestion
+from modefront.residuals.base import Member, ResidualKind, Scale
+from modefront.residuals.kinds import KINDS, kind_named
 
-Members = Sequence[int] | Literal["all"]
-Scale = Literal["measured", "std"]
+ModeNumbers = Sequence[int] | Literal["all"]
+"""Numbers of measured modes, counted from 1, or all that were measured."""
+
+MODE_NUMBERS = "'all' or a list of measured modes, counted from 1"
+"""What `ModeNumbers` are, for messages."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, init=False)
 class Group:
-    """An objective J_i: the residuals of these frequencies and shapes, summed.
+    """An objective J_i: the sum of the squares of the residuals of its members.
+
+    Each kind of residual (`modefront.residuals.kinds`) is a keyword that names its measured modes:
+    numbers, counted from 1, or ``"all"``. Raises ValueError where anything else is given.
 
     Attributes
     ----------
-    name : how the group is called in results
-    frequency, shape : numbers of measured modes, counted from 1, or ``"all"``
-    scale : what residuals are divided by: the measured values, as in equation (1), or their
-        standard deviations
+    name : name of the objective in results
+    scale : unit of the residuals: the measured values, as in equation (1), or their standard
+        deviations
+    chosen : measured modes by the name of the kind, of the kinds that the group has
+
+    >>> Group("low modes", frequency=[1, 2], shape="all").chosen
+    (('frequency', (1, 2)), ('shape', 'all'))
     """
 
     name: str
-    frequency: Members = ()
-    shape: Members = ()
-    scale: Scale = "measured"
+    scale: Scale
+    chosen: tuple[tuple[str, tuple[int, ...] | Literal["all"]], ...]
+
+    def __init__(self, name: str, *, scale: Scale = "measured", **modes: ModeNumbers) -> None:
+        known = [kind.name for kind in KINDS]
+        for kind in modes:
+            if kind not in known:
+                expected = ", ".join(known)
+                found = suggestion(kind, known)
+                raise ValueError(f"group '{name}': expected one of {expected}, found {found}")
+            if not are_mode_numbers(modes[kind]):
+                found = repr(modes[kind])
+                raise ValueError(f"group '{name}': {kind}: expected {MODE_NUMBERS}, found {found}")
+        if scale not in get_args(Scale):
+            expected = " or ".join(map(repr, get_args(Scale)))
+            raise ValueError(f"group '{name}': scale: expected {expected}, found {scale!r}")
+        chosen = []
+        for kind in sorted(modes, key=known.index):
+            members = modes[kind]
+            if members:
+                chosen.append((kind, members if isinstance(members, str) else tuple(members)))
+        object.__setattr__(self, "name", name)
+        object.__setattr__(self, "scale", scale)
+        object.__setattr__(self, "chosen", tuple(chosen))
+
+    def modes_of(self, kind: str) -> ModeNumbers:
+        """Return the chosen modes of a kind; empty where the group has none."""
+        return dict(self.chosen).get(kind, ())
+
+    def positions(self, data: ModalData) -> list[tuple[ResidualKind, tuple[int, ...]]]:
+        """Return the positions of the chosen modes in the data, for each kind of the group."""
+        return [(kind_named(name), _positions(name, modes, data)) for name, modes in self.chosen]
+
+    def members(self, data: ModalData) -> list[Member]:
+        """Return the members of the group.
+
+        Raises ValueError where the data have no such members; see `faults`.
+        """
+        for key, expected, found in faults(self, data):
+            place = f"group '{self.name}'" + (f": {key}" if key else "")
+            raise ValueError(f"{place}: expected {expected}, found {found}")
+        return [
+            member
+            for kind, positions in self.positions(data)
+            for member in kind.members(data, positions, self.scale)
+        ]
 
 
-def members(chosen: Members, modes: Sequence[int], measured: Sequence[bool]) -> tuple[int, ...]:
-    """Return positions in ``modes`` of the chosen ones.
+def are_mode_numbers(value: object) -> bool:
+    """Return whether a value is ``"all"`` or a list of positive whole numbers."""
+    if isinstance(value, str) or not isinstance(value, Sequence):
+        return value == "all"
+    return all(isinstance(x, int) and not isinstance(x, bool) and x > 0 for x in value)
 
-    ``"all"`` is all that are measured. Raises ValueError for a mode that is not measured or is
-    named twice.
+
+def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str]]:
+    """Yield what is wrong with a group: the keyword, what is expected and what is found.
+
+    Without data, only what is wrong whatever they are.
     """
-    if chosen == "all":
-        return tuple(r for r, known in enumerate(measured) if known)
-    known = [mode for mode, there in zip(modes, measured, strict=True) if there]
-    for mode in chosen:
-        if mode not in known:
-            raise ValueError(f"one of the measured modes {known}, found {mode}")
-    if len(set(chosen)) < len(chosen):
-        raise ValueError(f"each mode once, found {list(chosen)}")
-    return tuple(list(modes).index(mode) for mode in chosen)
+    if not group.chosen:
+        kinds = " or ".join(kind.name for kind in KINDS)
+        yield "", f"{kinds} with at least one measured mode", "nothing"
+    elif data is not None:
+        wrong = [fault for name, modes in group.chosen for fault in _of_kind(name, modes, data)]
+        yield from wrong or _of_members(group, data)
 
 
-def measured_frequencies(data: ModalData) -> list[bool]:
-    """Return which modes have a frequency in any data set."""
-    return list(map(bool, np.asarray(np.isfinite(data.frequency).any(axis=0))))
+def _of_kind(name: str, modes: ModeNumbers, data: ModalData) -> Iterator[tuple[str, str, str]]:
+    """Yield what is wrong with the modes of one kind."""
+    measured = _measured_modes(name, data)
+    unknown = [mode for mode in modes if mode not in measured] if modes != "all" else []
+    if unknown:
+        yield name, f"one of the measured modes {measured}", str(unknown[0])
+    elif len(set(modes)) < len(modes) and modes != "all":
+        yield name, "each mode once", str(list(modes))
 
 
-def measured_shapes(data: ModalData) -> list[bool]:
-    """Return which modes have a component of their shape in any data set."""
-    return list(map(bool, np.asarray(np.isfinite(data.shape).any(axis=(0, 2)))))
+def _of_members(group: Group, data: ModalData) -> Iterator[tuple[str, str, str]]:
+    """Yield what is wrong with members that the data have."""
+    chosen = group.positions(data)
+    if not any(positions for _, positions in chosen):
+        yield "", "at least one measured property", "none in the data"
+    if group.scale != "std":
+        return
+    for kind, positions in chosen:
+        for r in positions:
+            if not kind.has_usable_std(data, r):
+                found = f"others for the {kind.name} of mode {data.modes[r]}"
+                yield "scale", f"'std' with {kind.usable_std}", found
+
+
+def _measured_modes(name: str, data: ModalData) -> list[int]:
+    measured = kind_named(name).measured(data)
+    return [mode for mode, known in zip(data.modes, measured, strict=True) if known]
+
+
+def _positions(name: str, modes: ModeNumbers, data: ModalData) -> tuple[int, ...]:
+    numbers = _measured_modes(name, data) if modes == "all" else modes
+    return tuple(data.modes.index(int(mode)) for mode in numbers)

@@ -105,7 +105,7 @@ def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequ
             "residuals that a parameter changes",
             "none: no parameter changes them within its bounds, so there is nothing to update; "
             "remove the group, or give it other members or the model other parameters"
-            + _single_sensors(problem, i),
+            + _fitted_by_any(problem, i),
         )
         for i in unchanged
     ]
@@ -113,11 +113,10 @@ def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequ
         raise InputError(faults)
 
 
-def _single_sensors(problem: UpdatingProblem, i: int) -> str:
-    """Return what there is to say of a group whose shapes were measured at one sensor only."""
-    count = np.isfinite(problem.data.shape).sum(axis=2).max(axis=0)
-    alone = all(kind == "shape" and count[r] == 1 for kind, r, _ in problem.members[i])
-    return " (a shape that is measured at a single sensor fits any model)" if alone else ""
+def _fitted_by_any(problem: UpdatingProblem, i: int) -> str:
+    """Return why any model fits a group, where that is so of all of its members."""
+    remarks = [member.remark for member in problem.members[i]]
+    return f" ({'; '.join(dict.fromkeys(remarks))})" if all(remarks) else ""
 
 
 def determined(problem: UpdatingProblem) -> tuple[str, ...]:

@@ -29,8 +29,8 @@ from __future__ import annotations
 
 import numpy as np
 
+from modefront._typing import Floats, Ints
 from modefront.fem.elements.kit import ElementMatrices, Part, attachment, congruence
-from modefront.fem.elements.shapes import FloatArray, IntArray
 from modefront.fem.material import Material
 from modefront.fem.section import Section
 
@@ -41,7 +41,7 @@ PLANE_Y = (np.array([1, 5, 7, 11]), np.array([1.0, 1, 1, 1]))
 PLANE_Z = (np.array([2, 4, 8, 10]), np.array([1.0, -1, 1, -1]))
 
 
-def axes(X: FloatArray, orientation: FloatArray) -> FloatArray:
+def axes(X: Floats, orientation: Floats) -> Floats:
     """Local axes R (elements, 3, 3); local y lies in the plane of axis and `orientation`."""
     along = X[:, 1] - X[:, 0]
     along = along / np.linalg.norm(along, axis=1, keepdims=True)
@@ -50,7 +50,7 @@ def axes(X: FloatArray, orientation: FloatArray) -> FloatArray:
     return np.stack([along, y, np.cross(along, y)], 1)
 
 
-def bending_stiffness(EI: float, Phi: FloatArray, L: FloatArray) -> FloatArray:
+def bending_stiffness(EI: float, Phi: Floats, L: Floats) -> Floats:
     """Stiffness (elements, 4, 4) in one plane, DOFs (v, psi) at either end."""
     one = np.ones_like(L)
     a, b, c, d = 12 * one, 6 * L, (4 + Phi) * L**2, (2 - Phi) * L**2
@@ -59,7 +59,7 @@ def bending_stiffness(EI: float, Phi: FloatArray, L: FloatArray) -> FloatArray:
     return np.asarray(k * (EI / (L**3 * (1 + Phi)))[:, None, None])
 
 
-def bending_mass(rho_A: float, rho_I: float, Phi: FloatArray, L: FloatArray) -> FloatArray:
+def bending_mass(rho_A: float, rho_I: float, Phi: Floats, L: Floats) -> Floats:
     """Consistent mass (elements, 4, 4) in one plane, DOFs (v, psi) at either end."""
     points, weights = np.polynomial.legendre.leggauss(4)
     s, w = (1 + points) / 2, weights / 2
@@ -88,13 +88,13 @@ def bending_mass(rho_A: float, rho_I: float, Phi: FloatArray, L: FloatArray) -> 
     return np.asarray(m * (L / (1 + Phi) ** 2)[:, None, None])
 
 
-def insert(K: FloatArray, dof: IntArray, block: FloatArray) -> None:
+def insert(K: Floats, dof: Ints, block: Floats) -> None:
     """Add a block (elements, n, n) at the DOFs `dof` of K (elements, 12, 12)."""
     K[:, dof[:, None], dof] += block
 
 
 def beam(
-    X: FloatArray, material: Material, section: Section, orientation: FloatArray, r: FloatArray
+    X: Floats, material: Material, section: Section, orientation: Floats, r: Floats
 ) -> ElementMatrices:
     """Matrices of straight beams, DOFs (u, r) node by node in global axes.
 

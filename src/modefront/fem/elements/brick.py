@@ -19,6 +19,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from modefront._typing import Floats
 from modefront.fem.elements.kit import (
     ElementMatrices,
     Part,
@@ -26,11 +27,11 @@ from modefront.fem.elements.kit import (
     solid_mass,
     solid_stiffness,
 )
-from modefront.fem.elements.shapes import FloatArray, cube_8, gauss_box, gradients, jacobian
+from modefront.fem.elements.shapes import cube_8, gauss_box, gradients, jacobian
 from modefront.fem.material import Material
 
 
-def brick(X: FloatArray, material: Material) -> ElementMatrices:
+def brick(X: Floats, material: Material) -> ElementMatrices:
     """Matrices of bricks X (elements, 8, 3), DOFs u node by node in global axes."""
     xi, w = gauss_box(2, 3)
     g, det = gradients(X, cube_8(xi)[1])

@@ -23,7 +23,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from modefront.fem.elements.shapes import FloatArray
+from modefront._typing import Floats
 
 
 @dataclass(frozen=True)
@@ -39,7 +39,7 @@ class Part:
     """
 
     power: int
-    matrices: FloatArray
+    matrices: Floats
 
 
 @dataclass(frozen=True)
@@ -50,17 +50,17 @@ class ElementMatrices:
     mass: tuple[Part, ...]
 
 
-def symmetric(K: FloatArray) -> FloatArray:
+def symmetric(K: Floats) -> Floats:
     """Symmetric part: rounding must not make assembled matrices unsymmetric."""
     return np.asarray((K + np.swapaxes(K, -1, -2)) / 2)
 
 
-def plane_stress(E: float, nu: float) -> FloatArray:
+def plane_stress(E: float, nu: float) -> Floats:
     """D (3, 3) of plane stress."""
     return E / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
 
 
-def condense(K: FloatArray, kept: int) -> FloatArray:
+def condense(K: Floats, kept: int) -> Floats:
     """Static condensation of the last DOFs: K_kk - K_ki K_ii^-1 K_ik."""
     K_ki = K[:, :kept, kept:]
     return symmetric(
@@ -68,7 +68,7 @@ def condense(K: FloatArray, kept: int) -> FloatArray:
     )
 
 
-def cross_matrix(r: FloatArray) -> FloatArray:
+def cross_matrix(r: Floats) -> Floats:
     """[r]x of shape (..., 3, 3), with [r]x a = r x a."""
     zero = np.zeros(r.shape[:-1])
     x, y, z = r[..., 0], r[..., 1], r[..., 2]
@@ -76,7 +76,7 @@ def cross_matrix(r: FloatArray) -> FloatArray:
     return np.stack([np.stack(row, -1) for row in rows], -2)
 
 
-def attachment(R: FloatArray, r: FloatArray) -> FloatArray:
+def attachment(R: Floats, r: Floats) -> Floats:
     """A (elements, 6 nodes, 6 nodes) from node DOFs (global) to element DOFs (local axes).
 
     Parameters
@@ -95,12 +95,12 @@ def attachment(R: FloatArray, r: FloatArray) -> FloatArray:
     return A.reshape(count, 6 * nodes, 6 * nodes)
 
 
-def congruence(A: FloatArray, K: FloatArray) -> FloatArray:
+def congruence(A: Floats, K: Floats) -> Floats:
     """A^T K A, symmetric to the last digit."""
     return symmetric(np.swapaxes(A, -1, -2) @ (K @ A))
 
 
-def solid_stiffness(g: FloatArray, weight: FloatArray, E: float, nu: float) -> FloatArray:
+def solid_stiffness(g: Floats, weight: Floats, E: float, nu: float) -> Floats:
     """Stiffness (elements, 3 nodes, 3 nodes) of an isotropic solid.
 
     With eps = sym grad u and Lame's constants, sigma : eps = lam (div u)^2 + 2 G eps : eps, so
@@ -128,7 +128,7 @@ def solid_stiffness(g: FloatArray, weight: FloatArray, E: float, nu: float) -> F
     return symmetric(K.reshape(count, 3 * nodes, 3 * nodes))
 
 
-def solid_mass(N: FloatArray, weight: FloatArray) -> FloatArray:
+def solid_mass(N: Floats, weight: Floats) -> Floats:
     """Consistent mass (elements, 3 nodes, 3 nodes) per density of a solid.
 
     Parameters

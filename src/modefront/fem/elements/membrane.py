@@ -30,11 +30,12 @@ from __future__ import annotations
 
 import numpy as np
 
+from modefront._typing import Floats
 from modefront.fem.elements.kit import condense, plane_stress, symmetric
-from modefront.fem.elements.shapes import FloatArray, gauss_box, gradients, jacobian, square_4
+from modefront.fem.elements.shapes import gauss_box, gradients, jacobian, square_4
 
 
-def quadrilateral(x: FloatArray, E: float, nu: float) -> FloatArray:
+def quadrilateral(x: Floats, E: float, nu: float) -> Floats:
     """Stiffness (elements, 12, 12) per unit thickness of quadrilaterals x (elements, 4, 2)."""
     xi, w = gauss_box(2, 2)
     N, dN = square_4(xi)
@@ -67,7 +68,7 @@ def quadrilateral(x: FloatArray, E: float, nu: float) -> FloatArray:
     return condense(np.swapaxes(S.reshape(count, -1, 16), 1, 2) @ DS.reshape(count, -1, 16), 12)
 
 
-def triangle(x: FloatArray, E: float, nu: float) -> FloatArray:
+def triangle(x: Floats, E: float, nu: float) -> Floats:
     """Stiffness (elements, 9, 9) per unit thickness of triangles x (elements, 3, 2)."""
     D = plane_stress(E, nu)
     count = len(x)

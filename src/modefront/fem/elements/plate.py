@@ -33,11 +33,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from modefront._typing import Floats
 from modefront.fem.elements.kit import plane_stress, symmetric
 from modefront.fem.elements.shapes import (
     SQUARE_EDGES,
     TRIANGLE_EDGES,
-    FloatArray,
     gauss_box,
     gauss_simplex,
     gradients,
@@ -49,7 +49,7 @@ from modefront.fem.elements.shapes import (
 )
 
 
-def slopes(x: FloatArray) -> FloatArray:
+def slopes(x: Floats) -> Floats:
     """Map (elements, 2 corners, 2, 3 corners) from DOFs to beta at corners and midpoints."""
     count, corners = x.shape[:2]
     H = np.zeros((count, 2 * corners, 2, 3 * corners))
@@ -68,7 +68,7 @@ def slopes(x: FloatArray) -> FloatArray:
     return H
 
 
-def bending(x: FloatArray, E: float, nu: float) -> FloatArray:
+def bending(x: Floats, E: float, nu: float) -> Floats:
     """Stiffness (elements, 3 corners, 3 corners) per thickness cubed."""
     count, corners = x.shape[:2]
     if corners == 3:
@@ -89,7 +89,7 @@ def bending(x: FloatArray, E: float, nu: float) -> FloatArray:
     return symmetric(np.swapaxes(kappa, 1, 2) @ moment.reshape(kappa.shape))
 
 
-def deflection(x: FloatArray, xi: FloatArray) -> FloatArray:
+def deflection(x: Floats, xi: Floats) -> Floats:
     """Interpolation of w (elements, points, 3 corners) at the reference points xi."""
     count, corners = x.shape[:2]
     if corners == 3:
@@ -117,7 +117,7 @@ def deflection(x: FloatArray, xi: FloatArray) -> FloatArray:
     return W
 
 
-def translational(x: FloatArray) -> FloatArray:
+def translational(x: Floats) -> Floats:
     """Mass (elements, 3 corners, 3 corners) of w per density and thickness."""
     xi, w = gauss_simplex(4, 2) if x.shape[1] == 3 else gauss_box(4, 2)
     dN = (simplex_linear if x.shape[1] == 3 else square_4)(xi)[1]
@@ -126,7 +126,7 @@ def translational(x: FloatArray) -> FloatArray:
     return symmetric(np.swapaxes(W, 1, 2) @ (W * weight[..., None]))
 
 
-def linear_mass(x: FloatArray) -> FloatArray:
+def linear_mass(x: Floats) -> Floats:
     """Integrals of N_i N_j (elements, corners, corners) for the linear shape functions."""
     xi, w = gauss_simplex(2, 2) if x.shape[1] == 3 else gauss_box(3, 2)
     N, dN = (simplex_linear if x.shape[1] == 3 else square_4)(xi)

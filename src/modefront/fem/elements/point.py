@@ -10,11 +10,11 @@ from __future__ import annotations
 
 import numpy as np
 
+from modefront._typing import Floats
 from modefront.fem.elements.kit import ElementMatrices, Part, cross_matrix, symmetric
-from modefront.fem.elements.shapes import FloatArray
 
 
-def spring(axis: FloatArray, stiffness: float, ends: int) -> ElementMatrices:
+def spring(axis: Floats, stiffness: float, ends: int) -> ElementMatrices:
     """Matrices (springs, ends d, ends d) of springs along the unit vectors axis (springs, d).
 
     Parameters
@@ -32,7 +32,7 @@ def spring(axis: FloatArray, stiffness: float, ends: int) -> ElementMatrices:
 
 
 def lumped_mass(
-    m: float, inertia: FloatArray, c: FloatArray, count: int, directions: int
+    m: float, inertia: Floats, c: Floats, count: int, directions: int
 ) -> ElementMatrices:
     """Matrices (count, d, d) of equal masses with inertia (3, 3) about their centres.
 

@@ -19,11 +19,9 @@ those of VTK. Source: O. C. Zienkiewicz, R. L. Taylor, "The Finite Element Metho
 from __future__ import annotations
 
 import numpy as np
-import numpy.typing as npt
 from scipy.special import roots_jacobi
 
-FloatArray = npt.NDArray[np.float64]
-IntArray = npt.NDArray[np.int64]
+from modefront._typing import Floats
 
 SQUARE = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float)
 CUBE = np.array([[x, y, z] for z in (-1, 1) for x, y in SQUARE], dtype=float)
@@ -32,7 +30,7 @@ SQUARE_EDGES = ((0, 1), (1, 2), (2, 3), (3, 0))
 TETRAHEDRON_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
 
 
-def gauss_box(count: int, dim: int) -> tuple[FloatArray, FloatArray]:
+def gauss_box(count: int, dim: int) -> tuple[Floats, Floats]:
     """Gauss-Legendre rule on [-1, 1]^dim, exact to degree 2 count - 1 in each coordinate."""
     points, weights = np.polynomial.legendre.leggauss(count)
     grids = np.meshgrid(*[points] * dim, indexing="ij")
@@ -40,7 +38,7 @@ def gauss_box(count: int, dim: int) -> tuple[FloatArray, FloatArray]:
     return np.stack(grids, -1).reshape(-1, dim), np.prod(products, axis=0).ravel()
 
 
-def gauss_simplex(count: int, dim: int) -> tuple[FloatArray, FloatArray]:
+def gauss_simplex(count: int, dim: int) -> tuple[Floats, Floats]:
     """Conical product rule on the unit simplex, exact to total degree 2 count - 1.
 
     Collapsing the cube onto the simplex leaves the factor (1 - u_k)^(dim - 1 - k), which a
@@ -57,7 +55,7 @@ def gauss_simplex(count: int, dim: int) -> tuple[FloatArray, FloatArray]:
     return xi, np.prod(w, axis=0).ravel()
 
 
-def gauss_tetrahedron_4() -> tuple[FloatArray, FloatArray]:
+def gauss_tetrahedron_4() -> tuple[Floats, Floats]:
     """Symmetric four-point rule of degree 2 on the unit tetrahedron (Stroud, T3: 2-1)."""
     a = (5 - np.sqrt(5)) / 20
     points = np.full((4, 3), a)
@@ -65,13 +63,13 @@ def gauss_tetrahedron_4() -> tuple[FloatArray, FloatArray]:
     return points, np.full(4, 1 / 24)
 
 
-def square_4(xi: FloatArray) -> tuple[FloatArray, FloatArray]:
+def square_4(xi: Floats) -> tuple[Floats, Floats]:
     """Bilinear square: N (points, 4) and dN (points, 4, 2)."""
     f = 1 + xi[:, None, :] * SQUARE
     return f.prod(-1) / 4, SQUARE * f[:, :, ::-1] / 4
 
 
-def square_8(xi: FloatArray) -> tuple[FloatArray, FloatArray]:
+def square_8(xi: Floats) -> tuple[Floats, Floats]:
     """Serendipity square: corners, then midpoints of `SQUARE_EDGES`."""
     x, y = xi[:, 0], xi[:, 1]
     mid = (
@@ -96,24 +94,22 @@ def square_8(xi: FloatArray) -> tuple[FloatArray, FloatArray]:
     )
 
 
-def cube_8(xi: FloatArray) -> tuple[FloatArray, FloatArray]:
+def cube_8(xi: Floats) -> tuple[Floats, Floats]:
     """Trilinear cube: N (points, 8) and dN (points, 8, 3)."""
     f = 1 + xi[:, None, :] * CUBE
     others = np.stack([f[..., 1] * f[..., 2], f[..., 0] * f[..., 2], f[..., 0] * f[..., 1]], -1)
     return f.prod(-1) / 8, CUBE * others / 8
 
 
-def simplex_linear(xi: FloatArray) -> tuple[FloatArray, FloatArray]:
+def simplex_linear(xi: Floats) -> tuple[Floats, Floats]:
     """Barycentric coordinates N (points, dim + 1) and dN (points, dim + 1, dim)."""
     dim = xi.shape[1]
     gradient = np.vstack([np.full((1, dim), -1.0), np.eye(dim)])
-    N: FloatArray = np.concatenate([1 - xi.sum(1, keepdims=True), xi], 1)
+    N: Floats = np.concatenate([1 - xi.sum(1, keepdims=True), xi], 1)
     return N, np.tile(gradient, (len(xi), 1, 1))
 
 
-def simplex_quadratic(
-    xi: FloatArray, edges: tuple[tuple[int, int], ...]
-) -> tuple[FloatArray, FloatArray]:
+def simplex_quadratic(xi: Floats, edges: tuple[tuple[int, int], ...]) -> tuple[Floats, Floats]:
     """Quadratic simplex: corners, then midpoints of `edges`."""
     N, dN = simplex_linear(xi)
     i, j = np.array(edges).T
@@ -125,13 +121,13 @@ def simplex_quadratic(
     )
 
 
-def jacobian(x: FloatArray, dN: FloatArray) -> FloatArray:
+def jacobian(x: Floats, dN: Floats) -> Floats:
     """J (elements, points, dim, dim) of nodes x (elements, nodes, dim)."""
     return np.asarray(np.swapaxes(dN, -1, -2)[None] @ x[:, None])
 
 
-def gradients(x: FloatArray, dN: FloatArray) -> tuple[FloatArray, FloatArray]:
+def gradients(x: Floats, dN: Floats) -> tuple[Floats, Floats]:
     """dN/dx (elements, points, dim, nodes) and det J (elements, points)."""
     J = jacobian(x, dN)
-    det: FloatArray = np.linalg.det(J)
+    det: Floats = np.linalg.det(J)
     return np.asarray(np.linalg.solve(J, np.swapaxes(dN, -1, -2)[None]), dtype=float), det

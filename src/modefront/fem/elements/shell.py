@@ -28,16 +28,16 @@ from __future__ import annotations
 
 import numpy as np
 
+from modefront._typing import Floats
 from modefront.fem.elements import membrane, plate
 from modefront.fem.elements.kit import ElementMatrices, Part, attachment, congruence
-from modefront.fem.elements.shapes import FloatArray
 from modefront.fem.material import Material
 
 IN_PLANE = (0, 1, 5)
 OUT_OF_PLANE = (2, 3, 4)
 
 
-def axes(X: FloatArray) -> FloatArray:
+def axes(X: Floats) -> Floats:
     """Local axes R (elements, 3, 3) of shells X (elements, 3 or 4, 3)."""
     if X.shape[1] == 3:
         along, normal = X[:, 1] - X[:, 0], np.cross(X[:, 1] - X[:, 0], X[:, 2] - X[:, 0])
@@ -50,13 +50,13 @@ def axes(X: FloatArray) -> FloatArray:
     return np.stack([along, np.cross(normal, along), normal], 1)
 
 
-def project(X: FloatArray, R: FloatArray) -> tuple[FloatArray, FloatArray]:
+def project(X: Floats, R: Floats) -> tuple[Floats, Floats]:
     """Corners in the plane (elements, corners, 2) and their heights above it."""
     local = (X - X.mean(1, keepdims=True)) @ np.swapaxes(R, 1, 2)
     return local[..., :2], local[..., 2]
 
 
-def shell(X: FloatArray, material: Material, thickness: float, offset: float) -> ElementMatrices:
+def shell(X: Floats, material: Material, thickness: float, offset: float) -> ElementMatrices:
     """Matrices of flat shells, DOFs (u, r) node by node in global axes.
 
     Parameters
@@ -79,7 +79,7 @@ def shell(X: FloatArray, material: Material, thickness: float, offset: float) ->
     )
     linear = rho * t * plate.linear_mass(x)
 
-    def full(blocks: list[tuple[tuple[int, ...], FloatArray]]) -> FloatArray:
+    def full(blocks: list[tuple[tuple[int, ...], Floats]]) -> Floats:
         K = np.zeros((count, 6 * corners, 6 * corners))
         for directions, block in blocks:
             dof = (6 * np.arange(corners)[:, None] + np.array(directions)).ravel()

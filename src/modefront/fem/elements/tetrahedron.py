@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from modefront._typing import Floats
 from modefront.fem.elements.kit import (
     ElementMatrices,
     Part,
@@ -26,7 +27,6 @@ from modefront.fem.elements.kit import (
 )
 from modefront.fem.elements.shapes import (
     TETRAHEDRON_EDGES,
-    FloatArray,
     gauss_simplex,
     gauss_tetrahedron_4,
     gradients,
@@ -36,7 +36,7 @@ from modefront.fem.elements.shapes import (
 from modefront.fem.material import Material
 
 
-def tetrahedron(X: FloatArray, material: Material) -> ElementMatrices:
+def tetrahedron(X: Floats, material: Material) -> ElementMatrices:
     """Matrices of tetrahedra X (elements, 10, 3), DOFs u node by node in global axes."""
     xi, w = gauss_tetrahedron_4()
     g, det = gradients(X, simplex_quadratic(xi, TETRAHEDRON_EDGES)[1])

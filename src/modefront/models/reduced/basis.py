@@ -30,10 +30,10 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.models.affine import DenseAffine
+from modefront.linalg.affine import DenseAffine
+from modefront.linalg.pencil import Pencil
+from modefront.linalg.products import combine, combine_all, gram
 from modefront.models.reduced import window
-from modefront.modes.pencil import Pencil
-from modefront.modes.products import combine, combine_all, gram
 from modefront.modes.sparse import lowest
 from modefront.modes.spectrum import Shifted
 

@@ -50,11 +50,11 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
+from modefront.linalg.pencil import Pencil
+from modefront.linalg.products import combine, gram, times
 from modefront.models.reduced.basis import Basis, residuals
 from modefront.models.reduced.corrections import Factor
 from modefront.modes import dense
-from modefront.modes.pencil import Pencil
-from modefront.modes.products import combine, gram, times
 from modefront.modes.spectrum import Shifted
 from modefront.modes.subspace import orthonormal
 

@@ -35,9 +35,9 @@ from typing import Protocol
 import numpy as np
 
 from modefront._typing import Floats, Ints
+from modefront.linalg.pencil import Pencil
 from modefront.models.reduced.basis import Basis, extended, joined, residuals, trimmed
 from modefront.modes import dense
-from modefront.modes.pencil import Pencil
 from modefront.modes.spectrum import Shifted
 
 SLOWEST = 0.5

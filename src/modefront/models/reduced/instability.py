@@ -15,10 +15,10 @@ from __future__ import annotations
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.linalg.pencil import Pencil
+from modefront.linalg.products import combine, gram, times
 from modefront.models.reduced.basis import Basis
 from modefront.models.reduced.corrections import Factor
-from modefront.modes.pencil import Pencil
-from modefront.modes.products import combine, gram, times
 from modefront.modes.subspace import orthonormal
 
 COLUMNS = 3

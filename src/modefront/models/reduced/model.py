@@ -12,6 +12,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
+from modefront.linalg.factorisation import SingularMatrixError
 from modefront.models.matrices import MatrixModel
 from modefront.models.ports import Ports, Transfer
 from modefront.models.reduced import window
@@ -32,7 +33,6 @@ from modefront.models.reduced.corrections import (
 )
 from modefront.models.reduced.instability import unstable
 from modefront.modes import dense
-from modefront.modes.factorisation import SingularMatrixError
 from modefront.modes.result import Modes
 from modefront.modes.spectrum import Shifted
 from modefront.work.costs import Costs, counted, spend, uncounted

@@ -19,7 +19,7 @@ from __future__ import annotations
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.models.affine import DenseAffine
+from modefront.linalg.affine import DenseAffine
 
 INDEFINITE = 1e-6
 """Negative eigenvalue of a projected term, over the greatest one, that passes for rounding: in

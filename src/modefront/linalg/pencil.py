@@ -7,8 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.models.affine import SparseAffine
-from modefront.modes.factorisation import Factorisation, Symbolic, analyse, lower_pattern
+from modefront.linalg.affine import SparseAffine
+from modefront.linalg.factorisation import Factorisation, Symbolic, analyse, lower_pattern
 
 
 @dataclass(frozen=True, eq=False)

@@ -13,8 +13,8 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from modefront._typing import Floats
-from modefront.modes import factorisation
-from modefront.modes.factorisation import (
+from modefront.linalg import factorisation
+from modefront.linalg.factorisation import (
     LowerPattern,
     SingularMatrixError,
     Symbolic,
@@ -97,7 +97,7 @@ def test_rslab_is_taken_where_it_is_there(monkeypatch: pytest.MonkeyPatch) -> No
     pattern = LowerPattern(np.array([0, 1]), np.array([0]))
     factorisation._best.cache_clear()
     assert isinstance(factorisation.analyse(pattern), rslab_ldl.RslabSymbolic)
-    monkeypatch.setitem(sys.modules, "modefront.modes.factorisation.rslab_ldl", None)
+    monkeypatch.setitem(sys.modules, "modefront.linalg.factorisation.rslab_ldl", None)
     monkeypatch.delattr(factorisation, "rslab_ldl")
     factorisation._best.cache_clear()
     assert isinstance(factorisation.analyse(pattern), superlu.SuperluSymbolic)

@@ -9,7 +9,7 @@ import rslab
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.modes.factorisation.base import LowerPattern, SingularMatrixError
+from modefront.linalg.factorisation.base import LowerPattern, SingularMatrixError
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ import scipy.sparse
 from hypothesis import given
 from hypothesis import strategies as st
 
-from modefront.models.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
+from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 
 
 def pair(size: int, terms: int, parameters: int, seed: int) -> tuple[SparseAffine, DenseAffine]:

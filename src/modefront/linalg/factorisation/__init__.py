@@ -17,8 +17,8 @@ from functools import cache
 
 import numpy as np
 
-from modefront.modes.factorisation import superlu
-from modefront.modes.factorisation.base import (
+from modefront.linalg.factorisation import superlu
+from modefront.linalg.factorisation.base import (
     Factorisation,
     LowerPattern,
     SingularMatrixError,
@@ -45,7 +45,7 @@ def analyse(pattern: LowerPattern) -> Symbolic:
 def _best() -> Callable[[LowerPattern], Symbolic]:
     """Return rslab's analysis where rslab is there and solves a known problem, else SuperLU's."""
     try:
-        from modefront.modes.factorisation import rslab_ldl
+        from modefront.linalg.factorisation import rslab_ldl
     except ImportError:
         return superlu.analyse
     return rslab_ldl.analyse if is_sound(rslab_ldl.analyse) else superlu.analyse

@@ -11,7 +11,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from modefront._typing import Floats
-from modefront.modes import products
+from modefront.linalg import products
 
 
 @given(st.integers(1, 3000), st.integers(1, 40), st.integers(1, 40))

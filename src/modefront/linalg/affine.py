@@ -23,10 +23,9 @@ from itertools import pairwise
 
 import numpy as np
 import scipy.sparse
-from numpy.typing import NDArray
 
-from modefront._typing import Bools, Floats, Ints
-from modefront.modes.products import gram, times
+from modefront._typing import Bools, Floats, Ints, Ints32
+from modefront.linalg.products import gram, times
 
 ROWS = 2**15
 """Rows of a term that are projected at once, to bound the memory."""
@@ -123,8 +122,8 @@ class SparseAffine:
     coefficients : c(theta)
     """
 
-    indptr: NDArray[np.int32]
-    indices: NDArray[np.int32]
+    indptr: Ints32
+    indices: Ints32
     terms: scipy.sparse.csc_array
     coefficients: Monomials
 
@@ -285,6 +284,6 @@ def _parts(starts: Ints) -> list[slice]:
     return [slice(*ends) for ends in pairwise(starts.tolist())]
 
 
-def _expand(indptr: NDArray[np.int32]) -> Ints:
+def _expand(indptr: Ints32) -> Ints:
     """Return the row (or column) of each entry of compressed rows (or columns)."""
     return np.repeat(np.arange(indptr.size - 1), np.diff(indptr))

@@ -19,7 +19,7 @@ import scipy.sparse
 import scipy.sparse.linalg
 
 from modefront._typing import Floats, Ints
-from modefront.modes.factorisation.base import LowerPattern, SingularMatrixError
+from modefront.linalg.factorisation.base import LowerPattern, SingularMatrixError
 
 GROWTH = 1e-8
 """Backward error of a solution, by components, above which the pivots' signs are not trusted."""

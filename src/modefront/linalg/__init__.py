@@ -1,0 +1,1 @@
+"""Affine matrices, their sparse pencil and factorisations, and products with tall matrices."""

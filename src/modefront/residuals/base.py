@@ -1,0 +1,132 @@
+r"""What a kind of residual is: equation (1) over any unit.
+
+The residuals of a measured property are its errors over a unit u, such that their squares add up
+to the mean over the K data sets in which it was measured,
+
+.. math:: r = \frac{1}{\sqrt K} \frac{m(\theta) - \hat m}{u}, \qquad J = \|r\|^2 .
+
+On the scale ``"std"`` the unit is the standard deviation of each measured value. On the scale
+``"measured"`` it follows from the measured values themselves, which gives the relative errors of
+equation (1) of Christodoulou et al. (2008, doi:10.1016/j.cma.2008.04.010). Everything but the
+unit is the same on both.
+
+A kind (`ResidualKind`) says which measured modes it can be formed of and makes the members of
+groups (`Member`). Each kind is one file of this folder, named in `modefront.residuals.kinds`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from typing import Literal, Protocol
+
+import numpy as np
+
+from modefront._typing import Bools, Floats, Ints
+from modefront.data.modal import ModalData
+from modefront.modes.result import Modes
+from modefront.pairing.match import Pairs
+
+Scale = Literal["measured", "std"]
+"""What errors are divided by: a unit that follows from the measured values, or their std."""
+
+NEGLIGIBLE = 1e-9
+"""Standard deviation, over the greatest one or the frequency, below which it is rounding."""
+
+
+@dataclass(frozen=True)
+class Sensitivity:
+    """Changes of an objective by one standard deviation of each of some measured values.
+
+    Attributes
+    ----------
+    values : (values,) numbers of the measured values, see `value_numbers`
+    J : (values,) changes of the objective at fixed parameters
+    dJ : (values, p) changes of its derivatives
+    """
+
+    values: Ints
+    J: Floats
+    dJ: Floats
+
+
+class Member(Protocol):
+    """A member of a group: residuals of a measured property, one data set after the other."""
+
+    @property
+    def count(self) -> float:
+        """Count a of measured properties, mean over the data sets."""
+
+    @property
+    def sets(self) -> Ints:
+        """Data set of each residual, counted from 0, shape (rows,)."""
+
+    @property
+    def remark(self) -> str:
+        """Why any model fits the property; empty where models can miss it."""
+
+    def r(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the residuals at the modes of a model, shape (rows,)."""
+
+    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the derivatives of the residuals, shape (rows, p)."""
+
+    def margin(self, eigenvalue: Floats, shape: Floats) -> float:
+        """Return the square of the greatest change of r by errors of the paired modes.
+
+        ``eigenvalue`` and ``shape`` (measured modes,) are relative errors.
+        """
+
+    def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
+        """Yield what one standard deviation of measured values does to J, set after set.
+
+        A value without a standard deviation counts as exact.
+        """
+
+    def floor_of_std(self) -> float:
+        """Return the mean of J of a perfect model, from standard deviations of the data."""
+
+    def floor_of_sets(self) -> float:
+        """Return the mean of J of a perfect model, from the variance of the data sets.
+
+        It is 0 for a property measured in one data set only.
+        """
+
+
+class ResidualKind(Protocol):
+    """A kind of residual, such as that of natural frequencies."""
+
+    @property
+    def name(self) -> str:
+        """Name of the kind in groups and messages, in the singular."""
+
+    @property
+    def plural(self) -> str:
+        """What is measured, in the plural."""
+
+    @property
+    def usable_std(self) -> str:
+        """Which standard deviations the scale ``"std"`` needs, for messages."""
+
+    def measured(self, data: ModalData) -> Bools:
+        """Return which modes have measured values of this kind, shape (modes,)."""
+
+    def has_usable_std(self, data: ModalData, r: int) -> bool:
+        """Return whether the scale ``"std"`` is possible for the measured mode at position r."""
+
+    def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
+        """Return the residuals of measured modes, given by their positions in the data."""
+
+
+def value_numbers(data: ModalData, k: int, r: int) -> Ints:
+    """Return the numbers of the values of mode r in data set k, shape (1 + sensors,).
+
+    The first one is that of its frequency, the others are those of the components of its shape.
+    """
+    size = 1 + len(data.sensors)
+    return (k * len(data.modes) + r) * size + np.arange(size)
+
+
+def known_std(std: Floats) -> Floats:
+    """Return standard deviations with 0 where none is known."""
+    return np.where(std > 0, std, 0.0)

@@ -1,0 +1,128 @@
+r"""Residuals of natural frequencies.
+
+For measured mode r, in each of the K data sets in which its frequency was measured,
+
+.. math:: r = \frac{\omega_r - \hat\omega_r}{u \sqrt K} .
+
+The unit u is the measured frequency :math:`\hat\omega_r`, as in equation (1), or its standard
+deviation. With y = :math:`\hat\omega_r` an error of measurement changes :math:`J = (f - y)^2 / u^2`
+of a data set by
+
+.. math:: \frac{\partial J}{\partial y} = -\frac{2 (f - y)}{u^2} q, \qquad
+    \frac{\partial}{\partial y} \partial J = -\frac{2 \partial f}{u^2} (2 q - 1),
+
+where q = 1 for a unit that is given, and q = f / y for the unit y, which changes with it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from modefront._typing import Bools, Floats, Ints
+from modefront.data.modal import ModalData
+from modefront.modes.result import Modes
+from modefront.pairing.match import Pairs
+from modefront.residuals.base import (
+    NEGLIGIBLE,
+    Member,
+    Scale,
+    Sensitivity,
+    known_std,
+    value_numbers,
+)
+
+
+@dataclass(frozen=True, eq=False)
+class FrequencyResiduals:
+    """Residuals of the frequency of the measured mode at position ``mode`` of the data."""
+
+    data: ModalData
+    mode: int
+    scale: Scale
+    count: float = 1.0
+    remark: str = ""
+
+    @cached_property
+    def sets(self) -> Ints:
+        """Data sets with the frequency; each has one residual."""
+        return np.flatnonzero(np.isfinite(self.data.frequency[:, self.mode]))
+
+    @cached_property
+    def measured(self) -> Floats:
+        """Measured frequencies in Hz, shape (rows,)."""
+        return self.data.frequency[self.sets, self.mode]
+
+    @cached_property
+    def std(self) -> Floats:
+        """Standard deviations of the measured frequencies, shape (rows,)."""
+        return self.data.frequency_std[self.sets, self.mode]
+
+    @cached_property
+    def unit(self) -> Floats:
+        """Units u, shape (rows,)."""
+        return self.measured if self.scale == "measured" else self.std
+
+    @cached_property
+    def weight(self) -> Floats:
+        """Factors of the errors of frequencies, shape (rows,)."""
+        return 1 / (self.unit * np.sqrt(self.sets.size))
+
+    def r(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the residuals; see `modefront.residuals.base.Member`."""
+        return (modes.frequency[pairs.index[self.mode]] - self.measured) * self.weight
+
+    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the derivatives of the residuals, shape (rows, p)."""
+        return self.weight[:, None] * modes.dfrequency[pairs.index[self.mode]]
+
+    def margin(self, eigenvalue: Floats, shape: Floats) -> float:  # noqa: ARG002
+        """Return the square of the greatest change of r by errors of the paired modes."""
+        size = self.weight * self.measured
+        return float((eigenvalue[self.mode] / 2) ** 2 * (size @ size))
+
+    def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
+        """Yield what one standard deviation of each measured frequency does to J."""
+        q = pairs.index[self.mode]
+        f, df = modes.frequency[q], modes.dfrequency[q]
+        step = known_std(self.std) / self.sets.size
+        for k, y, u, h in zip(self.sets, self.measured, self.unit, step, strict=True):
+            ratio = f / y if self.scale == "measured" else 1.0
+            J = -2 * (f - y) / u**2 * ratio
+            dJ = -2 * df / u**2 * (2 * ratio - 1)
+            number = value_numbers(self.data, k, self.mode)[:1]
+            yield Sensitivity(number, np.array([J * h]), (dJ * h)[None])
+
+    def floor_of_std(self) -> float:
+        """Return the sum of the variances of the residuals."""
+        return float(((self.weight * known_std(self.std)) ** 2).sum())
+
+    def floor_of_sets(self) -> float:
+        """Return the same for the variance of the data sets about their mean."""
+        if self.sets.size < 2:
+            return 0.0
+        return float((self.weight**2).sum() * self.measured.var(ddof=1))
+
+
+class FrequencyKind:
+    """Natural frequencies; see `modefront.residuals.base.ResidualKind`."""
+
+    name = "frequency"
+    plural = "frequencies"
+    usable_std = f"standard deviations above {NEGLIGIBLE:g} of all measured frequencies"
+
+    def measured(self, data: ModalData) -> Bools:
+        """Return which modes have a frequency in any data set."""
+        return np.asarray(np.isfinite(data.frequency).any(axis=0))
+
+    def has_usable_std(self, data: ModalData, r: int) -> bool:
+        """Return whether all frequencies of a mode have standard deviations above rounding."""
+        k = np.isfinite(data.frequency[:, r])
+        return bool((data.frequency_std[k, r] > NEGLIGIBLE * data.frequency[k, r]).all())
+
+    def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
+        """Return the residuals of the frequency of each mode."""
+        return [FrequencyResiduals(data, r, scale) for r in modes]

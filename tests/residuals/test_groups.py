@@ -1,0 +1,46 @@
+"""What groups of measured properties hold, and what they refuse."""
+
+import pickle
+from typing import Any
+
+import pytest
+
+from modefront.residuals.groups import Group
+from modefront.residuals.kinds import KINDS
+
+
+@pytest.mark.parametrize(
+    ("arguments", "message"),
+    [
+        (
+            {"frequency": "al"},
+            "group 'f': frequency: expected 'all' or a list of measured modes, counted from 1, "
+            "found 'al'",
+        ),
+        ({"shape": [0]}, "shape: expected 'all' or a list .* found \\[0\\]"),
+        ({"shape": [True]}, "shape: expected 'all' or a list .* found \\[True\\]"),
+        ({"frequency": 1}, "frequency: expected 'all' or a list .* found 1"),
+        ({"frequncy": "all"}, "expected one of frequency, shape, .*did you mean 'frequency'"),
+        ({"scale": "sdt"}, "scale: expected 'measured' or 'std', found 'sdt'"),
+    ],
+)
+def test_a_group_refuses_what_is_no_member(arguments: dict[str, Any], message: str) -> None:
+    with pytest.raises(ValueError, match=message):
+        Group("f", **arguments)
+
+
+def test_equal_groups_are_equal_however_they_are_written() -> None:
+    group = Group("g", shape="all", frequency=[1, 2])
+    assert group == Group("g", frequency=(1, 2), shape="all")
+    assert group == Group("g", frequency=range(1, 3), shape="all")
+    assert hash(group) == hash(Group("g", frequency=(1, 2), shape="all"))
+    assert pickle.loads(pickle.dumps(group)) == group
+    assert Group("f", frequency="all", shape=()) == Group("f", frequency="all")
+    assert group.modes_of("frequency") == (1, 2)
+    assert Group("s", shape="all").modes_of("frequency") == ()
+
+
+def test_kinds_have_names_of_their_own() -> None:
+    names = [kind.name for kind in KINDS]
+    assert len(set(names)) == len(names)
+    assert not {"name", "scale"} & set(names)
