@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from modefront.residuals.groups import Group as Group
     from modefront.residuals.problem import UpdatingProblem as UpdatingProblem
     from modefront.residuals.problem import updating_problem as updating_problem
+    from modefront.results.files import read as read_results
     from modefront.solvers.explore import Search as Search
     from modefront.study.definition import Study as Study
     from modefront.study.file import load as load
-    from modefront.study.results import read as read_results
     from modefront.study.session import run as run
     from modefront.study.session import solve as solve
     from modefront.uncertainty.options import Uncertainty as Uncertainty
@@ -61,7 +61,7 @@ _HOMES = {
     "matrices": "models.matrices",
     "modal_data": "data.modal",
     "read_csv": "data.csv",
-    "read_results": "study.results:read",
+    "read_results": "results.files:read",
     "run": "study.session",
     "solve": "study.session",
     "updating_problem": "residuals.problem",

@@ -10,7 +10,7 @@ import numpy as np
 
 from modefront.cli.show import as_plain
 from modefront.cli.tables import console, safe, table
-from modefront.study.compare import Comparison, Spread
+from modefront.results.compare import Comparison, Spread
 
 
 def print_comparison(found: Comparison) -> None:

@@ -78,8 +78,8 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     from modefront.cli.certificates import uncertified
     from modefront.cli.progress import progress_bar
     from modefront.cli.show import print_summary
+    from modefront.results.selection import not_converged
     from modefront.study.file import load
-    from modefront.study.results import not_converged
     from modefront.study.session import run as run_study
 
     loaded = _refined(load(study), refine)
@@ -105,7 +105,7 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
 def show(directory: Path, form: str, figures: bool, every: bool) -> None:
     """Print the results in DIRECTORY."""
     from modefront.cli.show import as_json, print_results
-    from modefront.study.results import read
+    from modefront.results.files import read
 
     data = read(directory)
     if figures:
@@ -128,7 +128,7 @@ def show(directory: Path, form: str, figures: bool, every: bool) -> None:
 def compare(directories: tuple[Path, ...], form: str) -> None:
     """Set the results in several DIRECTORIES side by side."""
     from modefront.cli.compare import comparison_as_json, print_comparison
-    from modefront.study.compare import compare as compare_results
+    from modefront.results.compare import compare as compare_results
 
     found = compare_results(directories)
     if form == "json":

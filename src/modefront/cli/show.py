@@ -16,9 +16,9 @@ from modefront.cli.certificates import certificate_remarks, cost_lines
 from modefront.cli.predictions import prediction_tables
 from modefront.cli.show_knowledge import print_knowledge
 from modefront.cli.tables import console, safe, table
+from modefront.results.selection import front_points, not_converged
 from modefront.study.check import Findings
 from modefront.study.definition import Study
-from modefront.study.results import front_points, not_converged
 from modefront.work.costs import Costs
 
 

@@ -14,12 +14,14 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront.identifiability.words import enumeration
 from modefront.predict import Passage, PeakResponse, Prediction
-from modefront.study.analysis_variables import Variables, left_open
+from modefront.results.analysis import left_open
 from modefront.study.prediction_runner import PredictionRunner
 from modefront.uncertainty.differences import Stencil, stencil
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.prediction import SUMMARY, TruncationError, draw, lognormal_std, summary
 from modefront.work.task import seed_sequence
+
+Variables = dict[str, tuple[tuple[str, ...], object, str]]
 
 
 @dataclass(frozen=True)

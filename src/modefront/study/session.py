@@ -101,7 +101,7 @@ def run(
     the front cannot be refined or no parameter changes a group, and UnfinishedError where the work
     cannot be done.
     """
-    from modefront.study.results import FILE, write
+    from modefront.results.files import FILE, write
 
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
@@ -141,9 +141,9 @@ class _Session:
             return self._results()
 
     def _results(self) -> xr.Dataset:
+        from modefront.results.assemble import dataset
         from modefront.study.posterior_predictions import around, predicted_around
         from modefront.study.predictions import extent, predicted
-        from modefront.study.results import dataset
 
         study, work = self.study, self.work
         problem = study.problem

@@ -21,7 +21,8 @@ from scipy.spatial.distance import cdist, pdist, squareform
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError
-from modefront.study.results import front_points, read
+from modefront.results.files import read
+from modefront.results.selection import front_points
 
 PREDICTED = ("frequency", "mac")
 """Predictions of the modes that every file of results holds."""

@@ -1,0 +1,200 @@
+"""A front and its analysis as one dataset."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+import xarray as xr
+
+from modefront._typing import Bools, Floats, Ints
+from modefront.analysis.certified import certificate_values
+from modefront.analysis.front import FrontAnalysis
+from modefront.fronts.front import Front
+from modefront.fronts.methods import METHODS
+from modefront.fronts.point import WEIGHTED, Kind, label
+from modefront.residuals.problem import UpdatingProblem
+from modefront.results.analysis import Values, analysis_values, determinations
+from modefront.results.findings import findings
+from modefront.results.schema import FORMAT, described
+from modefront.solvers.dominance import nondominated, undominated
+from modefront.solvers.pieces import piece_numbers
+from modefront.solvers.sqp import Solution
+
+AT_BOUND = 1e-9
+"""Distance from a bound, over the range, up to which a parameter is at it."""
+
+ITERATED = "iterated-weights"
+"""Name of the fixed point of the iteration of the weights, among the minima."""
+
+
+def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> xr.Dataset:
+    """Return a front and its analysis as a dataset with names, units and meanings."""
+    front = replace(front, points=[*front.points, *analysis.points])
+    values = _points(problem, front, analysis) | _data(problem, front) | _minima(problem, front)
+    values |= _branches(front) | _lattice(front)
+    determined = determinations(problem, front)
+    values |= analysis_values(problem, front, analysis, determined)
+    values["finding"] = findings(problem, front, analysis, determined)
+    groups, parameters = list(problem.objectives), list(problem.model.parameters)
+    return xr.Dataset(
+        described(values),
+        attrs={"format": FORMAT, "reference": front.reference.label},
+        coords={
+            "parameter": parameters,
+            "group": groups,
+            "mode": list(problem.data.modes),
+            "bound": ["lower", "upper"],
+            "parameter_other": parameters,
+            "group_other": groups,
+        },
+    )
+
+
+def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:
+    """Return the models with their objectives and modes."""
+    points, n = front.points, len(problem.objectives)
+    solutions = [point.solution for point in points]
+    a, J = problem.properties, _stack([x.at.J for x in solutions], n)
+    equivalent = [
+        model.J for _, found in analysis.manifolds for each in found for model in each.models
+    ]
+    theta = _thetas(solutions, problem)
+    out: Values = {
+        "label": [point.label for point in points],
+        "kind": [point.kind.value for point in points],
+        "pareto": _pareto(front, J, _stack(equivalent, n)),
+        "dominated_among_front": _dominated_among_front(front, J),
+        "theta": theta,
+        "objective": J,
+        "error": np.sqrt(J / a),
+        "weight": _weights(front, J, a),
+        "stationary_weight": _shares(_stack([x.weights for x in solutions], n), front.scale),
+        "converged": [x.converged for x in solutions],
+        "status": [x.status.name.lower() for x in solutions],
+        "evaluations": [x.evaluations for x in solutions],
+        "at_bound": _at_bound(problem, theta),
+    }
+    modes = len(problem.data.modes)
+    unknown = np.full(modes, np.nan)
+    for name in ("frequency", "mac", "paired_mode", "coincident"):
+        out[name] = _stack([x.at.quantities.get(name, unknown) for x in solutions], modes)
+    return out | certificate_values(problem, solutions)
+
+
+def _at_bound(problem: UpdatingProblem, theta: Floats) -> Ints:
+    """Return -1 for parameters (points, p) at the lower bound, 1 at the upper one, else 0."""
+    margin = AT_BOUND * (problem.upper - problem.lower)
+    at = np.where(theta >= problem.upper - margin, 1, 0)
+    return np.where(theta <= problem.lower + margin, -1, at)
+
+
+def _data(problem: UpdatingProblem, front: Front) -> Values:
+    """Return what the results repeat of the problem."""
+    return {
+        "measured_frequency": problem.data.mean_frequency,
+        "properties": problem.properties,
+        "exact": list(front.exact),
+        "bounds": np.column_stack([problem.lower, problem.upper]),
+    }
+
+
+def _minima(problem: UpdatingProblem, front: Front) -> Values:
+    """Return all distinct minima of single objectives and of the optimally weighted residuals."""
+    minima = [
+        (name, minimum)
+        for name, edge in zip(problem.objectives, front.edges, strict=True)
+        for minimum in edge.minima
+    ]
+    minima += [(label(Kind.OPTIMAL), minimum) for minimum in front.optimal]
+    if front.iterated:
+        minima.append((ITERATED, front.iterated))
+    solutions = [minimum for _, minimum in minima]
+    return {
+        "minimum_of": [name for name, _ in minima],
+        "minimum_theta": _thetas(solutions, problem),
+        "minimum_objective": _stack([x.at.J for x in solutions], len(problem.objectives)),
+        "minimum_converged": [x.converged for x in solutions],
+        **certificate_values(problem, solutions, "minimum_"),
+    }
+
+
+def _branches(front: Front) -> Values:
+    """Return the branches of a front of two objectives, and where they end at its gaps."""
+    if len(front.edges) != 2 or METHODS[front.method].programme != "boundary":
+        return {}
+    J = _stack([point.solution.at.J for point in front.points], 2)
+    p = front.points[0].solution.at.theta.size
+    ends = [end for gap in front.gaps for end in (gap.end, gap.start)]
+    names = [name for i in range(len(front.gaps)) for name in (f"end-{i + 1}", f"start-{i + 2}")]
+    nothing = np.full(2, np.nan)
+    return {
+        "piece": piece_numbers(J, nondominated(J), front.gaps),
+        "end_label": names,
+        "end_theta": _stack([np.full(p, np.nan) if x is None else x.at.theta for x in ends], p),
+        "end_objective": _stack([nothing if x is None else x.at.J for x in ends], 2),
+        "end_converged": np.array([x is not None for x in ends], dtype=bool),
+    }
+
+
+def _lattice(front: Front) -> Values:
+    """Return the lattice of normal-boundary intersection and the point that each place led to."""
+    if not len(front.places):
+        return {}
+    labels = ["" if k < 0 else front.points[k].label for k in front.places]
+    return {"lattice": front.lattice, "lattice_label": labels}
+
+
+def _pareto(front: Front, J: Floats, others: Floats) -> Bools:
+    """Return which points (points, n) no known model dominates; ``others`` (models, n) are known.
+
+    All evaluated models are known, minima and ends of branches too. An end that another branch
+    dominates at the same level counts for the points next to it only.
+    """
+    minima = [one.at.J for edge in front.edges for one in edge.minima]
+    minima += [one.at.J for gap in front.gaps for one in gap.ends]
+    minima += [one.at.J for one in front.optimal]
+    n = J.shape[1]
+    known = np.vstack([J, front.known.reshape(-1, n), _stack(minima, n), others])
+    # Of a front that is a point, the ranges over models as good as each other are rounding.
+    scale = front.sizes if front.scale is None else front.scale
+    return undominated(J, known, scale)
+
+
+def _dominated_among_front(front: Front, J: Floats) -> Bools:
+    """Return which points (points, n) another point of the front dominates; others do not count."""
+    on = np.array([x.kind is Kind.FRONT for x in front.points])
+    out = np.zeros(len(J), dtype=bool)
+    if on.any():
+        out[on] = ~nondominated(J[on], scale=front.scale)
+    return out
+
+
+def _weights(front: Front, J: Floats, a: Floats) -> Floats:
+    """Return the weights (points, n) that weighted methods used; NaN at other points."""
+    out = np.full(J.shape, np.nan)
+    swept = METHODS[front.method].programme == "weights"
+    for i, point in enumerate(front.points):
+        if point.kind is Kind.OPTIMAL:
+            out[i] = a / J[i]
+        elif point.kind is Kind.BOUNDED and front.floor is not None:
+            out[i] = a / (J[i] + front.floor)
+        elif point.kind in WEIGHTED or (point.kind is Kind.FRONT and swept):
+            out[i] = point.solution.weights
+    return out
+
+
+def _stack(rows: Sequence[Floats], width: int) -> Floats:
+    return np.array(rows, dtype=float).reshape(len(rows), width)
+
+
+def _thetas(solutions: Sequence[Solution], problem: UpdatingProblem) -> Floats:
+    return _stack([one.at.theta for one in solutions], len(problem.model.parameters))
+
+
+def _shares(weights: Floats, scale: Floats | None) -> Floats:
+    """Return weights times the range of their objective, with sum 1."""
+    scaled = weights * (1.0 if scale is None else scale)
+    total = scaled.sum(axis=1, keepdims=True)
+    return np.divide(scaled, total, out=np.full(scaled.shape, np.nan), where=total != 0)

@@ -1,0 +1,47 @@
+"""Results in a netCDF file: written whole or not at all, and checked when they are read."""
+
+from __future__ import annotations
+
+import os
+from pathlib import Path
+
+import xarray as xr
+
+from modefront.errors import Fault, InputError
+from modefront.results.schema import FORMAT, VARIABLES, faults
+
+FILE = "results.nc"
+
+
+def write(data: xr.Dataset, path: Path) -> None:
+    """Write a dataset whole or not at all."""
+    temporary = path.with_name(path.name + ".tmp")
+    data.to_netcdf(temporary, engine="h5netcdf")
+    with temporary.open("rb") as stream:
+        os.fsync(stream.fileno())
+    temporary.replace(path)
+
+
+def read(folder: Path) -> xr.Dataset:
+    """Return the results in a folder.
+
+    Raises InputError where there are none, where they are not those of modefront, and where they
+    are of another format.
+    """
+    path = folder / FILE
+    if not path.is_file():
+        raise InputError(Fault(str(path), "file", "results of a finished run", "no such file"))
+    try:
+        with xr.open_dataset(path, engine="h5netcdf") as data:
+            data.load()
+    except Exception as error:  # what is raised for a damaged file is not documented
+        raise InputError(Fault(str(path), "file", "results in netCDF", str(error))) from None
+    found = data.attrs.get("format", 1 if "label" in data else None)
+    if found is not None and found != FORMAT:
+        expected = f"results of format {FORMAT}"
+        text = f"format {found}, of another version of modefront: run the study again"
+        raise InputError(Fault(str(path), "attribute 'format'", expected, text))
+    wrong = [Fault(str(path), *parts) for parts in faults(data, VARIABLES)]
+    if wrong:
+        raise InputError(wrong)
+    return data

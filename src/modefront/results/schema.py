@@ -1,0 +1,515 @@
+"""The schema of results: every variable and attribute with dimensions, unit and meaning.
+
+`VARIABLES` and `ATTRIBUTES` are the one place where results are described. The attributes of the
+variables in ``results.nc``, the checks when a file is read and the tables of ``docs/results.md``
+are made from them. Predictions describe their own variables (`modefront.predictions`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import numpy as np
+import xarray as xr
+
+FORMAT = 2
+"""Version of the schema: raised when a variable changes its meaning, or a required one is added."""
+
+Values = Literal["number", "count", "truth", "text"]
+"""What a variable holds."""
+
+DTYPES: Mapping[Values, str] = {"number": "fiu", "count": "iuf", "truth": "biu", "text": "UOST"}
+"""Kinds of NumPy types that each of these may have in a file."""
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of the results.
+
+    Attributes
+    ----------
+    name : of the variable
+    dimensions : its dimensions
+    meaning : in words
+    values : what it holds
+    unit : of the values; empty where there is none, or where it is that of the model
+    section : heading of the table in the documentation
+    required : whether every file of results has it
+    since : first format that has it
+    """
+
+    name: str
+    dimensions: tuple[str, ...]
+    meaning: str
+    values: Values = "number"
+    unit: str = ""
+    section: str = ""
+    required: bool = False
+    since: int = 1
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """Attributes of the variable in a file (CF conventions)."""
+        return {"long_name": self.meaning} | ({"units": self.unit} if self.unit else {})
+
+
+@dataclass(frozen=True)
+class Attribute:
+    """An attribute of the results."""
+
+    name: str
+    meaning: str
+    values: Literal["number", "text"] = "number"
+    required: bool = False
+    since: int = 1
+
+
+MODELS = "Models"
+FRONTS = "The front"
+MINIMA = "Minima"
+DATA = "Data and parameters"
+REDUCED = "Reduced models"
+OPEN = "What the data do not determine"
+ERRORS = "Errors of the data"
+
+DIMENSIONS: Mapping[str, str] = {
+    "point": "models, in the order of `label`",
+    "parameter": "parameters, by name",
+    "group": "groups, by name",
+    "mode": "measured modes, counted from 1",
+    "bound": "`lower`, `upper`",
+    "minimum": "minima of each group, then of the optimally weighted residuals",
+    "end": "ends and starts of branches at the gaps of the front, two groups only",
+    "place": "points of the simplex between the edges",
+    "combination": "combinations of parameters",
+    "equal": "equivalent models",
+    "replicate": "data sets drawn again",
+    "finding": "findings, the most important first",
+    "parameter_other": "parameters again",
+    "group_other": "groups again",
+}
+"""Dimensions of the variables."""
+
+
+def _models() -> Iterator[Variable]:
+    yield Variable("label", ("point",), "name of the point", "text", required=True)
+    yield Variable(
+        "kind",
+        ("point",),
+        "why the model is reported: front, edge, given-weights, equal-weights, optimal-weights, "
+        "bounded-weights, identifiable-part, identifiable-edge or nominal",
+        "text",
+        required=True,
+        since=2,
+    )
+    yield Variable(
+        "pareto",
+        ("point",),
+        "no model that is known to the run dominates this one, equation (4)",
+        "truth",
+        required=True,
+    )
+    yield Variable(
+        "dominated_among_front",
+        ("point",),
+        "another point of the front dominates this one, whatever else is known",
+        "truth",
+        required=True,
+    )
+    yield Variable("theta", ("point", "parameter"), "parameter values", required=True)
+    yield Variable("objective", ("point", "group"), "J_i", unit="1", required=True)
+    yield Variable("error", ("point", "group"), "sqrt(J_i / a_i)", unit="1", required=True)
+    yield Variable(
+        "weight",
+        ("point", "group"),
+        "weights that a weighted method used; NaN elsewhere",
+        required=True,
+    )
+    yield Variable(
+        "stationary_weight",
+        ("point", "group"),
+        "weights at which the point is stationary, over the range of each objective, sum 1; a "
+        "negative one tells that the point is no local Pareto optimum",
+        required=True,
+    )
+    yield Variable(
+        "converged",
+        ("point",),
+        "the solver met its tolerances; true for the nominal model, which is not solved for",
+        "truth",
+        required=True,
+    )
+    yield Variable("status", ("point",), "how the solver ended", "text", required=True)
+    yield Variable(
+        "evaluations", ("point",), "evaluations of the last solution that led to the point", "count"
+    )
+    mode = ("point", "mode")
+    yield Variable(
+        "frequency",
+        mode,
+        "frequency of the model mode paired with the measured mode",
+        unit="Hz",
+        required=True,
+    )
+    yield Variable("mac", mode, "MAC of the pair, mean over the data sets", unit="1", required=True)
+    yield Variable(
+        "paired_mode",
+        mode,
+        "number of the model mode paired with the measured mode",
+        "count",
+        required=True,
+    )
+    yield Variable(
+        "coincident",
+        mode,
+        "1 where the mode is so close to another one that it is not defined alone",
+        "count",
+    )
+    yield Variable(
+        "at_bound",
+        ("point", "parameter"),
+        "-1 at the lower bound, 1 at the upper one, 0 between them",
+        "count",
+    )
+
+
+def _fronts() -> Iterator[Variable]:
+    yield Variable(
+        "piece", ("point",), "branch of the front, from 1; 0 for points that lie in a gap", "count"
+    )
+    yield Variable("end_label", ("end",), "end or start of a branch at a gap", "text")
+    yield Variable(
+        "end_theta", ("end", "parameter"), "parameter values; NaN where the end is not known"
+    )
+    yield Variable(
+        "end_objective", ("end", "group"), "J_i; NaN where the end is not known", unit="1"
+    )
+    yield Variable(
+        "end_converged",
+        ("end",),
+        "the end is known: tolerances were met, and no known model dominates it",
+        "truth",
+    )
+    yield Variable(
+        "lattice",
+        ("place", "group"),
+        "points of the simplex between the edges from which the front is projected",
+    )
+    yield Variable(
+        "lattice_label",
+        ("place",),
+        "label of the point that this place led to, empty for none; places of the same model share "
+        "one",
+        "text",
+    )
+    yield Variable(
+        "front_part",
+        ("point",),
+        "whole: the front between the edges; identifiable: the front without flat parts",
+        "text",
+    )
+    yield Variable(
+        "flat", ("group",), "points in the flat part at the edge of the group, besides it", "count"
+    )
+
+
+def _minima() -> Iterator[Variable]:
+    yield Variable(
+        "minimum_of",
+        ("minimum",),
+        "group or method of which this is a minimum; iterated-weights is the fixed point of "
+        "w = a / J",
+        "text",
+        required=True,
+    )
+    yield Variable("minimum_theta", ("minimum", "parameter"), "parameter values", required=True)
+    yield Variable("minimum_objective", ("minimum", "group"), "J_i", unit="1", required=True)
+    yield Variable("minimum_converged", ("minimum",), "tolerances were met", "truth")
+
+
+def _data() -> Iterator[Variable]:
+    yield Variable(
+        "measured_frequency",
+        ("mode",),
+        "mean of the measured frequencies over the data sets",
+        unit="Hz",
+        required=True,
+    )
+    yield Variable("properties", ("group",), "count a_i of measured properties")
+    yield Variable("exact", ("group",), "a model fits the group exactly", "truth", required=True)
+    yield Variable("bounds", ("parameter", "bound"), "bounds of the parameters", required=True)
+    yield Variable(
+        "finding",
+        ("finding",),
+        "what is not determined, in words, the most important first",
+        "text",
+        required=True,
+    )
+
+
+def _reduced() -> Iterator[Variable]:
+    for dimension, prefix in (("point", ""), ("minimum", "minimum_")):
+        yield Variable(
+            f"{prefix}eigenvalue_error",
+            (dimension, "mode"),
+            "estimated relative error of the eigenvalue; infinite where a mode is missing",
+            unit="1",
+        )
+        yield Variable(
+            f"{prefix}shape_error",
+            (dimension, "mode"),
+            "estimated error of the mode shape over its length, in the norm of the mass matrix",
+            unit="1",
+        )
+        yield Variable(
+            f"{prefix}certified",
+            (dimension,),
+            "all eigenvalues are within the tolerance",
+            "truth",
+        )
+
+
+def _open() -> Iterator[Variable]:
+    combination = ("combination", "parameter")
+    yield Variable(
+        "combination_at", ("combination",), "point at which the combination is taken", "text"
+    )
+    yield Variable("combination_of", ("combination",), "group, or all data", "text")
+    yield Variable(
+        "combination_direction",
+        combination,
+        "combination of parameters: changes in units of combination_unit, length 1",
+    )
+    yield Variable(
+        "combination_unit",
+        combination,
+        "change of each parameter by which some stiffness or mass is lost to first order, or its "
+        "range, if that is less",
+    )
+    yield Variable(
+        "combination_sensitivity",
+        ("combination",),
+        "singular value: change of the weighted residuals for a unit change along it",
+    )
+    yield Variable(
+        "combination_share",
+        ("combination",),
+        "that over the greatest one of the same data; 0 where it is rounding",
+    )
+    yield Variable(
+        "collinearity",
+        ("parameter", "parameter_other"),
+        "cosines between the effects of parameters on all weighted residuals at the reference; 0 "
+        "for parameters without effect",
+    )
+    yield Variable(
+        "collinearity_index",
+        (),
+        "1 / root of the least eigenvalue of these, of the parameters that have an effect; "
+        "infinite where some effects depend",
+    )
+    yield Variable(
+        "equal_of", ("equal",), "group or method that these models fit equally well", "text"
+    )
+    yield Variable(
+        "equal_manifold",
+        ("equal",),
+        "number of the connected set to which the model belongs, from 1",
+        "count",
+    )
+    yield Variable(
+        "equal_dimension", ("equal",), "dimension of that set; 0 is an isolated model", "count"
+    )
+    yield Variable(
+        "equal_extent",
+        ("equal",),
+        "how far the set was followed: isolated, closed, bounded, cut, lost, spanned or spent",
+        "text",
+    )
+    yield Variable("equal_theta", ("equal", "parameter"), "parameter values")
+    yield Variable("equal_objective", ("equal", "group"), "J_i", unit="1")
+
+
+def _errors() -> Iterator[Variable]:
+    by = "by errors of the data, linearised"
+    yield Variable(
+        "theta_std",
+        ("point", "parameter"),
+        f"standard deviation of theta {by}; infinite where no data determine it",
+    )
+    yield Variable(
+        "theta_covariance",
+        ("point", "parameter", "parameter_other"),
+        f"covariance of theta {by}, without directions that no data determine",
+    )
+    yield Variable("objective_std", ("point", "group"), f"standard deviation of J {by}", unit="1")
+    yield Variable(
+        "objective_covariance", ("point", "group", "group_other"), f"covariance of J {by}", unit="1"
+    )
+    yield Variable(
+        "frequency_std",
+        ("point", "mode"),
+        f"standard deviation of the predicted frequency {by}",
+        unit="Hz",
+    )
+    yield Variable(
+        "mac_std",
+        ("point", "mode"),
+        f"standard deviation of the MAC with the data as they are {by}",
+        unit="1",
+    )
+    yield Variable(
+        "scatter_doubt",
+        ("point",),
+        "why the linearised scatter may not be valid: any of saddle, meets, leaves, switches, "
+        "ends, rival, unsolved; empty where nothing says so",
+        "text",
+    )
+    yield Variable(
+        "posterior_std",
+        ("parameter",),
+        "standard deviation of theta around the reference, with the variance of the errors of each "
+        "group unknown; infinite where no data determine it",
+    )
+    yield Variable(
+        "posterior_covariance",
+        ("parameter", "parameter_other"),
+        "covariance of theta likewise, without directions that no data determine",
+    )
+    yield Variable(
+        "posterior_frequency_std",
+        ("mode",),
+        "standard deviation of the predicted frequency likewise",
+        unit="Hz",
+    )
+    yield Variable(
+        "posterior_mac_std", ("mode",), "standard deviation of the MAC likewise", unit="1"
+    )
+    again = "with the data drawn again; NaN where it did not converge"
+    over = "over the data drawn again"
+    yield Variable("bootstrap_theta", ("replicate", "point", "parameter"), f"theta {again}")
+    yield Variable("bootstrap_objective", ("replicate", "point", "group"), f"J {again}", unit="1")
+    yield Variable(
+        "bootstrap_theta_std", ("point", "parameter"), f"standard deviation of theta {over}"
+    )
+    yield Variable(
+        "bootstrap_objective_std", ("point", "group"), f"standard deviation of J {over}", unit="1"
+    )
+
+
+def _in(section: str, variables: Iterable[Variable]) -> Iterator[Variable]:
+    from dataclasses import replace
+
+    return (replace(variable, section=section) for variable in variables)
+
+
+VARIABLES: Mapping[str, Variable] = {
+    variable.name: variable
+    for section, variables in (
+        (MODELS, _models()),
+        (FRONTS, _fronts()),
+        (MINIMA, _minima()),
+        (DATA, _data()),
+        (REDUCED, _reduced()),
+        (OPEN, _open()),
+        (ERRORS, _errors()),
+    )
+    for variable in _in(section, variables)
+}
+"""Variables by name, but for those of predictions."""
+
+ATTRIBUTES: Mapping[str, Attribute] = {
+    attribute.name: attribute
+    for attribute in (
+        Attribute("format", "version of this schema", required=True, since=2),
+        Attribute("version", "version of modefront", "text", required=True),
+        Attribute("study", "name of the study", "text"),
+        Attribute("inputs", "hash of the study file and of all files that it names", "text"),
+        Attribute("remark", "why a requested option is not in use", "text"),
+        Attribute("seed", "seed of all random numbers", required=True),
+        Attribute("method", "method by which the front was found", "text", required=True),
+        Attribute(
+            "reference",
+            "label of the model that the data prefer, around which the posterior lies",
+            "text",
+            required=True,
+        ),
+        Attribute(
+            "front_is_a_point", "1 where one model is the best in every group", required=True
+        ),
+        Attribute("model_evaluations", "eigenproblems solved", required=True),
+        Attribute("full_eigensolutions", "those solved in full"),
+        Attribute("reduced_solutions", "those solved in a reduced basis"),
+        Attribute("front_evaluations", "those for points of the front", required=True),
+        Attribute("nbi_evaluations", "likewise; 0 for other methods"),
+        Attribute("prediction_eigensolutions", "those for predictions, which are always full"),
+        Attribute(
+            "corrected_eigensolutions", "those of a reduced basis without a factor of their own"
+        ),
+        Attribute("factorisations", "factorisations of sparse matrices"),
+        Attribute("eigenvalue_tolerance", "tolerance of a reduced model"),
+        Attribute("refined", "distance of neighbours above which points were added"),
+        Attribute(
+            "hypervolume",
+            "volume dominated by the front, up to 1.1 in each objective, in units of the ranges "
+            "over the edges; NaN where the front is one point",
+            required=True,
+        ),
+        Attribute(
+            "igd_plus",
+            "mean distance by which the front is behind all nondominated models of the results, in "
+            "the same units",
+            required=True,
+        ),
+        Attribute(
+            "largest_gap",
+            "greatest distance of neighbours on a branch, in the same units",
+            required=True,
+        ),
+    )
+}
+"""Attributes by name."""
+
+
+def described(
+    values: Mapping[str, object], variables: Mapping[str, Variable] = VARIABLES
+) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
+    """Return values as variables of a dataset, with the attributes of the schema.
+
+    Raises KeyError for a variable that the schema does not know.
+    """
+    out = {}
+    for name, value in values.items():
+        variable = variables[name]
+        kind = str if variable.values == "text" else None
+        out[name] = (variable.dimensions, np.asarray(value, dtype=kind), variable.attributes)
+    return out
+
+
+def faults(data: xr.Dataset, variables: Mapping[str, Variable]) -> Iterator[tuple[str, str, str]]:
+    """Yield place, expected and found of all that is wrong with a dataset."""
+    for name, attribute in ATTRIBUTES.items():
+        if name not in data.attrs:
+            if attribute.required:
+                yield f"attribute '{name}'", attribute.meaning, "nothing"
+        elif isinstance(data.attrs[name], str) != (attribute.values == "text"):
+            yield f"attribute '{name}'", f"a {attribute.values}", f"{data.attrs[name]!r}"
+    for name in ("parameter", "group", "mode"):
+        if name not in data.coords:
+            yield f"coordinate '{name}'", DIMENSIONS[name], "nothing"
+    for name, variable in variables.items():
+        if name not in data:
+            if variable.required:
+                yield f"variable '{name}'", variable.meaning, "nothing"
+            continue
+        found = data[name]
+        if found.dims != variable.dimensions:
+            dimensions = ", ".join(variable.dimensions) or "none"
+            there = ", ".join(map(str, found.dims)) or "none"
+            yield f"variable '{name}'", f"dimensions {dimensions}", there
+        elif found.dtype.kind not in DTYPES[variable.values]:
+            yield f"variable '{name}'", f"values of type {variable.values}", str(found.dtype)
+    if not data.sizes.get("point") or not data.sizes.get("mode"):
+        yield "dimensions 'point' and 'mode'", "at least one each", "none"

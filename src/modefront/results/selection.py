@@ -1,0 +1,20 @@
+"""Selections of points of results."""
+
+from __future__ import annotations
+
+import numpy as np
+import xarray as xr
+
+from modefront._typing import Ints
+from modefront.fronts.point import Kind
+
+
+def front_points(data: xr.Dataset) -> Ints:
+    """Return the positions of the points of the front, in their order along it."""
+    return np.flatnonzero(data["kind"].values == Kind.FRONT.value)
+
+
+def not_converged(data: xr.Dataset) -> list[str]:
+    """Return the labels of points that should have converged and did not."""
+    tried = data["status"].values != "sampled"
+    return data["label"].values[~data["converged"].values & tried].tolist()
