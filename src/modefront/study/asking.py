@@ -14,8 +14,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
-from modefront.predict import Passage, Prediction
-from modefront.reliability import StepError
+from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.run import sequence
 from modefront.study.store import Arrays, Store, hash_text
@@ -45,21 +44,18 @@ class Asking:
         Raises InputError where the time step is too long for it, and UnfinishedError where it has
         not the modes that are wanted.
         """
-        return self._piece(one, label, partial(self._found, one, label, self._ask(one), theta))
+        return self._piece(one, label, partial(self._found, one, label, one.evaluate, theta))
 
-    def halved(self, one: Passage, label: str, theta: Floats) -> Arrays:
+    def halved(self, one: Prediction, label: str, theta: Floats) -> Arrays:
         """Return what half the time step does to the probabilities of such a model."""
-        ask = partial(one.halved, seed=self._numbers(one))
-        return self._piece(one, label, partial(self._found, one, label, ask, theta), "-half-step")
+        ask = partial(self._found, one, label, one.check, theta)
+        return self._piece(one, label, ask, "-half-step")
 
     def other(self, one: Prediction, label: str, theta: Floats) -> Arrays:
         """Return the prediction of any other model; `FAILED` and NaN where it cannot be had."""
         return self._piece(one, label, partial(self._tried, one, theta), what="-posterior")
 
-    def _ask(self, one: Prediction) -> Callable[..., Arrays]:
-        return partial(one.at, seed=self._numbers(one)) if isinstance(one, Passage) else one.at
-
-    def _numbers(self, one: Passage) -> np.random.SeedSequence:
+    def _numbers(self, one: Prediction) -> np.random.SeedSequence:
         return sequence(self.seed, f"predict-{one.name}")
 
     def _piece(
@@ -73,17 +69,19 @@ class Asking:
         self, one: Prediction, label: str, ask: Callable[..., Arrays], theta: Floats
     ) -> Arrays:
         try:
-            return ask(self.problem, theta)
-        except StepError as error:
-            place = f"[[predict.first_passage]] ({one.name!r}) step"
-            expected = f"at most {error.limit:.4g} s, a quarter of the shortest period of '{label}'"
-            fault = Fault(str(self.file), place, expected, f"{error.found:g}")
-            raise InputError(fault) from None
+            return ask(self.problem, theta, self._numbers(one))
+        except InputError as error:
+            place = f"[[predict.{one.kind.table}]] ({one.name!r})"
+            raise InputError(
+                Fault(str(self.file), f"{place} {x.place}", f"{x.expected} of '{label}'", x.found)
+                for x in error.faults
+            ) from None
         except ModelError as error:
             raise UnfinishedError(f"no prediction '{one.name}' of '{label}': {error}") from None
 
     def _tried(self, one: Prediction, theta: Floats) -> Arrays:
         try:
-            return self._ask(one)(self.problem, theta)
-        except (StepError, ModelError):
-            return {**dict.fromkeys(one.quantities, np.full(one.size, np.nan)), FAILED: np.ones(1)}
+            return one.evaluate(self.problem, theta, self._numbers(one))
+        except (InputError, ModelError):
+            none = np.full(len(one.places), np.nan)
+            return {**{x.key: none for x in one.kind.variables}, FAILED: np.ones(1)}

@@ -13,7 +13,7 @@ import xarray as xr
 
 from modefront._typing import Floats
 from modefront.identifiability.words import enumeration
-from modefront.predict import Passage, PeakResponse, Prediction
+from modefront.predictions import Passage, PeakResponse, Prediction
 from modefront.study.asking import FAILED, Asking
 from modefront.study.knowledge_variables import Variables, left_open
 from modefront.study.run import generator
@@ -143,11 +143,11 @@ def _answers(
     values = {
         name: np.hstack(
             [
-                np.array([x[name] for x in rows]).reshape(len(thetas), one.size)
+                np.array([x[name] for x in rows]).reshape(len(thetas), len(one.places))
                 for one, rows in asked
             ]
         )
-        for name in predictions[0].quantities
+        for name in (x.key for x in predictions[0].kind.variables)
     }
     return values, {one.name: sum(FAILED in x for x in rows) for one, rows in asked}
 
@@ -241,7 +241,9 @@ def _of_draws(
     first = next(iter(kind.variables.values()))
     missing = np.isnan(values[first]).sum(axis=0)
     missing[np.isnan(data[next(iter(kind.variables))].values[_reference(data)])] = 0
-    missing -= np.repeat([failed[one.name] for one in predictions], [x.size for x in predictions])
+    missing -= np.repeat(
+        [failed[one.name] for one in predictions], [len(x.places) for x in predictions]
+    )
     said += [
         f"{count} of {n} models drawn from the posterior have no peak for {name}: they are left out"
         for name, count in zip(data[kind.name].values, missing, strict=True)

@@ -10,7 +10,8 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Floats
-from modefront.predict import Passage, PeakResponse, Prediction
+from modefront.predictions import Passage, PeakResponse, Prediction
+from modefront.predictions.first_passage import SIDES
 from modefront.solvers.advance import default_points
 from modefront.study.asking import Asking
 from modefront.study.definition import Study
@@ -69,7 +70,7 @@ def predicted(data: xr.Dataset, asking: Asking) -> xr.Dataset:
     }
     coordinates: dict[str, list[str]] = {"range": list(RANGE)}
     if peaks:
-        coordinates["frf"] = [f"{one.name}: {x}" for one, _ in peaks for x in one.responses]
+        coordinates["frf"] = [f"{one.name}: {x}" for one, _ in peaks for x in one.response]
     if passages:
         coordinates["failure"] = [
             f"{one.name}: {b:.12g}" for one, *_ in passages for b in one.levels
@@ -100,7 +101,7 @@ def _peak_variables(
         return np.hstack([np.array([x[key] for x in found]) for _, found in peaks])
 
     def each(value: Any) -> list[Any]:
-        return [value(one) for one, _ in peaks for _ in one.responses]
+        return [value(one) for one, _ in peaks for _ in one.response]
 
     peak, frequency = of("peak"), of("frequency")
     over = "over the Pareto-optimal models"
@@ -114,15 +115,15 @@ def _peak_variables(
             f"of frf_peak_frequency {over}",
         ),
         "frf_name": (("frf",), each(lambda one: one.name), "name of the prediction"),
-        "frf_quantity": (("frf",), each(lambda one: one.quantity.value), "response over load"),
+        "frf_quantity": (("frf",), each(lambda one: one.quantity), "response over load"),
         "frf_band": (
             ("frf", "bound"),
-            each(lambda one: list(one.band)),
+            each(lambda one: one.band),
             "where peaks are looked for, Hz",
         ),
-        "frf_load": (("frf",), each(lambda one: one.structure.load), "what loads the structure"),
-        "frf_damping": (("frf",), each(lambda one: one.structure.damped), "damping ratios"),
-        "frf_modes": (("frf",), each(lambda one: one.structure.modes), "modes superposed"),
+        "frf_load": (("frf",), each(lambda one: one.loads.load), "what loads the structure"),
+        "frf_damping": (("frf",), each(lambda one: one.loads.damped), "damping ratios"),
+        "frf_modes": (("frf",), each(lambda one: one.loads.modes), "modes superposed"),
     }
 
 
@@ -166,21 +167,21 @@ def _passage_variables(
         "failure_step": (one_a_level, each(lambda one: one.step), "time step in s"),
         "failure_density": (
             one_a_level,
-            each(lambda one: one.noise.density),
+            each(lambda one: one.density),
             "spectral density of the white noise, (unit of load)^2/(rad/s)",
         ),
         "failure_sided": (
             one_a_level,
-            each(lambda one: one.noise.sided.value),
+            each(lambda one: SIDES[one.sided].value),
             "whether that density is one- or two-sided",
         ),
         "failure_load": (
             one_a_level,
-            each(lambda one: one.structure.load),
+            each(lambda one: one.loads.load),
             "what loads the structure",
         ),
-        "failure_damping": (one_a_level, each(lambda one: one.structure.damped), "damping ratios"),
-        "failure_modes": (one_a_level, each(lambda one: one.structure.modes), "modes superposed"),
+        "failure_damping": (one_a_level, each(lambda one: one.loads.damped), "damping ratios"),
+        "failure_modes": (one_a_level, each(lambda one: one.loads.modes), "modes superposed"),
         "failure_halved": (
             one_a_level,
             halved("ratio"),

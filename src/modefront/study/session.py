@@ -16,7 +16,7 @@ from modefront._typing import Floats
 from modefront.errors import Fault, InputError
 from modefront.identifiability.combinations import unchanged_groups
 from modefront.identifiability.options import Identifiability
-from modefront.predict import Prediction
+from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.solvers.given import Weighted
@@ -81,6 +81,7 @@ def in_memory(study: Study) -> xr.Dataset:
 
     What is raised is what `solve` raises.
     """
+    study = study.completed()
     problem = study.problem
     session = _Session(
         problem,
@@ -119,6 +120,7 @@ def run(
     progress = progress or Progress()
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
+    study = study.completed()
     pieces = folder / PIECES / f"{study.work[:12]}-{modefront.__version__}"
     try:
         pieces.mkdir(parents=True, exist_ok=True)
