@@ -55,9 +55,11 @@ def solved(
     )
 
 
-def passage(levels: tuple[float, ...], *, step: float = 0.02, samples: int = 100) -> Passage:
+def passage(
+    levels: tuple[float, ...], *, duration: float = 5.0, step: float = 0.02, samples: int = 100
+) -> Passage:
     return Passage(
-        *("passage", "floor1", 1.0, "two", levels, 5.0, "floor1"),
+        *("passage", "floor1", 1.0, "two", levels, duration, "floor1"),
         step=step,
         samples=samples,
         modes=1,
@@ -257,7 +259,7 @@ def exact_problem() -> mf.UpdatingProblem:
 def test_what_there_is_no_posterior_or_no_prediction_of_is_not_there(drawn: xr.Dataset) -> None:
     of_them = [x for x in drawn if str(x).startswith(("posterior_f", "draw_"))]
     assert len(of_them) == 15
-    exact = solved(exact_problem(), [replace(PEAK, band=(0.5, 20.0))], draws=3)
+    exact = solved(exact_problem(), [replace(PEAK, band=(0.5, 20.0), modes=2)], draws=3)
     assert "frf_peak" in exact
     plain = solved(problem_of(), [])
     undrawn = solved(problem_of(), [PEAK])
@@ -279,7 +281,7 @@ def test_models_that_cannot_be_solved_are_counted() -> None:
     first = solved(problem, [])
     (theta,), (std,) = optimal(first)["theta"].values, first["posterior_std"].values
     step = np.pi / 2 / np.sqrt((theta + 0.2 * std) * K / MASS)
-    one = replace(passage((0.06, 0.08), step=step), duration=40 * step)
+    one = passage((0.06, 0.08), step=step, duration=40 * step)
     data = solved(problem, [PEAK, one], draws=20)
     (stiff,) = np.nonzero(data["draw_theta"].values[:, 0] > theta + 0.2 * std)
     assert 0 < stiff.size < 20
@@ -322,7 +324,7 @@ def test_what_the_data_leave_open_is_said() -> None:
     names = TWO_MASSES.parameters
     bounds, nominal = dict.fromkeys(names, (0.2, 5.0)), dict.fromkeys(names, 1.0)
     problem = mf.updating_problem(TWO_MASSES, data, groups, bounds, nominal)
-    found = solved(problem, [replace(PEAK, band=(0.5, 20.0))], draws=3)
+    found = solved(problem, [replace(PEAK, band=(0.5, 20.0), modes=2)], draws=3)
     theta = found["draw_theta"].values
     assert theta.std() > 0
     assert (

@@ -180,7 +180,7 @@ class Passage:
             ),
         ),
         absent="have no probability",
-        undefined="no failures",
+        undefined="have no failures",
         check=NumericalCheck(
             "half-step",
             (
