@@ -46,10 +46,12 @@ class Asking:
         """
         return self._piece(one, label, partial(self._found, one, label, one.evaluate, theta))
 
-    def halved(self, one: Prediction, label: str, theta: Floats) -> Arrays:
-        """Return what half the time step does to the probabilities of such a model."""
-        ask = partial(self._found, one, label, one.check, theta)
-        return self._piece(one, label, ask, "-half-step")
+    def checked(self, one: Prediction, label: str, theta: Floats) -> Arrays:
+        """Return the comparison with finer numerics at such a model; empty where there is none."""
+        if one.kind.check is None:
+            return {}
+        check = partial(self._found, one, label, one.check, theta)
+        return self._piece(one, label, check, f"-{one.kind.check.piece}")
 
     def other(self, one: Prediction, label: str, theta: Floats) -> Arrays:
         """Return the prediction of any other model; `FAILED` and NaN where it cannot be had."""

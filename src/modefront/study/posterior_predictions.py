@@ -5,7 +5,7 @@ To first order they need two models along each axis of the posterior; with draws
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,27 +13,14 @@ import xarray as xr
 
 from modefront._typing import Floats
 from modefront.identifiability.words import enumeration
-from modefront.predictions import Passage, PeakResponse, Prediction
+from modefront.predictions import Kind, Prediction, ResultVariable
 from modefront.study.asking import FAILED, Asking
 from modefront.study.knowledge_variables import Variables, left_open
+from modefront.study.predictions import assigned, by_kind
 from modefront.study.run import generator
 from modefront.uncertainty.differences import Stencil, stencil
 from modefront.uncertainty.laplace import Posterior
 from modefront.uncertainty.prediction import SUMMARY, TruncationError, draw, lognormal_std, summary
-
-
-@dataclass(frozen=True)
-class _Kind:
-    """A kind of predictions: its dimension, and variables with the quantities that they hold."""
-
-    name: str
-    prediction: type[Prediction]
-    variables: Mapping[str, str]
-
-
-PEAK = _Kind("frf", PeakResponse, {"frf_peak": "peak", "frf_peak_frequency": "frequency"})
-FAILURE = _Kind("failure", Passage, {"failure_probability": "probability"})
-KINDS = (PEAK, FAILURE)
 
 
 @dataclass(frozen=True)
@@ -96,34 +83,24 @@ def predicted_around(data: xr.Dataset, asking: Asking, models: Around) -> xr.Dat
     """Return results that have predictions with how far the posterior scatters these."""
     variables: Variables = {}
     said = list(models.said)
-    for kind in KINDS:
-        predictions = [one for one in asking.predictions if isinstance(one, kind.prediction)]
-        if not predictions:
-            continue
+    coordinates: dict[str, object] = {}
+    for kind, predictions in by_kind(asking.predictions):
         for found, more in (
             _to_first_order(data, asking, models, predictions, kind),
             _of_draws(data, asking, models, predictions, kind),
         ):
             variables |= found
             said += more
+        if models.differences is not None:
+            coordinates[f"{kind.dimension}_other"] = data[kind.dimension].values
     if len(models.drawn):
         meaning = "parameters of models drawn from the posterior, within the bounds"
         variables["draw_theta"] = (("draw", "parameter"), models.drawn, meaning)
-    finding = data["finding"]
-    all_said = np.array([*finding.values.tolist(), *said], dtype=str)
-    variables["finding"] = (("finding",), all_said, finding.attrs["long_name"])
-    out = data.drop_vars("finding").assign(
-        {
-            name: (dims, np.asarray(values), {"long_name": meaning})
-            for name, (dims, values, meaning) in variables.items()
-        }
-    )
-    names = {f"{kind.name}_other": kind.name for kind in KINDS}
-    names = {other: name for other, name in names.items() if other in out.dims}
-    coordinates = {other: data[name].values for other, name in names.items()}
-    if "statistic" in out.dims:
         coordinates["statistic"] = np.array(SUMMARY)
-    return out.assign_coords(coordinates)
+    finding = data["finding"]
+    findings = np.array([*finding.values.tolist(), *said], dtype=str)
+    variables["finding"] = (("finding",), findings, finding.attrs["long_name"])
+    return assigned(data.drop_vars("finding"), variables).assign_coords(coordinates)
 
 
 def _reference(data: xr.Dataset) -> int:
@@ -134,20 +111,20 @@ def _reference(data: xr.Dataset) -> int:
 def _answers(
     asking: Asking, predictions: Sequence[Prediction], thetas: Floats, what: str
 ) -> tuple[dict[str, Floats], dict[str, int]]:
-    """Return quantities at models (n, p), each (n, values), and how often predictions failed."""
+    """Return values at models (n, p) by their keys, each (n, places), and how many failed."""
     found = [
         [asking.other(one, f"{what}-{i}", theta) for i, theta in enumerate(thetas, start=1)]
         for one in predictions
     ]
     asked = list(zip(predictions, found, strict=True))
     values = {
-        name: np.hstack(
+        variable.key: np.hstack(
             [
-                np.array([x[name] for x in rows]).reshape(len(thetas), len(one.places))
+                np.array([x[variable.key] for x in rows]).reshape(len(thetas), len(one.places))
                 for one, rows in asked
             ]
         )
-        for name in (x.key for x in predictions[0].kind.variables)
+        for variable in predictions[0].kind.variables
     }
     return values, {one.name: sum(FAILED in x for x in rows) for one, rows in asked}
 
@@ -157,54 +134,65 @@ def _to_first_order(
     asking: Asking,
     models: Around,
     predictions: Sequence[Prediction],
-    kind: _Kind,
+    kind: Kind,
 ) -> tuple[Variables, list[str]]:
-    """Return standard deviations and covariances; those of probabilities by their logarithms."""
+    """Return standard deviations and covariances, of the logarithms where these are linearised."""
     if models.differences is None:
         return {}, []
     m, _, p = models.differences.theta.shape
     values, _ = _answers(asking, predictions, models.differences.theta.reshape(2 * m, p), "axis")
     out: Variables = {}
-    unknown = np.zeros(data.sizes[kind.name], dtype=np.bool_)
-    both = (kind.name, f"{kind.name}_other")
-    for variable, name in kind.variables.items():
-        middle, beside = data[variable].values[_reference(data)], values[name].reshape(m, 2, -1)
-        logarithmic = variable == "failure_probability"
-        with np.errstate(divide="ignore", invalid="ignore"):
-            change = (np.log(middle), np.log(beside)) if logarithmic else (middle, beside)
-            S = models.differences.slopes(*change)
-        S[~np.isfinite(S).all(axis=1)] = np.nan
-        C = S @ S.T
-        std = np.sqrt(np.diag(C))
-        unknown |= np.isfinite(middle) & np.isnan(std)
-        by = f"by the posterior around {data.attrs['reference']}, to first order"
-        if logarithmic:
-            out["posterior_failure_log_std"] = (
-                (kind.name,),
-                std,
-                f"standard deviation of ln P {by}",
-            )
-            out["posterior_failure_log_covariance"] = (both, C, f"covariance of ln P {by}")
-            out[f"posterior_{variable}_std"] = (
-                (kind.name,),
-                lognormal_std(middle, std),
-                "standard deviation of failure_probability that follows where ln P is Gaussian, "
-                "of standard deviation s: P sqrt(e^(s^2) (e^(s^2) - 1)), P that of "
-                f"{data.attrs['reference']}",
-            )
-        else:
-            out[f"posterior_{variable}_std"] = (
-                (kind.name,),
-                std,
-                f"standard deviation of {variable} {by}",
-            )
-            out[f"posterior_{variable}_covariance"] = (both, C, f"covariance of {variable} {by}")
+    unknown = np.zeros(data.sizes[kind.dimension], dtype=np.bool_)
+    reference = str(data.attrs["reference"])
+    for variable in kind.ranged:
+        middle = data[variable.name].values[_reference(data)]
+        beside = values[variable.key].reshape(m, 2, -1)
+        C = _covariance(models.differences, middle, beside, logarithmic=variable.logarithmic)
+        unknown |= np.isfinite(middle) & np.isnan(np.diag(C))
+        out |= _scatter(kind, variable, middle, C, reference)
     said = [
-        f"no posterior standard deviation of {name}: models within one of "
-        f"{data.attrs['reference']} cannot be solved, or have no such peak, or no failures"
-        for name in data[kind.name].values[unknown]
+        f"no posterior standard deviation of {name}: models within one of {reference} cannot be "
+        f"solved, or {kind.undefined}"
+        for name in data[kind.dimension].values[unknown]
     ]
     return out, said
+
+
+def _covariance(
+    differences: Stencil, middle: Floats, beside: Floats, *, logarithmic: bool
+) -> Floats:
+    """Return the covariance of values (places,), or of their logarithms, by differences."""
+    with np.errstate(divide="ignore", invalid="ignore"):
+        change = (np.log(middle), np.log(beside)) if logarithmic else (middle, beside)
+        S = differences.slopes(*change)
+    S[~np.isfinite(S).all(axis=1)] = np.nan
+    out: Floats = S @ S.T
+    return out
+
+
+def _scatter(
+    kind: Kind, variable: ResultVariable, middle: Floats, C: Floats, reference: str
+) -> Variables:
+    """Return the standard deviation and covariance of a variable, and of its logarithm."""
+    own, both = (kind.dimension,), (kind.dimension, f"{kind.dimension}_other")
+    std, name = np.sqrt(np.diag(C)), variable.name
+    by = f"by the posterior around {reference}, to first order"
+    if not variable.logarithmic:
+        return {
+            f"posterior_{name}_std": (own, std, f"standard deviation of {name} {by}"),
+            f"posterior_{name}_covariance": (both, C, f"covariance of {name} {by}"),
+        }
+    symbol, start = variable.symbol, f"posterior_{kind.dimension}_log"
+    return {
+        f"{start}_std": (own, std, f"standard deviation of ln {symbol} {by}"),
+        f"{start}_covariance": (both, C, f"covariance of ln {symbol} {by}"),
+        f"posterior_{name}_std": (
+            own,
+            lognormal_std(middle, std),
+            f"standard deviation of {name} that follows where ln {symbol} is Gaussian, of standard "
+            f"deviation s: {symbol} sqrt(e^(s^2) (e^(s^2) - 1)), {symbol} that of {reference}",
+        ),
+    }
 
 
 def _of_draws(
@@ -212,7 +200,7 @@ def _of_draws(
     asking: Asking,
     models: Around,
     predictions: Sequence[Prediction],
-    kind: _Kind,
+    kind: Kind,
 ) -> tuple[Variables, list[str]]:
     """Return what models drawn from the posterior predict, one by one and summed up."""
     n = len(models.drawn)
@@ -220,17 +208,18 @@ def _of_draws(
         return {}, []
     values, failed = _answers(asking, predictions, models.drawn, "draw")
     out: Variables = {}
-    for variable, name in kind.variables.items():
-        out[f"draw_{variable}"] = (
-            ("draw", kind.name),
-            values[name],
-            f"{variable} of each model drawn from the posterior; NaN where there is none",
+    for variable in kind.ranged:
+        drawn = values[variable.key]
+        out[f"draw_{variable.name}"] = (
+            ("draw", kind.dimension),
+            drawn,
+            f"{variable.name} of each model drawn from the posterior; NaN where there is none",
         )
-        out[f"posterior_{variable}"] = (
-            ("statistic", kind.name),
-            summary(values[name]),
-            f"{variable} over the models drawn from the posterior"
-            + ("; its mean is the robust failure probability" if kind is FAILURE else ""),
+        out[f"posterior_{variable.name}"] = (
+            ("statistic", kind.dimension),
+            summary(drawn),
+            f"{variable.name} over the models drawn from the posterior"
+            + (f"; its mean is {variable.mean}" if variable.mean else ""),
         )
     said = [
         f"{count} of {n} models drawn from the posterior cannot be solved for {name}: they are "
@@ -238,15 +227,26 @@ def _of_draws(
         for name, count in failed.items()
         if count
     ]
-    first = next(iter(kind.variables.values()))
-    missing = np.isnan(values[first]).sum(axis=0)
-    missing[np.isnan(data[next(iter(kind.variables))].values[_reference(data)])] = 0
-    missing -= np.repeat(
-        [failed[one.name] for one in predictions], [len(x.places) for x in predictions]
-    )
     said += [
-        f"{count} of {n} models drawn from the posterior have no peak for {name}: they are left out"
-        for name, count in zip(data[kind.name].values, missing, strict=True)
+        f"{count} of {n} models drawn from the posterior {kind.absent} for {name}: they are left "
+        "out"
+        for name, count in _absent(data, predictions, kind, values, failed)
         if count > 0
     ]
     return out, said
+
+
+def _absent(
+    data: xr.Dataset,
+    predictions: Sequence[Prediction],
+    kind: Kind,
+    values: dict[str, Floats],
+    failed: dict[str, int],
+) -> list[tuple[str, int]]:
+    """Return how many models were solved and have no value, where the reference has one."""
+    first = kind.variables[0]
+    missing = np.isnan(values[first.key]).sum(axis=0)
+    sizes = [len(prediction.places) for prediction in predictions]
+    missing -= np.repeat([failed[prediction.name] for prediction in predictions], sizes)
+    missing[np.isnan(data[first.name].values[_reference(data)])] = 0
+    return list(zip(data[kind.dimension].values.tolist(), missing.tolist(), strict=True))
