@@ -27,6 +27,9 @@ if TYPE_CHECKING:
     from modefront.models.reduced.options import Reduction as Reduction
     from modefront.pairing.mac import mac as mac
     from modefront.pairing.match import Pairing as Pairing
+    from modefront.predictions import Passage as Passage
+    from modefront.predictions import PeakResponse as PeakResponse
+    from modefront.predictions import SoilFilter as SoilFilter
     from modefront.residuals.groups import Group as Group
     from modefront.residuals.problem import UpdatingProblem as UpdatingProblem
     from modefront.residuals.problem import updating_problem as updating_problem
@@ -47,8 +50,11 @@ _HOMES = {
     "Pairing": "pairing.match",
     "Parameter": "models.parameters",
     "Pareto": "fronts.options",
+    "Passage": "predictions",
+    "PeakResponse": "predictions",
     "Reduction": "models.reduced.options",
     "Search": "solvers.explore",
+    "SoilFilter": "predictions",
     "Study": "study.definition",
     "Uncertainty": "uncertainty.options",
     "UnfinishedError": "errors",
@@ -76,8 +82,11 @@ __all__ = [
     "Pairing",
     "Parameter",
     "Pareto",
+    "Passage",
+    "PeakResponse",
     "Reduction",
     "Search",
+    "SoilFilter",
     "Study",
     "Uncertainty",
     "UnfinishedError",

@@ -12,7 +12,7 @@ from modefront.errors import ModelError
 from modefront.models.matrices import MatrixModel, SensorSpec, affine, matrices, select
 from modefront.models.mesh import mesh_model
 from modefront.models.ports import Ports, Transfer
-from modefront.predict.structure import modes_reaching
+from modefront.predictions.load_model import modes_reaching
 from modefront.response import ModalSystem, frequency_response
 
 N = 60

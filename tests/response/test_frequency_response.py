@@ -6,7 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.linalg import eigh
 
-from modefront.response import ModalSystem, Quantity, frequency_response, peaks
+from modefront.response import ModalSystem, ResponseQuantity, frequency_response, peaks
 from modefront.response.function import derivatives
 
 M = np.diag([22.6, 22.6, 0.76 * 22.6])
@@ -42,11 +42,11 @@ def direct(load, output, damping, omega):
 @pytest.mark.parametrize(
     ("quantity", "factor"),
     [
-        (Quantity.RECEPTANCE, np.ones_like(OMEGA)),
-        (Quantity.MOBILITY, 1j * OMEGA),
-        (Quantity.ACCELERANCE, -(OMEGA**2)),
+        (ResponseQuantity.RECEPTANCE, np.ones_like(OMEGA)),
+        (ResponseQuantity.MOBILITY, 1j * OMEGA),
+        (ResponseQuantity.ACCELERANCE, -(OMEGA**2)),
     ],
-    ids=lambda value: value.value if isinstance(value, Quantity) else "",
+    ids=lambda value: value.value if isinstance(value, ResponseQuantity) else "",
 )
 @pytest.mark.parametrize("load", [np.eye(3), -M @ R], ids=["forces", "base"])
 def test_superposition_is_the_direct_solution(quantity, factor, load):
@@ -61,7 +61,7 @@ def test_absolute_acceleration_follows_from_newtons_law():
     system, damping = chain(-M @ R, np.eye(3), rigid=R)
     relative = direct(-M @ R, np.eye(3), damping, OMEGA)
     exact = 1 - OMEGA[:, None, None] ** 2 * relative
-    found = frequency_response(system, OMEGA, Quantity.ABSOLUTE_ACCELERANCE)
+    found = frequency_response(system, OMEGA, ResponseQuantity.ABSOLUTE_ACCELERANCE)
     np.testing.assert_allclose(found, exact, rtol=1e-10, atol=1e-12)
     np.testing.assert_allclose(found[0], R, rtol=1e-14)
 
@@ -80,7 +80,7 @@ def test_static_correction_makes_the_error_fourth_order():
     assert np.all(full.residual_flexibility() < 1e-12 * abs(exact[0]).max())
 
 
-@pytest.mark.parametrize("quantity", list(Quantity))
+@pytest.mark.parametrize("quantity", list(ResponseQuantity))
 def test_derivatives_against_a_contour_integral(quantity):
     """T is analytic in ω: by Cauchy's formula a ring of values gives its derivatives."""
     system, _ = chain(-M @ R, DRIFTS, modes=2, rigid=DRIFTS @ R)
@@ -100,9 +100,9 @@ def one_mode(omega, zeta, **other):
 @pytest.mark.parametrize(
     ("quantity", "at"),
     [
-        (Quantity.RECEPTANCE, lambda z: np.sqrt(1 - 2 * z**2)),
-        (Quantity.MOBILITY, lambda z: 1.0),
-        (Quantity.ACCELERANCE, lambda z: 1 / np.sqrt(1 - 2 * z**2)),
+        (ResponseQuantity.RECEPTANCE, lambda z: np.sqrt(1 - 2 * z**2)),
+        (ResponseQuantity.MOBILITY, lambda z: 1.0),
+        (ResponseQuantity.ACCELERANCE, lambda z: 1 / np.sqrt(1 - 2 * z**2)),
     ],
 )
 @pytest.mark.parametrize("zeta", [1e-5, 0.02, 0.3])
@@ -110,7 +110,7 @@ def test_peak_of_one_mode_is_where_the_textbook_has_it(quantity, at, zeta):
     (peak,) = peaks(one_mode(29.2, zeta), quantity)
     assert peak.omega == pytest.approx(29.2 * at(zeta), rel=1e-12)
     assert peak.frequency == peak.omega / (2 * np.pi)
-    if quantity is Quantity.RECEPTANCE:
+    if quantity is ResponseQuantity.RECEPTANCE:
         exact = 1 / (2 * zeta * np.sqrt(1 - zeta**2) * 29.2**2)
         assert peak.amplitude == pytest.approx(exact, rel=1e-10)
 
@@ -140,7 +140,9 @@ def test_peak_close_to_an_antiresonance():
 
 
 @settings(max_examples=60, deadline=None)
-@given(seed=st.integers(0, 2**32 - 1), m=st.integers(1, 8), quantity=st.sampled_from(Quantity))
+@given(
+    seed=st.integers(0, 2**32 - 1), m=st.integers(1, 8), quantity=st.sampled_from(ResponseQuantity)
+)
 def test_no_peak_is_missed(seed, m, quantity):
     rng = np.random.default_rng(seed)
     omega = np.sort(rng.uniform(1, 30, m))
@@ -226,7 +228,10 @@ def test_wrong_systems_say_what_is_wrong(change, message):
     [
         (lambda s: frequency_response(s, [-1.0]), "omega: expected no negative frequency"),
         (lambda s: frequency_response(s, 1.0), "omega: expected shape"),
-        (lambda s: frequency_response(s, [1.0], Quantity.ABSOLUTE_ACCELERANCE), "rigid: expected"),
+        (
+            lambda s: frequency_response(s, [1.0], ResponseQuantity.ABSOLUTE_ACCELERANCE),
+            "rigid: expected",
+        ),
         (lambda s: peaks(s, output=1), "output: expected a number from 0 to 0, found 1"),
         (lambda s: peaks(s, band=(2.0, 1.0)), "band: expected"),
     ],

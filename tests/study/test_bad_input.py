@@ -370,7 +370,7 @@ KEYS = [
     ),
     Key("static = true", f"{FRF} static", "true or false", False, '1 0 "true" nan [] {}'),
     Key('damping = "measured"', f"{FRF} damping", "'measured', or a ratio", False, NO_RATIO),
-    Key("modes = 2", f"{FRF} modes", "a whole number from 1 to 2", False, NO_WHOLE + " 0 3"),
+    Key("modes = 2", f"{FRF} modes", "a whole number from 1 to", False, NO_WHOLE + " 0 3"),
     Key('name = "drifts"', f"{PASSAGE} name", "what the prediction is called", True, NO_TEXT),
     Key('base = "x"', f"{PASSAGE} base", "a direction in which the base moves", False, NO_TEXT),
     Key(
@@ -610,6 +610,7 @@ CONTRADICTIONS = [
         "('drifts') response: ... found 'lo' (did you mean 'low'?)",
     ),
     ('"mobility"', '"absolute accelerance"', "quantity: ... where forces act, found 'absolute acc"),
+    ("modes = 2", "modes = 3", "modes: expected a whole number from 1 to 2, found 3"),
     ("modes = 2", "modes = 1", "modes: ... reach the end of the band, 15 Hz: 2, found 1, up to 4."),
     ("modes = 2", "modes = 2\nmode = 2", "('peak'): ... found 'mode' (did you mean 'modes'?)"),
     (

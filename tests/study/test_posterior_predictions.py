@@ -16,10 +16,7 @@ from two_masses import FRF, PASSAGE, ZETA, direct, run, write_study
 import modefront as mf
 from modefront._typing import Floats
 from modefront.cli.show import remarks
-from modefront.models.ports import Ports
-from modefront.predict import Passage, PeakResponse, Prediction, Structure
-from modefront.reliability import Sided, WhiteNoise
-from modefront.response import Quantity
+from modefront.predictions import Passage, PeakResponse, Prediction
 from modefront.study.examples import write_example
 from modefront.study.predictions import pieces_of
 from modefront.study.session import Progress
@@ -29,8 +26,8 @@ from modefront.uncertainty.prediction import SUMMARY
 K, MASS, DAMPING = 400.0, 2.0, 0.03
 ONE_MASS = mf.chain(["k"], [MASS], [K], stiffness_parameters=["k"])
 TWO_MASSES = mf.chain(["k1", "k2"], [2.0, 1.0], [3e3, 2e3], stiffness_parameters=["k1", "k2"])
-FORCED = Structure(Ports(outputs=({"floor1": 1.0},), forces=({"floor1": 1.0},)), 1, DAMPING)
-PEAK = PeakResponse("peak", FORCED, ("floor1",), Quantity.RECEPTANCE, (0.5, 5.0))
+PEAK = PeakResponse("peak", "floor1", "floor1", band=(0.5, 5.0), modes=1, damping=DAMPING)
+SEED = np.random.SeedSequence(0)
 QUICK = PASSAGE.replace("samples = 1500", "samples = 20")
 
 
@@ -58,10 +55,16 @@ def solved(
     )
 
 
-def passage(levels: tuple[float, ...], *, step: float = 0.02, samples: int = 100) -> Passage:
-    noise = WhiteNoise(1.0, Sided.TWO)
-    settings = (levels, noise, None, (), 5.0, step, samples, "importance")
-    return Passage("passage", FORCED, ("floor1",), *settings)
+def passage(
+    levels: tuple[float, ...], *, duration: float = 5.0, step: float = 0.02, samples: int = 100
+) -> Passage:
+    return Passage(
+        *("passage", "floor1", 1.0, "two", levels, duration, "floor1"),
+        step=step,
+        samples=samples,
+        modes=1,
+        damping=DAMPING,
+    )
 
 
 def peak(k: Floats) -> Floats:
@@ -122,17 +125,16 @@ def test_peaks_of_the_three_stories_by_small_differences(tmp_path: Path) -> None
     """Steps of 1e-6 along each of the parameters, not of half a deviation along the axes."""
     write_example("three-story-c0", tmp_path)
     problem = mf.load(tmp_path / "study.toml").problem
-    ports = Ports(outputs=({"floor1": 1.0},), forces=({"floor3": 1.0},))
-    one = PeakResponse("peak", Structure(ports, 3, 0.02), ("x",), Quantity.RECEPTANCE, (0.5, 25.0))
+    one = PeakResponse("peak", "floor1", "floor3", band=(0.5, 25.0), modes=3, damping=0.02)
     data = solved(problem, [one])
     theta, C = optimal(data)["theta"].values, data["posterior_covariance"].values
     steps = 1e-6 * np.eye(theta.size)
     for quantity, name in (("peak", "frf_peak"), ("frequency", "frf_peak_frequency")):
-        slope = [
-            (one.at(problem, theta + d)[quantity][0] - one.at(problem, theta - d)[quantity][0])
-            / 2e-6
-            for d in steps
-        ]
+
+        def value(theta: Floats, quantity: str = quantity) -> float:
+            return float(one.evaluate(problem, theta, SEED)[quantity][0])
+
+        slope = [(value(theta + d) - value(theta - d)) / 2e-6 for d in steps]
         expected = np.sqrt(np.array(slope) @ C @ slope)
         assert data[f"posterior_{name}_std"].values[0] == pytest.approx(expected, rel=2e-3)
 
@@ -146,7 +148,9 @@ def test_failure_probabilities_by_their_logarithms() -> None:
     theta, std = optimal(data)["theta"].values, data["posterior_std"].values
     other = replace(one, method="directional")
     seed = np.random.SeedSequence(5)
-    up, down = (other.at(problem, theta + h * std, seed)["probability"] for h in (STEP, -STEP))
+    up, down = (
+        other.evaluate(problem, theta + h * std, seed)["probability"] for h in (STEP, -STEP)
+    )
     assert s == pytest.approx(np.abs(np.log(up / down)) / (2 * STEP), rel=0.1)
     C = data["posterior_failure_log_covariance"].values
     assert np.diag(C) == pytest.approx(s**2)
@@ -185,7 +189,7 @@ def test_draws_against_integration_over_the_truncated_gaussian() -> None:
     first = max(0.2, middle - 5 * std)
     k = (upper + first) / 2 + (upper - first) / 2 * nodes
     seed = np.random.SeedSequence(11)
-    P = np.array([one.at(problem, np.array([x]), seed)["probability"][0] for x in k])
+    P = np.array([one.evaluate(problem, np.array([x]), seed)["probability"][0] for x in k])
     density = weights * gaussian.pdf(k) * (upper - first) / 2
     assert density.sum() == pytest.approx(1, abs=1e-3)
     robust = density @ P
@@ -255,7 +259,7 @@ def exact_problem() -> mf.UpdatingProblem:
 def test_what_there_is_no_posterior_or_no_prediction_of_is_not_there(drawn: xr.Dataset) -> None:
     of_them = [x for x in drawn if str(x).startswith(("posterior_f", "draw_"))]
     assert len(of_them) == 15
-    exact = solved(exact_problem(), [replace(PEAK, band=(0.5, 20.0))], draws=3)
+    exact = solved(exact_problem(), [replace(PEAK, band=(0.5, 20.0), modes=2)], draws=3)
     assert "frf_peak" in exact
     plain = solved(problem_of(), [])
     undrawn = solved(problem_of(), [PEAK])
@@ -277,7 +281,7 @@ def test_models_that_cannot_be_solved_are_counted() -> None:
     first = solved(problem, [])
     (theta,), (std,) = optimal(first)["theta"].values, first["posterior_std"].values
     step = np.pi / 2 / np.sqrt((theta + 0.2 * std) * K / MASS)
-    one = replace(passage((0.06, 0.08), step=step), duration=40 * step)
+    one = passage((0.06, 0.08), step=step, duration=40 * step)
     data = solved(problem, [PEAK, one], draws=20)
     (stiff,) = np.nonzero(data["draw_theta"].values[:, 0] > theta + 0.2 * std)
     assert 0 < stiff.size < 20
@@ -320,7 +324,7 @@ def test_what_the_data_leave_open_is_said() -> None:
     names = TWO_MASSES.parameters
     bounds, nominal = dict.fromkeys(names, (0.2, 5.0)), dict.fromkeys(names, 1.0)
     problem = mf.updating_problem(TWO_MASSES, data, groups, bounds, nominal)
-    found = solved(problem, [replace(PEAK, band=(0.5, 20.0))], draws=3)
+    found = solved(problem, [replace(PEAK, band=(0.5, 20.0), modes=2)], draws=3)
     theta = found["draw_theta"].values
     assert theta.std() > 0
     assert (

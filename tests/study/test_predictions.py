@@ -17,7 +17,8 @@ from modefront.cli import figures
 from modefront.cli.main import main
 from modefront.errors import InputError, ModelError, UnfinishedError
 from modefront.models.matrices import MatrixModel
-from modefront.predict import Passage, PeakResponse
+from modefront.models.ports import Transfer
+from modefront.predictions import Passage, PeakResponse
 from modefront.reliability.gaussian import gaussian_response
 from modefront.study import store
 from modefront.study.examples import write_example
@@ -228,8 +229,12 @@ def test_a_model_without_the_modes_that_are_wanted(
 ) -> None:
     study = mf.load(write_study(tmp_path, FRF))
 
-    def refuse(*_: object) -> None:
-        raise ModelError("no such modes")
+    transfer = MatrixModel.transfer
+
+    def refuse(model: MatrixModel, theta: Floats, *rest: Any) -> Transfer:
+        if (theta != study.problem.start).any():
+            raise ModelError("no such modes")
+        return transfer(model, theta, *rest)
 
     monkeypatch.setattr(MatrixModel, "transfer", refuse)
     with pytest.raises(UnfinishedError, match="no prediction 'pushed' of 'nbi-1': no such modes"):
@@ -285,7 +290,7 @@ def test_outputs_of_a_mesh(tmp_path: Path) -> None:
     loaded = mf.load(study)
     (shaken,) = loaded.predictions
     assert isinstance(shaken, PeakResponse)
-    found = shaken.at(loaded.problem, loaded.problem.start)
+    found = shaken.evaluate(loaded.problem, loaded.problem.start, np.random.SeedSequence(0))
     # Both ends of a floor move alike, and along x alone.
     assert found["peak"][1] == pytest.approx(found["peak"][0], rel=1e-3)
     assert not found["peak"][2] > 1e-3 * found["peak"][0]

@@ -1,7 +1,7 @@
 """Frequency response of linear structures, and its peaks."""
 
-from modefront.response.function import Quantity, frequency_response
+from modefront.response.function import ResponseQuantity, frequency_response
 from modefront.response.peaks import Peak, peaks
 from modefront.response.system import ModalSystem
 
-__all__ = ["ModalSystem", "Peak", "Quantity", "frequency_response", "peaks"]
+__all__ = ["ModalSystem", "Peak", "ResponseQuantity", "frequency_response", "peaks"]

@@ -32,7 +32,7 @@ from modefront.response.system import ModalSystem
 ComplexArray = NDArray[np.complex128]
 
 
-class Quantity(Enum):
+class ResponseQuantity(Enum):
     """The response that is set against the load."""
 
     RECEPTANCE = "receptance"
@@ -47,7 +47,7 @@ class Quantity(Enum):
 
 
 def frequency_response(
-    system: ModalSystem, omega: ArrayLike, quantity: Quantity = Quantity.RECEPTANCE
+    system: ModalSystem, omega: ArrayLike, quantity: ResponseQuantity = ResponseQuantity.RECEPTANCE
 ) -> ComplexArray:
     """Return T(ω) at the circular frequencies `omega`.
 
@@ -76,7 +76,7 @@ def frequency_response(
 
 
 def derivatives(
-    system: ModalSystem, omega: ComplexArray, quantity: Quantity
+    system: ModalSystem, omega: ComplexArray, quantity: ResponseQuantity
 ) -> tuple[ComplexArray, ComplexArray, ComplexArray]:
     """Return T, dT/dω and d²T/dω², each (n, n_outputs, n_inputs), at (n,) frequencies."""
     w = omega[:, None]
@@ -106,8 +106,8 @@ def derivatives(
     return response, first, second
 
 
-def _rigid(system: ModalSystem, quantity: Quantity) -> NDArray[np.float64] | float:
-    if quantity is not Quantity.ABSOLUTE_ACCELERANCE:
+def _rigid(system: ModalSystem, quantity: ResponseQuantity) -> NDArray[np.float64] | float:
+    if quantity is not ResponseQuantity.ABSOLUTE_ACCELERANCE:
         return 0.0
     if system.rigid is None:
         raise ValueError(

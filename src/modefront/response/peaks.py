@@ -28,7 +28,7 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from modefront.response.checks import FloatArray
-from modefront.response.function import Quantity, derivatives
+from modefront.response.function import ResponseQuantity, derivatives
 from modefront.response.slope import Slope
 from modefront.response.system import ModalSystem
 
@@ -69,7 +69,7 @@ class Peak:
 
 def peaks(
     system: ModalSystem,
-    quantity: Quantity = Quantity.RECEPTANCE,
+    quantity: ResponseQuantity = ResponseQuantity.RECEPTANCE,
     *,
     output: int = 0,
     input: int = 0,

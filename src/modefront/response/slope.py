@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront.response.checks import FloatArray
-from modefront.response.function import Quantity, derivatives
+from modefront.response.function import ResponseQuantity, derivatives
 from modefront.response.system import ModalSystem
 
 
@@ -20,7 +20,7 @@ class Slope:
     """g between the one output and the one input of `pair`, and how far it can be trusted."""
 
     pair: ModalSystem
-    quantity: Quantity
+    quantity: ResponseQuantity
 
     def both(self, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return g and g'."""

@@ -8,7 +8,7 @@ from pathlib import Path
 import xarray as xr
 
 from modefront.errors import Fault, InputError
-from modefront.results.schema import FORMAT, VARIABLES, faults
+from modefront.results.schema import FORMAT, faults
 
 FILE = "results.nc"
 
@@ -41,7 +41,7 @@ def read(folder: Path) -> xr.Dataset:
         expected = f"results of format {FORMAT}"
         text = f"format {found}, of another version of modefront: run the study again"
         raise InputError(Fault(str(path), "attribute 'format'", expected, text))
-    wrong = [Fault(str(path), *parts) for parts in faults(data, VARIABLES)]
+    wrong = [Fault(str(path), *parts) for parts in faults(data)]
     if wrong:
         raise InputError(wrong)
     return data

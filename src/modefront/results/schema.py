@@ -2,57 +2,26 @@
 
 `VARIABLES` and `ATTRIBUTES` are the one place where results are described. The attributes of the
 variables in ``results.nc``, the checks when a file is read and the tables of ``docs/results.md``
-are made from them. Predictions describe their own variables (`modefront.predictions`).
+are made from them. Kinds of predictions describe their own variables (`modefront.predictions`).
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Literal
 
 import numpy as np
 import xarray as xr
 
+from modefront.predictions import KINDS
+from modefront.variables import Values, Variable
+
 FORMAT = 2
 """Version of the schema: raised when a variable changes its meaning, or a required one is added."""
 
-Values = Literal["number", "count", "truth", "text"]
-"""What a variable holds."""
-
 DTYPES: Mapping[Values, str] = {"number": "fiu", "count": "iuf", "truth": "biu", "text": "UOST"}
 """Kinds of NumPy types that each of these may have in a file."""
-
-
-@dataclass(frozen=True)
-class Variable:
-    """A variable of the results.
-
-    Attributes
-    ----------
-    name : of the variable
-    dimensions : its dimensions
-    meaning : in words
-    values : what it holds
-    unit : of the values; empty where there is none, or where it is that of the model
-    section : heading of the table in the documentation
-    required : whether every file of results has it
-    since : first format that has it
-    """
-
-    name: str
-    dimensions: tuple[str, ...]
-    meaning: str
-    values: Values = "number"
-    unit: str = ""
-    section: str = ""
-    required: bool = False
-    since: int = 1
-
-    @property
-    def attributes(self) -> dict[str, str]:
-        """Attributes of the variable in a file (CF conventions)."""
-        return {"long_name": self.meaning} | ({"units": self.unit} if self.unit else {})
 
 
 @dataclass(frozen=True)
@@ -73,6 +42,7 @@ DATA = "Data and parameters"
 REDUCED = "Reduced models"
 OPEN = "What the data do not determine"
 ERRORS = "Errors of the data"
+PREDICTIONS = "Predictions"
 
 DIMENSIONS: Mapping[str, str] = {
     "point": "models, in the order of `label`",
@@ -89,6 +59,10 @@ DIMENSIONS: Mapping[str, str] = {
     "finding": "findings, the most important first",
     "parameter_other": "parameters again",
     "group_other": "groups again",
+    "range": "`minimum`, `maximum`, `spread` over the Pareto-optimal models; the spread is the "
+    "ratio of greatest to least",
+    "draw": "models drawn from the posterior",
+    "statistic": "`mean`, `standard deviation`, `5 %`, `50 %`, `95 %`",
 }
 """Dimensions of the variables."""
 
@@ -400,9 +374,23 @@ def _errors() -> Iterator[Variable]:
 
 
 def _in(section: str, variables: Iterable[Variable]) -> Iterator[Variable]:
-    from dataclasses import replace
-
     return (replace(variable, section=section) for variable in variables)
+
+
+def _predictions() -> Iterator[Variable]:
+    yield Variable(
+        "frequency_range",
+        ("range", "mode"),
+        "of the frequencies over the Pareto-optimal models",
+        unit="Hz",
+    )
+    for kind in (prediction.kind for prediction in KINDS):
+        yield from kind.schema
+    yield Variable(
+        "draw_theta",
+        ("draw", "parameter"),
+        "parameters of models drawn from the posterior, within the bounds",
+    )
 
 
 VARIABLES: Mapping[str, Variable] = {
@@ -415,10 +403,11 @@ VARIABLES: Mapping[str, Variable] = {
         (REDUCED, _reduced()),
         (OPEN, _open()),
         (ERRORS, _errors()),
+        (PREDICTIONS, _predictions()),
     )
     for variable in _in(section, variables)
 }
-"""Variables by name, but for those of predictions."""
+"""Variables by name."""
 
 ATTRIBUTES: Mapping[str, Attribute] = {
     attribute.name: attribute
@@ -474,7 +463,7 @@ ATTRIBUTES: Mapping[str, Attribute] = {
 
 
 def described(
-    values: Mapping[str, object], variables: Mapping[str, Variable] = VARIABLES
+    values: Mapping[str, object],
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
     """Return values as variables of a dataset, with the attributes of the schema.
 
@@ -482,13 +471,13 @@ def described(
     """
     out = {}
     for name, value in values.items():
-        variable = variables[name]
+        variable = VARIABLES[name]
         kind = str if variable.values == "text" else None
         out[name] = (variable.dimensions, np.asarray(value, dtype=kind), variable.attributes)
     return out
 
 
-def faults(data: xr.Dataset, variables: Mapping[str, Variable]) -> Iterator[tuple[str, str, str]]:
+def faults(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
     """Yield place, expected and found of all that is wrong with a dataset."""
     for name, attribute in ATTRIBUTES.items():
         if name not in data.attrs:
@@ -499,7 +488,7 @@ def faults(data: xr.Dataset, variables: Mapping[str, Variable]) -> Iterator[tupl
     for name in ("parameter", "group", "mode"):
         if name not in data.coords:
             yield f"coordinate '{name}'", DIMENSIONS[name], "nothing"
-    for name, variable in variables.items():
+    for name, variable in VARIABLES.items():
         if name not in data:
             if variable.required:
                 yield f"variable '{name}'", variable.meaning, "nothing"

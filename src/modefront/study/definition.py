@@ -14,7 +14,7 @@ from modefront.fronts.options import Pareto
 from modefront.identifiability.options import Identifiability
 from modefront.models.parameters import Parameter, parameters_of
 from modefront.options import check_fields, each_once, text, whole
-from modefront.predict import Prediction
+from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.labels import labels_of
@@ -137,6 +137,21 @@ class Study:
     def remark(self) -> str:
         """Why what was asked for is not done, or nothing."""
         return self.origin.remark if self.origin else ""
+
+    def completed(self) -> Study:
+        """Return the study with what its predictions take from the nominal model.
+
+        Raises InputError with what this model cannot predict.
+        """
+        out, faults = [], []
+        for prediction in self.predictions:
+            try:
+                out.append(prediction.complete(self.problem))
+            except InputError as error:
+                place = f"prediction '{prediction.name}'"
+                faults += [replace(x, place=f"{place} {x.place}".rstrip()) for x in error.faults]
+        refuse(faults)
+        return replace(self, predictions=tuple(out))
 
     def solve(self) -> xr.Dataset:
         """Return all Pareto-optimal models, edges and weighted models.

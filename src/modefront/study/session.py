@@ -27,13 +27,13 @@ from modefront.fronts.options import Pareto, ParetoOptions
 from modefront.fronts.point import Kind, Point
 from modefront.identifiability.combinations import unchanged_groups
 from modefront.identifiability.options import Identifiability
-from modefront.predict import Prediction
+from modefront.predictions import Prediction
+from modefront.predictions.runner import PredictionRunner
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.solvers.sqp import Solution, given
 from modefront.study.check import refuse_unchanged_groups
 from modefront.study.definition import Study
-from modefront.study.prediction_runner import PredictionRunner
 from modefront.uncertainty.noise import noise_floor
 from modefront.uncertainty.options import Uncertainty
 from modefront.work.progress import Progress
@@ -82,7 +82,7 @@ def in_memory(study: Study) -> xr.Dataset:
 
     Raises what `solve` raises.
     """
-    return _Session(study, Serial()).results()
+    return _Session(study.completed(), Serial()).results()
 
 
 def run(
@@ -105,6 +105,7 @@ def run(
 
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
+    study = study.completed()
     tasks = folder / FOLDER / f"{study.work[:12]}-{modefront.__version__}"
     try:
         tasks.mkdir(parents=True, exist_ok=True)
@@ -142,8 +143,8 @@ class _Session:
 
     def _results(self) -> xr.Dataset:
         from modefront.results.assemble import dataset
-        from modefront.study.posterior_predictions import around, predicted_around
-        from modefront.study.predictions import extent, predicted
+        from modefront.results.posterior import posterior_models, with_posterior
+        from modefront.results.predictions import extent, with_predictions
 
         study, work = self.study, self.work
         problem = study.problem
@@ -167,9 +168,9 @@ class _Session:
         analysis = replace(analysis, points=certified_points(problem, extra, work))
         data = dataset(problem, front, analysis)
         runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file)
-        near = around(data, runner, analysis.posterior, study.uncertainty.draws)
-        work.expect(extent(study.predictions, data.sizes["point"] + near.models))
-        data = predicted_around(predicted(data, runner), runner, near)
+        models = posterior_models(data, runner, analysis.posterior, study.uncertainty.draws)
+        work.expect(extent(study.predictions, data.sizes["point"] + models.count))
+        data = with_posterior(with_predictions(data, runner), runner, models)
         data.attrs |= self._attributes(front)
         return data
 

@@ -6,7 +6,7 @@ models alone.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -15,12 +15,11 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
-from modefront.predict import Passage, Prediction
-from modefront.reliability import StepError
+from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.work.codec import record
 from modefront.work.store import hash_text
-from modefront.work.task import Executor, Task, seed_sequence
+from modefront.work.task import Executor, Part, Task, seed_sequence
 
 Arrays = Mapping[str, Floats]
 
@@ -32,7 +31,7 @@ class Predicted:
 
     Attributes
     ----------
-    values : arrays by name; NaN where the model cannot be solved
+    values : arrays (places,) by key; NaN where the model cannot be solved
     solved : whether it can
     """
 
@@ -42,7 +41,7 @@ class Predicted:
 
 @dataclass(frozen=True)
 class PredictionRunner:
-    """Runs predictions of a study.
+    """Runs the predictions of a study.
 
     Attributes
     ----------
@@ -60,22 +59,21 @@ class PredictionRunner:
     ) -> list[Arrays]:
         """Return a prediction at labelled models (p,).
 
-        Raises InputError where the time step is too long for one, and UnfinishedError where one
+        Raises InputError where an option does not suit one of them, and UnfinishedError where one
         has not the modes that are needed.
         """
         tasks = [
-            self._task(prediction, ("point", name), _at_point, (str(self.file), name, theta))
-            for name, theta in points
+            self._task(prediction, ("point", label), _at_point, (str(self.file), label, theta))
+            for label, theta in points
         ]
-        return [result.values for result in self.work.run(tasks)]
+        return [predicted.values for predicted in self.work.run(tasks)]
 
-    def halved(self, prediction: Passage, name: str, theta: Floats) -> Arrays:
-        """Return what half the time step does to the probabilities of a labelled model."""
-        arguments = (str(self.file), name, theta, "halved")
-        (result,) = self.work.run(
-            [self._task(prediction, ("half-step", name), _at_point, arguments)]
-        )
-        return result.values
+    def checked(self, prediction: Prediction, label: str, theta: Floats) -> Arrays:
+        """Return the kind's comparison with finer numerics at a labelled model."""
+        name = prediction.kind.check.name if prediction.kind.check else ""
+        arguments = (str(self.file), label, theta)
+        (predicted,) = self.work.run([self._task(prediction, (name, label), _checked, arguments)])
+        return predicted.values
 
     def at_models(self, prediction: Prediction, thetas: Floats, name: str) -> list[Predicted]:
         """Return a prediction at other models (m, p), also where they cannot be solved."""
@@ -88,8 +86,8 @@ class PredictionRunner:
     def _task(
         self,
         prediction: Prediction,
-        part: tuple[str | int, ...],
-        function: Any,
+        part: tuple[Part, ...],
+        function: Callable[..., Predicted],
         arguments: tuple[Any, ...],
     ) -> Task[Predicted]:
         """Return a task whose key tells apart all that the prediction depends on."""
@@ -104,19 +102,39 @@ def _at_point(
     prediction: Prediction,
     numbers: np.random.SeedSequence,
     file: str,
-    name: str,
+    label: str,
     theta: Floats,
-    method: str = "at",
 ) -> Predicted:
     """Return a prediction at a labelled model."""
+    return _labelled(prediction, file, label, lambda: prediction.evaluate(problem, theta, numbers))
+
+
+def _checked(
+    problem: UpdatingProblem,
+    prediction: Prediction,
+    numbers: np.random.SeedSequence,
+    file: str,
+    label: str,
+    theta: Floats,
+) -> Predicted:
+    """Return the comparison with finer numerics at a labelled model."""
+    return _labelled(prediction, file, label, lambda: prediction.check(problem, theta, numbers))
+
+
+def _labelled(
+    prediction: Prediction, file: str, label: str, evaluate: Callable[[], Arrays]
+) -> Predicted:
+    """Return an evaluation at a labelled model, which its errors name."""
     try:
-        return Predicted(_evaluated(problem, prediction, numbers, theta, method))
-    except StepError as error:
-        place = f"[[predict.first_passage]] ({prediction.name!r}) step"
-        expected = f"at most {error.limit:.4g} s, a quarter of the shortest period of '{name}'"
-        raise InputError(Fault(file, place, expected, f"{error.found:g}")) from None
+        return Predicted(evaluate())
+    except InputError as error:
+        place = f"[[predict.{prediction.kind.table}]] ({prediction.name!r})"
+        raise InputError(
+            Fault(file, f"{place} {fault.place}", f"{fault.expected} of '{label}'", fault.found)
+            for fault in error.faults
+        ) from None
     except ModelError as error:
-        raise UnfinishedError(f"no prediction '{prediction.name}' of '{name}': {error}") from None
+        raise UnfinishedError(f"no prediction '{prediction.name}' of '{label}': {error}") from None
 
 
 def _at_model(
@@ -127,19 +145,8 @@ def _at_model(
 ) -> Predicted:
     """Return a prediction at any model; NaN where it cannot be solved."""
     try:
-        return Predicted(_evaluated(problem, prediction, numbers, theta, "at"))
-    except (StepError, ModelError):
-        unknown = np.full(prediction.size, np.nan)
-        return Predicted(dict.fromkeys(prediction.quantities, unknown), solved=False)
-
-
-def _evaluated(
-    problem: UpdatingProblem,
-    prediction: Prediction,
-    numbers: np.random.SeedSequence,
-    theta: Floats,
-    method: str,
-) -> Arrays:
-    if isinstance(prediction, Passage):
-        return getattr(prediction, method)(problem, theta, seed=numbers)
-    return prediction.at(problem, theta)
+        return Predicted(prediction.evaluate(problem, theta, numbers))
+    except (InputError, ModelError):
+        unknown = np.full(len(prediction.places), np.nan)
+        values = {variable.key: unknown for variable in prediction.kind.variables}
+        return Predicted(values, solved=False)

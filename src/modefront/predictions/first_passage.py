@@ -1,0 +1,353 @@
+"""The probability that any of several responses to random excitation leaves [-b, b]."""
+
+from __future__ import annotations
+
+import math
+import os
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import pairwise
+from typing import Annotated, ClassVar, Literal, Self
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.data.modal import ModalData
+from modefront.errors import Fault, InputError, refuse
+from modefront.models.base import Model
+from modefront.options import (
+    Requirement,
+    check_fields,
+    is_number,
+    nested,
+    number,
+    numbers,
+    one_of,
+    whole,
+)
+from modefront.predictions.base import Kind, NumericalCheck, ResultVariable, Setting
+from modefront.predictions.load_model import (
+    ABOVE,
+    MEASURED,
+    Base,
+    Damping,
+    Forces,
+    ModalLoadModel,
+    ModeCount,
+    Name,
+    Response,
+    complete_modes,
+    contradictions,
+    filled,
+    highest_frequency,
+    load_faults,
+    nominal_system,
+    ports_of,
+)
+from modefront.reliability import (
+    METHODS,
+    FirstPassage,
+    KanaiTajimi,
+    Sided,
+    StepError,
+    WhiteNoise,
+    step_effect,
+)
+from modefront.reliability.problem import LARGEST_ANGLE
+from modefront.residuals.problem import UpdatingProblem
+from modefront.response import ModalSystem
+
+MOST_WORKERS = 8
+"""Threads at most; each takes some 100 MB."""
+
+STEPS_A_PERIOD = 20
+"""Time steps in the shortest period, where the step is not given."""
+
+MOST_STEPS = 10**6
+
+SIDES = {"one": Sided.ONE, "two": Sided.TWO}
+
+
+def _is_modulation(value: object) -> bool:
+    return (
+        isinstance(value, list)
+        and all(isinstance(x, list) and len(x) == 2 and all(map(is_number, x)) for x in value)
+        and all(x[0] >= 0 for x in value)
+        and all(a[0] < b[0] for a, b in pairwise(value))
+        and any(factor != 0 for _, factor in value)
+    )
+
+
+SOIL_FREQUENCY = number("a frequency of the soil above 0 Hz", lambda x: x > 0)
+SOIL_DAMPING = number("a damping ratio of the soil above 0", lambda x: x > 0)
+DENSITY = number("a spectral density above 0", lambda x: x > 0)
+DURATION = number("a duration above 0 s", lambda x: x > 0)
+STEP = number("a time step above 0 s", lambda x: x > 0)
+
+LEVELS = numbers(
+    "a list of different levels above 0",
+    lambda x: bool(x) and min(x) > 0 and len(set(x)) == len(x),
+)
+
+MODULATION = Requirement(
+    "a list of [time in s, factor], times rising from 0 or more, one factor not zero",
+    _is_modulation,
+    lambda value: tuple((float(t), float(q)) for t, q in value),
+)
+
+
+@dataclass(frozen=True)
+class SoilFilter:
+    """A filter of Kanai and Tajimi: frequency of the soil in Hz, and its damping ratio.
+
+    Raises InputError for values that are not possible.
+    """
+
+    frequency: Annotated[float, SOIL_FREQUENCY]
+    damping: Annotated[float, SOIL_DAMPING]
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+    @property
+    def omega(self) -> float:
+        """Circular frequency of the soil in rad/s."""
+        return 2 * math.pi * self.frequency
+
+
+FILTER = nested("a table { frequency, damping }, a Kanai-Tajimi filter", SoilFilter)
+
+
+@dataclass(frozen=True)
+class Passage:
+    """First-passage probabilities at several levels.
+
+    Raises InputError for values that are not possible, alone or together.
+
+    Attributes
+    ----------
+    name : what the prediction is called
+    response : a sensor or output, a list of them, or weighted sums of them by their names; failure
+        is that any of these leaves [-b, b]
+    density : spectral density of the white noise at every input, (unit of load)²/(rad/s)
+    sided : whether it is a one- or a two-sided density
+    levels : barriers b
+    duration : T in s
+    force : where forces act, each with noise of its own; this or ``base``
+    base : direction in which the base accelerates
+    step : time step in s; None for a twentieth of the shortest period
+    filter : what the noise passes, or None
+    modulation : times in s and factors on the noise, linear between them; None for a constant 1
+    samples : how many are drawn
+    method : one of `modefront.reliability.METHODS`
+    modes : how many are superposed; None for as many as reach 1.5 times the default band's end
+    damping : a ratio, a list of ratios, one a mode, or ``"measured"``
+    """
+
+    name: Name
+    response: Response
+    density: Annotated[float, DENSITY]
+    sided: Literal["one", "two"]
+    levels: Annotated[Sequence[float], LEVELS]
+    duration: Annotated[float, DURATION]
+    force: Forces | None = None
+    base: Base | None = None
+    step: Annotated[float, STEP] | None = None
+    filter: Annotated[SoilFilter, FILTER] | None = None
+    modulation: Annotated[Sequence[tuple[float, float]], MODULATION] | None = None
+    samples: Annotated[int, whole(2, 10**8)] = 2000
+    method: Annotated[str, one_of(*METHODS)] = "importance"
+    modes: ModeCount | None = None
+    damping: Damping = MEASURED
+
+    kind: ClassVar = Kind(
+        "first_passage",
+        "failure",
+        (
+            ResultVariable(
+                "failure_probability",
+                "probability",
+                "probability that any response leaves [-level, level] within the duration, at rest "
+                "at first",
+                symbol="P",
+                mean="the robust failure probability",
+            ),
+            ResultVariable(
+                "failure_variation",
+                "variation",
+                "coefficient of variation of that estimate",
+                ranged=False,
+            ),
+        ),
+        (
+            Setting("failure_name", "name of the prediction", "text"),
+            Setting("failure_level", "barrier, two-sided"),
+            Setting("failure_samples", "samples a model", "count"),
+            Setting("failure_method", "method of estimation", "text"),
+            Setting("failure_duration", "duration", unit="s"),
+            Setting("failure_step", "time step", unit="s"),
+            Setting(
+                "failure_density",
+                "spectral density of the white noise, (unit of load)^2/(rad/s)",
+            ),
+            Setting("failure_sided", "whether that density is one- or two-sided", "text"),
+            Setting("failure_load", "load case", "text"),
+            Setting("failure_damping", "damping ratios", "text"),
+            Setting("failure_modes", "modes superposed", "count"),
+        ),
+        absent="have no probability",
+        undefined="have no failures",
+        check=NumericalCheck(
+            "half-step",
+            (
+                ResultVariable(
+                    "failure_halved",
+                    "ratio",
+                    "probability with half the time step over that with the step given",
+                ),
+                ResultVariable("failure_halved_error", "error", "standard error of that ratio"),
+            ),
+            ResultVariable("failure_halved_at", "label", "label of the model of that ratio"),
+        ),
+    )
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        refuse(self._contradictions())
+
+    def _contradictions(self) -> Iterator[Fault]:
+        yield from contradictions(self.loads)
+        if self.step is not None:
+            steps = self.duration / self.step
+            if steps > MOST_STEPS:
+                yield Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps:.6g}")
+            elif steps < 0.5 or abs(steps - round(steps)) > 1e-6:
+                expected = f"a whole number of steps of {self.step:g} s in {self.duration:g} s"
+                yield Fault("", "step", expected, f"{steps:.6g} of them")
+
+    @property
+    def loads(self) -> ModalLoadModel:
+        """What of a model enters the prediction."""
+        ports = ports_of(self.response, self.force, self.base)
+        return ModalLoadModel(ports, self.modes, self.damping, static=False)
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Name of the prediction and level, for each of these."""
+        return tuple(f"{self.name}: {level:.12g}" for level in self.levels)
+
+    @property
+    def settings(self) -> Mapping[str, Sequence[object]]:
+        """Values of the kind's settings, one a place, by the name of the variable."""
+        loads = self.loads
+        values = {
+            "failure_name": self.name,
+            "failure_samples": self.samples,
+            "failure_method": self.method,
+            "failure_duration": self.duration,
+            "failure_step": self.step,
+            "failure_density": self.density,
+            "failure_sided": SIDES[self.sided].value,
+            "failure_load": loads.load,
+            "failure_damping": loads.damped,
+            "failure_modes": self.modes,
+        }
+        repeated = {name: [value] * len(self.levels) for name, value in values.items()}
+        return {**repeated, "failure_level": list(self.levels)}
+
+    def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
+        """Yield what the model or the data do not have."""
+        yield from load_faults(self.loads, model, data)
+        number_known = self.modes is not None or isinstance(self.damping, tuple)
+        if highest_frequency(data) is None and not number_known:
+            yield Fault("", "modes", "how many modes, as no frequency was measured", "nothing")
+
+    def complete(self, problem: UpdatingProblem) -> Self:
+        """Return the prediction with modes and time step that follow from the nominal model.
+
+        Raises InputError with what this model cannot predict.
+        """
+        refuse(self.faults(problem.model, problem.data))
+        top = ABOVE * (highest_frequency(problem.data) or 0.0)
+        out = replace(self, modes=complete_modes(self.loads, problem, top))
+        return replace(out, step=out._step(nominal_system(out.loads, problem)))
+
+    def _step(self, system: ModalSystem) -> float:
+        """Return the time step.
+
+        Raises InputError where it is too long for the nominal model, or there are too many.
+        """
+        soil = 0.0 if self.filter is None else self.filter.omega
+        highest = max(float(system.omega.max()), soil)
+        if self.step is not None:
+            limit = LARGEST_ANGLE / highest
+            if self.step > limit * (1 + 1e-12):
+                period = f"a quarter of the shortest period ({highest / (2 * np.pi):.4g} Hz)"
+                expected = f"at most {limit:.4g} s, {period}"
+                raise InputError(Fault("", "step", expected, f"{self.step:g}"))
+            return self.step
+        steps = math.ceil(self.duration * highest / (2 * np.pi) * STEPS_A_PERIOD)
+        if steps > MOST_STEPS:
+            raise InputError(Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps}"))
+        return self.duration / steps
+
+    def problem(self, problem: UpdatingProblem, theta: Floats) -> FirstPassage:
+        """Return the first-passage problem at ``theta``.
+
+        Raises InputError where the time step is too long for the highest mode there.
+        """
+        step, soil = filled(self.step, "step"), self.filter
+        try:
+            return FirstPassage(
+                self.loads.system(problem, theta),
+                WhiteNoise(self.density, SIDES[self.sided]),
+                self.duration,
+                step,
+                None if soil is None else KanaiTajimi(soil.omega, soil.damping),
+                self._factors if self.modulation else None,
+            )
+        except StepError as error:
+            expected = f"at most {error.limit:.4g} s, a quarter of the shortest period"
+            raise InputError(Fault("", "step", expected, f"{error.found:g}")) from None
+
+    def evaluate(
+        self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
+    ) -> Mapping[str, Floats]:
+        """Return the probability at each level and its coefficient of variation, (levels,).
+
+        Raises ModelError where the model cannot be evaluated at ``theta``, InputError where the
+        time step is too long there.
+        """
+        estimates = METHODS[self.method](
+            self.problem(problem, theta), self.levels, self.samples, seed, _workers()
+        )
+        return {
+            "probability": np.array([estimate.probability for estimate in estimates]),
+            "variation": np.array([estimate.coefficient_of_variation for estimate in estimates]),
+        }
+
+    def check(
+        self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence
+    ) -> Mapping[str, Floats]:
+        """Return P with half the time step over P, and its standard error, (levels,)."""
+        effects = step_effect(
+            METHODS[self.method],
+            self.problem(problem, theta),
+            self.levels,
+            self.samples,
+            seed,
+            _workers(),
+        )
+        return {
+            "ratio": np.array([effect.ratio for effect in effects]),
+            "error": np.array([effect.standard_error for effect in effects]),
+        }
+
+    def _factors(self, t: Floats) -> Floats:
+        times, factors = np.array(self.modulation).T
+        return np.interp(t, times, factors)
+
+
+def _workers() -> int:
+    """Return the number of threads; how many there are changes no digit, only memory and time."""
+    return min(os.cpu_count() or 1, MOST_WORKERS)

@@ -1,0 +1,320 @@
+r"""A model in its lowest modes, between loads and responses, with damping.
+
+Loads and responses are sums of sensors and other outputs of the model, by their names.
+
+Where damping is that of the measurements, a model mode has the mean damping ratio, over the data
+sets, of the measured mode that is paired with it; modes without a partner, or whose partner's
+damping was not measured, have the mean of all that was.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from typing import Annotated, Any, TypeVar
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.data.modal import ModalData
+from modefront.errors import Fault, InputError, ModelError, refuse, suggestion
+from modefront.models.base import Model
+from modefront.models.ports import Pattern, Ports, Transfer
+from modefront.options import Requirement, is_name, is_number, text, whole
+from modefront.pairing.match import match, modes_needed
+from modefront.residuals.problem import UpdatingProblem
+from modefront.response.system import ModalSystem
+
+T = TypeVar("T")
+
+MEASURED = "measured"
+"""Damping ratios of the measured modes."""
+
+BEYOND = 1.5
+"""What the modes reach where their number is not given, over the upper end of the band."""
+
+ABOVE = 1.1
+"""Upper end of the band that is taken where none is given, over the highest measured frequency."""
+
+NAMED = "the name of a sensor or output, or a table of them with weights that are not zero"
+
+
+def _is_pattern(value: object) -> bool:
+    return is_name(value) or (
+        isinstance(value, dict)
+        and bool(value)
+        and all(is_number(weight) and weight != 0 for weight in value.values())
+    )
+
+
+def _pattern(value: Any) -> dict[str, float]:
+    """Return weights by the name of a sensor or output."""
+    return {value: 1.0} if isinstance(value, str) else {k: float(w) for k, w in value.items()}
+
+
+def _is_list_of_names(value: object) -> bool:
+    return (
+        isinstance(value, list)
+        and bool(value)
+        and all(map(is_name, value))
+        and len(set(value)) == len(value)
+    )
+
+
+def _is_table_of_patterns(value: object) -> bool:
+    return (
+        isinstance(value, dict)
+        and bool(value)
+        and all(is_name(key) and _is_pattern(x) for key, x in value.items())
+    )
+
+
+def _responses(value: Any) -> dict[str, dict[str, float]]:
+    names = [value] if isinstance(value, str) else value
+    named = names if isinstance(names, dict) else {name: name for name in names}
+    return {name: _pattern(each) for name, each in named.items()}
+
+
+def _is_ratio(value: object) -> bool:
+    return isinstance(value, float | int) and is_number(value) and 0 < value < 1
+
+
+def _is_damping(value: object) -> bool:
+    ratios = isinstance(value, list) and bool(value) and all(map(_is_ratio, value))
+    return value == MEASURED or _is_ratio(value) or ratios
+
+
+def _damping(value: Any) -> str | float | tuple[float, ...]:
+    if isinstance(value, list):
+        return tuple(map(float, value))
+    return value if isinstance(value, str) else float(value)
+
+
+Name = Annotated[str, text("what the prediction is called")]
+
+Force = Annotated[str | Mapping[str, float], Requirement(NAMED, _is_pattern, _pattern)]
+"""One force; kept as weights by the name of a sensor or output."""
+
+Forces = Annotated[
+    str | Mapping[str, float] | Sequence[str | Mapping[str, float]],
+    Requirement(
+        f"{NAMED}; or a list of these",
+        lambda value: (
+            _is_pattern(value)
+            or (isinstance(value, list) and bool(value) and all(map(_is_pattern, value)))
+        ),
+        lambda value: tuple(map(_pattern, value if isinstance(value, list) else [value])),
+    ),
+]
+"""Forces that are independent of one another; kept as such weights of each."""
+
+Base = Annotated[str, text("a direction in which the base moves")]
+
+Response = Annotated[
+    str | Sequence[str] | Mapping[str, str | Mapping[str, float]],
+    Requirement(
+        f"a list of sensors or outputs, or a table, name = {NAMED}",
+        lambda value: is_name(value) or _is_list_of_names(value) or _is_table_of_patterns(value),
+        _responses,
+    ),
+]
+"""Responses; kept as weights of sensors and outputs by the name of each."""
+
+ModeCount = Annotated[int, whole(1, 10**9)]
+
+Damping = Annotated[
+    str | float | Sequence[float],
+    Requirement(
+        f"'{MEASURED}', or a ratio above 0 and below 1, or a list of them, one a mode",
+        _is_damping,
+        _damping,
+    ),
+]
+
+
+@dataclass(frozen=True)
+class ModalLoadModel:
+    """What of a model enters a prediction.
+
+    Attributes
+    ----------
+    ports : where it is loaded, and its responses
+    modes : how many of the lowest modes are superposed; None where that is not known yet
+    damping : ratio of all modes, or of each, or `MEASURED`
+    static : whether the static response of the modes left out is added
+    """
+
+    ports: Ports
+    modes: int | None
+    damping: str | float | Sequence[float]
+    static: bool
+
+    @property
+    def load(self) -> str:
+        """What loads the structure, in words."""
+        if self.ports.base is not None:
+            return f"base along {self.ports.base}"
+        return "force at " + ", and at ".join(map(_in_words, self.ports.forces))
+
+    @property
+    def damped(self) -> str:
+        """The damping ratios, in words."""
+        if isinstance(self.damping, str):
+            return "as measured"
+        ratios = (self.damping,) if isinstance(self.damping, float) else self.damping
+        return ", ".join(f"{ratio:g}" for ratio in ratios)
+
+    def system(self, problem: UpdatingProblem, theta: Floats) -> ModalSystem:
+        """Return the structure in modal coordinates at ``theta``.
+
+        Raises ModelError where the model has no such modes there, InputError where their number is
+        not known.
+        """
+        m = count = filled(self.modes, "modes")
+        if self.damping == MEASURED:
+            count = max(count, modes_needed(problem.pairing, problem.data, problem.model.size))
+        found = problem.model.transfer(theta, count, self.ports)
+        return ModalSystem(
+            omega=np.sqrt(found.modes.lam[:m]),
+            zeta=self._damping(problem, found)[:m],
+            input=found.input[:m],
+            output=found.output[:, :m],
+            static=found.static if self.static else None,
+            rigid=found.rigid,
+        )
+
+    def _damping(self, problem: UpdatingProblem, found: Transfer) -> Floats:
+        count = found.modes.lam.size
+        if self.damping != MEASURED:
+            return np.broadcast_to(np.asarray(self.damping, dtype=float), count)
+        measured = measured_damping(problem.data)
+        is_known = np.isfinite(measured)
+        zeta = np.full(count, measured[is_known].mean())
+        # The same candidates as in updating, or other modes might be paired.
+        n = modes_needed(problem.pairing, problem.data, problem.model.size)
+        frequency, phi = found.modes.frequency[:n], found.modes.phi[:, :n]
+        pairs = match(problem.pairing, problem.data, frequency, phi)
+        zeta[pairs.index[is_known]] = measured[is_known]
+        return zeta
+
+
+def filled(value: T | None, name: str) -> T:
+    """Return an option of a prediction.
+
+    Raises InputError where it still has to be found from the nominal model.
+    """
+    if value is None:
+        raise InputError(Fault("", name, "a value, which complete(problem) finds", "none"))
+    return value
+
+
+def ports_of(response: Any, forces: Any, base: str | None) -> Ports:
+    """Return loads and outputs from what `Response`, `Forces` and `Base` keep."""
+    return Ports(tuple(response.values()), tuple(forces or ()), base)
+
+
+def contradictions(loads: ModalLoadModel) -> Iterator[Fault]:
+    """Yield options of a load model that contradict one another."""
+    ports, damping = loads.ports, loads.damping
+    if bool(ports.forces) == (ports.base is not None):
+        yield Fault("", "", "either force or base", "both" if ports.forces else "neither")
+    if isinstance(damping, tuple) and loads.modes not in (None, len(damping)):
+        expected = f"a list of {loads.modes}, one a mode"
+        yield Fault("", "damping", expected, f"{len(damping)} of them")
+
+
+def load_faults(loads: ModalLoadModel, model: Model, data: ModalData) -> Iterator[Fault]:
+    """Yield what a load model takes that the model or the data do not have."""
+    ports, damping = loads.ports, loads.damping
+    for name, patterns in (("force", ports.forces), ("response", ports.outputs)):
+        for place in (place for pattern in patterns for place in pattern):
+            if place not in model.places:
+                expected = "the name of a sensor or output of the model"
+                yield Fault("", name, expected, suggestion(place, model.places))
+    if ports.base is not None and ports.base not in model.directions:
+        names = ", ".join(f"'{x}'" for x in model.directions) or "none: the model names no base"
+        yield Fault("", "base", f"one of the directions of the base, {names}", f"'{ports.base}'")
+    if loads.modes is not None and loads.modes > model.size:
+        yield Fault("", "modes", f"a whole number from 1 to {model.size}", str(loads.modes))
+    if isinstance(damping, tuple) and len(damping) > model.size:
+        expected = f"at most {model.size} ratios, as the model has modes"
+        yield Fault("", "damping", expected, f"{len(damping)} of them")
+    if damping == MEASURED:
+        ratios = measured_damping(data)
+        if not np.isfinite(ratios).any():
+            yield Fault("", "damping", "a ratio, as the data have none", f"'{MEASURED}'")
+        elif (ratios <= 0).any():
+            yield Fault("", "damping", "a ratio, as measured ones are 0", f"'{MEASURED}'")
+
+
+def complete_modes(loads: ModalLoadModel, problem: UpdatingProblem, top: float) -> int:
+    """Return the number of modes: that of the load model, or as many as reach beyond ``top`` Hz."""
+    if loads.modes is not None:
+        return loads.modes
+    if isinstance(loads.damping, tuple):
+        return len(loads.damping)
+    model = problem.model
+    needed = modes_needed(problem.pairing, problem.data, model.size)
+    return modes_reaching(model, problem.start, BEYOND * top, needed)
+
+
+def nominal_system(loads: ModalLoadModel, problem: UpdatingProblem) -> ModalSystem:
+    """Return the nominal model in modal coordinates.
+
+    Raises InputError where it has no such modes or the load moves none of the responses.
+    """
+    try:
+        system = loads.system(problem, problem.start)
+    except ModelError as error:
+        found = str(error)
+        raise InputError(Fault("", "modes", "modes that the nominal model has", found)) from None
+    if not (np.abs(system.output) @ np.abs(system.input)).any():
+        refuse([Fault("", "response", "responses that the load can move", "none")])
+    return system
+
+
+def highest_frequency(data: ModalData) -> float | None:
+    """Return the highest measured frequency in Hz, None where there is none."""
+    measured = data.mean_frequency[np.isfinite(data.mean_frequency)]
+    return float(measured.max()) if measured.size else None
+
+
+def measured_damping(data: ModalData) -> Floats:
+    """Return the mean damping ratio of each measured mode, shape (modes,); NaN where none."""
+    known = np.isfinite(data.damping)
+    total = np.where(known, data.damping, 0.0).sum(axis=0)
+    count = known.sum(axis=0)
+    out: Floats = np.where(count > 0, total / np.maximum(count, 1), np.nan)
+    return out
+
+
+def modes_reaching(model: Model, theta: Floats, frequency: float, known: int) -> int:
+    """Return how many modes at ``theta`` are below a frequency in Hz, and one more if there is.
+
+    ``known`` is a number of modes that the model is known to have.
+    """
+    found = model.modes(theta, known, derivatives=False).frequency
+    while not (found >= frequency).any():
+        more = _more(model, theta, found)
+        if more.size == found.size:
+            return found.size
+        found = more
+    return int(np.argmax(found >= frequency)) + 1
+
+
+def _more(model: Model, theta: Floats, found: Floats) -> Floats:
+    """Return the frequencies of up to twice as many modes, as far as there are finite ones."""
+    upper = min(2 * found.size, model.size)
+    while upper > found.size:
+        try:
+            return model.modes(theta, upper, derivatives=False).frequency
+        except ModelError:
+            upper = (found.size + upper) // 2
+    return found
+
+
+def _in_words(pattern: Pattern) -> str:
+    """Return the places of a pattern, with weights that are not 1."""
+    return " + ".join(
+        name if weight == 1 else f"{weight:g} {name}" for name, weight in pattern.items()
+    )

@@ -1,0 +1,193 @@
+"""The greatest peak of a frequency response function within a band."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from typing import Annotated, ClassVar, Self
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.data.modal import ModalData
+from modefront.errors import Fault, refuse
+from modefront.models.base import Model
+from modefront.options import TRUE_OR_FALSE, check_fields, numbers, one_of
+from modefront.predictions.base import Kind, ResultVariable, Setting
+from modefront.predictions.load_model import (
+    ABOVE,
+    MEASURED,
+    Base,
+    Damping,
+    Force,
+    ModalLoadModel,
+    ModeCount,
+    Name,
+    Response,
+    complete_modes,
+    contradictions,
+    filled,
+    highest_frequency,
+    load_faults,
+    modes_reaching,
+    nominal_system,
+    ports_of,
+)
+from modefront.residuals.problem import UpdatingProblem
+from modefront.response import ModalSystem, ResponseQuantity, peaks
+
+QUANTITIES = tuple(quantity.value for quantity in ResponseQuantity)
+
+BAND = numbers(
+    "[lowest, highest] frequency in Hz, 0 <= lowest < highest",
+    lambda x: len(x) == 2 and 0 <= x[0] < x[1],
+)
+
+
+@dataclass(frozen=True)
+class PeakResponse:
+    """Peaks of the frequency response of several outputs to one input.
+
+    Raises InputError for values that are not possible, alone or together.
+
+    Attributes
+    ----------
+    name : what the prediction is called
+    response : a sensor or output, a list of them, or weighted sums of them by their names
+    force : where a force acts: a sensor or output, or weights of them; this or ``base``
+    base : direction in which the base accelerates
+    quantity : what is set against the load
+    band : lowest and highest frequency in Hz; None for up to 1.1 times the highest measured one
+    static : whether the static response of the modes left out is added
+    modes : how many are superposed; None for as many as reach 1.5 times the end of the band
+    damping : a ratio, a list of ratios, one a mode, or ``"measured"``
+    """
+
+    name: Name
+    response: Response
+    force: Force | None = None
+    base: Base | None = None
+    quantity: Annotated[str, one_of(*QUANTITIES)] = ResponseQuantity.RECEPTANCE.value
+    band: Annotated[tuple[float, float], BAND] | None = None
+    static: Annotated[bool, TRUE_OR_FALSE] = True
+    modes: ModeCount | None = None
+    damping: Damping = MEASURED
+
+    kind: ClassVar = Kind(
+        "frf",
+        "frf",
+        (
+            ResultVariable("frf_peak", "peak", "greatest peak of |T| in the band"),
+            ResultVariable("frf_peak_frequency", "frequency", "frequency of that peak", "Hz"),
+        ),
+        (
+            Setting("frf_name", "name of the prediction", "text"),
+            Setting("frf_quantity", "response over load", "text"),
+            Setting("frf_band", "band in which peaks are sought", unit="Hz", dimensions=("bound",)),
+            Setting("frf_load", "load case", "text"),
+            Setting("frf_damping", "damping ratios", "text"),
+            Setting("frf_modes", "modes superposed", "count"),
+        ),
+        absent="have no peak",
+        undefined="have no such peak",
+    )
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        refuse(self._contradictions())
+
+    def _contradictions(self) -> Iterator[Fault]:
+        yield from contradictions(self.loads)
+        if self.quantity == ResponseQuantity.ABSOLUTE_ACCELERANCE.value and self.base is None:
+            yield Fault("", "quantity", "another one where forces act", f"'{self.quantity}'")
+
+    @property
+    def loads(self) -> ModalLoadModel:
+        """What of a model enters the prediction."""
+        forces = () if self.force is None else (self.force,)
+        ports = ports_of(self.response, forces, self.base)
+        return ModalLoadModel(ports, self.modes, self.damping, self.static)
+
+    @property
+    def places(self) -> tuple[str, ...]:
+        """Name of the prediction and of the response, for each of these."""
+        return tuple(f"{self.name}: {response}" for response in self.response)
+
+    @property
+    def settings(self) -> Mapping[str, Sequence[object]]:
+        """Values of the kind's settings, one a place, by the name of the variable."""
+        loads = self.loads
+        values = {
+            "frf_name": self.name,
+            "frf_quantity": self.quantity,
+            "frf_band": self.band,
+            "frf_load": loads.load,
+            "frf_damping": loads.damped,
+            "frf_modes": self.modes,
+        }
+        return {name: [value] * len(self.response) for name, value in values.items()}
+
+    def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
+        """Yield what the model or the data do not have."""
+        yield from load_faults(self.loads, model, data)
+        if self.band is None and highest_frequency(data) is None:
+            yield Fault("", "band", BAND.expected, "nothing")
+
+    def complete(self, problem: UpdatingProblem) -> Self:
+        """Return the prediction with band and modes that follow from data and nominal model.
+
+        Raises InputError with what this model cannot predict.
+        """
+        refuse(self.faults(problem.model, problem.data))
+        band = self.band or (0.0, ABOVE * filled(highest_frequency(problem.data), "band"))
+        out = replace(self, band=band, modes=complete_modes(self.loads, problem, band[1]))
+        system = nominal_system(out.loads, problem)
+        refuse([*out._early_end(system, problem, band[1]), *out._rigid(system, band[0])])
+        return out
+
+    def _early_end(
+        self, system: ModalSystem, problem: UpdatingProblem, top: float
+    ) -> Iterator[Fault]:
+        """Yield modes that end below the band."""
+        count, last = system.omega.size, float(system.omega[-1]) / (2 * math.pi)
+        if last < top:
+            more = modes_reaching(problem.model, problem.start, top, count)
+            if more > count:
+                expected = f"modes that reach the end of the band, {top:g} Hz: {more}"
+                yield Fault("", "modes", expected, f"{count}, up to {last:.4g} Hz")
+
+    def _rigid(self, system: ModalSystem, low: float) -> Iterator[Fault]:
+        """Yield what there is not in a model that can move as a rigid body."""
+        if system.omega[0] > 0:
+            return
+        if self.static:
+            expected = "false, as a model with rigid-body modes has no static response"
+            yield Fault("", "static", expected, "true")
+        if low == 0:
+            expected = "a lowest frequency above 0, as rigid-body modes have no bounds there"
+            yield Fault("", "band", expected, "0")
+
+    def evaluate(
+        self, problem: UpdatingProblem, theta: Floats, _: np.random.SeedSequence
+    ) -> Mapping[str, Floats]:
+        """Return |T| at the greatest peak and its frequency in Hz, each (responses,).
+
+        NaN where |T| has no local maximum within the band. Raises ModelError where the model
+        cannot be evaluated at ``theta``.
+        """
+        system, quantity = self.loads.system(problem, theta), ResponseQuantity(self.quantity)
+        low, high = (2 * np.pi * f for f in filled(self.band, "band"))
+        out = np.full((2, len(self.response)), np.nan)
+        for o in range(len(self.response)):
+            found = peaks(system, quantity, output=o, band=(low, high))
+            if found:
+                greatest = max(found, key=lambda peak: peak.amplitude)
+                out[:, o] = greatest.amplitude, greatest.frequency
+        return {"peak": out[0], "frequency": out[1]}
+
+    def check(
+        self, _problem: UpdatingProblem, _theta: Floats, _seed: np.random.SeedSequence
+    ) -> Mapping[str, Floats]:
+        """Return nothing: peaks are exact."""
+        return {}

@@ -1,0 +1,83 @@
+"""Predictions of all models of a study, as values of results."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import chain
+
+import numpy as np
+import xarray as xr
+
+from modefront._typing import Bools, Floats
+from modefront.predictions import KINDS, Kind, Prediction
+from modefront.predictions.runner import PredictionRunner
+from modefront.results.analysis import Values
+from modefront.results.schema import described
+
+RANGE = ("minimum", "maximum", "spread")
+"""Over the Pareto-optimal models; the spread is the ratio of greatest to least."""
+
+
+def extent(predictions: Sequence[Prediction], models: int) -> dict[str, int]:
+    """Return the expected number of tasks of the predictions of so many models."""
+    return {"predict": sum(models + (each.kind.check is not None) for each in predictions)}
+
+
+def by_kind(predictions: Sequence[Prediction]) -> Iterator[tuple[Kind, list[Prediction]]]:
+    """Yield the kinds of which there are predictions, with these."""
+    for kind in (each.kind for each in KINDS):
+        if chosen := [prediction for prediction in predictions if prediction.kind is kind]:
+            yield kind, chosen
+
+
+def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
+    """Return results with the predictions of every point.
+
+    Raises what `PredictionRunner.at_points` raises.
+    """
+    if not runner.predictions:
+        return data
+    optimal = data["pareto"].values
+    values: Values = {"frequency_range": _range(data["frequency"].values, optimal)}
+    coordinates = {"range": list(RANGE)}
+    points = list(zip(map(str, data["label"].values), data["theta"].values, strict=True))
+    reference = next(point for point in points if point[0] == data.attrs["reference"])
+    for kind, predictions in by_kind(runner.predictions):
+        values |= _of_points(
+            kind, [runner.at_points(each, points) for each in predictions], optimal
+        )
+        for setting in kind.settings:
+            every = (prediction.settings[setting.name] for prediction in predictions)
+            values[setting.name] = list(chain.from_iterable(every))
+        if kind.check:
+            checks = [runner.checked(each, *reference) for each in predictions]
+            for variable in kind.check.variables:
+                values[variable.name] = np.concatenate([x[variable.key] for x in checks])
+            places = sum(len(prediction.places) for prediction in predictions)
+            values[kind.check.label.name] = [reference[0]] * places
+        coordinates[kind.dimension] = list(chain.from_iterable(x.places for x in predictions))
+    return data.assign(described(values)).assign_coords(coordinates)
+
+
+def _of_points(
+    kind: Kind, rows: Sequence[Sequence[Mapping[str, Floats]]], optimal: Bools
+) -> Values:
+    """Return the values at all points, (points, places), and their ranges over the optimal ones."""
+    out: Values = {}
+    for variable in kind.variables:
+        values = np.hstack([np.array([x[variable.key] for x in each]) for each in rows])
+        out[variable.name] = values
+        if variable.ranged:
+            out[f"{variable.name}_range"] = _range(values, optimal)
+    return out
+
+
+def _range(values: Floats, optimal: Bools) -> Floats:
+    """Return least, greatest and their ratio over the optimal rows, (3, columns); NaN for none."""
+    known = optimal[:, None] & np.isfinite(values)
+    least = np.where(known, values, np.inf).min(axis=0)
+    greatest = np.where(known, values, -np.inf).max(axis=0)
+    none = ~known.any(axis=0)
+    least[none] = greatest[none] = np.nan
+    ratio = np.divide(greatest, least, out=np.full(least.shape, np.nan), where=least > 0)
+    return np.array([least, greatest, ratio])

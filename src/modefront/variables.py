@@ -1,0 +1,40 @@
+"""Variables of results: dimensions, unit and meaning."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Values = Literal["number", "count", "truth", "text"]
+"""What a variable holds."""
+
+
+@dataclass(frozen=True)
+class Variable:
+    """A variable of the results.
+
+    Attributes
+    ----------
+    name : of the variable
+    dimensions : its dimensions
+    meaning : in words
+    values : what it holds
+    unit : of the values; empty where there is none, or where it is that of the model
+    section : heading of the table in the documentation
+    required : whether every file of results has it
+    since : first format that has it
+    """
+
+    name: str
+    dimensions: tuple[str, ...]
+    meaning: str
+    values: Values = "number"
+    unit: str = ""
+    section: str = ""
+    required: bool = False
+    since: int = 1
+
+    @property
+    def attributes(self) -> dict[str, str]:
+        """Attributes of the variable in a file (CF conventions)."""
+        return {"long_name": self.meaning} | ({"units": self.unit} if self.unit else {})
