@@ -12,7 +12,7 @@ from pathlib import Path
 
 import click
 
-from modefront import __version__
+from modefront._version import __version__
 from modefront.errors import InputError, UnfinishedError
 
 OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130

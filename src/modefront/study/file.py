@@ -18,7 +18,6 @@ from modefront.models.reduced.model import MEMORY, ReducedModel
 from modefront.predict import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
-from modefront.study.reader import Table
 from modefront.study.tables.data import read_data
 from modefront.study.tables.groups import read_groups
 from modefront.study.tables.identifiability import Identifiability, read_identifiability
@@ -35,6 +34,7 @@ from modefront.study.tables.settings import (
 )
 from modefront.study.tables.uncertainty import Uncertainty, read_uncertainty
 from modefront.study.tables.weighted import Weighted, read_weights
+from modefront.toml import Table
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-import modefront
 from modefront._typing import Floats
+from modefront._version import __version__
 from modefront.errors import Fault, InputError
 from modefront.identifiability.combinations import unchanged_groups
 from modefront.predict import Prediction
@@ -98,7 +98,7 @@ def run(
     from modefront.study.results import FILE, write
 
     progress = progress or Progress()
-    pieces = folder / PIECES / f"{study.work[:12]}-{modefront.__version__}"
+    pieces = folder / PIECES / f"{study.work[:12]}-{__version__}"
     try:
         pieces.mkdir(parents=True, exist_ok=True)
         if fresh:
@@ -233,7 +233,7 @@ class _Session:
         total, along = self.store.total(), self.store.total(f"{front.method}-")
         by_nbi = self.store.total("nbi-")
         out: dict[str, str | int | float] = {
-            "version": modefront.__version__,
+            "version": __version__,
             "seed": self.seed,
             "model_evaluations": total["eigenproblems"] + total["reduced"],
             "method": front.method,

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-from modefront.study.reader import Table
+from modefront.toml import Table
 
 
 @dataclass(frozen=True)

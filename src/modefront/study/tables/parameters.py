@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
-from modefront.study.reader import Table, has_name, repeated
+from modefront.toml import Table, has_name, repeated
 
 
 @dataclass(frozen=True)

@@ -11,8 +11,8 @@ from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import MEMORY, TOLERANCE, ReducedModel
 from modefront.pairing.match import Pairing, modes_needed
-from modefront.study.reader import Table, is_number
 from modefront.study.tables.parameters import Parameter
+from modefront.toml import Table, is_number
 
 AUTO, OFF = "auto", "off"
 

@@ -8,7 +8,7 @@ from modefront.pairing.match import Pairing
 from modefront.solvers.advance import size
 from modefront.solvers.evolutionary import EVOLUTIONARY, available
 from modefront.solvers.explore import Search
-from modefront.study.reader import Table
+from modefront.toml import Table
 
 METHODS = ("nbi", "weights", *EVOLUTIONARY)
 """Methods that ``[pareto] method`` may name."""

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 from modefront.data.modal import ModalData
-from modefront.study.reader import Table
+from modefront.toml import Table
 from modefront.uncertainty.noise import Source, available
 
 SOURCES = ("auto", "std", "sets", "none")

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from modefront.errors import suggestion
-from modefront.study.reader import Table, describe, has_name, is_number, repeated
+from modefront.toml import Table, describe, has_name, is_number, repeated
 
 RESERVED = (
     *("nbi-", "edge-", "minima-", "gap-", "equal-weights", "optimal-weights"),
