@@ -103,5 +103,4 @@ class Archive:
 
 def _visited(theta: Floats, J: Floats) -> Solution:
     none = np.zeros(0)
-    at = Evaluation(theta, J, none, none)
-    return Solution(at, none, none, 0.0, Status.VISITED, 0)
+    return Solution(Evaluation(theta, J), none, none, 0.0, Status.VISITED, 0)

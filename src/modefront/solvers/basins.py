@@ -478,7 +478,7 @@ def _evaluated(problem: Problem, thetas: Floats) -> list[Solution]:
     """Return the evaluations of models theta (m, p), packed into one."""
     J = [problem.evaluate(theta, derivatives=False).J for theta in thetas]
     none = np.zeros(0)
-    at = Evaluation(thetas, np.array(J), none, none)
+    at = Evaluation(thetas, np.array(J))
     return [Solution(at, none, none, 0.0, Status.SAMPLED, len(thetas))]
 
 

@@ -107,7 +107,7 @@ def _generation(problem: Problem, thetas: Floats) -> list[Solution]:
     names = kept[0] if kept else {}
     quantities = {name: np.array([one[name] for one in kept]) for name in names}
     none = np.zeros(0)
-    at = Evaluation(inside, np.array([at.J for at in found]), none, none, quantities)
+    at = Evaluation(inside, np.array([at.J for at in found]), quantities=quantities)
     return [Solution(at, none, none, 0.0, Status.SAMPLED, len(found))]
 
 
@@ -131,5 +131,5 @@ def _objectives(evaluations: list[Evaluation], n: int) -> Floats:
 
 
 def _sampled(at: Evaluation) -> Solution:
-    n, p = at.dJ.shape
+    n, p = at.J.size, at.theta.size
     return Solution(at, np.zeros((n, p, p)), np.full(n, np.nan), 0.0, Status.SAMPLED, 0)

@@ -20,7 +20,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.checkpoint import Solutions
-from modefront.solvers.problem import Evaluation, Residual
+from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Residual
 from modefront.solvers.sqp import Solution, Status
 
 PIECES = "pieces"
@@ -119,7 +119,8 @@ def _packed(solutions: Solutions) -> tuple[Any, Arrays]:
     heads = []
     for i, one in enumerate(solutions):
         at = one.at
-        parts = {"theta": at.theta, "J": at.J, "dJ": at.dJ, "H": at.H}
+        parts = {"theta": at.theta, "J": at.J}
+        parts |= {"dJ": at.dJ, "H": at.H} if at.derivatives else {}
         parts |= {"learned": one.learned, "weights": one.weights}
         parts |= {} if one.beta is None else {"beta": one.beta}
         parts |= {f"quantity:{key}": value for key, value in at.quantities.items()}
@@ -137,8 +138,8 @@ def _unpacked(heads: Any, arrays: Arrays) -> Solutions:
         kept = {key[9:]: value for key, value in own.items() if key.startswith("quantity:")}
         rows = range(sum(key.startswith("r:") for key in own))
         residuals = [Residual(own[f"r:{k}"], own[f"dr:{k}"]) for k in rows]
-        values = (own["theta"], own["J"], own["dJ"], own["H"])
-        at = Evaluation(*values, kept, residuals, tuple(branch))
+        slopes = ObjectiveDerivatives(own["dJ"], own["H"]) if "dJ" in own else None
+        at = Evaluation(own["theta"], own["J"], slopes, kept, residuals, tuple(branch))
         ended = (violation, Status[status], evaluations)
         solutions.append(Solution(at, own["learned"], own["weights"], *ended, own.get("beta")))
     return solutions
