@@ -20,9 +20,9 @@ from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 import numpy as np
 
 from modefront.errors import Fault, refuse
-from modefront.study.reader import describe, repeated
-from modefront.study.reader import is_name as is_name
-from modefront.study.reader import is_number as is_number
+from modefront.toml import describe, repeated
+from modefront.toml import is_name as is_name
+from modefront.toml import is_number as is_number
 
 
 @dataclass(frozen=True)

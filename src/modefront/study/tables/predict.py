@@ -10,8 +10,8 @@ from modefront.models.base import Model
 from modefront.options import each_once
 from modefront.predictions import KINDS, Prediction
 from modefront.residuals.problem import UpdatingProblem
-from modefront.study.reader import Table, has_name
 from modefront.study.tables.options import note, read_record
+from modefront.toml import Table, has_name
 
 Drafts = Sequence[tuple[Table, Prediction]]
 """Predictions as their tables say them; what follows from the nominal model is still open."""
