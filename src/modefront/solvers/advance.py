@@ -122,7 +122,7 @@ MANY = 300
 """Points of the simplex that are not exceeded if nothing else is wanted."""
 
 JUMP = 0.25
-"""Change of a parameter from a point to its neighbour, over its range, from which on the neighbour
+"""Change of a parameter from a point to its neighbour, over its range, above which the neighbour
 counts as one of another branch, from which the first point is checked."""
 
 SAME = 1e-6
@@ -179,6 +179,9 @@ def advance(
         other = origin[place] != origin[source]
         return not solved[place].converged or (solved[source].converged and other)
 
+    def jumps(solution: Solution, other: Solution) -> bool:
+        return bool((np.abs(solution.at.theta - other.at.theta) > JUMP * span).any())
+
     def better(place: Place, found: Solution, known: Solution) -> bool:
         if found.converged != known.converged:
             return found.converged
@@ -216,10 +219,13 @@ def advance(
         solve = programmes.solve_again if known and known.converged else programmes.solve
         found = checkpoint(name, partial(_one, solve, problem, beta(place), solved[source]))[0]
         if known is None or better(place, found, known):
-            step = np.abs((found.at.theta - solved[source].at.theta) / span).max()
-            branches += step > JUMP
-            settle(place, found, branches if step > JUMP else origin[source])
-        elif found.converged and not better(place, known, found):
+            far = jumps(found, solved[source])
+            branches += far
+            settle(place, found, branches if far else origin[source])
+        elif (
+            found.converged and not better(place, known, found) and not jumps(known, solved[source])
+        ):
+            # The way back leads to what is known, unless one of the two lies in another basin.
             tried.add((source, place, renewed[place]))
 
     within = [tuple(row) for row in lattice.counts.tolist()]
