@@ -28,6 +28,7 @@ from problems import (
 
 from modefront._typing import Floats
 from modefront.solvers.advance import advance, neighbours, simplex
+from modefront.solvers.attainment import Attainment
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.edges import edge, sample, typical_sizes
 from modefront.solvers.explore import Descent, Search, evolve, explore
@@ -389,6 +390,22 @@ def test_fronts_of_three_objectives_are_covered_beyond_the_simplex(
     assert all(one.converged for one in front)
     # No point of the true front is dominated: the points found lie on it.
     assert igd_plus(R, J) <= 0.03
+
+
+def test_nothing_is_evaluated_where_the_front_ends() -> None:
+    problem = box(bowls, [-2, -2], [2, 2], 3)
+    corners = [begin(problem.evaluate(np.array(at))) for at in ([0.0, 0.0], [1, 0], [0, 1])]
+    target = payoff(corners, np.ones(3))
+    assert target is not None
+    programmes = Attainment(target, np.array([one.at.theta for one in corners]))
+    # Beyond the first corner, J1 = 0 holds the bound: Phi beta = (-0.2, 0.5, 0.5).
+    beyond, before = np.array([1.2, -0.1, -0.1]), problem.counts["eigenproblems"]
+    found = programmes.solve(problem, beyond, corners[0])
+    assert problem.counts["eigenproblems"] == before
+    assert found.status is Status.STALLED
+    assert found.at is corners[0].at
+    within = programmes.solve(problem, np.array([0.8, 0.1, 0.1]), corners[0])
+    assert within.converged
 
 
 def test_more_objectives_than_parameters_can_meet_on_a_normal() -> None:

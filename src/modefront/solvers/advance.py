@@ -118,6 +118,10 @@ BEYOND = 300
 """Points beyond the simplex that are tried at most; of three objectives, 10 times those within
 where these are more. With each further objective a point has more neighbours."""
 
+ATTEMPTS = 3
+"""Neighbours from which a point beyond the simplex is tried at most: where none of these leads to a
+solution, the front ends."""
+
 MANY = 300
 """Points of the simplex that are not exceeded if nothing else is wanted."""
 
@@ -147,6 +151,7 @@ def advance(
     solved: dict[Place, Solution] = {}
     origin: dict[Place, int] = {}
     renewed: Counter[Place] = Counter()
+    attempts: Counter[Place] = Counter()
     queue: deque[tuple[Place, Place]] = deque()
     doubtful: deque[tuple[Place, Place]] = deque()  # from solutions that did not converge
     tried: set[tuple[Place, Place, int]] = set()
@@ -175,6 +180,8 @@ def advance(
         if place in fixed or (place, source, renewed[source]) in tried:
             return False
         if not few and min(place) < 0:
+            return False
+        if min(place) < 0 and attempts[place] >= ATTEMPTS and not solved[place].converged:
             return False
         other = origin[place] != origin[source]
         return not solved[place].converged or (solved[source].converged and other)
@@ -214,6 +221,7 @@ def advance(
             if room < 0:
                 continue
         tried.add((place, source, renewed[source]))
+        attempts[place] += 1
         known = solved.get(place)
         name = f"{programmes.label}-{_text(place)}-from-{_text(source)}-{renewed[source]}"
         solve = programmes.solve_again if known and known.converged else programmes.solve
