@@ -106,7 +106,7 @@ class Equation:
     @cached_property
     def a(self) -> Floats:
         """Counts of measured properties of each group."""
-        sensors = self.case.dofs.size
+        sensors = len(self.case.sensors)
         return np.array(
             [float(len(f) + sensors * len(s)) for f, s in self._groups],
         )
@@ -157,14 +157,14 @@ class Equation:
         f, measured = np.sqrt(lam) / (2 * np.pi), data.frequency[0]
         m, N = measured.size, lam.size
         candidates = min(N, m + case.problem.pairing.spare)
-        index = _pairs(data.shape[0], Phi[case.dofs, :candidates])
+        index = _pairs(data.shape[0], case.sensors @ Phi[:, :candidates])
         frequency, shape = [], []
         for r, q in enumerate(index):
             dlam, dphi = _derivatives(case.stiffness, case.mass, lam, Phi, int(q))
             df = dlam / (8 * np.pi**2 * f[q])
             frequency.append(Part(np.array([f[q] / measured[r] - 1]), df[None, :] / measured[r]))
             psi = data.shape[0, r]
-            shape.append(_shape(psi, Phi[case.dofs, q], dphi[case.dofs]))
+            shape.append(_shape(psi, case.sensors @ Phi[:, q], case.sensors @ dphi))
         out = []
         for frequencies, shapes in self._groups:
             chosen = [frequency[k] for k in frequencies] + [shape[k] for k in shapes]

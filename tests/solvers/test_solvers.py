@@ -1,6 +1,7 @@
 """Problems with known answers, for every solver."""
 
 from collections.abc import Callable
+from dataclasses import dataclass
 
 import moocore
 import numpy as np
@@ -26,7 +27,8 @@ from problems import (
 )
 
 from modefront._typing import Floats
-from modefront.solvers.advance import neighbours, simplex
+from modefront.solvers.advance import advance, neighbours, simplex
+from modefront.solvers.attainment import Attainment
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.edges import edge, sample, typical_sizes
 from modefront.solvers.explore import Descent, Search, evolve, explore
@@ -34,6 +36,7 @@ from modefront.solvers.indicators import hypervolume, igd_plus, largest_gap
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import payoff
 from modefront.solvers.pieces import gaps, piece_numbers
+from modefront.solvers.problem import Evaluation, Problem
 from modefront.solvers.qp import solve_qp
 from modefront.solvers.scalarisation import LogSum, level, weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
@@ -308,6 +311,46 @@ def patches_front(_: np.random.Generator) -> Floats:
     return J[nondominated(J)]
 
 
+@dataclass(frozen=True)
+class TwoBasins:
+    """Programmes that are best in the right basin, but next to the left edge from the right only.
+
+    The edges are at theta = 0 and 1, the basins at 0.1 and 0.9.
+    """
+
+    scale: Floats
+    label: str = "nbi"
+
+    def goes_on(self, _: Floats) -> bool:
+        return False
+
+    def place(self, edge: int, _: Floats) -> Floats:
+        return np.eye(2)[edge]
+
+    def solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
+        left = beta[0] > 0.5 and start.at.theta[0] < 0.5
+        return at_theta(0.1 if left else 0.9)
+
+    solve_again = solve
+
+    def value(self, beta: Floats, J: Floats) -> float:
+        return float(J.sum())
+
+
+def at_theta(theta: float) -> Solution:
+    """Return a solution with J = (1 - theta, 1 - theta)."""
+    none = np.zeros((2, 1, 1))
+    at = Evaluation(np.array([theta]), np.full(2, 1 - theta), none[0], none)
+    return Solution(at, none, np.ones(2), 0.0, Status.CONVERGED, 1)
+
+
+def test_a_point_far_from_its_neighbour_is_solved_from_there_though_the_way_back_agrees() -> None:
+    problem = box(circles, [0], [1])
+    edges = [at_theta(0.0), at_theta(1.0)]
+    points = advance(problem, TwoBasins(np.ones(2)), edges, simplex(2, 3))
+    assert [one.at.theta[0] for one in points] == [0.0, 0.9, 0.9, 1.0]
+
+
 def test_a_piece_of_the_front_between_the_edges_is_reached_from_its_own_minimum() -> None:
     problem = box(three_wells, [-1, -1.5], [2, 1.5])
     sizes = sizes_of(problem)
@@ -359,6 +402,22 @@ def test_fronts_of_three_objectives_are_covered_beyond_the_simplex(
     assert all(one.converged for one in front)
     # No point of the true front is dominated: the points found lie on it.
     assert igd_plus(R, J) <= 0.03
+
+
+def test_nothing_is_evaluated_where_the_front_ends() -> None:
+    problem = box(bowls, [-2, -2], [2, 2], 3)
+    corners = [begin(problem.evaluate(np.array(at))) for at in ([0.0, 0.0], [1, 0], [0, 1])]
+    target = payoff(corners, np.ones(3))
+    assert target is not None
+    programmes = Attainment(target, np.array([one.at.theta for one in corners]))
+    # Beyond the first corner, J1 = 0 holds the bound: Phi beta = (-0.2, 0.5, 0.5).
+    beyond, before = np.array([1.2, -0.1, -0.1]), problem.counts["eigenproblems"]
+    found = programmes.solve(problem, beyond, corners[0])
+    assert problem.counts["eigenproblems"] == before
+    assert found.status is Status.STALLED
+    assert found.at is corners[0].at
+    within = programmes.solve(problem, np.array([0.8, 0.1, 0.1]), corners[0])
+    assert within.converged
 
 
 def test_more_objectives_than_parameters_can_meet_on_a_normal() -> None:

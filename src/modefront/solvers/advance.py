@@ -118,11 +118,15 @@ BEYOND = 300
 """Points beyond the simplex that are tried at most; of three objectives, 10 times those within
 where these are more. With each further objective a point has more neighbours."""
 
+ATTEMPTS = 3
+"""Neighbours from which a point beyond the simplex is tried at most: where none of these leads to a
+solution, the front ends."""
+
 MANY = 300
 """Points of the simplex that are not exceeded if nothing else is wanted."""
 
 JUMP = 0.25
-"""Change of a parameter from a point to its neighbour, over its range, from which on the neighbour
+"""Change of a parameter from a point to its neighbour, over its range, above which the neighbour
 counts as one of another branch, from which the first point is checked."""
 
 SAME = 1e-6
@@ -147,6 +151,7 @@ def advance(
     solved: dict[Place, Solution] = {}
     origin: dict[Place, int] = {}
     renewed: Counter[Place] = Counter()
+    attempts: Counter[Place] = Counter()
     queue: deque[tuple[Place, Place]] = deque()
     doubtful: deque[tuple[Place, Place]] = deque()  # from solutions that did not converge
     tried: set[tuple[Place, Place, int]] = set()
@@ -176,8 +181,13 @@ def advance(
             return False
         if not few and min(place) < 0:
             return False
+        if min(place) < 0 and attempts[place] >= ATTEMPTS and not solved[place].converged:
+            return False
         other = origin[place] != origin[source]
         return not solved[place].converged or (solved[source].converged and other)
+
+    def jumps(solution: Solution, other: Solution) -> bool:
+        return bool((np.abs(solution.at.theta - other.at.theta) > JUMP * span).any())
 
     def better(place: Place, found: Solution, known: Solution) -> bool:
         if found.converged != known.converged:
@@ -211,16 +221,20 @@ def advance(
             if room < 0:
                 continue
         tried.add((place, source, renewed[source]))
+        attempts[place] += 1
         known = solved.get(place)
         key = ("front", programmes.label, place, "from", source, renewed[source])
         solve = _solve_again if known and known.converged else _solve
         arguments = (problem, programmes, beta(place), solved[source])
         (found,) = work.run([Task(key, solve, arguments)])
         if known is None or better(place, found, known):
-            step = np.abs((found.at.theta - solved[source].at.theta) / span).max()
-            branches += step > JUMP
-            settle(place, found, branches if step > JUMP else origin[source])
-        elif found.converged and not better(place, known, found):
+            far = jumps(found, solved[source])
+            branches += far
+            settle(place, found, branches if far else origin[source])
+        elif (
+            found.converged and not better(place, known, found) and not jumps(known, solved[source])
+        ):
+            # The way back leads to what is known, unless one of the two lies in another basin.
             tried.add((source, place, renewed[place]))
 
     within = [tuple(row) for row in lattice.counts.tolist()]

@@ -135,7 +135,10 @@ class Attainment:
         """Return the solution at beta, from a start.
 
         From an edge, where derivatives often vanish, it is sought from between the edges too.
+        Where the start is weakly optimal, the front ends and nothing is evaluated.
         """
+        if self.is_weak(beta, start.at.J):
+            return replace(start, status=Status.STALLED, evaluations=0, beta=beta)
         found = replace(self._checked(self._solve(problem, beta, start), beta), beta=beta)
         span = problem.upper - problem.lower
         if (np.abs(self.thetas - start.at.theta) > EDGE * span).any(axis=1).all():
@@ -151,16 +154,22 @@ class Attainment:
     solve_again = solve
 
     def _checked(self, found: Solution, beta: Floats) -> Solution:
-        """Return a solution; stalled where an objective that is least already holds the bound.
+        """Return a solution; stalled where it is weakly optimal.
 
-        There, beyond the simplex, all other objectives may be anything: it is weakly optimal. Of
-        three objectives, the share of the others in what is minimised decides between these.
+        Of three objectives, the share of the others in what is minimised decides between these.
         """
-        if not found.at.feasible or beta.min() >= 0 or beta.size <= 3:
-            return found
-        c, y = self.excess(beta, found.at.J), (found.at.J - self.target.utopia) / self.scale
-        weak = bool(((c >= c.max() - MET) & (y <= MET)).any())
+        weak = beta.size > 3 and self.is_weak(beta, found.at.J)
         return replace(found, status=Status.STALLED) if weak else found
+
+    def is_weak(self, beta: Floats, J: Floats) -> bool:
+        """Return whether, beyond the simplex, an objective that is least holds the bound.
+
+        No model has a lower greatest excess, and all other objectives may be anything.
+        """
+        if beta.min() >= 0 or not np.isfinite(J).all():
+            return False
+        c, y = self.excess(beta, J), (J - self.target.utopia) / self.scale
+        return bool(((c >= c.max() - MET) & (y <= MET)).any())
 
     def _solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         if not start.at.feasible:
@@ -171,8 +180,13 @@ class Attainment:
         if first.converged and self.value(beta, first.at.J) <= self.value(beta, start.at.J):
             return first
         best = start
+        if self.is_weak(beta, first.at.J):
+            return replace(first, status=Status.STALLED)
         for _ in range(SETS):
             near, active = self._descend(problem, beta, best)
+            if self.is_weak(beta, near.at.J):
+                best, evaluations = near, evaluations + near.evaluations
+                break
             found = self._equations(problem, beta, near, active)
             evaluations += near.evaluations + found.evaluations
             if found.converged:
