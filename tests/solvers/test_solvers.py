@@ -37,7 +37,6 @@ from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import payoff
 from modefront.solvers.pieces import gaps, piece_numbers
 from modefront.solvers.problem import Evaluation, Problem
-from modefront.solvers.qp import solve_qp
 from modefront.solvers.scalarisation import LogSum, level, weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 from modefront.solvers.weights import iterate_weights, optimal_minima, regular
@@ -64,50 +63,6 @@ def front_of(problem: Known, points: int = 11) -> list[Solution]:
     target = payoff(edges, sizes_of(problem))
     assert target is not None
     return nbi(problem, edges, target, simplex(len(edges), points - 1))
-
-
-# ---- quadratic programmes --------------------------------------------------------------------
-
-
-@settings(max_examples=60, deadline=None)
-@given(st.integers(0, 2**31), st.integers(1, 5), st.integers(0, 2))
-def test_qp_meets_the_conditions_of_optimality(seed: int, p: int, k: int) -> None:
-    rng = np.random.default_rng(seed)
-    k = min(k, p - 1)
-    root = rng.normal(size=(p, p))
-    B, g, A = root @ root.T + 0.1 * np.eye(p), 3 * rng.normal(size=p), rng.normal(size=(k, p))
-    lo, hi = -rng.uniform(0.5, 2, p), rng.uniform(0.5, 2, p)
-    b = A @ (rng.uniform(-0.3, 0.3, p))
-    s = solve_qp(B, g, A, b, lo, hi)
-    assert (s >= lo).all()
-    assert (s <= hi).all()
-    assert A @ s == pytest.approx(b, abs=1e-8)
-    # No feasible direction descends: compare with many random feasible points.
-    null = np.linalg.svd(A)[2][k:] if k else np.eye(p)
-    value = g @ s + 0.5 * s @ B @ s
-    for _ in range(200):
-        step = (rng.normal(size=len(null)) * rng.choice([1e-3, 0.1, 1.0])) @ null
-        other = s + step
-        if (other >= lo).all() and (other <= hi).all():
-            assert g @ other + 0.5 * other @ B @ other >= value - 1e-8
-
-
-def test_qp_comes_as_near_as_the_box_allows() -> None:
-    s = solve_qp(np.eye(1), np.zeros(1), np.ones((1, 1)), np.array([5.0]), -np.ones(1), np.ones(1))
-    assert 0.5 < s[0] <= 1
-
-
-def test_qp_of_a_very_steep_objective() -> None:
-    """Curvature of 1e23 in a box of 0.005: what is left over of a least distance is rounding."""
-    T = 1e-12 * np.array([[-1.2546525, 2.7558925], [1.8330812, -14.992864], [7.4447152, 4.1560792]])
-    target = np.array([0.0016321922652506, 0.01227940154453663, 0.00619583705559531])
-    hi = np.full(3, 0.00469227039043077)
-    n = np.linalg.svd(T)[0][:, 2]
-    B = np.asarray(np.linalg.pinv(T @ T.T, rcond=1e-10, hermitian=True), dtype=float)
-    b = float(n @ target)
-    s = solve_qp(B, -B @ (target - n * b), n[None], np.array([b]), -hi, hi)
-    assert s[1:] == pytest.approx(hi[1:], rel=1e-6)
-    assert n @ s == pytest.approx(b, rel=1e-6)
 
 
 # ---- one programme ---------------------------------------------------------------------------

@@ -174,7 +174,7 @@ def test_points_of_the_front_follow_their_edges(
             assert found.converged
             shares = found.weights * target.scale * programmes.r
             assert (active_bounds(shares) == on).all()
-            exact = programmes.subproblem(place, on)
+            exact: Scalarisation = programmes.subproblem(place)
         else:
             exact = target.subproblem(place)
         return edges, minimum(problem, exact, found.at.theta)

@@ -1,22 +1,40 @@
 r"""The quadratic programme of one step.
 
-.. math:: \min_s\; g^T s + \tfrac12 s^T B s \quad\text{subject to}\quad A s = b,\; lo \le s \le hi
+.. math:: \min_s\; g^T s + \tfrac12 s^T B s + \max_i\,(c + C s)_i
+    \quad\text{subject to}\quad A s = b,\; lo \le s \le hi
 
 with :math:`lo \le 0 \le hi`, by a primal active-set method (Nocedal & Wright, *Numerical
-Optimization*, 2006, section 16.5): the equalities are met first, as nearly as the box allows, and
-then kept; variables are held at the box one by one as steps meet it, and let go as their
-multipliers have the wrong sign. Where B has negative curvature among the variables that are free,
-its absolute value is used: variables that are held have no say in it.
+Optimization*, 2006, section 16.5). The equalities are met first, as nearly as the box allows, and
+then kept. The maximum is the linear function of any one of the functions that attain it, as long
+as these stay equal: with one of them, a, as the base, the others of the active set are equalities
 
-========  ================================================================
-symbol    meaning
-========  ================================================================
-Z         basis of the null space of A among the free variables
-mu        multipliers of the box, g + B s + A^T lambda
-========  ================================================================
+.. math:: (C_i - C_a)\, s = c_a - c_i .
+
+Variables are held at the box, and functions join the active set, one by one as steps meet them;
+they are let go as their multipliers have the wrong sign. Where B has negative curvature in the
+null space of the working set, its absolute value is used: variables that are held and changes of
+the maximum have no say in it. Without functions (m = 0), the maximum is left out.
+
+========  =========  ================================================================
+symbol    shape      meaning
+========  =========  ================================================================
+s         (p,)       step
+B, g      (p, p)     second derivatives, symmetric, and slope (p,)
+A, b      (k, p)     equalities, and their right-hand sides (k,)
+C, c      (m, p)     slopes of the functions, and their values (m,) at s = 0
+E         (., p)     A and the equalities of the active functions
+Z         (p, .)     basis of the null space of E among the free variables
+mu        (k,)       multipliers of the equalities
+kappa     (m,)       multipliers of the functions: not negative, of sum 1
+========  =========  ================================================================
+
+At a solution, :math:`g + B s + A^T \mu + C^T \kappa` vanishes for the free variables and points out
+of the box for those that are held.
 """
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 import numpy as np
 import scipy.optimize
@@ -24,49 +42,111 @@ import scipy.optimize
 from modefront._typing import Bools, Floats
 
 FLAT = 1e-10
-"""Curvature, over the greatest one, below which a direction counts as flat."""
+"""Curvature, singular value or slope, over the greatest one, below which it counts as none: well
+above rounding, 1e-16 times the condition of matrices of some thousands."""
 
 FAR = 1e-4
 """Inverse of the greatest step aimed at, in widths of the box: bounds what a flat B leads to."""
 
 NORMAL = 0.8
-"""Share of the box that the normal step may use, so that something is left to descend."""
+"""Share of the box that the normal step may use, so that something is left to descend (Nocedal &
+Wright, equation 18.46)."""
 
 WRONG = 1e-9
 """Multiplier of the wrong sign, over the greatest gradient, below which it is rounding."""
 
+PASSES = 4
+"""Changes of the working set, over the number of variables and functions, after which the method
+ends: from two on, something was let go that is met again."""
 
-def solve_qp(B: Floats, g: Floats, A: Floats, b: Floats, lo: Floats, hi: Floats) -> Floats:
-    """Return the step s, shape (p,), for B (p, p), A (k, p) and a box around the origin."""
-    s = _normal_step(A, b, lo, hi)
+
+@dataclass(frozen=True)
+class QuadraticProgramme:
+    """The programme of one step; see the module for the symbols."""
+
+    B: Floats
+    g: Floats
+    A: Floats
+    b: Floats
+    lo: Floats
+    hi: Floats
+    C: Floats
+    c: Floats
+
+    def ties(self, active: list[int]) -> Floats:
+        """Return E (., p), the equalities' slopes and those that keep active functions equal."""
+        return np.vstack([self.A, self.C[active[1:]] - self.C[active[:1]]])
+
+    def slope(self, s: Floats, active: list[int]) -> Floats:
+        """Return the slope (p,) of what is minimised, with the base for the maximum."""
+        slope = self.g + self.B @ s
+        return slope + self.C[active[0]] if active else slope
+
+    def multipliers(self, s: Floats, active: list[int], free: Bools) -> tuple[Floats, Floats]:
+        """Return mu (k,) and kappa (m,), with which least is left of the slope of free variables.
+
+        Where equalities hardly depend on these, mu is of any size.
+        """
+        E = self.ties(active)
+        both = np.linalg.lstsq(E[:, free].T, -self.slope(s, active)[free], rcond=None)[0]
+        mu, others = np.split(both, [len(self.A)])
+        kappa = np.zeros(len(self.C))
+        if active:
+            kappa[active[0]] = 1 - others.sum()
+            kappa[active[1:]] = others
+        return mu, kappa
+
+
+@dataclass(frozen=True)
+class QuadraticStep:
+    """A step s (p,) and the active functions, the base first."""
+
+    s: Floats
+    active: list[int]
+
+
+def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
+    """Return the solution; near it, where the equalities cannot be met or B is not convex."""
+    lo, hi = qp.lo, qp.hi
+    s = _normal_step(qp.A, qp.b, lo, hi)
     free = (s > lo) & (s < hi)
     width = float((hi - lo).max())
-    for _ in range(4 * s.size):
-        gradient = g + B @ s
-        d = _descent(B, gradient, A, free, width)
+    active = [int(np.argmax(qp.c + qp.C @ s))] if len(qp.C) else []
+    for _ in range(PASSES * (s.size + len(qp.C))):
+        d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free, width)
         share = np.full(s.size, np.inf)
         np.divide(hi - s, d, out=share, where=d > 0)
         np.divide(lo - s, d, out=share, where=d < 0)
         stop = int(np.argmin(share))
-        if share[stop] < 1:
-            s = np.clip(s + share[stop] * d, lo, hi)
-            s[stop] = (hi if d[stop] > 0 else lo)[stop]
-            free[stop] = False
+        joining, met = _met(qp, s, d, active)
+        if min(share[stop], met) < 1:
+            s = np.clip(s + min(share[stop], met) * d, lo, hi)
+            if met < share[stop]:
+                active = [*active, joining]
+            else:
+                s[stop] = (hi if d[stop] > 0 else lo)[stop]
+                free[stop] = False
             continue
         s = np.clip(s + d, lo, hi)
-        if free.all():
+        if free.all() and len(active) < 2:
             break
-        wrong = _wrong(g + B @ s, A, free, s <= lo, s >= hi)
+        mu, kappa = qp.multipliers(s, active, free)
+        if kappa.min(initial=0.0) < -WRONG:
+            active = [i for i in active if i != int(np.argmin(kappa))]
+            continue
+        slope = qp.g + qp.B @ s + qp.C.T @ kappa
+        scale = float(np.abs(slope).max())
+        wrong = _wrong(slope + qp.A.T @ mu, scale, free, s <= lo, s >= hi)
         if wrong is None:
             break
         free[wrong] = True
-    return s
+    return QuadraticStep(s, active)
 
 
-def _descent(B: Floats, gradient: Floats, A: Floats, free: Bools, width: float) -> Floats:
-    """Return the step of the free variables to their minimum that leaves A s as it is."""
+def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools, width: float) -> Floats:
+    """Return the step of the free variables to their minimum that leaves E s as it is."""
     d = np.zeros(free.size)
-    Z = _null_space(A[:, free])
+    Z = _null_space(E[:, free])
     if Z.shape[1]:
         curvature, V = np.linalg.eigh(Z.T @ B[np.ix_(free, free)] @ Z)
         curvature = np.abs(curvature)
@@ -78,13 +158,32 @@ def _descent(B: Floats, gradient: Floats, A: Floats, free: Bools, width: float) 
     return d
 
 
-def _wrong(gradient: Floats, A: Floats, free: Bools, low: Bools, high: Bools) -> int | None:
-    """Return the held variable that gains most by leaving the box's side; None where none does."""
-    of_A = np.linalg.lstsq(A[:, free].T, -gradient[free], rcond=None)[0] if len(A) else np.zeros(0)
-    mu = gradient + A.T @ of_A
-    gain = np.where(free | (low & high), 0.0, np.where(low, -mu, mu))
+def _met(qp: QuadraticProgramme, s: Floats, d: Floats, active: list[int]) -> tuple[int, float]:
+    """Return the function that a step d from s meets first, and the share of d until then.
+
+    A function whose slope along d is that of the active ones but for rounding is not met.
+    """
+    if len(qp.C) == len(active):
+        return -1, np.inf
+    rise = qp.C - qp.C[active[0]]
+    rate = rise @ d
+    rounding = FLAT * np.abs(rise) @ np.abs(d)
+    rate[active] = 0.0
+    value = qp.c + qp.C @ s
+    share = np.full(len(rate), np.inf)
+    below = np.maximum(value[active[0]] - value, 0.0)
+    np.divide(below, rate, out=share, where=rate > rounding)
+    return int(np.argmin(share)), float(share.min())
+
+
+def _wrong(left: Floats, scale: float, free: Bools, low: Bools, high: Bools) -> int | None:
+    """Return the held variable that gains most by leaving the box's side; None where none does.
+
+    ``left`` (p,) is what the multipliers leave of the slope, which is of this ``scale``.
+    """
+    gain = np.where(free | (low & high), 0.0, np.where(low, -left, left))
     best = int(np.argmax(gain))
-    return best if gain[best] > WRONG * np.abs(gradient).max() else None
+    return best if gain[best] > WRONG * scale else None
 
 
 def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> Floats:

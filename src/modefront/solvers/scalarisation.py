@@ -1,17 +1,19 @@
 r"""Ways to turn a vector of objectives into one programme.
 
-.. math:: \min_\theta f(J(\theta)) \quad\text{subject to}\quad A J(\theta) = b
+.. math:: \min_\theta f(J(\theta)) + \max_i\,(C J(\theta) - d)_i
+    \quad\text{subject to}\quad A J(\theta) = b
 
 Every method of the package is one of these members, and one solver (`modefront.solvers.sqp`)
-serves them all.
+serves them all. Most have no maximum (m = 0), and most no constraints (k = 0).
 
 ========  =========  ===========================================
 symbol    shape      meaning
 ========  =========  ===========================================
-f         ()         what is minimised, a function of J
-df        (n,)       its derivatives
+f         ()         smooth part of what is minimised
+df        (n,)       its derivatives with respect to J
 ddf       (n, n)     its second derivatives
 A, b      (k, n)     linear constraints on the objectives
+C, d      (m, n)     linear functions of which the maximum is minimised
 ========  =========  ===========================================
 """
 
@@ -23,22 +25,46 @@ from typing import Protocol
 import numpy as np
 import scipy.linalg
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Floats
 
 LEAST = 1e-100
-"""An objective below which its logarithm and the derivatives change no more: no overflow."""
+"""An objective below which its logarithm and the derivatives change no more: the second ones, of
+size 1e200, do not overflow."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Linear functions of the objectives, matrix J - offset.
+
+    Attributes
+    ----------
+    matrix : (rows, n)
+    offset : (rows,)
+    """
+
+    matrix: Floats
+    offset: Floats
+
+    def at(self, J: Floats) -> Floats:
+        """Return the values, shape (rows,)."""
+        return np.asarray(self.matrix @ J - self.offset)
+
+
+def no_rows(objectives: int) -> Rows:
+    """Return no functions of so many objectives."""
+    return Rows(np.zeros((0, objectives)), np.zeros(0))
 
 
 class Scalarisation(Protocol):
-    """A function of the objectives and linear constraints on them."""
+    """A smooth function of the objectives, a maximum of linear ones, and linear constraints."""
 
     @property
-    def A(self) -> Floats:
-        """Matrix of the constraints, shape (k, n); k may be 0."""
+    def constraints(self) -> Rows:
+        """A J - b, which vanishes at a solution; may be empty."""
 
     @property
-    def b(self) -> Floats:
-        """Right-hand side of the constraints, shape (k,)."""
+    def maximised(self) -> Rows:
+        """C J - d, of which the greatest value is minimised together with f; may be empty."""
 
     def value(self, J: Floats) -> float:
         """Return f."""
@@ -57,6 +83,16 @@ class Linear:
     w: Floats
     A: Floats
     b: Floats
+
+    @property
+    def constraints(self) -> Rows:
+        """A J - b."""
+        return Rows(self.A, self.b)
+
+    @property
+    def maximised(self) -> Rows:
+        """No maximum."""
+        return no_rows(self.w.size)
 
     def value(self, J: Floats) -> float:
         """Return w^T J."""
@@ -86,14 +122,14 @@ class LogSum:
     vanishing: Floats | float = 0.0
 
     @property
-    def A(self) -> Floats:
+    def constraints(self) -> Rows:
         """No constraints."""
-        return np.zeros((0, self.a.size))
+        return no_rows(self.a.size)
 
     @property
-    def b(self) -> Floats:
-        """No constraints."""
-        return np.zeros(0)
+    def maximised(self) -> Rows:
+        """No maximum."""
+        return no_rows(self.a.size)
 
     def value(self, J: Floats) -> float:
         """Return I; minus infinity where an objective vanishes."""
@@ -118,14 +154,14 @@ class Squares:
     goal: Floats
 
     @property
-    def A(self) -> Floats:
+    def constraints(self) -> Rows:
         """No constraints."""
-        return np.zeros((0, self.w.size))
+        return no_rows(self.w.size)
 
     @property
-    def b(self) -> Floats:
-        """No constraints."""
-        return np.zeros(0)
+    def maximised(self) -> Rows:
+        """No maximum."""
+        return no_rows(self.w.size)
 
     def value(self, J: Floats) -> float:
         """Return f."""
@@ -140,34 +176,55 @@ class Squares:
         return np.diag(np.broadcast_to(self.w, J.shape))
 
 
+@dataclass(frozen=True)
+class Achievement:
+    """f = w^T J, to which the maximum of C J - d is added: an achievement function.
+
+    Wierzbicki 1980, doi:10.1007/978-3-642-48782-8_32.
+    """
+
+    w: Floats
+    C: Floats
+    d: Floats
+
+    @property
+    def constraints(self) -> Rows:
+        """No constraints."""
+        return no_rows(self.w.size)
+
+    @property
+    def maximised(self) -> Rows:
+        """C J - d."""
+        return Rows(self.C, self.d)
+
+    def value(self, J: Floats) -> float:
+        """Return w^T J."""
+        return float(self.w @ J)
+
+    def gradient(self, J: Floats) -> Floats:
+        """Return w, whatever J is."""
+        return np.broadcast_to(self.w, J.shape)
+
+    def hessian(self, J: Floats) -> Floats:
+        """Return zeros."""
+        return np.zeros((J.size, J.size))
+
+
 def weighted(w: Floats) -> Linear:
     """Return min w^T J."""
     return Linear(w, np.zeros((0, w.size)), np.zeros(0))
 
 
-def boundary(
-    point: Floats,
-    normal: Floats,
-    utopia: Floats,
-    scale: Floats,
-    active: Bools | None = None,
-    share: float = 0.0,
-) -> Linear:
+def boundary(point: Floats, normal: Floats, utopia: Floats, scale: Floats) -> Linear:
     r"""Return the subproblem of normal-boundary intersection (Das & Dennis 1998).
 
     Maximise t subject to :math:`\Phi \beta + t \hat n = J - J^*`
     (doi:10.1137/S1052623496307510), with ``point`` for :math:`\Phi \beta` and ``normal`` for
     :math:`\hat n`, both in units of ``scale``; t is eliminated: it is the component of the
     equation along the normal, and what is across the normal remains as constraints.
-
-    Only the ``active`` objectives are constrained so; of each other one, over its component of
-    the normal, ``share`` is added to what is minimised.
     """
-    on = np.ones(normal.size, dtype=np.bool_) if active is None else active
-    n = np.where(on, normal, 0.0)
-    across = np.zeros((int(on.sum()) - 1, normal.size))
-    across[:, on] = scipy.linalg.null_space(normal[None, on]).T
-    w = np.where(on, -n / (n @ n), share / np.abs(normal))
+    across = scipy.linalg.null_space(normal[None]).T
+    w = -normal / (normal @ normal)
     return Linear(w / scale, across / scale, across @ (point + utopia / scale))
 
 

@@ -1,43 +1,42 @@
 r"""Sequential quadratic programming with exact gradients and a Hessian that is learned.
 
-Solves :math:`\min f(J(\theta))` subject to :math:`A J(\theta) = b` and bounds, for any member of
-`modefront.solvers.scalarisation`. With multipliers :math:`\lambda` and the weights
+Solves :math:`\min f(J(\theta)) + \max_i\,(C J(\theta) - d)_i` subject to :math:`A J(\theta) = b`
+and bounds, for any member of `modefront.solvers.scalarisation`: it is the only loop of steps in a
+trust region, and its steps are all from `modefront.solvers.qp`. With multipliers :math:`\mu` of
+the constraints and :math:`\kappa` of the functions of which the maximum counts, and the weights
 
-.. math:: w = \partial f / \partial J + A^T \lambda
+.. math:: w = \partial f / \partial J + A^T \mu + C^T \kappa
 
 of the objectives, the Hessian of the Lagrangian is
 
 .. math:: B = \sum_i w_i (H_i + S_i) + \partial J^T f'' \partial J
 
 where :math:`H_i` is the known part (Gauss-Newton's) and :math:`S_i` the rest, learned from
-differences of gradients (symmetric rank one, Conn, Gould & Toint 1991). Because S belongs to
-the objectives and not to the programme, it carries over from one programme to its neighbour: that
-is what makes the second point of a front cheaper than the first. Where residuals vanish, S is a
-burden: it is sized down as they do, and B is taken with it or without it, whichever predicted the
-last step better (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965).
+differences of gradients (`modefront.solvers.secant`). Because S belongs to the objectives and not
+to the programme, it carries over from one programme to its neighbour: that is what makes the second
+point of a front cheaper than the first. Where residuals vanish, S is a burden: B is taken with it
+or without it, whichever predicted the last step better (Dennis, Gay & Welsch 1981,
+doi:10.1145/355958.355965).
 
 Steps solve a quadratic programme within a box, the trust region; they are judged by the augmented
-Lagrangian
+Lagrangian (`modefront.solvers.merit`) which, unlike an exact penalty, does not reject good steps
+near the solution. Far from it, multipliers may be absurd: they are bounded, and a step that leaves
+the constraints by much more than the start did is shortened. One attempt is made to leave a
+stationary point with clearly negative curvature. A poor step of a slow solution gets a second-order
+correction (`modefront.solvers.correction`), and both steps are judged as one.
 
-.. math:: f + \lambda^T c + \tfrac\nu2 \|c\|^2, \qquad c = A J - b,
-
-which, unlike an exact penalty, does not reject good steps near the solution. Far from it,
-multipliers may be absurd: they are bounded, and a step that leaves the constraints by much more
-than the start did is shortened. A stationary point with clearly negative curvature is tried to be
-left once.
-
-Where parameters outnumber data, minima lie in valleys that bend, and a step along the valley ends
-on its slope: residuals change by :math:`\tfrac12 s^T \partial^2 r\, s`, which no step of any length
-worth making survives. A poor step of a slow solution is therefore corrected: with the derivatives
-at its end, the shortest second step brings the residuals to what the first one had predicted,
-
-.. math:: \partial r(\theta + s)\, s_2 = r(\theta) + \partial r(\theta)\, s - r(\theta + s) ,
-
-in the least-squares sense, the residuals of each objective times the root of its weight, and
-together with the constraints (a second-order correction; Nocedal & Wright, *Numerical
-Optimization*, 2006, section 15.6, where it is for constraints alone). Both steps are judged as one.
-
-Variables are :math:`u = (\theta - lower) / (upper - lower)`.
+=========  =========  ==================================================================
+symbol     shape      meaning
+=========  =========  ==================================================================
+u          (p,)       variables, :math:`(\theta - lower) / (upper - lower)`
+s          (p,)       step in u
+g          (p,)       slope of f
+c, dc      (k, p)     violations (k,) of the constraints and their slopes
+y, dy      (m, p)     functions (m,) of which the maximum counts, and their slopes
+mu, kappa  (k,) (m,)  their multipliers
+w          (n,)       weights of the objectives
+S          (n, p, p)  learned part of their second derivatives, with respect to theta
+=========  =========  ==================================================================
 """
 
 from __future__ import annotations
@@ -49,25 +48,39 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Floats
-from modefront.solvers.problem import Evaluation, Problem, Residual
-from modefront.solvers.qp import solve_qp
+from modefront.solvers.correction import Correction
+from modefront.solvers.merit import PENALTY, Merit, Multipliers, surplus
+from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.qp import QuadraticProgramme, QuadraticStep, solve_qp
 from modefront.solvers.scalarisation import Scalarisation
+from modefront.solvers.secant import learned_from
 from modefront.work.codec import record
+
+TAKEN, POOR, GOOD = 1e-4, 0.25, 0.7
+"""Actual over predicted reduction from which a step is taken, below which the next one is shorter,
+and above which it may be longer: the usual values (Nocedal & Wright, *Numerical Optimization*,
+2006, algorithm 4.1), but that any reduction is taken, as a derivative costs as much."""
+
+FULL, WHOLE = 0.9, 0.99
+"""Step over the radius above which the region has held it back: a good one is followed by a longer
+one, or it is no measure of the distance from the solution."""
+
+COLLAPSED = 1e-3
+"""Radius over the tolerance of steps, below which no step is better than the point."""
 
 SADDLE = 1e-3
 """Negative curvature, over the greatest one, above which a stationary point is left again."""
 
-PENALTY = 10.0
-"""Weight of the constraints in the augmented Lagrangian, at least."""
-
 FUNNEL = 10.0
-"""Growth of the violation of the start, up to which a step is judged; 1 is always allowed."""
+"""Growth of the violation of the start, up to which a step is judged; 1 is always allowed, the
+range of the objectives where constraints are in units of these."""
 
 STEEP = 1e6
 """Greatest multiplier of a constraint, with objective and constraints in their own units."""
 
 SWITCH = 0.5
-"""Share of the error of a prediction, below which the other model is the better one."""
+"""Share of the error of a prediction, below which the other model is the better one: with 1, the
+models would take turns near a solution, where both are right."""
 
 FREE = 1e-4
 """Gradient, over the greatest curvature, below which a bound does not hold a variable."""
@@ -76,12 +89,13 @@ PATIENCE = 30
 """Iterations in which the violation of the constraints is to be halved, from the worst of these, or
 there is no way."""
 
-CORRECTIONS, POOR, CUT = 2, 0.5, 1e-4
-"""Corrections of a step at most; share of the predicted reduction below which a step is corrected;
-least singular value, over the greatest, along which it is."""
+CORRECTIONS, FAILURES, BENT = 2, 2, 0.5
+"""Corrections of a step at most; failures of corrections one after another, after which none is
+tried; actual over predicted reduction up to which a step is corrected."""
 
 SLOW = 10
-"""Iterations after which a solution counts as slow, and its steps are corrected."""
+"""Iterations after which a solution counts as slow, and its steps are corrected: most end earlier,
+and a correction costs an evaluation."""
 
 NOISE = 1e-11
 """Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
@@ -173,219 +187,250 @@ def solve(
     options = options or Options()
     if not start.at.feasible:
         return replace(start, status=Status.INFEASIBLE, evaluations=0)
-    span = problem.upper - problem.lower
-    learned = start.learned if options.learn else np.zeros_like(start.learned)
-    state = State(start.at, learned)
-    trusted = bool(learned.any())
+    at, S = start.at, start.learned if options.learn else np.zeros_like(start.learned)
+    trusted, escaped, failed = bool(S.any()), False, 0
     radius, penalty = options.radius, PENALTY
-    multipliers: Floats | None = None
-    escaped, proposed, worst, failed = False, np.inf, np.inf, 0
-    farthest = max(1.0, FUNNEL * _length(programme.A @ start.at.J - programme.b))
+    multipliers: Multipliers | None = None
+    progress = _Progress(options, _length(programme.constraints.at(at.J)))
     for count in range(options.iterations + 1):
-        at = state.at
-        value, df, A = programme.value(at.J), programme.gradient(at.J), programme.A
-        if value == -np.inf:
-            return Solution(at, state.learned, df, 0.0, Status.UNBOUNDED, count)
-        c = A @ at.J - programme.b
-        dJ = at.dJ * span
-        g, dc = df @ dJ, A @ dJ
-        lo = np.maximum((problem.lower - at.theta) / span, -radius)
-        hi = np.minimum((problem.upper - at.theta) / span, radius)
-        most = STEEP * float(np.abs(df).max()) / float(np.abs(A).max(initial=np.finfo(float).tiny))
-        if multipliers is None:
-            multipliers = _multipliers(dc, g, lo, hi, most)
-        w = df + A.T @ multipliers
-        H = at.H + state.learned if trusted else at.H
-        B = np.tensordot(w, H, axes=1) * np.outer(span, span)
-        B += dJ.T @ programme.hessian(at.J) @ dJ
-        s = solve_qp(B, g, dc, -c, lo, hi)
-        multipliers = _multipliers(dc, g + B @ s, lo - s, hi - s, most)
-        w = df + A.T @ multipliers
-
-        if _length(s) < 0.99 * radius:
-            proposed = _length(s)
-        violation = _length(c)
-        worst = max(worst, violation)
-        if count % PATIENCE == 0:
-            if violation > max(options.constraint, 0.5 * worst) and count > 0:
-                return Solution(at, state.learned, w, violation, Status.STALLED, count)
-            worst = violation
-        still = _length(s) <= options.step or bool(abs(g @ s) <= options.reduction * abs(value))
+        local = _linearised(problem, programme, at)
+        if local.f == -np.inf:
+            return Solution(at, S, local.df, 0.0, Status.UNBOUNDED, count)
+        qp, step, multipliers = local.step(at.H + S if trusted else at.H, radius, multipliers)
+        s, w = step.s, multipliers.weights(programme, at.J)
+        violation = _length(local.c)
+        progress.proposed(_length(s), radius)
+        still = _length(s) <= options.step or local.unchanging(s, options.reduction)
         if still and violation <= options.constraint and not escaped:
-            escaped, s = True, _off_the_saddle(B, g + multipliers @ dc, dc, lo, hi)
+            escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
             still = not s.any()
-        if still and violation <= options.constraint:
-            return Solution(at, state.learned, w, violation, Status.CONVERGED, count)
-        if _length(s) <= np.finfo(float).eps or radius <= options.step * 1e-3:
-            # Steps that were not held back were below the tolerance: rounding of J stops it here.
-            there = proposed <= options.step and violation <= 10 * options.constraint
-            status = Status.CONVERGED if there else Status.STALLED
-            return Solution(at, state.learned, w, violation, status, count)
-        if count == options.iterations:
-            break
+        status = progress.outcome(count, violation, still, _length(s), radius)
+        if status or count == options.iterations:
+            return Solution(at, S, w, violation, status or Status.EXHAUSTED, count)
 
-        after = c + dc @ s
-        gain = -(g + multipliers @ dc) @ s - 0.5 * s @ B @ s
-        drop = 0.5 * (c @ c - after @ after)
-        if drop > 0:
-            penalty = max(PENALTY, 0.1 * penalty, float(-2 * gain / drop))
-        predicted = gain + penalty * drop
-        new = problem.evaluate(np.clip(at.theta + s * span, problem.lower, problem.upper))
-        if not new.feasible:
+        predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
+        new = problem.evaluate(local.end(problem, s))
+        merit = Merit(programme, multipliers, penalty)
+        correction = Correction(merit, local.tied(step.active))
+        for _ in range(CORRECTIONS if new.feasible and at.residuals and count >= SLOW else 0):
+            if failed >= FAILURES or merit.at(at) - merit.at(new) > BENT * predicted:
+                break
+            corrected = correction.evaluated(problem, at, s, new)
+            failed = 0 if corrected else failed + 1
+            if corrected is None:
+                break
+            new = corrected
+        if not new.feasible or _length(programme.constraints.at(new.J)) > progress.farthest:
             radius = _length(s) / 4
             continue
-
-        merit = _Merit(programme, multipliers, penalty)
         actual = merit.at(at) - merit.at(new)
-        rows = _Rows(programme, w, penalty, span)
-        for _ in range(CORRECTIONS):
-            if not at.residuals or count < SLOW or failed > 1 or actual > POOR * predicted:
-                break
-            theta = rows.corrected(problem, at, s, new)
-            corrected = None if theta is None else problem.evaluate(theta)
-            if corrected is None or not merit.at(corrected) < merit.at(new):
-                failed += 1
-                break
-            new, actual, failed = corrected, merit.at(at) - merit.at(corrected), 0
-        if _length(programme.A @ new.J - programme.b) > farthest:
-            radius = _length(s) / 4
-            continue
-        unsaid = 0.5 * w @ (state.learned @ (s * span) @ (s * span)) * (1 if trusted else -1)
-        if abs(actual - predicted - unsaid) < SWITCH * abs(actual - predicted):
+        rest = 0.5 * w @ (S @ (s * local.span) @ (s * local.span)) * (1 if trusted else -1)
+        if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):
             trusted = not trusted
-        noise = NOISE * (abs(value) + np.abs(multipliers) @ np.abs(programme.A @ at.J))
+        noise = local.noise(multipliers)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if options.learn:
-            state = state.learn(new)
-        if ratio > 1e-4:
-            state = replace(state, at=new)
-        if ratio < 0.25:
-            radius = _length(s) / (4 if ratio < 1e-4 else 2)
-        elif ratio > 0.7 and _length(s) > 0.9 * radius:
-            radius = min(2 * radius, 1.0)
-    return Solution(state.at, state.learned, w, violation, Status.EXHAUSTED, options.iterations)
+            S = learned_from(S, at, new)
+        if ratio > TAKEN:
+            at = new
+        radius = _next_radius(radius, _length(s), ratio)
+    raise AssertionError("the last iteration returns")
 
 
-@dataclass(frozen=True)
-class _Merit:
-    """The augmented Lagrangian."""
+@dataclass
+class _Progress:
+    """What the steps so far say of whether the solution ends; ``start`` is its first violation."""
 
-    programme: Scalarisation
-    multipliers: Floats
-    penalty: float
+    options: Options
+    start: float
+    worst: float = np.inf
+    proposal: float = np.inf
 
-    def at(self, point: Evaluation) -> float:
-        """Return its value; infinite where the objectives are not defined."""
-        if not point.feasible:
-            return np.inf
-        c = self.programme.A @ point.J - self.programme.b
-        return float(
-            self.programme.value(point.J) + self.multipliers @ c + 0.5 * self.penalty * (c @ c)
-        )
+    @property
+    def farthest(self) -> float:
+        """Violation of the constraints up to which a step is judged."""
+        return max(1.0, FUNNEL * self.start)
 
+    def proposed(self, length: float, radius: float) -> None:
+        """Remember the length of a step that the trust region does not hold back."""
+        if length < WHOLE * radius:
+            self.proposal = length
 
-@dataclass(frozen=True)
-class _Rows:
-    """The residuals of the objectives, times the roots of their weights, and the constraints."""
+    def outcome(
+        self, count: int, violation: float, still: bool, length: float, radius: float
+    ) -> Status | None:
+        """Return how the solution ends at a point; None where it goes on.
 
-    programme: Scalarisation
-    w: Floats
-    penalty: float
-    span: Floats
-
-    def corrected(
-        self, problem: Problem, at: Evaluation, s: Floats, new: Evaluation
-    ) -> Floats | None:
-        """Return parameters near a new point whose rows are as they were predicted for the step.
-
-        The correction is the shortest one, within the bounds; None where none is of any use.
+        ``still`` says whether no step is worth making, ``length`` is that of the next one.
         """
-        before, after = self._of(at), self._of(new)
-        miss = after.r - (before.r + before.dr @ s)
-        taken = (new.theta - at.theta) / self.span
-        free = (new.theta > problem.lower) & (new.theta < problem.upper)
-        free |= np.abs(s) == 0
-        step = np.zeros(s.size)
-        step[free] = np.linalg.lstsq(after.dr[:, free], -miss, rcond=CUT)[0]
-        if _length(step) > _length(taken):
+        self.worst = max(self.worst, violation)
+        if count % PATIENCE == 0:
+            if violation > max(self.options.constraint, 0.5 * self.worst) and count > 0:
+                return Status.STALLED
+            self.worst = violation
+        if still and violation <= self.options.constraint:
+            return Status.CONVERGED
+        if length > np.finfo(float).eps and radius > self.options.step * COLLAPSED:
             return None
-        return np.clip(new.theta + step * self.span, problem.lower, problem.upper)
+        # Steps that were not held back were below the tolerance: rounding of J stops it here.
+        near = self.proposal <= self.options.step and violation <= 10 * self.options.constraint
+        return Status.CONVERGED if near else Status.STALLED
 
-    def _of(self, at: Evaluation) -> Residual:
-        roots = np.sqrt(np.maximum(self.w, 0.0))
-        A, hold = self.programme.A, np.sqrt(self.penalty)
-        pairs = list(zip(roots.tolist(), at.residuals, strict=True))
-        return Residual(
-            np.concatenate([*(x * own.r for x, own in pairs), hold * (A @ at.J)]),
-            np.vstack([*(x * own.dr for x, own in pairs), hold * (A @ at.dJ)]) * self.span,
-        )
+
+@dataclass(frozen=True)
+class _Linearised:
+    """A programme at a point, in u; see the module for the symbols.
+
+    ``reach`` (2, p) are the steps to the lower and the upper bounds, ``df`` (n,) is the slope of f
+    with respect to J.
+    """
+
+    programme: Scalarisation
+    at: Evaluation
+    span: Floats
+    reach: Floats
+    df: Floats
+    g: Floats
+    c: Floats
+    dc: Floats
+    y: Floats
+    dy: Floats
+
+    @property
+    def f(self) -> float:
+        """Smooth part of what is minimised."""
+        return self.programme.value(self.at.J)
+
+    def step(
+        self, H: Floats, radius: float, multipliers: Multipliers | None
+    ) -> tuple[QuadraticProgramme, QuadraticStep, Multipliers]:
+        """Return the quadratic programme, its solution, and the multipliers there.
+
+        ``H`` (n, p, p) are second derivatives of the objectives with respect to theta. B takes the
+        ``multipliers`` of the step before; where there is none, those of the slopes at the point
+        and, of functions of which the maximum counts, those of another step.
+        """
+        dJ, span = self.at.dJ * self.span, np.outer(self.span, self.span)
+        lo, hi = np.maximum(self.reach[0], -radius), np.minimum(self.reach[1], radius)
+        curved = dJ.T @ self.programme.hessian(self.at.J) @ dJ
+        qp = QuadraticProgramme(curved, self.g, self.dc, -self.c, lo, hi, self.dy, self.y)
+        passes = 1
+        if multipliers is None:
+            multipliers, passes = self._first(qp), 2 if self.y.size else 1
+        for _ in range(passes):
+            w = multipliers.weights(self.programme, self.at.J)
+            qp = replace(qp, B=np.tensordot(w, H, axes=1) * span + curved)
+            step = solve_qp(qp)
+            multipliers = self._bounded(qp, step)
+        return qp, step, multipliers
+
+    def _first(self, qp: QuadraticProgramme) -> Multipliers:
+        """Return multipliers of the slopes at the point, and the same one of all functions."""
+        still = QuadraticStep(np.zeros_like(self.g), [])
+        mu = self._bounded(qp, still).mu
+        return Multipliers(mu, np.full(self.y.size, 1 / max(self.y.size, 1)))
+
+    def _bounded(self, qp: QuadraticProgramme, step: QuadraticStep) -> Multipliers:
+        """Return the multipliers at the end of a step.
+
+        Where the constraints hardly depend on the variables that are free, they say nothing.
+        """
+        A = self.programme.constraints.matrix
+        most = STEEP * _length(self.df) / float(np.abs(A).max(initial=np.finfo(float).tiny))
+        free = (qp.lo - step.s < 0) & (qp.hi - step.s > 0)
+        mu, kappa = qp.multipliers(step.s, step.active, free)
+        kappa = np.maximum(kappa, 0.0)
+        return Multipliers(np.clip(mu, -most, most), kappa / kappa.sum() if step.active else kappa)
+
+    def slope(self, multipliers: Multipliers) -> Floats:
+        """Return the slope of the Lagrangian, shape (p,)."""
+        return np.asarray(self.g + multipliers.mu @ self.dc + multipliers.kappa @ self.dy)
+
+    def tied(self, active: list[int]) -> Floats:
+        """Return the rows (., n) of A, and the differences of active functions from the base."""
+        A, C = self.programme.constraints.matrix, self.programme.maximised.matrix
+        return np.vstack([A, C[active[1:]] - C[active[:1]]])
+
+    def unchanging(self, s: Floats, reduction: float) -> bool:
+        """Return whether what is minimised changes by less than its share along a step."""
+        before = self.y.max() if self.y.size else 0.0
+        after = (self.y + self.dy @ s).max() if self.y.size else 0.0
+        return bool(abs(self.g @ s + (after - before)) <= reduction * abs(self.f + before))
+
+    def predicted(
+        self, B: Floats, s: Floats, multipliers: Multipliers, penalty: float
+    ) -> tuple[float, float]:
+        """Return the reduction of the augmented Lagrangian by a step, and the penalty in it.
+
+        That is as great as makes the reduction positive; it falls slowly.
+        """
+        c, y = self.c + self.dc @ s, self.y + self.dy @ s
+        kappa = multipliers.kappa
+        gain = -self.slope(multipliers) @ s - 0.5 * s @ B @ s
+        squares = 0.5 * (self.c @ self.c - c @ c)
+        drop = squares + (surplus(self.y, kappa, penalty) - surplus(y, kappa, penalty)) / penalty
+        if drop > 0:
+            penalty = max(PENALTY, 0.1 * penalty, float(-2 * gain / drop))
+        above = surplus(self.y, kappa, penalty) - surplus(y, kappa, penalty)
+        return float(gain + penalty * squares + above), penalty
+
+    def end(self, problem: Problem, s: Floats) -> Floats:
+        """Return the parameters at the end of a step."""
+        return np.clip(self.at.theta + s * self.span, problem.lower, problem.upper)
+
+    def noise(self, multipliers: Multipliers) -> float:
+        """Return the change of the augmented Lagrangian that may be rounding."""
+        A, C = self.programme.constraints.matrix, self.programme.maximised.matrix
+        rows = np.abs(multipliers.mu) @ np.abs(A @ self.at.J)
+        rows += multipliers.kappa @ np.abs(C @ self.at.J)
+        return float(NOISE * (abs(self.f) + rows))
+
+
+def _linearised(problem: Problem, programme: Scalarisation, at: Evaluation) -> _Linearised:
+    span = problem.upper - problem.lower
+    reach = np.array([problem.lower - at.theta, problem.upper - at.theta]) / span
+    df, dJ = programme.gradient(at.J), at.dJ * span
+    constraints, maximised = programme.constraints, programme.maximised
+    c, dc = constraints.at(at.J), constraints.matrix @ dJ
+    y, dy = maximised.at(at.J), maximised.matrix @ dJ
+    return _Linearised(programme, at, span, reach, df, df @ dJ, c, dc, y, dy)
 
 
 def _length(s: Floats) -> float:
     return float(np.max(np.abs(s), initial=0.0))
 
 
-def _off_the_saddle(B: Floats, g: Floats, dc: Floats, lo: Floats, hi: Floats) -> Floats:
+def _next_radius(radius: float, length: float, ratio: float) -> float:
+    """Return the radius after a step of this length, actual over predicted reduction."""
+    if ratio < POOR:
+        return length / (4 if ratio < TAKEN else 2)
+    return min(2 * radius, 1.0) if ratio > GOOD and length > FULL * radius else radius
+
+
+def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) -> Floats:
     """Return a step along clearly negative curvature within the constraints, or zeros.
 
-    ``g`` is the gradient of the Lagrangian: a variable at a bound that it does not hold there is
-    as free as those within.
+    ``slope`` is that of the Lagrangian: a variable at a bound that it does not hold there is as
+    free as those within.
     """
-    s = np.zeros(g.size)
-    flat = np.abs(g) <= FREE * np.abs(B).max()
+    lo, hi, E = qp.lo, qp.hi, qp.ties(active)
+    s = np.zeros(slope.size)
+    flat = np.abs(slope) <= FREE * np.abs(qp.B).max()
     free = ((lo < 0) & (hi > 0)) | (flat & (lo < hi))
-    Z = scipy.linalg.null_space(dc[:, free]) if dc.size else np.eye(int(free.sum()))
+    Z = scipy.linalg.null_space(E[:, free]) if E.size else np.eye(int(free.sum()))
     if Z.shape[1] == 0:
         return s
-    curvature, V = np.linalg.eigh(Z.T @ B[np.ix_(free, free)] @ Z)
+    curvature, V = np.linalg.eigh(Z.T @ qp.B[np.ix_(free, free)] @ Z)
     if curvature[0] < -SADDLE * np.abs(curvature).max():
         v = Z @ V[:, 0]
         v[np.abs(v) < FREE] = 0.0
-        v *= -1.0 if g[free] @ v > 0 else 1.0
-        there, back = (
-            way * np.min(room[way != 0] / way[way != 0])
-            for way, room in _ways(v, lo[free], hi[free])
-        )
-        s[free] = 0.5 * (there if there.any() else back)
+        v *= -1.0 if slope[free] @ v > 0 else 1.0
+        ahead, behind = _longest(v, lo[free], hi[free]), _longest(-v, lo[free], hi[free])
+        s[free] = 0.5 * (ahead if ahead.any() else behind)
     return s
 
 
-def _ways(v: Floats, lo: Floats, hi: Floats) -> list[tuple[Floats, Floats]]:
-    """Return a direction and its opposite, each with the room that the box leaves it."""
-    return [(way, np.where(way > 0, hi, lo)) for way in (v, -v)]
-
-
-@dataclass(frozen=True)
-class State:
-    """The point reached and what has been learned of the second derivatives (n, p, p)."""
-
-    at: Evaluation
-    learned: Floats
-
-    def learn(self, new: Evaluation) -> State:
-        """Return the state with what an evaluation tells of the second derivatives.
-
-        What was known is sized before it is corrected, by s^T y / s^T S s where that is below 1,
-        so that it vanishes with the residuals.
-        """
-        s = new.theta - self.at.theta
-        unknown = new.dJ - self.at.dJ - new.H @ s
-        claimed = np.abs(self.learned @ s @ s)
-        size = np.minimum(np.abs(unknown @ s), claimed) / np.where(claimed > 0, claimed, 1.0)
-        known = size[:, None, None] * self.learned
-        v = unknown - known @ s
-        along = v @ s
-        sure = np.abs(along) > 1e-6 * np.linalg.norm(v, axis=1) * np.linalg.norm(s)
-        scale = np.where(sure, 1 / np.where(sure, along, 1.0), 0.0)
-        learned = known + scale[:, None, None] * v[:, :, None] * v[:, None, :]
-        return State(self.at, learned)
-
-
-def _multipliers(dc: Floats, g: Floats, lo: Floats, hi: Floats, most: float) -> Floats:
-    """Return the multipliers for which g + dc^T lambda is least on the variables within bounds.
-
-    Where the constraints hardly depend on those, they say nothing, and ``most`` bounds them.
-    """
-    free = (lo < 0) & (hi > 0)
-    found = np.linalg.lstsq(dc[:, free].T, -g[free], rcond=None)[0]
-    return np.asarray(np.clip(found, -most, most))
+def _longest(v: Floats, lo: Floats, hi: Floats) -> Floats:
+    """Return the longest step along a direction within the box."""
+    bound, moving = np.where(v > 0, hi, lo), v != 0
+    return np.asarray(v * np.min(bound[moving] / v[moving]))

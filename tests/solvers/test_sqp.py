@@ -1,0 +1,220 @@
+"""The parts of sequential quadratic programming, and programmes with a maximum."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import scipy.optimize
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from problems import Derivatives, Known, bowls, box, curved, sphere
+
+from modefront._typing import Floats
+from modefront.solvers.correction import Correction
+from modefront.solvers.merit import Merit, Multipliers, projected, surplus
+from modefront.solvers.problem import Evaluation, Residual
+from modefront.solvers.scalarisation import Achievement, Scalarisation, level, weighted
+from modefront.solvers.secant import learned_from
+from modefront.solvers.sqp import Options, Status, begin, solve
+
+SEEDS = st.integers(0, 2**31)
+NONE = Multipliers(np.zeros(0), np.zeros(0))
+
+
+# ---- merit -----------------------------------------------------------------------------------
+
+
+@given(SEEDS, st.integers(1, 6))
+def test_the_projection_is_the_nearest_point_of_the_simplex(seed: int, m: int) -> None:
+    rng = np.random.default_rng(seed)
+    x = 2 * rng.normal(size=m)
+    nearest = projected(x)
+    assert (nearest >= 0).all()
+    assert nearest.sum() == pytest.approx(1)
+    # The angle to every corner is obtuse.
+    assert ((np.eye(m) - nearest) @ (x - nearest)).max() <= 1e-12
+
+
+@given(SEEDS, st.integers(1, 5), st.floats(0.1, 1e4))
+def test_the_augmented_maximum_is_that_of_rockafellar(seed: int, m: int, nu: float) -> None:
+    rng = np.random.default_rng(seed)
+    y, kappa = rng.normal(size=m), projected(rng.normal(size=m))
+
+    def above(tau: float) -> float:
+        return tau + float((np.maximum(0, kappa + nu * (y - tau)) ** 2 - kappa**2).sum()) / 2 / nu
+
+    bracket = (y.min() - 2 / nu, y.max() + 2 / nu)
+    least = scipy.optimize.minimize_scalar(above, bounds=bracket, options={"xatol": 1e-12}).fun
+    value = kappa @ y + surplus(y, kappa, nu)
+    assert value == pytest.approx(least, abs=1e-6 / nu + 1e-9)
+    assert y.max() - 1 / nu - 1e-12 <= value <= y.max() + 1e-12
+
+
+@given(SEEDS, st.floats(0.1, 1e3))
+def test_equal_functions_have_no_surplus(seed: int, nu: float) -> None:
+    kappa = projected(np.random.default_rng(seed).normal(size=4))
+    assert surplus(np.full(4, 0.7), kappa, nu) == pytest.approx(0, abs=1e-12)
+
+
+def test_an_undefined_point_is_worse_than_any_other() -> None:
+    nowhere = Evaluation(np.zeros(1), np.array([np.inf]), np.zeros((1, 1)), np.zeros((1, 1, 1)))
+    assert Merit(weighted(np.ones(1)), NONE, 10.0).at(nowhere) == np.inf
+
+
+# ---- learned second derivatives --------------------------------------------------------------
+
+
+@given(SEEDS, st.integers(1, 4), st.integers(1, 3))
+def test_second_derivatives_of_quadratic_objectives_are_learned(seed: int, p: int, n: int) -> None:
+    """After p steps along different directions, S is the part that is not known."""
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(n, p, p))
+    full = np.einsum("ijk,ilk->ijl", root, root) + np.eye(p)
+    assume(np.linalg.cond(full).max() < 1e3)
+
+    def evaluation(theta: Floats) -> Evaluation:
+        return Evaluation(theta, np.zeros(n), full @ theta, np.zeros((n, p, p)))
+
+    S, at = np.zeros((n, p, p)), evaluation(rng.normal(size=p))
+    for step in np.linalg.qr(rng.normal(size=(p, p)))[0]:
+        new = evaluation(at.theta + step)
+        S, at = learned_from(S, at, new), new
+        assert S @ step == pytest.approx(full @ step), "the last step is reproduced"
+        assert S == pytest.approx(S.transpose(0, 2, 1))
+
+
+# ---- second-order correction -----------------------------------------------------------------
+
+
+def test_a_correction_leads_back_into_a_bent_valley() -> None:
+    """Of y - x**2 = 0 from the origin along x: the step ends beside it, the correction on it."""
+
+    def valley(theta: Floats) -> Evaluation:
+        x, y = theta
+        r = Residual(np.array([y - x**2]), np.array([[-2 * x, 1.0]]))
+        J, dJ = np.array([r.r @ r.r]), 2 * (r.r @ r.dr)[None]
+        return Evaluation(theta, J, dJ, 2 * (r.dr.T @ r.dr)[None], residuals=[r])
+
+    class Valley(Known):
+        def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
+            del derivatives
+            return valley(theta)
+
+    problem = Valley(curved, -np.ones(2), np.ones(2), np.zeros(2), ("J1",))
+    correction = Correction(Merit(weighted(np.ones(1)), NONE, 10.0), np.zeros((0, 1)))
+    at, s = valley(np.zeros(2)), np.array([0.1, 0.0])
+    new = valley(np.array([0.2, 0.0]))
+    corrected = correction.evaluated(problem, at, s, new)
+    assert corrected is not None
+    assert corrected.J[0] < 0.1 * new.J[0]
+    # No longer than the step itself, and never for the worse.
+    tiny = valley(np.array([1e-3, 0.5]))
+    assert correction.corrected(problem, at, np.array([5e-4, 0.0]), tiny) is not None
+    assert correction.evaluated(problem, at, np.zeros(2), valley(np.zeros(2))) is None
+
+
+# ---- programmes with a maximum ---------------------------------------------------------------
+
+
+def minimax(problem: Known, programme: Scalarisation) -> float:
+    """Return the least f + max that SLSQP finds from many starts."""
+    rng, best = np.random.default_rng(0), np.inf
+    p, rows = problem.lower.size, programme.maximised
+
+    def J(theta: Floats) -> Floats:
+        return problem.function(np.clip(theta, problem.lower, problem.upper))[0]
+
+    for _ in range(12):
+        theta = rng.uniform(problem.lower, problem.upper)
+        found = scipy.optimize.minimize(
+            lambda x: programme.value(J(x[:p])) + x[p],
+            np.append(theta, rows.at(J(theta)).max()),
+            method="SLSQP",
+            bounds=[*zip(problem.lower, problem.upper, strict=True), (None, None)],
+            constraints={"type": "ineq", "fun": lambda x: x[p] - rows.at(J(x[:p]))},
+            options={"ftol": 1e-13, "maxiter": 300},
+        )
+        reached = J(found.x[:p])
+        best = min(best, programme.value(reached) + rows.at(reached).max())
+    return best
+
+
+@pytest.mark.parametrize(
+    ("function", "lower", "upper"),
+    [
+        (bowls, [-2.0, -2.0], [2.0, 2.0]),
+        (bowls, [0.1, -2.0], [2.0, 0.3]),
+        (sphere, [0.0, 0.0, 0.0], [1.0, 1.0, 1.0]),
+    ],
+)
+@pytest.mark.parametrize("seed", range(6))
+def test_the_least_maximum_is_that_of_an_independent_solver(
+    function: Callable[[Floats], Derivatives], lower: list[float], upper: list[float], seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    problem = box(function, lower, upper, 3)
+    point = rng.dirichlet(np.ones(3)) - 0.2
+    programme = Achievement(np.full(3, 1e-3), np.diag(rng.uniform(0.5, 2, 3)), point)
+    starts = rng.uniform(problem.lower, problem.upper, (12, len(lower)))
+    found = [solve(problem, programme, begin(problem.evaluate(theta))) for theta in starts]
+    assert all(one.converged for one in found)
+    assert max(one.evaluations for one in found) <= 40
+    values = [programme.value(one.at.J) + programme.maximised.at(one.at.J).max() for one in found]
+    assert min(values) == pytest.approx(minimax(problem, programme), abs=1e-6)
+    # The weights are those of a stationary Lagrangian: no parameter within its bounds gains.
+    for one in found:
+        slope = one.weights @ one.at.dJ
+        inside = (one.at.theta > problem.lower + 1e-6) & (one.at.theta < problem.upper - 1e-6)
+        assert slope[inside] == pytest.approx(0, abs=1e-4)
+        assert (one.weights > 0).all()
+
+
+def test_a_maximum_is_found_within_constraints_too() -> None:
+    """The least of the greater of J2 and J3, at J1 = 0.3: on the diagonal of the triangle."""
+
+    class Both:
+        """A maximum with a constraint."""
+
+        constraints = level(1, 0, 0.3, np.ones(3)).constraints
+        maximised = Achievement(np.zeros(3), np.eye(3)[1:], np.zeros(2)).maximised
+
+        def value(self, J: Floats) -> float:
+            return 0.0 * float(J.sum())
+
+        def gradient(self, J: Floats) -> Floats:
+            return np.zeros(J.size)
+
+        def hessian(self, J: Floats) -> Floats:
+            return np.zeros((J.size, J.size))
+
+    problem = box(bowls, [-2.0, -2.0], [2.0, 2.0], 3)
+    start = begin(problem.evaluate(np.array([0.2, -0.4])))
+    found = solve(problem, Both(), start)
+    assert found.converged
+    assert found.at.theta == pytest.approx(np.full(2, np.sqrt(0.15)), abs=1e-6)
+
+
+def test_a_point_between_equal_functions_is_no_minimum_where_the_curvature_is_negative() -> None:
+    """Max of x - y**2 and -x - y**2: from x = y = 0, y leads on to its bounds."""
+
+    def ridge(theta: Floats) -> Derivatives:
+        x, y = theta
+        J = np.array([x - y**2, -x - y**2])
+        H = np.zeros((2, 2, 2))
+        H[:, 1, 1] = -2.0
+        return J, np.array([[1.0, -2 * y], [-1.0, -2 * y]]), H
+
+    problem = box(ridge, [-1.0, -1.0], [1.0, 1.0])
+    programme = Achievement(np.zeros(2), np.eye(2), np.zeros(2))
+    found = solve(problem, programme, begin(problem.evaluate(np.zeros(2))))
+    assert found.status is Status.CONVERGED
+    assert np.abs(found.at.theta) == pytest.approx([0.0, 1.0], abs=1e-6)
+    assert found.at.J.max() == pytest.approx(-1.0, abs=1e-6)
+
+
+def test_a_maximum_without_learned_second_derivatives() -> None:
+    problem = box(bowls, [-2.0, -2.0], [2.0, 2.0], 3)
+    programme = Achievement(np.zeros(3), np.eye(3), np.zeros(3))
+    found = solve(problem, programme, begin(problem.evaluate(-np.ones(2))), Options(learn=False))
+    assert found.converged
+    assert found.at.theta == pytest.approx([0.5, 0.5], abs=1e-6), "the centre of the circle"
