@@ -29,8 +29,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Complexes, Floats
+from modefront.data.responses import frequency_responses
 from modefront.identification.identify import Identification, identify
-from modefront.identification.responses import frequency_responses
 
 F = np.arange(0.05, 30.05, 0.05)
 BLOWS = 5

@@ -20,7 +20,7 @@ from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 import numpy as np
 
 from modefront.errors import Fault, refuse
-from modefront.study.reader import describe, is_name, is_number, repeated
+from modefront.toml import describe, is_name, is_number, repeated
 
 
 @dataclass(frozen=True)

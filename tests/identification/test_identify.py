@@ -5,8 +5,8 @@ import pytest
 from simulation import THREE_STORY, THREE_STORY_DAMPING, accelerance, blows, three_story_shapes
 
 from modefront._typing import Floats
+from modefront.data.responses import frequency_responses
 from modefront.identification.identify import identify
-from modefront.identification.responses import frequency_responses
 
 F = np.arange(0.1, 30.05, 0.1)
 

@@ -5,6 +5,7 @@ import pytest
 from simulation import THREE_STORY, THREE_STORY_DAMPING, accelerance, circular, three_story_shapes
 
 from modefront._typing import Complexes, Ints
+from modefront.data.responses import frequency_responses
 from modefront.identification.lscf import ARC, generalised_frequency, moments, poles
 from modefront.identification.modal_model import (
     Problem,
@@ -17,7 +18,6 @@ from modefront.identification.modal_model import (
     problem,
     synthesise,
 )
-from modefront.identification.responses import frequency_responses
 
 
 def _task(level: float = 0.01, terms: int = 1) -> tuple[Problem, float, float]:

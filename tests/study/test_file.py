@@ -9,13 +9,13 @@ import pytest
 import scipy.io
 import scipy.sparse
 
+from modefront.fronts.given import Weighted
+from modefront.fronts.options import Pareto
 from modefront.models.chain import chain
 from modefront.models.files import read_matrix
 from modefront.pairing.match import Pairing
 from modefront.residuals.groups import Group
 from modefront.solvers.explore import LIMIT, Search
-from modefront.fronts.given import Weighted
-from modefront.fronts.options import Pareto
 from modefront.study.definition import Study
 from modefront.study.file import load
 

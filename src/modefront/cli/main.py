@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING
 
 import click
 
-from modefront import __version__
+from modefront._version import __version__
 from modefront.errors import InputError, UnfinishedError
 
 if TYPE_CHECKING:

@@ -12,8 +12,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Bools, Complexes, Floats
+from modefront.data.responses import FrequencyResponses, frequency_responses
 from modefront.errors import Fault, InputError
-from modefront.identification.responses import FrequencyResponses, frequency_responses
 
 SAME_LINES = 1e-6
 """Relative difference within which two lines of a frequency axis are the same."""

@@ -12,10 +12,10 @@ from pathlib import Path
 
 from modefront.data.channels import Assembled, Channel, assemble
 from modefront.data.frf_csv import read_frf_csv
+from modefront.data.responses import ORDERS
 from modefront.data.uff import read_uff
 from modefront.errors import Fault, InputError, suggestion
-from modefront.identification.responses import ORDERS
-from modefront.study.reader import Table, is_name, repeated
+from modefront.toml import Table, is_name, repeated
 
 UFF_ENDINGS = (".uff", ".unv", ".uf", ".bunv", ".ufb")
 MOST_MODES = 200

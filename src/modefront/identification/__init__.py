@@ -3,7 +3,7 @@
 =====================  ================================================================
 step                   module
 =====================  ================================================================
-functions as arrays    `responses`; from impacts in time: `impact`
+functions as arrays    `modefront.data.responses`; from impacts in time: `impact`
 variance of the data   `noise`
 poles of all orders    `lscf`
 clusters of poles      `stabilisation`

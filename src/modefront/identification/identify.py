@@ -16,10 +16,10 @@ from typing import Literal
 import numpy as np
 
 from modefront._typing import Complexes, Floats, Ints
+from modefront.data.responses import ORDERS, FrequencyResponses
 from modefront.identification import lscf, modal_model, selection
 from modefront.identification.modal_model import Fit, Problem
 from modefront.identification.noise import fitted_variance, variance_from_differences
-from modefront.identification.responses import ORDERS, FrequencyResponses
 from modefront.identification.stabilisation import (
     MOST_DAMPING,
     Cluster,

@@ -27,7 +27,7 @@ import numpy as np
 import scipy.fft
 
 from modefront._typing import Complexes, Floats
-from modefront.identification.responses import FrequencyResponses, frequency_responses
+from modefront.data.responses import FrequencyResponses, frequency_responses
 
 Estimator = Literal["H1", "H2", "Hv"]
 

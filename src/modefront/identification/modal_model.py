@@ -66,7 +66,7 @@ import numpy as np
 import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats, Ints
-from modefront.identification.responses import ORDERS, FrequencyResponses
+from modefront.data.responses import ORDERS, FrequencyResponses
 
 RESIDUALS: tuple[tuple[int, ...], ...] = ((), (-2, 0), (-3, -2, 0, 1), (-4, -3, -2, 0, 1, 2))
 """Powers of s of the residual terms, by the number of terms on either side."""

@@ -26,7 +26,7 @@ import numpy as np
 from scipy.ndimage import median_filter
 
 from modefront._typing import Complexes, Floats
-from modefront.identification.responses import FrequencyResponses
+from modefront.data.responses import FrequencyResponses
 
 DIFFERENCE = np.array([1.0, -4.0, 6.0, -4.0, 1.0])
 

@@ -23,7 +23,6 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.explore import Search
 from modefront.study.definition import Origin, Study, undrawn
 from modefront.study.labels import labels_of
-from modefront.study.reader import Table
 from modefront.study.tables.data import read_data
 from modefront.study.tables.groups import read_groups
 from modefront.study.tables.model import read_model
@@ -31,6 +30,7 @@ from modefront.study.tables.options import note, read_options
 from modefront.study.tables.parameters import read_parameters
 from modefront.study.tables.predict import complete, read_predictions
 from modefront.study.tables.weighted import read_weights
+from modefront.toml import Table
 from modefront.uncertainty.options import Uncertainty
 
 

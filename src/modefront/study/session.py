@@ -10,8 +10,8 @@ from typing import TYPE_CHECKING, Unpack
 
 from threadpoolctl import threadpool_limits
 
-import modefront
 from modefront._typing import Floats
+from modefront._version import __version__
 from modefront.analysis.certified import (
     certificate_attributes,
     certified_front,
@@ -105,7 +105,7 @@ def run(
 
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
-    tasks = folder / FOLDER / f"{study.work[:12]}-{modefront.__version__}"
+    tasks = folder / FOLDER / f"{study.work[:12]}-{__version__}"
     try:
         tasks.mkdir(parents=True, exist_ok=True)
         if fresh or not study.work:
@@ -189,7 +189,7 @@ class _Session:
         predictions = self.work.total(lambda stage: stage == "predict")
         refined = self.study.pareto.refined
         out: dict[str, str | int | float] = {
-            "version": modefront.__version__,
+            "version": __version__,
             "seed": self.study.seed,
             "model_evaluations": total.model_evaluations,
             "method": front.method,

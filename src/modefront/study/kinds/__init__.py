@@ -9,7 +9,7 @@ from modefront.models.base import Model
 from modefront.study.kinds.chain import read_chain
 from modefront.study.kinds.matrices import read_matrices
 from modefront.study.kinds.mesh import read_mesh_model
-from modefront.study.reader import Table
+from modefront.toml import Table
 
 Reader = Callable[[Table, Sequence[str], Path], Model | None]
 

@@ -9,7 +9,7 @@ from modefront.errors import suggestion
 from modefront.models.base import Model
 from modefront.models.chain import chain
 from modefront.study.kinds.sensors import read_outputs, read_sensors
-from modefront.study.reader import Table
+from modefront.toml import Table
 
 
 def read_chain(table: Table, parameters: Sequence[str], _: Path) -> Model | None:

@@ -13,7 +13,7 @@ from modefront.models.base import Model
 from modefront.models.files import read_matrix
 from modefront.models.matrices import BASE, matrices
 from modefront.study.kinds.sensors import read_base, read_outputs, read_sensors
-from modefront.study.reader import Table
+from modefront.toml import Table
 
 
 def read_matrices(table: Table, parameters: Sequence[str], folder: Path) -> Model | None:

@@ -14,7 +14,7 @@ from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Quantity
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
-from modefront.study.reader import Table, is_number
+from modefront.toml import Table, is_number
 
 _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
     "rectangle": (fem.rectangle, ("b_y", "b_z")),

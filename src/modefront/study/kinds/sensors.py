@@ -7,7 +7,7 @@ from typing import Any
 
 from modefront.data.csv import is_reserved
 from modefront.models.matrices import SensorSpec
-from modefront.study.reader import Table, describe, is_name, is_number
+from modefront.toml import Table, describe, is_name, is_number
 
 
 def read_sensors(

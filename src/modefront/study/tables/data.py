@@ -8,7 +8,7 @@ from modefront.data.csv import read_csv
 from modefront.data.modal import ModalData
 from modefront.errors import InputError
 from modefront.models.base import Model
-from modefront.study.reader import Table
+from modefront.toml import Table
 
 
 def read_data(root: Table, model: Model | None, folder: Path) -> tuple[ModalData | None, str]:

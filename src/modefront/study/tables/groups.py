@@ -9,7 +9,7 @@ from modefront.data.modal import ModalData
 from modefront.residuals.base import Scale
 from modefront.residuals.groups import MODE_NUMBERS, Group, are_mode_numbers, faults
 from modefront.residuals.kinds import KINDS
-from modefront.study.reader import Table, has_name, repeated
+from modefront.toml import Table, has_name, repeated
 
 
 def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:

@@ -8,8 +8,8 @@ from pathlib import Path
 from modefront.models.base import Model
 from modefront.models.reduced.options import Reduction
 from modefront.study.kinds import KINDS
-from modefront.study.reader import Table
 from modefront.study.tables.reduction import read_reduction
+from modefront.toml import Table
 
 
 def read_model(

@@ -8,7 +8,7 @@ from typing import Any, TypeVar
 
 from modefront.errors import Fault, InputError
 from modefront.options import options
-from modefront.study.reader import Table
+from modefront.toml import Table
 
 T = TypeVar("T")
 

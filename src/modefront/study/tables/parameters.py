@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from modefront.models.parameters import Parameter
 from modefront.options import each_once
-from modefront.study.reader import Table, has_name
 from modefront.study.tables.options import note, read_record
+from modefront.toml import Table, has_name
 
 
 def read_parameters(root: Table) -> tuple[list[str], tuple[Parameter, ...]]:

@@ -26,7 +26,7 @@ from modefront.reliability import METHODS, KanaiTajimi, Sided, WhiteNoise
 from modefront.reliability.problem import LARGEST_ANGLE
 from modefront.residuals.problem import UpdatingProblem
 from modefront.response import ModalSystem, Quantity
-from modefront.study.reader import Table, has_name, is_name, is_number, repeated
+from modefront.toml import Table, has_name, is_name, is_number, repeated
 
 ABOVE = 1.1
 """Upper end of the band that is taken where none is given, over the highest measured frequency."""

@@ -7,8 +7,8 @@ from typing import Any
 
 from modefront.models.reduced.options import Reduction
 from modefront.options import options
-from modefront.study.reader import Table
 from modefront.study.tables.options import note
+from modefront.toml import Table
 
 UNREDUCED = ("chain",)
 """Kinds of models that are too small for it, and have no such key."""

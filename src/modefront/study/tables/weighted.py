@@ -6,8 +6,8 @@ from collections.abc import Container, Sequence
 
 from modefront.fronts.given import Weighted, label_faults
 from modefront.options import each_once
-from modefront.study.reader import Table, has_name
 from modefront.study.tables.options import note, read_record
+from modefront.toml import Table, has_name
 
 
 def read_weights(

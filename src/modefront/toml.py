@@ -1,4 +1,4 @@
-"""Typed access to the tables of a study file that collects everything that is wrong."""
+"""Typed access to the tables of a TOML file that collects everything that is wrong."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from typing import Any
 from modefront.errors import Fault, suggestion
 
 LARGEST = 1e100
-"""Greatest number that a study file may hold."""
+"""Greatest number that a file may hold."""
 
 SHORT = 6
 """Longest list that a message shows item by item."""

@@ -1,0 +1,80 @@
+"""Imports point one way: from the command line through the study to the mathematics."""
+
+from __future__ import annotations
+
+import ast
+from collections.abc import Iterator
+from graphlib import TopologicalSorter
+from pathlib import Path
+
+import pytest
+
+import modefront
+
+LAYERS = (
+    ("_typing", "_version", "errors"),
+    ("toml", "linalg", "response", "work"),
+    ("options",),
+    ("data", "fem", "modes", "reliability", "solvers"),
+    ("fronts", "identification", "pairing"),
+    ("models",),
+    ("residuals",),
+    ("identifiability", "uncertainty", "predict"),
+    ("analysis",),
+    ("study",),
+    ("cli",),
+    ("__init__", "__main__"),
+)
+"""Parts of the package, the lowest first: a part imports from those of lower layers, and itself."""
+
+SOURCE = Path(modefront.__file__).parent
+
+
+def part(name: str) -> int:
+    """Return the layer of a part of the package."""
+    found = [i for i, names in enumerate(LAYERS) if name in names]
+    assert len(found) == 1, f"{name}: expected in one layer, found in {len(found)}"
+    return found[0]
+
+
+def imported(file: Path) -> Iterator[str]:
+    """Yield the parts of the package that a file imports, wherever in it."""
+    for node in ast.walk(ast.parse(file.read_text(encoding="utf-8"))):
+        names: list[str] = []
+        if isinstance(node, ast.ImportFrom):
+            assert node.level == 0, f"{file}: expected absolute imports, found a relative one"
+            root = node.module or ""
+            names = [f"{root}.{one.name}" for one in node.names] if root == "modefront" else [root]
+        elif isinstance(node, ast.Import):
+            names = [one.name for one in node.names]
+        for name in names:
+            package, _, rest = name.partition(".")
+            if package == "modefront":
+                yield rest.partition(".")[0] or "__init__"
+
+
+FILES = sorted(SOURCE.rglob("*.py"))
+
+
+@pytest.mark.parametrize("file", FILES, ids=[str(file.relative_to(SOURCE)) for file in FILES])
+def test_no_part_imports_from_one_beside_or_above_it(file: Path) -> None:
+    own = file.relative_to(SOURCE).parts[0].removesuffix(".py")
+    for name in imported(file):
+        assert name == own or part(name) < part(own), f"{own} imports {name}"
+
+
+def test_no_modules_import_each_other() -> None:
+    names = {
+        ".".join(["modefront", *file.relative_to(SOURCE).with_suffix("").parts]).removesuffix(
+            ".__init__"
+        ): file
+        for file in FILES
+    }
+    graph: dict[str, set[str]] = {name: set() for name in names}
+    for name, file in names.items():
+        for node in ast.parse(file.read_text(encoding="utf-8")).body:
+            if isinstance(node, ast.ImportFrom):
+                root = node.module or ""
+                inner = {f"{root}.{one.name}" for one in node.names}
+                graph[name] |= {one if one in names else root for one in inner} & set(names)
+    list(TopologicalSorter(graph).static_order())  # raises CycleError
