@@ -33,7 +33,7 @@ from pymoo.optimize import minimize
 from modefront._typing import Floats
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.indicators import REFERENCE, hypervolume
-from modefront.solvers.problem import Evaluation
+from modefront.solvers.problem import Evaluation, ObjectiveDerivatives
 
 Derivatives = tuple[Floats, Floats, Floats]
 
@@ -72,7 +72,7 @@ class Case:
         """Return the objectives, and their derivatives if wanted."""
         self.counter["evaluations"] += 1
         J, dJ, H = self.function(theta)
-        return Evaluation(theta, J, dJ, H) if derivatives else Evaluation(theta, J, 0 * dJ, 0 * H)
+        return Evaluation(theta, J, ObjectiveDerivatives(dJ, H) if derivatives else None)
 
     def on_branch(self, branch: tuple[int, ...]) -> Case:
         """Return the problem itself: where its objectives jump is not told."""

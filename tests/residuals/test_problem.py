@@ -157,6 +157,22 @@ def test_each_evaluation_is_counted_once() -> None:
     assert problem.counts == expected
 
 
+def test_an_evaluation_without_derivatives_has_none() -> None:
+    problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
+    for found in (
+        problem.evaluate(problem.start, derivatives=False),
+        problem.evaluate(np.array([1.0, -5.0, 1.0, 1.0])),
+    ):
+        assert found.derivatives is None
+        assert not found.residuals
+        for name in ("dJ", "H"):
+            with pytest.raises(ValueError, match="with derivatives, found one without"):
+                getattr(found, name)
+    assert found.J.tolist() == [np.inf, np.inf]
+    J = problem.evaluate(problem.start, derivatives=False).J
+    assert J.tolist() == problem.evaluate(problem.start).J.tolist()
+
+
 def test_a_model_without_modes_is_infeasible_not_an_error() -> None:
     problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
     found = problem.evaluate(np.array([1.0, -5.0, 1.0, 1.0]))

@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.problem import Evaluation, infeasible
+from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, infeasible
 
 Derivatives = tuple[Floats, Floats, Floats]
 
@@ -35,7 +35,7 @@ class Known:
         J, dJ, H = self.function(theta)
         if not np.isfinite(J).all():
             return infeasible(theta, len(self.objectives))
-        return Evaluation(theta, J, dJ, H) if derivatives else Evaluation(theta, J, 0 * dJ, 0 * H)
+        return Evaluation(theta, J, ObjectiveDerivatives(dJ, H) if derivatives else None)
 
     def on_branch(self, branch: tuple[int, ...]) -> Known:
         return self

@@ -10,7 +10,7 @@ import pytest
 
 from modefront._typing import Floats
 from modefront.solvers.explore import Descent, Search, explore
-from modefront.solvers.problem import Evaluation
+from modefront.solvers.problem import Evaluation, ObjectiveDerivatives
 from modefront.solvers.scalarisation import weighted
 
 BAND = (0.3, 0.7)
@@ -39,7 +39,9 @@ class Switching:
         c, centre, floor = ((1.0, 0.8, 0.0), (2.0, 0.4, 0.05))[piece]
         J, dJ = c * (x - centre) ** 2 + floor, 2 * c * (x - centre)
         H = np.full((1, 1, 1), 2 * c)
-        return Evaluation(theta, np.array([J]), np.array([[dJ]]), H, branch=(piece,))
+        return Evaluation(
+            theta, np.array([J]), ObjectiveDerivatives(np.array([[dJ]]), H), branch=(piece,)
+        )
 
     def on_branch(self, branch: tuple[int, ...]) -> Switching:
         return replace(self, piece=branch[0]) if self.follows else self

@@ -189,6 +189,18 @@ def test_the_evolution_strategy_finds_a_basin() -> None:
     assert np.abs(theta).max() < 0.5
 
 
+def test_a_start_without_derivatives_is_not_taken_for_a_minimum() -> None:
+    """Such as a point of an evolutionary method: its gradient is not known, which is not zero."""
+    problem = box(many_minima, [-4, -4], [4, 4])
+    start = begin(problem.evaluate(np.array([0.6, 1.6]), derivatives=False))
+    search = Search(starts=0, limit=0, evolutions=0)
+    descent = Descent(weighted(np.array([1.0, 0.0])))
+    found = explore(problem, descent, np.random.default_rng(0), search, starts=[start])
+    places = [np.round(one.at.theta, 3).tolist() for one in found]
+    assert [1.0, 2.0] in places
+    assert [0.6, 1.6] not in places
+
+
 def test_the_evolution_strategy_is_left_to_rugged_objectives() -> None:
     def cost(limit: int, evolutions: int) -> int:
         problem = box(many_minima, [-4, -4], [4, 4])

@@ -20,7 +20,7 @@ from modefront.solvers.explore import Search
 from modefront.solvers.flat import Identifiable
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.pieces import Gap
-from modefront.solvers.problem import Evaluation
+from modefront.solvers.problem import Evaluation, ObjectiveDerivatives
 from modefront.solvers.sqp import Solution, Status, begin
 from modefront.study import knowledge, run
 from modefront.study.examples import write_example
@@ -45,7 +45,8 @@ class Bowls:
 
     def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
         del derivatives
-        return Evaluation(theta, *on_a_line(theta))
+        J, dJ, H = on_a_line(theta)
+        return Evaluation(theta, J, ObjectiveDerivatives(dJ, H))
 
     def on_branch(self, branch: tuple[int, ...]) -> "Bowls":
         del branch
@@ -133,7 +134,7 @@ def test_no_point_of_three_groups_comes_twice_and_places_tell_where_they_led() -
 
 
 def point(J: Floats, beta: Floats | None, *, converged: bool = True) -> Solution:
-    at = Evaluation(J, J, np.zeros((3, 3)), np.zeros((3, 3, 3)))
+    at = Evaluation(J, J)
     status = Status.CONVERGED if converged else Status.STALLED
     return replace(begin(at), status=status, beta=beta)
 

@@ -130,9 +130,8 @@ class MatrixModel:
         finally:
             spend(Costs(full_time=time.perf_counter() - started))
         phi = self.selection @ found.Phi
-        empty = np.zeros((count, 0)), np.zeros((*phi.shape, 0))
         return Transfer(
-            Modes(found.lam, phi, *empty, coincident=np.zeros(count, dtype=np.bool_)),
+            Modes(found.lam, phi),
             input=gram(found.Phi, loads),
             output=gram(outputs, found.Phi),
             static=None if found.static is None else gram(outputs, found.static),

@@ -35,7 +35,7 @@ import scipy.linalg
 from modefront._typing import Bools, Floats
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, first_axis
-from modefront.modes.result import Modes
+from modefront.modes.result import ModeDerivatives, Modes
 
 CLOSE = 1e-2
 """Relative gap of eigenvalues below which a quotient is formed with the gap itself."""
@@ -67,11 +67,10 @@ def modes(
         raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")
     phi = sensors @ found.Phi[:, :count]
     if not derivatives:
-        empty = np.zeros((count, 0)), np.zeros((phi.shape[0], count, 0))
-        return Modes(lam[:count], phi, *empty, coincident=np.zeros(count, dtype=np.bool_))
+        return Modes(lam[:count], phi)
     dlam, S, coincident = nelson(K, M, theta, found, count)
     dphi = first_axis(sensors @ found.X, S[:, :count])
-    return Modes(lam[:count], phi, dlam[:count], dphi, coincident[:count])
+    return Modes(lam[:count], phi, ModeDerivatives(dlam[:count], dphi, coincident[:count]))
 
 
 @dataclass(frozen=True)

@@ -11,6 +11,25 @@ from modefront._typing import Bools, Floats
 
 
 @dataclass(frozen=True)
+class ModeDerivatives:
+    """Derivatives of modes with respect to the parameters.
+
+    Attributes
+    ----------
+    dlam : (modes, parameters) derivatives of eigenvalues; for coinciding modes, those of the
+        ascending eigenvalues as the parameter alone increases
+    dphi : (sensors, modes, parameters) derivatives of mode shapes; for coinciding modes, only the
+        part that leaves their common subspace, which is the well-defined one
+    coincident : (modes,) true where a mode is so close to another one that derivatives of the
+        single mode are not defined to eight digits, and only those of the subspace are
+    """
+
+    dlam: Floats
+    dphi: Floats
+    coincident: Bools
+
+
+@dataclass(frozen=True)
 class Modes:
     """The lowest modes of a model, in ascending order, seen at its sensors.
 
@@ -18,21 +37,34 @@ class Modes:
     ----------
     lam : (modes,) eigenvalues omega**2 in (rad/s)**2
     phi : (sensors, modes) mass-normalised mode shapes at the sensors; the sign is arbitrary
-    dlam : (modes, parameters) derivatives of ``lam``; for coinciding modes, those of the
-        ascending eigenvalues as the parameter alone increases
-    dphi : (sensors, modes, parameters) derivatives of ``phi``; for coinciding modes, only the
-        part that leaves their common subspace, which is the well-defined one
-    coincident : (modes,) true where a mode is so close to another one that derivatives of the
-        single mode are not defined to eight digits, and only those of the subspace are
-
-    ``dlam`` and ``dphi`` have no columns where no derivatives were asked for.
+    derivatives : with respect to the parameters; None where they were not requested
     """
 
     lam: Floats
     phi: Floats
-    dlam: Floats
-    dphi: Floats
-    coincident: Bools
+    derivatives: ModeDerivatives | None = None
+
+    @property
+    def dlam(self) -> Floats:
+        """Derivatives of ``lam``; raises ValueError where they were not requested."""
+        return self._requested.dlam
+
+    @property
+    def dphi(self) -> Floats:
+        """Derivatives of ``phi``; raises ValueError where they were not requested."""
+        return self._requested.dphi
+
+    @property
+    def coincident(self) -> Bools:
+        """Which modes have no derivatives of their own, (modes,); none without derivatives."""
+        none = np.zeros(self.lam.size, dtype=np.bool_)
+        return none if self.derivatives is None else self.derivatives.coincident
+
+    @property
+    def _requested(self) -> ModeDerivatives:
+        if self.derivatives is None:
+            raise ValueError("expected modes with derivatives, found modes without")
+        return self.derivatives
 
     @cached_property
     def frequency(self) -> Floats:
@@ -42,7 +74,10 @@ class Modes:
 
     @cached_property
     def dfrequency(self) -> Floats:
-        """Derivatives of the natural frequencies in Hz, shape (modes, parameters)."""
+        """Derivatives of the natural frequencies in Hz, shape (modes, parameters).
+
+        Raises ValueError where derivatives were not requested.
+        """
         omega = np.sqrt(np.maximum(self.lam, 0.0))
         with np.errstate(divide="ignore", invalid="ignore"):
             scale = np.where(omega > 0, 1 / (4 * np.pi * omega), 0.0)

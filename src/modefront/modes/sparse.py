@@ -36,7 +36,7 @@ from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, gram, times
 from modefront.modes import derivatives as exact
 from modefront.modes.lanczos import greatest
-from modefront.modes.result import Modes
+from modefront.modes.result import ModeDerivatives, Modes
 from modefront.modes.spectrum import Shifted, Spectrum
 
 BLOCK = 4
@@ -80,10 +80,9 @@ def modes(
     found = lowest(pencil, theta, count)
     phi = sensors @ found.Phi[:, :count]
     if not derivatives:
-        empty = np.zeros((count, 0)), np.zeros((phi.shape[0], count, 0))
-        return Modes(found.lam[:count], phi, *empty, coincident=np.zeros(count, dtype=np.bool_))
-    dlam, dphi, coincident = exact.at_sensors(pencil, sensors, theta, found, count)
-    return Modes(found.lam[:count], phi, dlam, dphi, coincident)
+        return Modes(found.lam[:count], phi)
+    slopes = exact.at_sensors(pencil, sensors, theta, found, count)
+    return Modes(found.lam[:count], phi, ModeDerivatives(*slopes))
 
 
 def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:

@@ -24,7 +24,7 @@ from modefront.modes.result import Modes
 from modefront.pairing.match import Pairing, Pairs, match, mean_mac, modes_needed
 from modefront.residuals.base import Member
 from modefront.residuals.groups import Group
-from modefront.solvers.problem import Evaluation, Residual, infeasible
+from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
 
 
 @dataclass(frozen=True)
@@ -67,22 +67,21 @@ class UpdatingProblem:
             modes, pairs = self.modes(theta, derivatives=derivatives)
         except ModelError:
             return infeasible(theta, len(self.groups))
-        vectors = self._vectors(modes, pairs)
-        n, p = len(vectors), theta.size
-        J = np.array([r @ r for r in vectors])
-        dJ, H = np.zeros((n, p)), np.zeros((n, p, p))
-        residuals: tuple[Residual, ...] = ()
+        J = np.array([r @ r for r in self._vectors(modes, pairs)])
+        residuals = self._residuals(modes, pairs) if derivatives else ()
+        slopes = None
         if derivatives:
-            residuals = self._residuals(modes, pairs)
-            dJ = np.array([2 * residual.r @ residual.dr for residual in residuals])
-            H = np.array([2 * residual.dr.T @ residual.dr for residual in residuals])
+            slopes = ObjectiveDerivatives(
+                np.array([2 * residual.r @ residual.dr for residual in residuals]),
+                np.array([2 * residual.dr.T @ residual.dr for residual in residuals]),
+            )
         quantities = {
             "frequency": modes.frequency[pairs.index],
             "mac": pairs.mac,
             "paired_mode": pairs.index + 1.0,
             "coincident": modes.coincident[pairs.index].astype(float),
         }
-        return Evaluation(theta, J, dJ, H, quantities, residuals, tuple(pairs.index.tolist()))
+        return Evaluation(theta, J, slopes, quantities, residuals, tuple(pairs.index.tolist()))
 
     def on_branch(self, branch: tuple[int, ...]) -> UpdatingProblem:
         """Return the problem with these pairs of modes at all parameters."""

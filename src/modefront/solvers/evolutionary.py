@@ -140,5 +140,5 @@ def _objectives(evaluations: list[Evaluation], n: int) -> Floats:
 
 
 def _sampled(at: Evaluation) -> Solution:
-    n, p = at.dJ.shape
+    n, p = at.J.size, at.theta.size
     return Solution(at, np.zeros((n, p, p)), np.full(n, np.nan), 0.0, Status.SAMPLED, 0)

@@ -171,6 +171,8 @@ def explore(
         of that piece is another start.
         """
         near = replace(options, step=NEAR / 4)
+        if start.at.derivatives is None:
+            start = begin(problem.evaluate(start.at.theta))
         rough = local.solve(problem, start, near)
         new = finish(rough)
         if rough.at.branch != start.at.branch:

@@ -39,7 +39,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.problem import Evaluation, Problem, Residual, infeasible
+from modefront.solvers.problem import (
+    Evaluation,
+    ObjectiveDerivatives,
+    Problem,
+    Residual,
+    infeasible,
+)
 from modefront.solvers.scalarisation import Linear, weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 
@@ -256,8 +262,10 @@ class Held:
         return Evaluation(
             at.theta,
             np.concatenate([self.Q.T @ residual.r, np.delete(at.J, i)]),
-            np.vstack([self.Q.T @ residual.dr, np.delete(at.dJ, i, axis=0)]),
-            np.concatenate([np.zeros((k, p, p)), np.delete(at.H, i, axis=0)]),
+            ObjectiveDerivatives(
+                np.vstack([self.Q.T @ residual.dr, np.delete(at.dJ, i, axis=0)]),
+                np.concatenate([np.zeros((k, p, p)), np.delete(at.H, i, axis=0)]),
+            ),
             residuals=[*[nothing] * k, *(x for j, x in enumerate(at.residuals) if j != i)],
             branch=at.branch,
         )

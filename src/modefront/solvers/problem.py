@@ -34,9 +34,19 @@ class Residual:
 
 @record
 @dataclass(frozen=True)
+class ObjectiveDerivatives:
+    """Derivatives dJ (n, p) and the known part H (n, p, p) of the second ones."""
+
+    dJ: Floats
+    H: Floats
+
+
+@record
+@dataclass(frozen=True)
 class Evaluation:
     r"""The objectives at one point.
 
+    ``derivatives`` is None where they were not requested, or the objectives are not defined.
     ``quantities`` are what the problem wants kept with it; ``residuals`` are the vectors r_i, one
     an objective, of objectives that are sums of squares, :math:`J_i = \|r_i\|^2`. They are empty
     where the objectives are no such sums, or no derivatives were asked for. ``branch`` tells the
@@ -45,8 +55,7 @@ class Evaluation:
 
     theta: Floats
     J: Floats
-    dJ: Floats
-    H: Floats
+    derivatives: ObjectiveDerivatives | None = None
     quantities: Mapping[str, Floats] = field(default_factory=dict)
     residuals: Sequence[Residual] = ()
     branch: tuple[int, ...] = ()
@@ -56,16 +65,26 @@ class Evaluation:
         """Whether the objectives are defined here."""
         return bool(np.isfinite(self.J).all())
 
+    @property
+    def dJ(self) -> Floats:
+        """Derivatives of the objectives, (n, p); raises ValueError where there are none."""
+        return self._known.dJ
+
+    @property
+    def H(self) -> Floats:
+        """Known part of second derivatives, (n, p, p); raises ValueError where there is none."""
+        return self._known.H
+
+    @property
+    def _known(self) -> ObjectiveDerivatives:
+        if self.derivatives is None:
+            raise ValueError("expected an evaluation with derivatives, found one without")
+        return self.derivatives
+
 
 def infeasible(theta: Floats, objectives: int) -> Evaluation:
     """Return the evaluation of a point at which the objectives are not defined."""
-    p = theta.size
-    return Evaluation(
-        theta,
-        np.full(objectives, np.inf),
-        np.zeros((objectives, p)),
-        np.zeros((objectives, p, p)),
-    )
+    return Evaluation(theta, np.full(objectives, np.inf))
 
 
 class Problem(Protocol):
@@ -88,10 +107,7 @@ class Problem(Protocol):
         """A first guess within the bounds, shape (p,)."""
 
     def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
-        """Return the objectives at ``theta``; infinite ones where they are not defined.
-
-        Without derivatives, ``dJ`` and ``H`` are zero.
-        """
+        """Return the objectives at ``theta``; infinite ones where they are not defined."""
 
     def on_branch(self, branch: tuple[int, ...]) -> Problem:
         """Return the problem of one smooth piece of the objectives, wherever it is evaluated."""

@@ -156,8 +156,8 @@ def given(at: Evaluation) -> Solution:
 
 
 def begin(at: Evaluation) -> Solution:
-    """Return a start for `solve` from an evaluation with derivatives."""
-    n, p = at.dJ.shape
+    """Return a start for `solve` from an evaluation."""
+    n, p = at.J.size, at.theta.size
     status = Status.EXHAUSTED if at.feasible else Status.INFEASIBLE
     return Solution(at, np.zeros((n, p, p)), np.zeros(n), np.inf, status, 0)
 
