@@ -24,6 +24,7 @@ from typing import Any
 
 import moocore
 import numpy as np
+from modefront.study.run import Front, pareto_front
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.algorithms.moo.sms import SMSEMOA
 from pymoo.core.problem import ElementwiseProblem
@@ -33,7 +34,6 @@ from modefront._typing import Floats
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.indicators import REFERENCE, hypervolume
 from modefront.solvers.problem import Evaluation, ObjectiveDerivatives
-from modefront.study.run import Front, pareto_front
 
 Derivatives = tuple[Floats, Floats, Floats]
 

@@ -12,12 +12,16 @@ import pytest
 import modefront
 
 LAYERS = (
-    ("_typing", "_version", "errors"),
-    ("toml", "linalg", "solvers", "response"),
-    ("data", "fem", "modes", "reliability"),
-    ("identification", "models", "pairing"),
+    ("_typing", "_version", "errors", "variables"),
+    ("toml", "linalg", "response", "work"),
+    ("options",),
+    ("data", "fem", "modes", "reliability", "solvers"),
+    ("fronts", "identification", "pairing"),
+    ("models",),
     ("residuals",),
-    ("identifiability", "uncertainty", "predict"),
+    ("identifiability", "predictions", "uncertainty"),
+    ("analysis",),
+    ("results",),
     ("study",),
     ("cli",),
     ("__init__", "__main__"),

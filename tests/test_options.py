@@ -127,10 +127,10 @@ def test_what_solve_is_given_is_checked_before_any_work(study: Path) -> None:
 
 def test_one_group_cannot_be_refined_nor_can_a_simplex_have_too_many_points(study: Path) -> None:
     problem = mf.load(study).problem
-    one = mf.Group("all", "all", "all")
+    one = mf.Group("all", frequency="all", shape="all")
     with pytest.raises(mf.InputError, match=r"refined: expected two groups .* found 1 group, meth"):
         mf.solve(replace(problem, groups=(one,)), refined=0.1)
-    three = tuple(mf.Group(f"mode {r}", [r], [r]) for r in (1, 2, 3))
+    three = tuple(mf.Group(f"mode {r}", frequency=[r], shape=[r]) for r in (1, 2, 3))
     with pytest.raises(mf.InputError, match=r"points: .* the simplex of 3 groups, found 500"):
         mf.solve(replace(problem, groups=three), points=500)
 
@@ -204,7 +204,7 @@ def test_parameters_of_a_problem(study: Path) -> None:
     with pytest.raises(mf.InputError, match=f"bounds of '{names[0]}': expected .lower, upper."):
         mf.solve(replace(problem, lower=problem.start, upper=problem.start))
     with pytest.raises(mf.InputError, match="groups: expected each name once, found 'all' twice"):
-        mf.solve(replace(problem, groups=2 * (mf.Group("all", "all"),)))
+        mf.solve(replace(problem, groups=2 * (mf.Group("all", frequency="all"),)))
 
 
 def test_weights_check_themselves() -> None:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, field
+from pathlib import Path
 from typing import Any
 
 from modefront.errors import Fault, suggestion
@@ -38,19 +39,40 @@ def _item(value: object) -> str:
 
 @dataclass
 class Table:
-    """One table of a TOML file: where it is, what it holds, and what has been asked of it."""
+    """One table of a TOML file.
+
+    Attributes
+    ----------
+    file : the TOML file
+    place : where the table is in it, for messages; empty for the top level
+    values : what the table holds
+    faults : all that is wrong with the file, shared by its tables
+    asked : keys that were read or are known
+    files : paths of the files that the tables name, shared by them; see `path`
+    """
 
     file: str
     place: str
     values: dict[str, Any]
     faults: list[Fault]
     asked: list[str] = field(default_factory=list)
+    files: list[Path] = field(default_factory=list)
 
     def fault(self, key: str, expected: str, found: str) -> None:
         """Note that something is wrong; an empty key means the table itself."""
         shown = key if key.isprintable() else repr(key)
         place = f"{self.place} {shown}".strip() or "top level"
         self.faults.append(Fault(self.file, place, expected, found))
+
+    def path(self, name: str) -> Path:
+        """Return the path of a file that a table names, relative to the TOML file, and note it.
+
+        What a file is read for depends on all files noted in ``files``.
+        """
+        path = Path(self.file).parent / name
+        if path not in self.files:
+            self.files.append(path)
+        return path
 
     def take(self, key: str, expected: str, test: Callable[[Any], bool], default: Any) -> Any:
         """Return a value that passes a test, or the default, with a fault where it does not.
@@ -113,7 +135,7 @@ class Table:
         if value is None:
             return None
         place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
-        return Table(self.file, place, value, self.faults)
+        return Table(self.file, place, value, self.faults, files=self.files)
 
     def tables(self, key: str, required: bool) -> list[Table]:
         """Return the tables of a list, such as ``[[parameter]]``."""
@@ -126,7 +148,9 @@ class Table:
         )
         path = f"{self.place.strip('[]')}.{key}" if self.place else key
         return [
-            Table(self.file, f"[[{path}]] {i + 1}{_named(item)}", item, self.faults)
+            Table(
+                self.file, f"[[{path}]] {i + 1}{_named(item)}", item, self.faults, files=self.files
+            )
             for i, item in enumerate(value or [])
         ]
 

@@ -6,19 +6,19 @@ from collections.abc import Callable
 
 import numpy as np
 import pytest
+from modefront.solvers.checkpoint import Checkpoint, Solutions, compute_always
+from modefront.study.run import Front, pareto_front
 from problems import Derivatives, Known, box, circles, concave
 
 from modefront._typing import Floats
 from modefront.solvers.advance import simplex
 from modefront.solvers.basins import explore_between, ranks
-from modefront.solvers.checkpoint import Checkpoint, Solutions, compute_always
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.evolutionary import evolve_front
 from modefront.solvers.explore import Descent, Search, explore
 from modefront.solvers.indicators import hypervolume, igd_plus
 from modefront.solvers.scalarisation import LogSum, Squares, weighted
 from modefront.solvers.sqp import Status
-from modefront.study.run import Front, pareto_front
 
 FEW = Search(starts=4, limit=12, evolutions=0)
 

@@ -1,6 +1,6 @@
 """The study file: what a right one says."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import h5py
@@ -9,15 +9,18 @@ import pytest
 import scipy.io
 import scipy.sparse
 
+from modefront.fronts.given import Weighted
+from modefront.fronts.options import Pareto
+from modefront.models.base import Model
 from modefront.models.chain import chain
 from modefront.models.files import read_matrix
 from modefront.pairing.match import Pairing
 from modefront.residuals.groups import Group
 from modefront.solvers.explore import LIMIT, Search
-from modefront.fronts.given import Weighted
-from modefront.fronts.options import Pareto
 from modefront.study.definition import Study
 from modefront.study.file import load
+from modefront.study.kinds.base import ModelKind
+from modefront.toml import Table
 
 HEAD = """
 [study]
@@ -188,6 +191,35 @@ def test_the_hash_tells_of_every_input(study: Callable[[str], Study], tmp_path: 
     digests.add(study(text).digest)
     np.save(tmp_path / "model" / "M.npy", 1.01 * M)
     digests.add(study(text).digest)
+    assert len(digests) == 4
+
+
+def test_files_of_any_kind_of_model_are_part_of_the_digest(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def read_springs(table: Table, parameters: Sequence[str]) -> Model:
+        path = table.path(table.text("springs") or "")
+        k = [float(x) for x in path.read_text().split()]
+        return chain(parameters, [1.0, 1.0], k, stiffness_parameters=["theta1", "theta2"])
+
+    kinds = {"springs": ModelKind("springs", read_springs)}
+    monkeypatch.setattr("modefront.study.tables.model.KINDS", kinds)
+    parameters = "".join(
+        f'[[parameter]]\nname = "theta{i}"\nnominal = 1.0\nbounds = [0.5, 2.0]\n' for i in (1, 2)
+    )
+    (tmp_path / "study.toml").write_text(
+        '[study]\nname = "springs"\n[data]\nfile = "modes.csv"\n'
+        f'[model]\nkind = "springs"\nsprings = "k.txt"\n{parameters}'
+        '[[group]]\nname = "f"\nfrequency = "all"\n'
+    )
+    (tmp_path / "modes.csv").write_text(
+        "set,mode,frequency,damping,floor1,floor2\na,1,2.5,,0.6,1\na,2,7,,1,-0.6\n"
+    )
+    digests = set()
+    for k in ("900 800", "900 801"):
+        (tmp_path / "k.txt").write_text(k)
+        study = load(tmp_path / "study.toml")
+        digests |= {study.digest, study.work}
     assert len(digests) == 4
 
 

@@ -8,14 +8,14 @@ import numpy as np
 import pytest
 import xarray as xr
 from interruptions import interrupt_after
+from modefront.study.certified import certified_front
+from modefront.study.run import Front
 
 import modefront as mf
 from modefront._typing import Floats
 from modefront.identifiability.options import Identifiability
 from modefront.solvers.explore import Search
 from modefront.study import session
-from modefront.study.certified import certified_front
-from modefront.study.run import Front
 from modefront.uncertainty.noise import noise_floor
 
 NAMES = tuple(f"k{i + 1}" for i in range(6))

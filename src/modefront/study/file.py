@@ -45,9 +45,9 @@ def load(path: Path | str) -> Study:
     root = Table(str(path), "", values, faults)
     header = root.table("study", "a table [study]")
     names, parameters = read_parameters(root)
-    model, reduction = read_model(root, header, names, path.parent)
+    model, reduction = read_model(root, header, names)
     title, seed = _read_header(header)
-    data, data_file = read_data(root, model, path.parent)
+    data = read_data(root, model)
     groups = read_groups(root, data)
     objectives = [group.name for group in groups if group.name]
     pareto = read_options(root, "pareto", Pareto)
@@ -74,12 +74,11 @@ def load(path: Path | str) -> Study:
     predictions = complete(drafts, problem) if not faults else ()
     if faults:
         raise InputError(faults)
-    files = [data_file, *_model_files(values)]
     front = json.dumps(_without_predictions(values), sort_keys=True)
     origin = Origin(
         path,
-        _digest(content, path.parent, files),
-        _digest(front.encode(), path.parent, files),
+        _digest(content, root.files),
+        _digest(front.encode(), root.files),
         problem,
         reduction.fallback(problem.model),
     )
@@ -141,14 +140,6 @@ def _try_model(root: Table, problem: UpdatingProblem) -> None:
         root.fault("[model]", expected, "a singular stiffness matrix at the nominal parameters")
 
 
-def _model_files(values: dict[str, Any]) -> list[str]:
-    model = values["model"]
-    tables = [model.get(key) for key in ("stiffness", "mass")]
-    terms = [term for table in tables if isinstance(table, dict) for term in table.values()]
-    files = [term["file"] if isinstance(term, dict) else term for term in terms]
-    return [*files, model["file"]] if "file" in model else files
-
-
 def _without_predictions(values: dict[str, Any]) -> dict[str, Any]:
     """Return what a study file says but for what is predicted, and with how many draws."""
     rest = {key: value for key, value in values.items() if key != "predict"}
@@ -157,9 +148,9 @@ def _without_predictions(values: dict[str, Any]) -> dict[str, Any]:
     return rest | ({"uncertainty": uncertainty} if uncertainty else {})
 
 
-def _digest(content: bytes, folder: Path, files: Sequence[str]) -> str:
-    """Return a hash of what the study file says and of all files that it names."""
+def _digest(content: bytes, files: Sequence[Path]) -> str:
+    """Return a hash of what the study file says and of all files that were read for it."""
     total = hashlib.sha256(content)
-    for name in files:
-        total.update(hashlib.sha256((folder / name).read_bytes()).digest())
+    for path in files:
+        total.update(hashlib.sha256(path.read_bytes()).digest())
     return total.hexdigest()

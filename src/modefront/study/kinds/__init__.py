@@ -1,21 +1,13 @@
-"""Kinds of models that a study file can name: one file a kind."""
+"""Kinds of models that a study file can name, one a file: a new one is named here, nowhere else."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
+from collections.abc import Mapping
 
-from modefront.models.base import Model
-from modefront.study.kinds.chain import read_chain
-from modefront.study.kinds.matrices import read_matrices
-from modefront.study.kinds.mesh import read_mesh_model
-from modefront.toml import Table
+from modefront.study.kinds.base import ModelKind
+from modefront.study.kinds.chain import CHAIN
+from modefront.study.kinds.matrices import MATRICES
+from modefront.study.kinds.mesh import MESH
 
-Reader = Callable[[Table, Sequence[str], Path], Model | None]
-
-KINDS: Mapping[str, Reader] = {
-    "chain": read_chain,
-    "matrices": read_matrices,
-    "mesh": read_mesh_model,
-}
-"""Readers of the ``[model]`` table: (table, names of parameters, folder) to a model or faults."""
+KINDS: Mapping[str, ModelKind] = {kind.name: kind for kind in (CHAIN, MATRICES, MESH)}
+"""All kinds by their names."""

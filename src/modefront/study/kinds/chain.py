@@ -3,16 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 from modefront.errors import suggestion
 from modefront.models.base import Model
 from modefront.models.chain import chain
+from modefront.study.kinds.base import ModelKind
 from modefront.study.kinds.sensors import read_outputs, read_sensors
 from modefront.toml import Table
 
 
-def read_chain(table: Table, parameters: Sequence[str], _: Path) -> Model | None:
+def read_chain(table: Table, parameters: Sequence[str]) -> Model | None:
     """Return the chain that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
     masses = table.numbers("masses", "a list of masses above 0", lambda x: bool(x) and min(x) > 0)
@@ -66,3 +66,6 @@ def _scales(
         if name and name not in parameters:
             table.fault(key, "names of parameters", suggestion(name, parameters))
     return [name or None for name in names] or None
+
+
+CHAIN = ModelKind("chain", read_chain, is_reducible=False)

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from pathlib import Path
 
 import numpy as np
 import scipy.sparse
@@ -12,15 +11,16 @@ from modefront.errors import Fault, InputError, suggestion
 from modefront.models.base import Model
 from modefront.models.files import read_matrix
 from modefront.models.matrices import BASE, matrices
+from modefront.study.kinds.base import ModelKind
 from modefront.study.kinds.sensors import read_base, read_outputs, read_sensors
 from modefront.toml import Table
 
 
-def read_matrices(table: Table, parameters: Sequence[str], folder: Path) -> Model | None:
+def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     """Return the model that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
-    stiffness = _terms(table, "stiffness", parameters, folder)
-    mass = _terms(table, "mass", parameters, folder)
+    stiffness = _terms(table, "stiffness", parameters)
+    mass = _terms(table, "mass", parameters)
     size = _common_size(table, {"stiffness": stiffness, "mass": mass})
     sensors = read_sensors(table, size)
     floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
@@ -32,9 +32,7 @@ def read_matrices(table: Table, parameters: Sequence[str], folder: Path) -> Mode
     )
 
 
-def _terms(
-    model: Table, key: str, parameters: Sequence[str], folder: Path
-) -> dict[str, scipy.sparse.coo_array]:
+def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy.sparse.coo_array]:
     """Return the matrices of one table of terms, each read from its file."""
     expected = f"a table of files, {BASE} = ... and one a parameter"
     table = model.table(key, expected)
@@ -51,7 +49,7 @@ def _terms(
         if found is None:
             continue
         try:
-            out[name] = read_matrix(folder / found[0], found[1])
+            out[name] = read_matrix(table.path(found[0]), found[1])
         except InputError as error:
             table.faults += [
                 Fault(one.file, f"{table.place} {name}, {one.place}", one.expected, one.found)
@@ -100,3 +98,6 @@ def _common_size(
             expected = "stiffness or mass at every degree of freedom"
             model.fault("", expected, f"neither at {missing} (from 0)")
     return common
+
+
+MATRICES = ModelKind("matrices", read_matrices)

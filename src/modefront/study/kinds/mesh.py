@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from pathlib import Path
 from typing import Any, get_args
 
 from modefront import fem
@@ -14,6 +13,7 @@ from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Quantity
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
+from modefront.study.kinds.base import ModelKind
 from modefront.toml import Table, is_number
 
 _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
@@ -28,14 +28,14 @@ KEYS = ("material", "group", "support", "spring", "mass", "link", "sensors", "ou
 """Tables that describe what the mesh is made of."""
 
 
-def read_mesh_model(table: Table, parameters: Sequence[str], folder: Path) -> Model | None:
+def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
     """Return the model that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
     name = table.text("file", "the name of a mesh file")
     mesh: Mesh | None = None
     if name is not None:
         try:
-            mesh = read_mesh(folder / name)
+            mesh = read_mesh(table.path(name))
         except fem.FemError as error:
             table.fault("file", "a mesh that can be read", str(error))
     floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
@@ -313,3 +313,6 @@ def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:
         if quantity is not None and of is not None:
             out.append(fem.Parameter(name, quantity, of))
     return out
+
+
+MESH = ModelKind("mesh", read_mesh_model)

@@ -7,17 +7,15 @@ from typing import Any
 
 from modefront.models.reduced.options import Reduction
 from modefront.options import options
+from modefront.study.kinds.base import ModelKind
 from modefront.study.tables.options import note
 from modefront.toml import Table
 
-UNREDUCED = ("chain",)
-"""Kinds of models that are too small for it, and have no such key."""
 
-
-def read_reduction(model: Table | None, header: Table | None) -> Reduction:
+def read_reduction(model: Table | None, header: Table | None, kind: ModelKind | None) -> Reduction:
     """Return the reduction of the tables ``[model]`` and ``[study]``."""
     out = Reduction()
-    if model is not None and model.values.get("kind") in UNREDUCED:
+    if kind is not None and not kind.is_reducible:
         out, model = Reduction("off"), None
     for table, name in ((model, "reduction"), (header, "memory")):
         if table is None:
