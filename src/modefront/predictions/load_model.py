@@ -17,7 +17,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, InputError, ModelError, refuse, suggestion
+from modefront.errors import Fault, ModelError, suggestion, wrong
 from modefront.models.base import Model
 from modefront.models.ports import Pattern, Ports, Transfer
 from modefront.options import Requirement, is_name, is_number, text, whole
@@ -204,7 +204,7 @@ def filled(value: T | None, name: str) -> T:
     Raises InputError where it still has to be found from the nominal model.
     """
     if value is None:
-        raise InputError(Fault("", name, "a value, which complete(problem) finds", "none"))
+        raise wrong(name, "a value, which complete(problem) finds", "none")
     return value
 
 
@@ -266,10 +266,9 @@ def nominal_system(loads: ModalLoadModel, problem: UpdatingProblem) -> ModalSyst
     try:
         system = loads.system(problem, problem.start)
     except ModelError as error:
-        found = str(error)
-        raise InputError(Fault("", "modes", "modes that the nominal model has", found)) from None
+        raise wrong("modes", "modes that the nominal model has", error) from None
     if not (np.abs(system.output) @ np.abs(system.input)).any():
-        refuse([Fault("", "response", "responses that the load can move", "none")])
+        raise wrong("response", "responses that the load can move", "none")
     return system
 
 
