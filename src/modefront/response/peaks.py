@@ -105,8 +105,8 @@ def peaks(
     if np.any(infinite):
         mode = int(np.argmax(infinite))
         expected = "damped modes above 0 Hz in the band, as others have infinite peaks"
-        values = f"omega[{mode}] = {pair.omega[mode]}, zeta[{mode}] = {pair.zeta[mode]}"
-        raise wrong("zeta", expected, values)
+        undamped = f"omega[{mode}] = {pair.omega[mode]}, zeta[{mode}] = {pair.zeta[mode]}"
+        raise wrong("zeta", expected, undamped)
     slope = Slope(pair, quantity)
     # The modes are natural breaks: with one at the end of an interval, its width is soon found.
     inside = pair.omega[(pair.omega > low) & (pair.omega < high)]
