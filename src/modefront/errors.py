@@ -32,6 +32,11 @@ class InputError(ValueError):
         super().__init__("\n".join(map(str, self.faults)))
 
 
+def wrong(option: str, expected: str, found: object) -> InputError:
+    """Return the error of a single option or argument that is wrong."""
+    return InputError(Fault("", option, expected, str(found)))
+
+
 def refuse(faults: Iterable[Fault]) -> None:
     """Raise InputError where there are faults."""
     if found := tuple(faults):

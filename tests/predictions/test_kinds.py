@@ -164,7 +164,7 @@ def test_every_kind_returns_what_it_says_it_does(problem: mf.UpdatingProblem) ->
         assert all(values.shape == (n,) for values in [*found.values(), *checked.values()])
         assert all(len(setting.values) == n for setting in ready.settings.values())
         names = [variable.name for variable in (*ready.kind.variables, *expected)]
-        assert all(x.startswith(ready.kind.dimension) for x in [*names, *ready.settings])
+        assert all(x.startswith(f"{ready.kind.dimension}_") for x in [*names, *ready.settings])
 
 
 def test_a_prediction_may_take_another_name(problem: mf.UpdatingProblem) -> None:

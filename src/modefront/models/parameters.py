@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Annotated
 
-from modefront.errors import Fault, InputError, refuse
+from modefront.errors import Fault, InputError, refuse, wrong
 from modefront.options import check_fields, each_once, number, numbers, text
 
 BOUNDS = numbers(
@@ -30,7 +30,7 @@ class Parameter:
         check_fields(self)
         if not self.lower <= self.nominal <= self.upper:
             inside = f"a value within its bounds, {self.lower:g} to {self.upper:g}"
-            refuse([Fault("", "nominal", inside, f"{self.nominal:g}")])
+            raise wrong("nominal", inside, f"{self.nominal:g}")
 
     @property
     def lower(self) -> float:

@@ -13,7 +13,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, InputError, refuse
+from modefront.errors import Fault, refuse, wrong
 from modefront.models.base import Model
 from modefront.options import (
     Requirement,
@@ -284,11 +284,11 @@ class Passage:
             if self.step > limit * (1 + 1e-12):
                 period = f"a quarter of the shortest period ({highest / (2 * np.pi):.4g} Hz)"
                 expected = f"at most {limit:.4g} s, {period}"
-                raise InputError(Fault("", "step", expected, f"{self.step:g}"))
+                raise wrong("step", expected, f"{self.step:g}")
             return self.step
         steps = math.ceil(self.duration * highest / (2 * np.pi) * STEPS_A_PERIOD)
         if steps > MOST_STEPS:
-            raise InputError(Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps}"))
+            raise wrong("step", f"at most {MOST_STEPS} time steps", steps)
         return self.duration / steps
 
     def problem(self, problem: UpdatingProblem, theta: Floats) -> FirstPassage:
@@ -308,7 +308,7 @@ class Passage:
             )
         except StepError as error:
             expected = f"at most {error.limit:.4g} s, a quarter of the shortest period"
-            raise InputError(Fault("", "step", expected, f"{error.found:g}")) from None
+            raise wrong("step", expected, f"{step:g}") from None
 
     def evaluate(
         self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence

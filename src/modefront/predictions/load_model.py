@@ -17,7 +17,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, InputError, ModelError, refuse, suggestion
+from modefront.errors import Fault, ModelError, suggestion, wrong
 from modefront.models.base import Model
 from modefront.models.ports import Pattern, Ports, Transfer
 from modefront.options import Requirement, is_name, is_number, text, whole
@@ -173,18 +173,18 @@ class ModalLoadModel:
         m = count = filled(self.modes, "modes")
         if self.damping == MEASURED:
             count = max(count, modes_needed(problem.pairing, problem.data, problem.model.size))
-        found = problem.model.transfer(theta, count, self.ports)
+        transfer = problem.model.transfer(theta, count, self.ports)
         return ModalSystem(
-            omega=np.sqrt(found.modes.lam[:m]),
-            zeta=self._damping(problem, found)[:m],
-            input=found.input[:m],
-            output=found.output[:, :m],
-            static=found.static if self.static else None,
-            rigid=found.rigid,
+            omega=np.sqrt(transfer.modes.lam[:m]),
+            zeta=self._damping(problem, transfer)[:m],
+            input=transfer.input[:m],
+            output=transfer.output[:, :m],
+            static=transfer.static if self.static else None,
+            rigid=transfer.rigid,
         )
 
-    def _damping(self, problem: UpdatingProblem, found: Transfer) -> Floats:
-        count = found.modes.lam.size
+    def _damping(self, problem: UpdatingProblem, transfer: Transfer) -> Floats:
+        count = transfer.modes.lam.size
         if self.damping != MEASURED:
             return np.broadcast_to(np.asarray(self.damping, dtype=float), count)
         measured = measured_damping(problem.data)
@@ -192,7 +192,7 @@ class ModalLoadModel:
         zeta = np.full(count, measured[is_known].mean())
         # The same candidates as in updating, or other modes might be paired.
         n = modes_needed(problem.pairing, problem.data, problem.model.size)
-        frequency, phi = found.modes.frequency[:n], found.modes.phi[:, :n]
+        frequency, phi = transfer.modes.frequency[:n], transfer.modes.phi[:, :n]
         pairs = match(problem.pairing, problem.data, frequency, phi)
         zeta[pairs.index[is_known]] = measured[is_known]
         return zeta
@@ -204,7 +204,7 @@ def filled(value: T | None, name: str) -> T:
     Raises InputError where it still has to be found from the nominal model.
     """
     if value is None:
-        raise InputError(Fault("", name, "a value, which complete(problem) finds", "none"))
+        raise wrong(name, "a value, which complete(problem) finds", "none")
     return value
 
 
@@ -266,10 +266,9 @@ def nominal_system(loads: ModalLoadModel, problem: UpdatingProblem) -> ModalSyst
     try:
         system = loads.system(problem, problem.start)
     except ModelError as error:
-        found = str(error)
-        raise InputError(Fault("", "modes", "modes that the nominal model has", found)) from None
+        raise wrong("modes", "modes that the nominal model has", error) from None
     if not (np.abs(system.output) @ np.abs(system.input)).any():
-        refuse([Fault("", "response", "responses that the load can move", "none")])
+        raise wrong("response", "responses that the load can move", "none")
     return system
 
 
@@ -288,29 +287,29 @@ def measured_damping(data: ModalData) -> Floats:
     return out
 
 
-def modes_reaching(model: Model, theta: Floats, frequency: float, known: int) -> int:
+def modes_reaching(model: Model, theta: Floats, frequency: float, count: int) -> int:
     """Return how many modes at ``theta`` are below a frequency in Hz, and one more if there is.
 
-    ``known`` is a number of modes that the model is known to have.
+    ``count`` is a number of modes that the model is known to have.
     """
-    found = model.modes(theta, known, derivatives=False).frequency
-    while not (found >= frequency).any():
-        more = _more(model, theta, found)
-        if more.size == found.size:
-            return found.size
-        found = more
-    return int(np.argmax(found >= frequency)) + 1
+    f = model.modes(theta, count, derivatives=False).frequency
+    while not (f >= frequency).any():
+        more = _more(model, theta, f)
+        if more.size == f.size:
+            return f.size
+        f = more
+    return int(np.argmax(f >= frequency)) + 1
 
 
-def _more(model: Model, theta: Floats, found: Floats) -> Floats:
+def _more(model: Model, theta: Floats, known: Floats) -> Floats:
     """Return the frequencies of up to twice as many modes, as far as there are finite ones."""
-    upper = min(2 * found.size, model.size)
-    while upper > found.size:
+    upper = min(2 * known.size, model.size)
+    while upper > known.size:
         try:
             return model.modes(theta, upper, derivatives=False).frequency
         except ModelError:
-            upper = (found.size + upper) // 2
-    return found
+            upper = (known.size + upper) // 2
+    return known
 
 
 def _in_words(pattern: Pattern) -> str:

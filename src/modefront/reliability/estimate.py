@@ -13,6 +13,7 @@ from queue import SimpleQueue
 import numpy as np
 from numpy.typing import ArrayLike
 
+from modefront.errors import wrong
 from modefront.reliability.gaussian import Convolution, GaussianResponse, gaussian_response
 from modefront.reliability.problem import FirstPassage, Sided
 from modefront.response.checks import FloatArray, positive_count, real_array
@@ -102,16 +103,16 @@ def estimate(
 
     Raises
     ------
-    ValueError
+    InputError
         For levels that are not positive, or fewer than two samples or one worker.
 
     """
     b = real_array("levels", levels, (None,), "barriers")
     if np.any(b <= 0):
         at = int(np.argmax(b <= 0))
-        raise ValueError(f"levels: expected positive numbers, found {b[at]} at index {at}")
+        raise wrong("levels", "positive numbers", f"{b[at]} at index {at}")
     if positive_count("samples", samples) < 2:
-        raise ValueError("samples: expected at least 2, for a coefficient of variation, found 1")
+        raise wrong("samples", "at least 2, for a coefficient of variation", samples)
     positive_count("workers", workers)
     response = gaussian_response(problem)
     weigh = prepare(response, b)

@@ -27,6 +27,7 @@ from enum import Enum
 
 import numpy as np
 
+from modefront.errors import Fault, InputError, wrong
 from modefront.response.checks import FloatArray, positive, real_array
 from modefront.response.system import ModalSystem
 
@@ -34,12 +35,15 @@ LARGEST_ANGLE = np.pi / 2
 """Largest ω Δt: a quarter of a period. Beyond it the times t_j miss the peaks of the response."""
 
 
-class StepError(ValueError):
-    """A time step is too long: the one ``found`` and the ``limit``, in s."""
+class StepError(InputError):
+    """A time step is too long for the highest circular frequency; ``limit`` is the longest one."""
 
-    def __init__(self, message: str, found: float, limit: float) -> None:
-        super().__init__(message)
-        self.found, self.limit = found, limit
+    def __init__(self, time_step: float, omega: float) -> None:
+        self.limit = LARGEST_ANGLE / omega
+        of = f"a quarter of the period of the highest frequency ({omega:.6g} rad/s)"
+        super().__init__(
+            Fault("", "time_step", f"at most {self.limit:.6g} s, {of}", f"{time_step} s")
+        )
 
 
 class Sided(Enum):
@@ -126,7 +130,7 @@ class FirstPassage:
 
     Raises
     ------
-    ValueError
+    InputError
         For durations or steps that are not positive, do not fit, or are too long.
 
     """
@@ -142,20 +146,13 @@ class FirstPassage:
         """Check the times against each other and against the frequencies."""
         positive("duration", self.duration, "s")
         positive("time_step", self.time_step, "s")
-        limit = LARGEST_ANGLE / self.highest_omega()
-        if self.time_step > limit * (1 + 1e-12):
-            raise StepError(
-                f"time_step: expected at most {limit:.6g} s, a quarter of the period of the "
-                f"highest frequency ({self.highest_omega():.6g} rad/s), found {self.time_step} s",
-                self.time_step,
-                limit,
-            )
+        if self.time_step > LARGEST_ANGLE / self.highest_omega() * (1 + 1e-12):
+            raise StepError(self.time_step, self.highest_omega())
         steps = self.duration / self.time_step
         if steps < 0.5 or abs(steps - round(steps)) > 1e-6:
-            raise ValueError(
-                "duration: expected a whole number of time steps of "
-                f"{self.time_step} s, found {self.duration} s, which is {steps:.6g} of them"
-            )
+            expected = f"a whole number of time steps of {self.time_step} s"
+            found = f"{self.duration} s, which is {steps:.6g} of them"
+            raise wrong("duration", expected, found)
 
     def highest_omega(self) -> float:
         """Return the highest circular frequency of the modes and of the filter, rad/s."""

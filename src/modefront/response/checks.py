@@ -1,12 +1,14 @@
 """What the response and reliability rooms ask of their arguments.
 
-Every error is a ``ValueError`` that names the argument, what was expected and what was found.
+Every error is an `InputError` that names the argument, what was expected and what was found.
 """
 
 from collections.abc import Sequence
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+
+from modefront.errors import wrong
 
 FloatArray = NDArray[np.float64]
 
@@ -25,11 +27,11 @@ def real_array(
         for found, wanted in zip(array.shape, shape, strict=True)
     )
     if not fits:
-        wanted = ", ".join("n" if size is None else str(size) for size in shape)
-        raise ValueError(f"{name}: expected shape ({wanted}) ({meaning}), found {array.shape}")
+        sizes = ", ".join("n" if size is None else str(size) for size in shape)
+        raise wrong(name, f"shape ({sizes}) ({meaning})", array.shape)
     if not np.all(np.isfinite(array)):
         at = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-        raise ValueError(f"{name}: expected finite numbers, found {array[at]} at index {at}")
+        raise wrong(name, "finite numbers", f"{array[at]} at index {at}")
     array.setflags(write=False)
     return array
 
@@ -37,14 +39,14 @@ def real_array(
 def positive(name: str, value: float, unit: str) -> float:
     """Return `value` if it is a finite number above zero."""
     if not (np.isfinite(value) and value > 0):
-        raise ValueError(f"{name}: expected a positive number ({unit}), found {value}")
+        raise wrong(name, f"a positive number ({unit})", value)
     return float(value)
 
 
 def positive_count(name: str, value: int) -> int:
     """Return `value` if it is a whole number above zero."""
     if not (np.isfinite(value) and value >= 1 and int(value) == value):
-        raise ValueError(f"{name}: expected a whole number of at least 1, found {value}")
+        raise wrong(name, "a whole number of at least 1", value)
     return int(value)
 
 
@@ -52,5 +54,5 @@ def no_negative(name: str, array: FloatArray, meaning: str) -> FloatArray:
     """Return `array` if none of its elements is below zero."""
     if np.any(array < 0):
         at = tuple(int(i) for i in np.argwhere(array < 0)[0])
-        raise ValueError(f"{name}: expected no negative {meaning}, found {array[at]} at index {at}")
+        raise wrong(name, f"no negative {meaning}", f"{array[at]} at index {at}")
     return array

@@ -26,6 +26,7 @@ from enum import Enum
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
+from modefront.errors import wrong
 from modefront.response.checks import no_negative, real_array
 from modefront.response.system import ModalSystem
 
@@ -66,7 +67,7 @@ def frequency_response(
 
     Raises
     ------
-    ValueError
+    InputError
         For frequencies that are negative, or meet an undamped mode; for absolute acceleration of
         a system that does not say how its outputs move with the base.
 
@@ -84,10 +85,9 @@ def derivatives(
     d = (system.omega - w) * (system.omega + w) + 2j * system.zeta * system.omega * w
     if np.any(d == 0):
         at, mode = (int(i) for i in np.argwhere(d == 0)[0])
-        raise ValueError(
-            f"omega: expected no frequency on that of an undamped mode, found {omega[at].real} "
-            f"rad/s with zeta[{mode}] = {system.zeta[mode]}: the response is unbounded there"
-        )
+        expected = "no frequency on that of an undamped mode, where the response is unbounded"
+        found = f"{omega[at].real} rad/s with zeta[{mode}] = {system.zeta[mode]}"
+        raise wrong("omega", expected, found)
     d1 = -2 * w + 2j * system.zeta * system.omega
     modal = (1 / d, -d1 / d**2, 2 * d1**2 / d**3 + 2 / d**2)
     alpha, alpha1, alpha2 = (
@@ -110,8 +110,6 @@ def _rigid(system: ModalSystem, quantity: ResponseQuantity) -> NDArray[np.float6
     if quantity is not ResponseQuantity.ABSOLUTE_ACCELERANCE:
         return 0.0
     if system.rigid is None:
-        raise ValueError(
-            "rigid: expected the motion of the outputs with the base for absolute accelerance, "
-            "found None"
-        )
+        expected = "the motion of the outputs with the base for absolute accelerance"
+        raise wrong("rigid", expected, None)
     return system.rigid

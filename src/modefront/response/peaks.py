@@ -27,6 +27,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.polynomial import chebyshev
 
+from modefront.errors import wrong
 from modefront.response.checks import FloatArray
 from modefront.response.function import ResponseQuantity, derivatives
 from modefront.response.slope import Slope
@@ -91,7 +92,7 @@ def peaks(
 
     Raises
     ------
-    ValueError
+    InputError
         For undamped modes in the band (their peaks are infinite), an unknown output or input, an
         empty band.
 
@@ -99,14 +100,13 @@ def peaks(
     pair = _pair(system, output, input)
     low, high = (0.0, 2 * float(pair.omega.max())) if band is None else band
     if not (0 <= low < high < np.inf):
-        raise ValueError(f"band: expected 0 <= lowest < highest (rad/s), found ({low}, {high})")
+        raise wrong("band", "0 <= lowest < highest (rad/s)", (low, high))
     infinite = (pair.zeta * pair.omega == 0) & (pair.omega >= low) & (pair.omega <= high)
     if np.any(infinite):
         mode = int(np.argmax(infinite))
-        raise ValueError(
-            "zeta: expected damped modes above 0 Hz in the band, as others have infinite peaks, "
-            f"found omega[{mode}] = {pair.omega[mode]}, zeta[{mode}] = {pair.zeta[mode]}"
-        )
+        expected = "damped modes above 0 Hz in the band, as others have infinite peaks"
+        undamped = f"omega[{mode}] = {pair.omega[mode]}, zeta[{mode}] = {pair.zeta[mode]}"
+        raise wrong("zeta", expected, undamped)
     slope = Slope(pair, quantity)
     # The modes are natural breaks: with one at the end of an interval, its width is soon found.
     inside = pair.omega[(pair.omega > low) & (pair.omega < high)]
@@ -128,7 +128,7 @@ def _pair(system: ModalSystem, output: int, input: int) -> ModalSystem:
         ("input", input, system.input.shape[1]),
     ):
         if not 0 <= index < size:
-            raise ValueError(f"{name}: expected a number from 0 to {size - 1}, found {index}")
+            raise wrong(name, f"a number from 0 to {size - 1}", index)
     o, i = slice(output, output + 1), slice(input, input + 1)
     return ModalSystem(
         omega=system.omega,

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from modefront.errors import wrong
 from modefront.response.checks import FloatArray, no_negative, real_array
 
 
@@ -51,7 +52,7 @@ class ModalSystem:
 
     Raises
     ------
-    ValueError
+    InputError
         For wrong shapes, numbers that are not finite, negative frequencies or damping.
 
     """
@@ -79,10 +80,8 @@ class ModalSystem:
                 object.__setattr__(self, name, checked)
         if self.static is not None and np.any(omega == 0):
             at = int(np.argmax(omega == 0))
-            raise ValueError(
-                "static: expected None, as a structure with a rigid-body mode has no static "
-                f"response, found an array with omega[{at}] = 0"
-            )
+            expected = "None, as a structure with a rigid-body mode has no static response"
+            raise wrong("static", expected, f"an array with omega[{at}] = 0")
         object.__setattr__(self, "omega", omega)
         object.__setattr__(self, "zeta", zeta)
         object.__setattr__(self, "input", load)

@@ -26,7 +26,7 @@ from typing import Annotated, Protocol, cast
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.errors import Fault, refuse
+from modefront.errors import wrong
 from modefront.options import check_fields, number, plain, whole
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Scalarisation
@@ -91,7 +91,7 @@ class Search:
             object.__setattr__(self, "limit", usual)
         check_fields(self)
         if self.limit < self.starts:
-            refuse([Fault("", "limit", f"at least starts, {self.starts}", str(self.limit))])
+            raise wrong("limit", f"at least starts, {self.starts}", self.limit)
 
     @classmethod
     def none(cls) -> Search:

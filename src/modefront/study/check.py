@@ -1,4 +1,4 @@
-"""What can be said of a study before it is run."""
+"""The check of a study before it is run: its derivatives, and what its data do not determine."""
 
 from __future__ import annotations
 
@@ -64,33 +64,48 @@ class Findings:
 
 
 def check(study: Study) -> Findings:
-    """Compare derivatives with finite differences and look for what the data cannot determine.
+    """Return the error of the derivatives, and warnings of what the data do not determine.
 
     Raises InputError where no parameter changes a group.
     """
     problem = study.problem
     refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))
-    at = problem.evaluate(problem.start)
+    nominal = problem.evaluate(problem.start)
     scale = scale_at(problem, problem.start)
-    warnings = _undetermined(problem, at, scale)
-    for r, coincident in zip(problem.data.modes, at.quantities["coincident"], strict=True):
+    warnings = [
+        *_undetermined(problem, nominal, scale),
+        *_unpaired(problem, nominal),
+        *_at_bounds(problem),
+        *_infeasible_bounds(problem),
+    ]
+    return Findings(derivative_error(problem), determined(problem), tuple(warnings))
+
+
+def _unpaired(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:
+    """Warn of modes that coincide with others, and of measured ones that no mode resembles."""
+    warnings = []
+    for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True):
         if coincident:
             warnings.append(
                 f"mode {r} of the nominal model coincides with another one: "
                 "its derivatives are not defined"
             )
-    for r, value in zip(problem.data.modes, at.quantities["mac"], strict=True):
+    for r, value in zip(problem.data.modes, nominal.quantities["mac"], strict=True):
         if value < 0.5:
             warnings.append(
                 f"measured mode {r} resembles no mode of the nominal model (best MAC {value:.2f})"
             )
-    for name, value, *bounds in zip(
-        problem.model.parameters, problem.start, problem.lower, problem.upper, strict=True
-    ):
-        if value in bounds:
-            warnings.append(f"the nominal value of {name} is one of its bounds, {value:g}")
-    warnings += _corners(problem)
-    return Findings(derivative_error(problem), determined(problem), tuple(warnings))
+    return warnings
+
+
+def _at_bounds(problem: UpdatingProblem) -> list[str]:
+    """Warn of nominal values that are bounds."""
+    values = zip(problem.model.parameters, problem.start, problem.lower, problem.upper, strict=True)
+    return [
+        f"the nominal value of {name} is one of its bounds, {value:g}"
+        for name, value, *bounds in values
+        if value in bounds
+    ]
 
 
 def refuse_unchanged_groups(problem: UpdatingProblem, file: str, unchanged: Sequence[int]) -> None:
@@ -122,50 +137,50 @@ def _fitted_by_any(problem: UpdatingProblem, i: int) -> str:
 def determined(problem: UpdatingProblem) -> tuple[str, ...]:
     """Return what each group, and all together, determine at the nominal parameters."""
     names, groups = problem.model.parameters, problem.groups
-    at, scale = problem.evaluate(problem.start), scale_at(problem, problem.start)
-    idle = without_effect(problem, at, scale)
+    nominal, scale = problem.evaluate(problem.start), scale_at(problem, problem.start)
+    idle = without_effect(problem, nominal, scale)
     out = []
     for i, group in enumerate(groups):
-        found = combinations(problem, problem.start, i, scale=scale)
-        out.append(summary(group.name, measured_thing([group]), found, names, scale, idle))
+        of_group = combinations(problem, problem.start, i, scale=scale)
+        out.append(summary(group.name, measured_thing([group]), of_group, names, scale, idle))
     if len(groups) > 1:
-        weights = optimal_weights(problem.properties, at.J)
-        found = combinations(problem, problem.start, weights=weights, scale=scale)
+        weights = optimal_weights(problem.properties, nominal.J)
+        of_all = combinations(problem, problem.start, weights=weights, scale=scale)
         thing = measured_thing(groups)
-        out.append(summary("all data together", thing, found, names, scale, idle))
+        out.append(summary("all data together", thing, of_all, names, scale, idle))
     return tuple(out)
 
 
-def _undetermined(problem: UpdatingProblem, at: Evaluation, scale: Scale) -> list[str]:
+def _undetermined(problem: UpdatingProblem, nominal: Evaluation, scale: Scale) -> list[str]:
     """Warn of parameters without effect, of what all data leave open, and of parameters alike."""
     names = problem.model.parameters
-    weights = optimal_weights(problem.properties, at.J)
-    idle = without_effect(problem, at, scale)
+    weights = optimal_weights(problem.properties, nominal.J)
+    idle = without_effect(problem, nominal, scale)
+    known = combinations(problem, problem.start, weights=weights, scale=scale)
+    weak = [each for each in known if each.share < WEAK and not _is_of(idle, each)]
     out = no_effect_in_words(idle, names)
-    found = combinations(problem, problem.start, weights=weights, scale=scale)
-    weak = [one for one in found if one.share < WEAK and not _is_of(idle, one)]
-    for degree, some in (
-        ("do not determine", [one for one in weak if one.share <= NONE]),
-        ("hardly determine", [one for one in weak if one.share > NONE]),
+    for degree, chosen in (
+        ("do not determine", [each for each in weak if each.share <= NONE]),
+        ("hardly determine", [each for each in weak if each.share > NONE]),
     ):
-        if len(some) > SHOWN:
+        if len(chosen) > SHOWN:
             out.append(
-                f"the data {degree} {len(some)} of {len(names) - len(idle)} combinations of "
+                f"the data {degree} {len(chosen)} of {len(names) - len(idle)} combinations of "
                 "parameters: take fewer parameters, or measure more"
             )
             continue
         out += [
             f"the data {degree} this combination of relative changes"
-            f"{f' ({one.share:.0e} of the best one)' if one.share > NONE else ''}: "
-            f"{in_words(one, names)}"
-            for one in some
+            f"{f' ({each.share:.0e} of the best one)' if each.share > NONE else ''}: "
+            f"{in_words(each, names)}"
+            for each in chosen
         ]
-    return out + alike_in_words(gram(at, weights, scale), names, idle)
+    return out + alike_in_words(gram(nominal, weights, scale), names, idle)
 
 
-def _is_of(idle: Sequence[int], one: Combination) -> bool:
+def _is_of(idle: Sequence[int], combination: Combination) -> bool:
     """Return whether a combination is one of parameters without effect."""
-    return bool(np.linalg.norm(one.direction[list(idle)]) > np.sqrt(0.5))
+    return bool(np.linalg.norm(combination.direction[list(idle)]) > np.sqrt(0.5))
 
 
 def derivative_error(problem: UpdatingProblem) -> float:
@@ -196,10 +211,10 @@ def derivative_error(problem: UpdatingProblem) -> float:
     return float(error.max())
 
 
-def _corners(problem: UpdatingProblem) -> list[str]:
+def _infeasible_bounds(problem: UpdatingProblem) -> list[str]:
     """Warn where the model has no modes at the bounds of all parameters at once.
 
-    It is the full model that is asked: a basis may not hold what makes a matrix indefinite.
+    The full model is evaluated: a basis may not hold what makes a matrix indefinite.
     """
     if isinstance(problem.model, ReducedModel):
         problem = replace(problem, model=problem.model.full)

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, refuse
+from modefront.errors import Fault, refuse, wrong
 from modefront.options import check_fields, whole
 from modefront.uncertainty.noise import Source, available
 
@@ -39,7 +39,7 @@ class Uncertainty:
     def __post_init__(self) -> None:
         check_fields(self)
         if self.bootstrap and self.source == "none":
-            refuse([Fault("", "bootstrap", "0 with source = 'none'", str(self.bootstrap))])
+            raise wrong("bootstrap", "0 with source = 'none'", self.bootstrap)
 
     def faults(self, data: ModalData) -> Iterator[Fault]:
         """Yield what is asked for that the data do not have."""
