@@ -33,7 +33,9 @@ if TYPE_CHECKING:
     from modefront.residuals.groups import Group as Group
     from modefront.residuals.problem import UpdatingProblem as UpdatingProblem
     from modefront.residuals.problem import updating_problem as updating_problem
-    from modefront.results.files import read as read_results
+    from modefront.results.results import ReportedModel as ReportedModel
+    from modefront.results.results import Results as Results
+    from modefront.results.results import read_results as read_results
     from modefront.solvers.explore import Search as Search
     from modefront.study.definition import Study as Study
     from modefront.study.file import load as load
@@ -67,7 +69,9 @@ _HOMES = {
     "matrices": "models.matrices",
     "modal_data": "data.modal",
     "read_csv": "data.csv",
-    "read_results": "results.files:read",
+    "ReportedModel": "results.results",
+    "Results": "results.results",
+    "read_results": "results.results",
     "run": "study.session",
     "solve": "study.session",
     "updating_problem": "residuals.problem",
@@ -85,6 +89,8 @@ __all__ = [
     "Passage",
     "PeakResponse",
     "Reduction",
+    "ReportedModel",
+    "Results",
     "Search",
     "SoilFilter",
     "Study",

@@ -85,7 +85,7 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     loaded = _refined(load(study), refine)
     directory = directory or study.with_name(f"{study.stem}-results")
     with progress_bar(loaded.name) as progress:
-        data = run_study(loaded, directory, fresh=fresh, progress=progress)
+        data = run_study(loaded, directory, fresh=fresh, progress=progress).dataset
     print_summary(data, directory, progress.spent)
     failed = not_converged(data)
     if failed:
@@ -105,9 +105,9 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
 def show(directory: Path, form: str, figures: bool, every: bool) -> None:
     """Print the results in DIRECTORY."""
     from modefront.cli.show import as_json, print_results
-    from modefront.results.files import read
+    from modefront.results.files import read_dataset
 
-    data = read(directory)
+    data = read_dataset(directory)
     if figures:
         from modefront.cli.figures import write_figures
 

@@ -96,6 +96,22 @@ class MatrixModel:
         finally:
             spend(Costs(full_time=time.perf_counter() - started))
 
+    def full_modes(self, theta: Floats, count: int, loads: Floats | None = None) -> full.FullModes:
+        """Return the ``count`` lowest modes at all degrees of freedom, and static responses.
+
+        ``loads`` are (N, loads), none unless given. Raises ModelError where the model has no such
+        modes.
+        """
+        spend(Costs(eigenproblems=1))
+        columns = np.zeros((self.size, 0)) if loads is None else loads
+        started = time.perf_counter()
+        try:
+            if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
+                return full.dense_modes(self.stiffness, self.mass, theta, count, columns)
+            return full.sparse_modes(self.pencil, theta, count, columns)
+        finally:
+            spend(Costs(full_time=time.perf_counter() - started))
+
     def is_singular(self, theta: Floats) -> bool:
         """Return whether K(theta) is singular to working precision."""
         if isinstance(self.stiffness, DenseAffine):
@@ -114,21 +130,13 @@ class MatrixModel:
 
     def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
         """Return the model between ``ports``; see `modefront.models.base.Model`."""
-        spend(Costs(eigenproblems=1))
         outputs = self._patterns(ports.outputs)
         if ports.base is None:
             loads, rigid = self._patterns(ports.forces), None
         else:
             motion = self.base[ports.base][:, None]
             loads, rigid = -(self.mass.at(theta) @ motion), gram(outputs, motion)
-        started = time.perf_counter()
-        try:
-            if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
-                found = full.dense_modes(self.stiffness, self.mass, theta, count, loads)
-            else:
-                found = full.sparse_modes(self.pencil, theta, count, loads)
-        finally:
-            spend(Costs(full_time=time.perf_counter() - started))
+        found = self.full_modes(theta, count, loads)
         phi = self.selection @ found.Phi
         return Transfer(
             Modes(found.lam, phi),

@@ -21,7 +21,7 @@ from scipy.spatial.distance import cdist, pdist, squareform
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError
-from modefront.results.files import read
+from modefront.results.files import read_dataset
 from modefront.results.selection import front_points
 
 PREDICTED = ("frequency", "mac")
@@ -112,7 +112,7 @@ def compare(folders: Sequence[Path]) -> Comparison:
     found: list[tuple[str, xr.Dataset]] = []
     for folder in folders:
         try:
-            found.append((str(folder), read(folder)))
+            found.append((str(folder), read_dataset(folder)))
         except InputError as error:
             faults.extend(error.faults)
     groups = [tuple(map(str, data["group"].values)) for _, data in found]

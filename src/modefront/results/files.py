@@ -22,7 +22,7 @@ def write(data: xr.Dataset, path: Path) -> None:
     temporary.replace(path)
 
 
-def read(folder: Path) -> xr.Dataset:
+def read_dataset(folder: Path) -> xr.Dataset:
     """Return the results in a folder.
 
     Raises InputError where there are none, where they are not those of modefront, and where they

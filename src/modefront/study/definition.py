@@ -21,7 +21,7 @@ from modefront.study.labels import labels_of
 from modefront.uncertainty.options import Uncertainty
 
 if TYPE_CHECKING:
-    import xarray as xr
+    from modefront.results.results import Results
 
 
 @dataclass(frozen=True)
@@ -153,7 +153,7 @@ class Study:
         refuse(faults)
         return replace(self, predictions=tuple(out))
 
-    def solve(self) -> xr.Dataset:
+    def solve(self) -> Results:
         """Return all Pareto-optimal models, edges and weighted models.
 
         Raises UnfinishedError where no minimum of a group can be found, InputError where no
@@ -163,8 +163,8 @@ class Study:
 
         return in_memory(self)
 
-    def run(self, folder: Path | str) -> xr.Dataset:
-        """Do the work, write ``results.nc`` into a folder and return what it holds.
+    def run(self, folder: Path | str) -> Results:
+        """Do the work, write ``results.nc`` into a folder and return its results.
 
         Work of an interrupted run is continued where the study was read from a file. What is
         raised is what `modefront.run` raises.

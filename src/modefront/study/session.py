@@ -44,6 +44,8 @@ from modefront.work.task import Task
 if TYPE_CHECKING:
     import xarray as xr
 
+    from modefront.results.results import Results
+
 
 def solve(
     problem: UpdatingProblem,
@@ -56,7 +58,7 @@ def solve(
     uncertainty: Uncertainty | None = None,
     predictions: Sequence[Prediction] = (),
     **front: Unpack[ParetoOptions],
-) -> xr.Dataset:
+) -> Results:
     """Return all Pareto-optimal models, edges and weighted models of a problem.
 
     The arguments are the options of `modefront.Study`. Those of ``pareto`` may be given by
@@ -77,22 +79,24 @@ def solve(
     return in_memory(study)
 
 
-def in_memory(study: Study) -> xr.Dataset:
+def in_memory(study: Study) -> Results:
     """Return the results of a study, and write nothing.
 
     Raises what `solve` raises.
     """
-    return _Session(study.completed(), Serial()).results()
+    from modefront.results.results import Results
+
+    return Results(_Session(study.completed(), Serial()).results(), study.problem)
 
 
 def run(
     study: Study,
-    folder: Path,
+    folder: Path | str,
     *,
     fresh: bool = False,
     refined: float | None = None,
     progress: Progress | None = None,
-) -> xr.Dataset:
+) -> Results:
     """Write the results of a study to ``results.nc`` in a folder, and return them.
 
     Tasks that an earlier run of the same inputs has done are not done again. ``fresh`` sets their
@@ -102,7 +106,9 @@ def run(
     cannot be done.
     """
     from modefront.results.files import FILE, write
+    from modefront.results.results import Results
 
+    folder = Path(folder)
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
     study = study.completed()
@@ -116,10 +122,9 @@ def run(
         fault = Fault(str(folder), "folder", "a folder that can be written to", str(error))
         raise InputError(fault) from None
     data = _Session(study, Serial(Store(tasks), progress or Progress())).results()
-    data.attrs |= {"study": study.name, "inputs": study.digest, "remark": study.remark}
     _keep_other(folder / FILE, study.digest)
     write(data, folder / FILE)
-    return data
+    return Results(data, study.problem)
 
 
 @dataclass(frozen=True)
@@ -190,6 +195,9 @@ class _Session:
         predictions = self.work.total(lambda stage: stage == "predict")
         refined = self.study.pareto.refined
         out: dict[str, str | int | float] = {
+            "study": self.study.name,
+            "inputs": self.study.digest,
+            "remark": self.study.remark,
             "version": __version__,
             "seed": self.study.seed,
             "model_evaluations": total.model_evaluations,

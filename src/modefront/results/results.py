@@ -1,0 +1,236 @@
+"""Results as an object: points by their kind, models with matrices and modes, tables."""
+
+from __future__ import annotations
+
+import html
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+import scipy.sparse
+import xarray as xr
+
+from modefront._typing import Floats
+from modefront.errors import ModelError
+from modefront.fronts.point import Kind
+from modefront.models.matrices import MatrixModel
+from modefront.models.reduced.model import ReducedModel
+from modefront.residuals.problem import UpdatingProblem
+from modefront.results.files import read_dataset
+from modefront.results.selection import front_points
+
+if TYPE_CHECKING:
+    import pandas as pd
+
+SHOWN = (Kind.NOMINAL, Kind.OPTIMAL, Kind.BOUNDED, Kind.EQUAL, Kind.EDGE)
+"""Kinds of models in the short representation, in its order."""
+
+
+@dataclass(frozen=True)
+class FullShapes:
+    """Modes of a model at all degrees of freedom.
+
+    Attributes
+    ----------
+    frequency : (modes,) frequencies in Hz, ascending
+    shape : (N, modes) mass-normalised mode shapes; the sign is arbitrary
+    """
+
+    frequency: Floats
+    shape: Floats
+
+
+@dataclass(frozen=True)
+class ReportedModel:
+    """A model of the results.
+
+    Attributes
+    ----------
+    label, kind : name of the point, and why it is reported
+    theta : parameter values by name
+    objective : J by group
+    frequency : (modes,) frequencies in Hz paired with the measured modes
+    mac : (modes,) MAC values of the pairs
+    problem : the updating problem; None where the results were read without their study
+    """
+
+    label: str
+    kind: str
+    theta: Mapping[str, float]
+    objective: Mapping[str, float]
+    frequency: Floats
+    mac: Floats
+    problem: UpdatingProblem | None = None
+
+    @property
+    def stiffness(self) -> scipy.sparse.csc_array:
+        """Stiffness matrix K(theta), (N, N); raises ModelError for a model without matrices."""
+        return scipy.sparse.csc_array(self._matrices.stiffness.at(self._values))
+
+    @property
+    def mass(self) -> scipy.sparse.csc_array:
+        """Mass matrix M(theta), (N, N); raises ModelError for a model without matrices."""
+        return scipy.sparse.csc_array(self._matrices.mass.at(self._values))
+
+    def modes(self, count: int | None = None) -> FullShapes:
+        """Return the ``count`` lowest modes at all degrees of freedom, as many as were measured.
+
+        Raises ModelError for a model without matrices, and where it has no such modes.
+        """
+        found = self._matrices.full_modes(self._values, count or len(self.frequency))
+        return FullShapes(np.sqrt(found.lam) / (2 * np.pi), found.Phi)
+
+    @property
+    def _values(self) -> Floats:
+        return np.array(list(self.theta.values()))
+
+    @property
+    def _matrices(self) -> MatrixModel:
+        if self.problem is None:
+            raise ModelError(
+                "the matrices of a model: expected results with their study, "
+                "read_results(folder, study), found results alone"
+            )
+        model = self.problem.model
+        model = model.full if isinstance(model, ReducedModel) else model
+        if not isinstance(model, MatrixModel):
+            raise ModelError(f"expected a model with matrices, found {type(model).__name__}")
+        return model
+
+
+@dataclass(frozen=True, repr=False)
+class Results:
+    """Results of a study, over the dataset that ``results.nc`` holds.
+
+    Variables are looked up as in the dataset: ``results["theta"]``.
+
+    Attributes
+    ----------
+    dataset : all variables and attributes; docs/results.md lists them
+    problem : the updating problem; None where the results were read without their study
+    """
+
+    dataset: xr.Dataset
+    problem: UpdatingProblem | None = None
+
+    def __getitem__(self, name: str) -> xr.DataArray:
+        """Return a variable; raises KeyError where there is none of this name."""
+        return self.dataset[name]
+
+    def __contains__(self, name: object) -> bool:
+        return name in self.dataset
+
+    def __len__(self) -> int:
+        return self.dataset.sizes["point"]
+
+    def __iter__(self) -> Iterator[ReportedModel]:
+        return map(self.model, range(len(self)))
+
+    @property
+    def attrs(self) -> dict[Any, Any]:
+        """Attributes of the dataset."""
+        return self.dataset.attrs
+
+    @property
+    def front(self) -> xr.Dataset:
+        """The points along the front, in their order."""
+        return self.dataset.isel(point=front_points(self.dataset))
+
+    @property
+    def edges(self) -> xr.Dataset:
+        """The models that are best in one group each."""
+        return self._of(Kind.EDGE)
+
+    @property
+    def nominal(self) -> ReportedModel:
+        """The model at the nominal parameters."""
+        return self.model(Kind.NOMINAL.value)
+
+    @property
+    def reference(self) -> ReportedModel:
+        """The model that the data prefer: of optimal, else bounded, else equal weights."""
+        return self.model(str(self.attrs["reference"]))
+
+    @property
+    def optimal(self) -> ReportedModel | None:
+        """The optimally weighted model; None where there is no regular minimum."""
+        labels = self._of(Kind.OPTIMAL)["label"].values
+        return self.model(str(labels[0])) if labels.size else None
+
+    def model(self, point: str | int) -> ReportedModel:
+        """Return a model by its label, or by its position from 0.
+
+        Raises KeyError for an unknown label, IndexError for a position that there is not.
+        """
+        labels = [str(x) for x in self["label"].values]
+        if isinstance(point, str):
+            if point not in labels:
+                raise KeyError(f"expected one of {', '.join(labels)}, found {point!r}")
+            point = labels.index(point)
+        row = self.dataset.isel(point=point)
+        return ReportedModel(
+            str(row["label"].values),
+            str(row["kind"].values),
+            dict(zip(map(str, row["parameter"].values), row["theta"].values.tolist(), strict=True)),
+            dict(zip(map(str, row["group"].values), row["objective"].values.tolist(), strict=True)),
+            row["frequency"].values,
+            row["mac"].values,
+            self.problem,
+        )
+
+    def table(self, *points: str) -> pd.DataFrame:
+        """Return one row a model, of all points or those of these labels.
+
+        Columns are the kind, whether it is Pareto optimal, J of each group, the parameters, errors
+        of the frequencies in % and MAC values.
+        """
+        import pandas as pd
+
+        data = self.dataset
+        measured = data["measured_frequency"].values
+        columns: dict[str, Any] = {"kind": data["kind"].values, "pareto": data["pareto"].values}
+        for i, group in enumerate(data["group"].values):
+            columns[f"J {group}"] = data["objective"].values[:, i]
+        for j, name in enumerate(data["parameter"].values):
+            columns[str(name)] = data["theta"].values[:, j]
+        for r, mode in enumerate(data["mode"].values):
+            columns[f"error f{mode} %"] = 100 * (data["frequency"].values[:, r] / measured[r] - 1)
+        for r, mode in enumerate(data["mode"].values):
+            columns[f"MAC {mode}"] = data["mac"].values[:, r]
+        frame = pd.DataFrame(columns, index=pd.Index(data["label"].values, name="model"))
+        return frame.loc[list(points)] if points else frame
+
+    def _of(self, kind: Kind) -> xr.Dataset:
+        return self.dataset.isel(point=np.flatnonzero(self["kind"].values == kind.value))
+
+    @property
+    def _title(self) -> str:
+        front = self.front["pareto"].values
+        optimal = f"{int(front.sum())} of {front.size} points of the front are Pareto optimal"
+        name = str(self.attrs.get("study", "")) or "results"
+        return f"{name}: {optimal}; {self.attrs['model_evaluations']} eigenproblems"
+
+    @property
+    def _short(self) -> pd.DataFrame:
+        labels = [str(x) for kind in SHOWN for x in self._of(kind)["label"].values]
+        return self.table(*labels)
+
+    def __repr__(self) -> str:
+        lines = [self._title, "", self._short.to_string(float_format=lambda x: f"{x:.4g}")]
+        return "\n".join([*lines, "", *map(str, self["finding"].values[:3])])
+
+    def _repr_html_(self) -> str:
+        table = self._short.to_html(float_format=lambda x: f"{x:.4g}", escape=True)
+        findings = "".join(f"<li>{html.escape(str(x))}</li>" for x in self["finding"].values[:3])
+        return f"<p>{html.escape(self._title)}</p>{table}<ul>{findings}</ul>"
+
+
+def read_results(folder: Path | str, problem: UpdatingProblem | None = None) -> Results:
+    """Return the results in a folder; with their problem, models have matrices and modes.
+
+    Raises InputError where there are none, where they are not those of modefront, and where they
+    are of another format.
+    """
+    return Results(read_dataset(Path(folder)), problem)
