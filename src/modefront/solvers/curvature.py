@@ -9,7 +9,15 @@ whole is
 
 central differences, exact to :math:`O(\eta^2)`; next to a bound, of two points on the inner side,
 to the same order. The quantities that come with evaluations are differentiated likewise, for
-nothing. u are the parameters over their ranges.
+nothing.
+
+========  =======  =======================================================
+symbol    shape    meaning
+========  =======  =======================================================
+u         (p,)     parameters over their ranges
+eta       ()       step of the differences, in u
+e_k       (p,)     unit vector of the k-th parameter
+========  =======  =======================================================
 """
 
 from __future__ import annotations
@@ -24,10 +32,12 @@ from modefront.solvers.problem import Evaluation, Problem
 from modefront.work.codec import record
 
 STEP = 3e-4
-"""Step of the differences, over the range of a parameter."""
+"""Step of the differences, over the range of a parameter: balances their errors, eta**2 = 1e-7 and
+1e-11 / eta = 3e-8 with the relative error of the derivatives of a large eigenproblem."""
 
 ERROR = 1e-5
-"""Second derivative over the greatest one below which it is the error of differences."""
+"""Second derivative over the greatest one below which it is the error of differences: a hundred
+times that of `STEP`, as higher derivatives are greater than the second ones."""
 
 
 @record
@@ -58,21 +68,21 @@ def second_order(problem: Problem, at: Evaluation) -> SecondOrder | None:
         steps, weights = _stencil((at.theta[k] - problem.lower[k]) / span[k])
         thetas = [np.clip(at.theta + s * unit, problem.lower, problem.upper) for s in steps]
         around = [problem.evaluate(theta) for theta in thetas]
-        if not all(one.feasible for one in around):
+        if not all(neighbour.feasible for neighbour in around):
             return None
         points = [at, *around]
         # Errors of a reduced basis, say, are known at the point alone.
         names = [name for name in at.quantities if name in around[0].quantities]
-        columns.append(sum(w * one.dJ for w, one in zip(weights, points, strict=True)) / span[k])
+        columns.append(sum(w * x.dJ for w, x in zip(weights, points, strict=True)) / span[k])
         slopes.append(
             {
-                name: sum(w * one.quantities[name] for w, one in zip(weights, points, strict=True))
+                name: sum(w * x.quantities[name] for w, x in zip(weights, points, strict=True))
                 / span[k]
                 for name in names
             }
         )
     H = np.stack(columns, axis=2)
-    named = {name: np.stack([one[name] for one in slopes], axis=-1) for name in names}
+    named = {name: np.stack([slope[name] for slope in slopes], axis=-1) for name in names}
     return SecondOrder(at, (H + H.transpose(0, 2, 1)) / 2, named)
 
 

@@ -44,25 +44,29 @@ from modefront.solvers.problem import (
     ObjectiveDerivatives,
     Problem,
     Residual,
+    Wrapped,
     infeasible,
 )
 from modefront.solvers.scalarisation import Linear, weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 
 EXACT = 1e-10
-"""An objective below this share of its typical size is fitted exactly."""
+"""An objective below this share of its typical size is fitted exactly: residuals of 1e-5 of their
+typical size, far below the errors of any measurement and above what solutions leave of them."""
 
 TIE = 1e-6
-"""Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal."""
+"""Minima of an objective that differ by less than this share of it, or of `EXACT`, are equal.
+What solutions leave is less: steps of 1e-7 to 1e-8 change a smooth objective by the square."""
 
 CLEAR = 1e-3
 """Gain in the other objectives, over them, that is more than a tie in the first one allows."""
 
 RANK = 1e-7
-"""Singular value of the residuals' derivatives, over the greatest, that counts as none."""
+"""Singular value of the residuals' derivatives, over the greatest, that counts as none: the
+tolerance of the parameters."""
 
 REPEATS = 4
-"""How often both steps are repeated at most."""
+"""How often both steps are repeated at most; it ends earlier where nothing is gained."""
 
 EXPLORE, COARSE, FINE = 1e-5, 1e-6, 1e-7
 """Values of epsilon: for the value of a model, and the two from which a limit is extrapolated."""
@@ -176,7 +180,7 @@ class Lexicographic:
         if not self.is_open(problem, start.at):
             return start
         residual, Q = start.at.residuals[i], self._changing(problem, start.at)
-        held = Held(problem, i, Q)
+        held = Held(i, Q)
         k, root = Q.shape[1], float(np.sqrt(self.sizes[i]))
         exact = start.at.J[i] <= EXACT * self.sizes[i]
         aim = np.zeros(k) if exact else Q.T @ residual.r
@@ -186,7 +190,9 @@ class Lexicographic:
         learned = first.learned.copy()
         learned[k:] = np.delete(start.learned, i, axis=0)
         tight = replace(options, constraint=max(1e-9, 1e-2 * options.step), reduction=1e-16)
-        found = solve(held, Linear(w, A, aim / root), replace(first, learned=learned), tight)
+        found = solve(
+            held.problem(problem), Linear(w, A, aim / root), replace(first, learned=learned), tight
+        )
         known = start.learned.copy()
         known[np.arange(n) != i] = found.learned[k:]
         return replace(
@@ -216,42 +222,17 @@ class Lexicographic:
 
 @dataclass(frozen=True)
 class Held:
-    """A problem whose first objectives are combined residuals Q^T r_i, followed by the other J."""
+    """Combined residuals Q^T r_i in the place of one objective, followed by the other J."""
 
-    problem: Problem
     objective: int
     Q: Floats
 
-    @property
-    def objectives(self) -> tuple[str, ...]:
-        """Names of the rows and of the other objectives."""
-        names = self.problem.objectives
-        rows = [f"{names[self.objective]} {k + 1}" for k in range(self.Q.shape[1])]
-        return (*rows, *(name for i, name in enumerate(names) if i != self.objective))
-
-    @property
-    def lower(self) -> Floats:
-        """Lower bounds, shape (p,)."""
-        return self.problem.lower
-
-    @property
-    def upper(self) -> Floats:
-        """Upper bounds, shape (p,)."""
-        return self.problem.upper
-
-    @property
-    def start(self) -> Floats:
-        """The start of the problem itself, shape (p,)."""
-        return self.problem.start
-
-    def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
-        """Return the residuals and the other objectives; derivatives are always there."""
-        del derivatives
-        return self.of(self.problem.evaluate(theta))
-
-    def on_branch(self, branch: tuple[int, ...]) -> Problem:
-        """Return the problem of one smooth piece of the objectives."""
-        return replace(self, problem=self.problem.on_branch(branch))
+    def problem(self, problem: Problem) -> Wrapped:
+        """Return a problem with these objectives; its evaluations always have derivatives."""
+        names, i = problem.objectives, self.objective
+        rows = [f"{names[i]} {k + 1}" for k in range(self.Q.shape[1])]
+        others = (name for j, name in enumerate(names) if j != i)
+        return Wrapped(problem, lambda of, theta, _: self.of(of.evaluate(theta)), (*rows, *others))
 
     def of(self, at: Evaluation) -> Evaluation:
         """Return the residuals and the other objectives from an evaluation of the problem."""

@@ -1,31 +1,9 @@
-r"""Models that are equally good: manifolds of minima, followed and sampled to their ends.
+r"""Equivalent models: manifolds of minima, followed and sampled to their ends.
 
 Where data do not determine all parameters, the minimisers of a scalarisation f(J) form a manifold
-(Katafygiotis & Lam 2002, Earthquake Engineering and Structural Dynamics 31, 791-812). Its tangent
-space at a minimum is the null space of the second derivatives
-
-.. math:: B = \sum_i w_i \, \partial^2 J_i + \partial J^T f'' \partial J, \qquad
-    w = \partial f / \partial J .
-
-With :math:`J_i = \|r_i\|^2`, their known part (Gauss-Newton's) is
-:math:`B_0 = 2 \sum_i w_i\, \partial r_i^T \partial r_i`, and the rest is
-:math:`2 \sum_i w_i\, r_i^T \partial^2 r_i`. The directions in which no residual changes to first
-order are the null space of :math:`B_0`, exactly and for nothing. It is that of B as well, unless
-
-* residuals bend where they do not change, and such a direction is no tangent; or
-* residuals turn, :math:`r^T \partial^2 r = - \|\partial r\|^2`, while the sum of their squares
-  stays.
-
-All of B, by differences (`modefront.solvers.curvature`), tells at the first minimum whether it is
-so; if it is, B is taken in place of :math:`B_0` at every point.
-
-A step along the tangents is corrected back to the manifold across them,
-
-.. math:: s = -B^+ g, \qquad g = w^T \partial J ,
-
-with the inverse on the complement of the null space, until s vanishes: quadratically where
-residuals vanish, linearly elsewhere; in the place of :math:`B_0`, B is that of the point where the
-step began. How far a manifold is followed depends on its dimension d.
+(Katafygiotis & Lam 2002, Earthquake Engineering and Structural Dynamics 31, 791-812). Its tangents
+and the corrections that lead back to it are those of `modefront.solvers.tangents`. How far it is
+followed depends on its dimension d.
 
 * Curves and surfaces (d = 1, 2) are covered. New points grow from points by steps of length h until
   every step from every point arrives next to a known one (a packing, as in Henderson 2002,
@@ -52,13 +30,13 @@ manifolds of a programme are bounded; where they are spent, what is known until 
 
 Variables are :math:`u = (\theta - lower) / (upper - lower)`.
 
-========  ==========================================================
-symbol    meaning
-========  ==========================================================
-d         dimension of the manifold; 0 is an isolated minimum
-h, H      distance of neighbouring points, and longest step of a walk, in u
-T         (p, d) orthonormal basis of the tangent space, in u
-========  ==========================================================
+========  =======  =================================================================
+symbol    shape    meaning
+========  =======  =================================================================
+d         ()       dimension of the manifold; 0 is an isolated minimum
+h, H      ()       distance of neighbouring points, and longest step of a walk, in u
+T         (p, d)   orthonormal basis of the tangent space, in u
+========  =======  =================================================================
 """
 
 from __future__ import annotations
@@ -73,59 +51,60 @@ import scipy.linalg
 import scipy.optimize
 
 from modefront._typing import Bools, Floats
-from modefront.solvers.curvature import ERROR, second_order
-from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.problem import Evaluation, Problem, Wrapped
 from modefront.solvers.scalarisation import Scalarisation
+from modefront.solvers.tangents import (
+    ARRIVED,
+    AT_BOUND,
+    Context,
+    TangentPoint,
+    context_of,
+    steps_to_bounds,
+)
 from modefront.work.codec import record
 
-FLAT = 1e-12
-"""Eigenvalue of B_0 over the greatest one, below which no residual changes in a direction."""
-
-TURNING = 1e-3
-"""Eigenvalue of B_0 over the greatest one, from which a direction in the null space of B is one in
-which residuals turn: their parts of B cancel to 1 %, and not by the errors of differences."""
-
 NEAR = 0.7
-"""Distance over the length of a step, below which a point counts as one that is known."""
+"""Distance over the length of a step, below which a point counts as one that is known: below 1, as
+corrected steps do not end where they were to, and above 1/2, or points lie twice as dense."""
 
 SHORT = 0.3
-"""Step over h, below which it is not worth making to a bound, but at the ends of a curve."""
-
-EQUAL = 1e-6
-"""Increase of f, over the size of its parts, up to which a model is as good."""
-
-ARRIVED = 1e-8
-"""Correction in u below which a point lies on the manifold."""
+"""Step over h, below which it is not worth making to a bound, but at the ends of a curve: an
+evaluation or more for a model like the last one."""
 
 SAME_MINIMUM = 1e-5
-"""Distance in u below which two isolated minima are the same."""
+"""Distance in u below which two isolated minima are the same: a hundred times the tolerance of a
+step (`modefront.solvers.sqp.Options`), which minima that are nearly flat miss by as much."""
 
-SAME_PLACE = 1e-9
-"""Distance in u below which a variable is at its bound, or does not move."""
-
-CORRECTIONS, HALVINGS = 12, 4
-"""Corrections after which a step is given up and halved, and how often it is."""
+HALVINGS = 4
+"""How often a step that finds no point is halved, at most: with shorter ones, the models that are
+wanted do not lead far."""
 
 COVERED = 2
-"""Dimensions up to which a manifold is covered."""
+"""Dimensions up to which a manifold is covered: with a distance of 0.1, three take a thousand
+models."""
 
 FAR = 0.25
-"""H: longest step of a walk over the ranges of the parameters."""
+"""H: longest step of a walk over the ranges of the parameters; a trade-off between the number of
+steps and of corrections for each."""
 
 GAIN = 1e-2
-"""Share of its range by which a parameter has to go on, lest it counts as at its end."""
+"""Share of its range by which a parameter has to go on, lest it counts as at its end: what is
+reported of a range has two digits."""
 
 FAITHFUL = 0.8
-"""What a step gains over what it gains along the tangents, above which the next one is longer."""
+"""What a step gains over what it gains along the tangents, above which the next one is longer: the
+manifold is straight over its length."""
 
 WALK = 16
-"""Steps of a walk at most."""
+"""Steps of a walk at most: of the longest ones, four times across the range of a parameter."""
 
 SPEND = 10
-"""Evaluations for the manifolds of a programme, over the number of models of one of them."""
+"""Evaluations for the manifolds of a programme, over the number of models of one of them: a model
+takes about three, some of them lost."""
 
 AHEAD = 0.5
-"""Least cosine between tangents at the two ends of a step."""
+"""Least cosine between tangents at the two ends of a step, and between a step and where it is to
+lead: 60 degrees."""
 
 
 @record
@@ -144,7 +123,7 @@ class Extent(Enum):
 @record
 @dataclass(frozen=True)
 class Manifold:
-    """A connected set of models that are equally good.
+    """A connected set of equivalent models.
 
     Attributes
     ----------
@@ -166,133 +145,24 @@ class Manifold:
     twin: int | None = None
 
 
-@dataclass(frozen=True)
-class _Chart:
-    """A point on the manifold, its tangents (p, d) and second derivatives (p, p) there."""
-
-    at: Evaluation
-    u: Floats
-    T: Floats
-    B: Floats
-
-
-@dataclass(frozen=True)
-class _Ground:
-    """What is the same everywhere on a manifold.
-
-    ``top`` is the greatest eigenvalue of B_0; ``held`` are variables that stay at a bound, or that
-    are ``idle``; ``exact`` says that B is taken and not B_0.
-    """
-
-    problem: Problem
-    programme: Scalarisation
-    value: float
-    size: float
-    top: float
-    held: Bools
-    idle: Bools
-    dimension: int
-    exact: bool
-
-    def away(self, u: Floats, at: Evaluation) -> Floats:
-        """Return the way from u to another point, but for idle variables."""
-        goal = (at.theta - self.problem.lower) / (self.problem.upper - self.problem.lower)
-        return np.where(self.idle, 0.0, goal - u)
-
-    def slope(self, at: Evaluation) -> Floats:
-        """Return g."""
-        return self.programme.gradient(at.J) @ at.dJ * (self.problem.upper - self.problem.lower)
-
-    def known(self, at: Evaluation) -> Floats:
-        """Return B_0."""
-        span = self.problem.upper - self.problem.lower
-        return np.tensordot(self.programme.gradient(at.J), at.H, axes=1) * np.outer(span, span)
-
-    def whole(self, at: Evaluation) -> Floats | None:
-        """Return B; None where the model is not defined around the point."""
-        point = second_order(self.problem, at)
-        if point is None:
-            return None
-        span = self.problem.upper - self.problem.lower
-        B = np.tensordot(self.programme.gradient(at.J), point.H, axes=1)
-        B = B + at.dJ.T @ self.programme.hessian(at.J) @ at.dJ
-        return np.asarray(B * np.outer(span, span))
-
-    def unchanging(self, at: Evaluation) -> Floats:
-        """Return a basis (p, .) of the directions in which no residual changes."""
-        lam, V = _spectrum(self.known(at), ~self.held)
-        return V[:, lam <= FLAT * max(self.top, lam.max(initial=0.0))]
-
-    def chart(self, at: Evaluation, u: Floats) -> _Chart | None:
-        """Return a point with its tangents; None where they cannot be told."""
-        if not self.exact:
-            return _Chart(at, u, self.unchanging(at), self.known(at))
-        B = self.whole(at)
-        return None if B is None else _Chart(at, u, self.tangents(at, B), B)
-
-    def tangents(self, at: Evaluation, B: Floats) -> Floats:
-        """Return a basis (p, .) of the null space of B, see the top of the module."""
-        flat = ERROR * max(self.top, float(np.abs(B).max()))
-        still = self.unchanging(at)
-        mu, U = np.linalg.eigh(still.T @ B @ still)
-        still = still @ U[:, np.abs(mu) <= flat]
-        others = scipy.linalg.null_space(np.vstack([still.T, np.eye(self.held.size)[self.held]]))
-        lam, V = np.linalg.eigh(others.T @ B @ others)
-        null = others @ V[:, np.abs(lam) <= flat]
-        gamma, U = np.linalg.eigh(null.T @ self.known(at) @ null)
-        return np.hstack([still, null @ U[:, gamma >= TURNING * self.top]])
-
-    def as_good(self, at: Evaluation) -> bool:
-        """Return whether a point is as good as the start."""
-        allowed = EQUAL * self.size + self.top * EQUAL**2
-        return self.programme.value(at.J) <= self.value + allowed
-
-
-def _spectrum(B: Floats, free: Bools) -> tuple[Floats, Floats]:
-    """Return eigenvalues, ascending, and eigenvectors (p, .) of B within the free variables."""
-    lam, V = np.linalg.eigh(B[np.ix_(free, free)])
-    full = np.zeros((free.size, lam.size))
-    full[free] = V
-    return lam, full
-
-
 class _SpentError(Exception):
     """The evaluations that were allowed are spent."""
 
 
 @dataclass
-class _Metered:
-    """A problem of which no more than ``left`` evaluations are made."""
+class _Meter:
+    """Counts evaluations, of which no more than ``left`` are made."""
 
-    problem: Problem
     left: int
     spent: int = 0
 
-    @property
-    def objectives(self) -> tuple[str, ...]:
-        return self.problem.objectives
-
-    @property
-    def lower(self) -> Floats:
-        return self.problem.lower
-
-    @property
-    def upper(self) -> Floats:
-        return self.problem.upper
-
-    @property
-    def start(self) -> Floats:
-        return self.problem.start
-
-    def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
+    def evaluation(self, problem: Problem, theta: Floats, derivatives: bool) -> Evaluation:
+        """Return an evaluation; raises _SpentError where none is left."""
         if self.left <= 0:
             raise _SpentError
         self.left -= 1
         self.spent += 1
-        return self.problem.evaluate(theta, derivatives=derivatives)
-
-    def on_branch(self, branch: tuple[int, ...]) -> Problem:
-        return self.problem.on_branch(branch)
+        return problem.evaluate(theta, derivatives=derivatives)
 
 
 def equally_good(
@@ -316,7 +186,8 @@ def equally_good(
     any objective, are left where they are. Minima for which no evaluation is left are manifolds of
     one model.
     """
-    meter = _Metered(problem, SPEND * limit if evaluations is None else evaluations)
+    meter = _Meter(SPEND * limit if evaluations is None else evaluations)
+    metered = Wrapped(problem, meter.evaluation)
     still = np.zeros(problem.lower.size, dtype=bool) if idle is None else idle
     span = np.where(still, np.inf, problem.upper - problem.lower)
     out: list[Manifold] = []
@@ -324,32 +195,32 @@ def equally_good(
     waiting = list(minima)
     while waiting:
         at, before = waiting.pop(0), meter.spent
-        own = [
+        near = [
             k
-            for k, one in enumerate(out)
-            if _distance(one, at, span) <= (h if one.dimension else SAME_MINIMUM)
+            for k, manifold in enumerate(out)
+            if _distance(manifold, at, span) <= (h if manifold.dimension else SAME_MINIMUM)
         ]
-        if own:
-            out[own[0]] = replace(out[own[0]], minima=out[own[0]].minima + 1)
+        if near:
+            out[near[0]] = replace(out[near[0]], minima=out[near[0]].minima + 1)
             continue
         try:
-            ground, first = _begin(meter, programme, at, still, plain)
+            context, first = context_of(metered, programme, at, still, plain)
         except _SpentError:
             out.append(Manifold(0, [at], Extent.SPENT, meter.spent - before))
             continue
-        plain = plain if ground.exact else ground.dimension
-        on = _on_one_of(ground, first, out, h)
-        if on is not None:
-            spent = out[on].evaluations + meter.spent - before
-            out[on] = replace(out[on], minima=out[on].minima + 1, evaluations=spent)
+        plain = plain if context.exact else context.dimension
+        k = _position(context, first, out, h)
+        if k is not None:
+            spent = out[k].evaluations + meter.spent - before
+            out[k] = replace(out[k], minima=out[k].minima + 1, evaluations=spent)
             continue
-        twin = _on_one_of(ground, first, known, h)
+        twin = _position(context, first, known, h)
         others = waiting
-        if twin is None and ground.dimension > COVERED:  # a covered one comes next to its minima
-            waiting = [one for one in others if not _joined(ground, first, one, h)]
-        found = _follow(ground, first, h, limit) if twin is None else known[twin]
+        if twin is None and context.dimension > COVERED:  # a covered one comes next to its minima
+            waiting = [other for other in others if not _joined(context, first, other, h)]
+        manifold = _follow(context, first, h, limit) if twin is None else known[twin]
         count, spent = 1 + len(others) - len(waiting), meter.spent - before
-        out.append(replace(found, evaluations=spent, minima=count, twin=twin))
+        out.append(replace(manifold, evaluations=spent, minima=count, twin=twin))
     return out
 
 
@@ -362,31 +233,31 @@ def follow(
 
 def _distance(manifold: Manifold, at: Evaluation, span: Floats) -> float:
     """Return the distance of the nearest model of a manifold, over the ranges."""
-    return min(float(np.linalg.norm((at.theta - one.theta) / span)) for one in manifold.models)
+    return min(float(np.linalg.norm((at.theta - x.theta) / span)) for x in manifold.models)
 
 
-def _joined(ground: _Ground, first: _Chart, at: Evaluation, h: float) -> bool:
+def _joined(context: Context, first: TangentPoint, at: Evaluation, h: float) -> bool:
     """Return whether a walk from a point of a manifold leads to another minimum."""
     try:
-        return ground.as_good(at) and _reaches(ground, first, at, h)
+        return context.equivalent(at) and _reaches(context, first, at, h)
     except _SpentError:
         return False
 
 
-def _on_one_of(
-    ground: _Ground, first: _Chart, manifolds: Sequence[Manifold], h: float
+def _position(
+    context: Context, first: TangentPoint, manifolds: Sequence[Manifold], h: float
 ) -> int | None:
     """Return the position of the manifold to which a walk from a minimum leads; None if to none.
 
     It has the same dimension, and all of its models are as good.
     """
-    for k, one in enumerate(manifolds):
-        if not one.dimension or one.dimension != ground.dimension:
+    for k, manifold in enumerate(manifolds):
+        if not manifold.dimension or manifold.dimension != context.dimension:
             continue
-        away = [float(np.linalg.norm(ground.away(first.u, x))) for x in one.models]
+        distances = [float(np.linalg.norm(context.offset(first.u, x))) for x in manifold.models]
         try:
-            if all(map(ground.as_good, one.models)) and _reaches(
-                ground, first, one.models[int(np.argmin(away))], h
+            if all(map(context.equivalent, manifold.models)) and _reaches(
+                context, first, manifold.models[int(np.argmin(distances))], h
             ):
                 return k
         except _SpentError:
@@ -394,100 +265,107 @@ def _on_one_of(
     return None
 
 
-def _follow(ground: _Ground, first: _Chart, h: float, limit: int) -> Manifold:
+def _follow(context: Context, first: TangentPoint, h: float, limit: int) -> Manifold:
     """Return the manifold of minima through one of them, as far as evaluations are left."""
-    if ground.dimension == 0:
-        return Manifold(0, [first.at], Extent.ISOLATED)
-    if ground.dimension > COVERED:
-        charts, extent = _span(ground, [first], limit)
+    if context.dimension == 0:
+        return Manifold(0, [first.evaluation], Extent.ISOLATED)
+    if context.dimension > COVERED:
+        points, extent = _span(context, [first], limit)
     else:
-        surface = ground.dimension == COVERED
+        surface = context.dimension == COVERED
         covering = max(limit // 2, 1) if surface else limit
-        charts, extent = _cover(
-            ground, first, max(h, covering ** (-1 / 2)) if surface else h, covering
+        points, extent = _cover(
+            context, first, max(h, covering ** (-1 / 2)) if surface else h, covering
         )
         if surface and extent is Extent.CUT:
-            charts, extent = _span(ground, charts, limit)
-    if len(charts) == 1 and extent not in (Extent.CUT, Extent.SPENT):
-        return Manifold(0, [first.at], Extent.ISOLATED)  # flat to second order, or held by bounds
-    return Manifold(ground.dimension, [chart.at for chart in charts], extent)
+            points, extent = _span(context, points, limit)
+    if len(points) == 1 and extent not in (Extent.CUT, Extent.SPENT):
+        # Flat to second order only, or held by bounds.
+        return Manifold(0, [first.evaluation], Extent.ISOLATED)
+    return Manifold(context.dimension, [point.evaluation for point in points], extent)
 
 
-def _cover(ground: _Ground, first: _Chart, h: float, limit: int) -> tuple[list[_Chart], Extent]:
+def _cover(
+    context: Context, first: TangentPoint, h: float, limit: int
+) -> tuple[list[TangentPoint], Extent]:
     """Return points all over a curve or a surface."""
-    charts, position = [first], [0]
+    points, position = [first], [0]
     queue = deque([0])
     cut = lost = bounded = spent = False
     while queue and not spent:
         i = queue.popleft()
-        for side, t in zip((1, -1), (charts[i].T, -charts[i].T), strict=True):
+        for side, t in zip((1, -1), (points[i].T, -points[i].T), strict=True):
             for direction in t.T:
-                if len(charts) == limit:
+                if len(points) == limit:
                     cut = True
                     break
                 try:
-                    found, outcome = _advance(ground, charts, i, direction, h)
+                    new, outcome = _advance(context, points, i, direction, h)
                 except _SpentError:
                     spent = True
                     break
                 bounded |= outcome is _Outcome.BOUND
                 lost |= outcome is _Outcome.FAILED
-                if found is not None:
-                    charts.append(found)
+                if new is not None:
+                    points.append(new)
                     position.append(position[i] + (int(np.sign(position[i])) or side))
-                    queue.append(len(charts) - 1)
-    if ground.dimension == 1:
-        charts = [charts[k] for k in np.argsort(position, kind="stable")]
+                    queue.append(len(points) - 1)
+    if context.dimension == 1:
+        points = [points[k] for k in np.argsort(position, kind="stable")]
     extent = Extent.BOUNDED if bounded else Extent.CLOSED
     extent = Extent.LOST if lost else extent
-    return charts, Extent.SPENT if spent else Extent.CUT if cut else extent
+    return points, Extent.SPENT if spent else Extent.CUT if cut else extent
 
 
-def _span(ground: _Ground, known: list[_Chart], limit: int) -> tuple[list[_Chart], Extent]:
+def _span(
+    context: Context, known: list[TangentPoint], limit: int
+) -> tuple[list[TangentPoint], Extent]:
     """Return known points of a manifold and, after them, those where parameters go the farthest.
 
     As far as there may be more, they are points that were passed on the way.
     """
-    charts, passed = list(known), list[_Chart]()
-    ends: dict[tuple[int, float], _Chart] = {}
-    ways = [(j, sign) for j in np.flatnonzero(~ground.held).tolist() for sign in (1.0, -1.0)]
-    for j, sign in [*ways, *ways]:  # what other parameters led to may go on
-        if len(charts) >= limit:
-            return charts, Extent.CUT
-        start = max(charts, key=lambda one: sign * one.u[j])
+    points, passed = list(known), list[TangentPoint]()
+    ends: dict[tuple[int, float], TangentPoint] = {}
+    aims = [(j, sign) for j in np.flatnonzero(~context.held).tolist() for sign in (1.0, -1.0)]
+    for j, sign in [*aims, *aims]:  # what other parameters led to may go on
+        if len(points) >= limit:
+            return points, Extent.CUT
+        start = max(points, key=lambda point: sign * point.u[j])
         if start is ends.get((j, sign)):
             continue
-        walk, spent = _walk(ground, start, j, sign)
+        walk, spent = _walk(context, start, j, sign)
         ends[j, sign] = [start, *walk][-1]
-        charts += walk[-1:]
+        points += walk[-1:]
         passed += walk[:-1]
         if spent:
-            return [*charts, *passed][:limit], Extent.SPENT
-    return [*charts, *passed][:limit], Extent.SPANNED
+            return [*points, *passed][:limit], Extent.SPENT
+    return [*points, *passed][:limit], Extent.SPANNED
 
 
-def _walk(ground: _Ground, chart: _Chart, j: int, sign: float) -> tuple[list[_Chart], bool]:
-    """Return the points after ``chart`` on a walk that increases sign * u_j as far as it can.
+def _walk(
+    context: Context, point: TangentPoint, j: int, sign: float
+) -> tuple[list[TangentPoint], bool]:
+    """Return the points after ``point`` on a walk that increases sign * u_j as far as it can.
 
     Also whether the evaluations were spent before.
     """
-    aim = np.zeros(chart.u.size)
+    aim = np.zeros(point.u.size)
     aim[j] = sign
-    length, walk = FAR, list[_Chart]()
+    length, walk = FAR, list[TangentPoint]()
     for _ in range(WALK):
-        step = _best_step(chart, aim, length)
+        step = _best_step(point, aim, length)
         gain = float(aim @ step)
-        to_bound = (1 - sign) / 2 + sign * chart.u[j] + gain >= 1 - SAME_PLACE
-        if gain <= SAME_PLACE or (gain < min(GAIN, length / 2) and not to_bound):
+        to_bound = (1 - sign) / 2 + sign * point.u[j] + gain >= 1 - AT_BOUND
+        if gain <= AT_BOUND or (gain < min(GAIN, length / 2) and not to_bound):
             break
         try:
-            found = _land(ground, chart, chart.u + step)
+            landed = context.landed(point, point.u + step)
         except _SpentError:
             return walk, True
-        share = 0.0 if found is None else float(aim @ (found.u - chart.u)) / gain
-        if found is not None and share >= AHEAD:
-            chart = found
-            walk.append(found)
+        share = 0.0 if landed is None else float(aim @ (landed.u - point.u)) / gain
+        if landed is not None and share >= AHEAD:
+            point = landed
+            walk.append(landed)
             length = min(2 * length, FAR) if share > FAITHFUL else length
         elif length > FAR / 2**HALVINGS:
             length /= 2
@@ -496,42 +374,31 @@ def _walk(ground: _Ground, chart: _Chart, j: int, sign: float) -> tuple[list[_Ch
     return walk, False
 
 
-def _best_step(chart: _Chart, aim: Floats, length: float) -> Floats:
+def _best_step(point: TangentPoint, aim: Floats, length: float) -> Floats:
     """Return the tangent step, no longer than ``length`` and within the bounds, best for an aim."""
-    T, u = chart.T, chart.u
-    room = np.minimum(length, 1 - u), np.minimum(length, u)
-    limits = np.concatenate(room)
-    found = scipy.optimize.linprog(
-        -aim @ T, np.vstack([T, -T]), np.maximum(limits, 0.0), bounds=(None, None), method="highs"
+    T, u = point.T, point.u
+    limits = np.maximum(np.concatenate([np.minimum(length, 1 - u), np.minimum(length, u)]), 0.0)
+    best = scipy.optimize.linprog(
+        -aim @ T, np.vstack([T, -T]), limits, bounds=(None, None), method="highs"
     )
-    return T @ found.x if found.status == 0 else np.zeros(u.size)
+    return T @ best.x if best.status == 0 else np.zeros(u.size)
 
 
-def _land(ground: _Ground, chart: _Chart, u: Floats) -> _Chart | None:
-    """Return the point of the manifold next to u, which keeps to the bounds that u is at."""
-    at_bound = ~ground.held & ((u <= SAME_PLACE) | (u >= 1 - SAME_PLACE))
-    u = np.clip(u, 0, 1)
-    found = None
-    if at_bound.sum() <= ground.dimension:
-        found = _correct(ground, chart, np.where(at_bound, np.round(u), u), ground.held | at_bound)
-    return _correct(ground, chart, u, ground.held) if found is None else found
-
-
-def _reaches(ground: _Ground, chart: _Chart, at: Evaluation, h: float) -> bool:
-    """Return whether a walk along the manifold from a chart arrives next to a point on it."""
+def _reaches(context: Context, point: TangentPoint, at: Evaluation, h: float) -> bool:
+    """Return whether a walk along the manifold from a point arrives next to a point on it."""
     for _ in range(WALK):
-        away = ground.away(chart.u, at)
-        distance = float(np.linalg.norm(away))
+        offset = context.offset(point.u, at)
+        distance = float(np.linalg.norm(offset))
         if distance <= h:
             return True
-        step = chart.T @ (chart.T.T @ away)
+        step = point.T @ (point.T.T @ offset)
         size = float(np.linalg.norm(step))
         if size < AHEAD * distance:
             return False
-        found = _land(ground, chart, np.clip(chart.u + step * min(1.0, FAR / size), 0, 1))
-        if found is None or np.linalg.norm(ground.away(found.u, at)) >= distance:
+        landed = context.landed(point, np.clip(point.u + step * min(1.0, FAR / size), 0, 1))
+        if landed is None or np.linalg.norm(context.offset(landed.u, at)) >= distance:
             return False
-        chart = found
+        point = landed
     return False
 
 
@@ -541,114 +408,48 @@ class _Outcome(Enum):
     FAILED = "no step could be made"
 
 
-def _begin(
-    problem: Problem, programme: Scalarisation, at: Evaluation, idle: Bools, plain: int | None
-) -> tuple[_Ground, _Chart]:
-    """Return the ground of the manifold through a minimum, and the minimum as a chart.
-
-    Variables that the slope presses against a bound are held there, and those that are ``idle``
-    where they are. B is not looked at where B_0 has a null space of the dimension ``plain``, for
-    which it was that of B at another minimum.
-    """
-    w = programme.gradient(at.J)
-    size = float(np.abs(w) @ np.abs(at.J))
-    u = (at.theta - problem.lower) / (problem.upper - problem.lower)
-    none = np.zeros(u.size, dtype=bool)
-    value = programme.value(at.J)
-    ground = _Ground(problem, programme, value, size, 0.0, none, idle, 0, exact=False)
-    top = float(np.linalg.eigvalsh(ground.known(at))[-1])
-    slope = ground.slope(at)
-    pressed = np.abs(slope) > EQUAL * np.sqrt(top * size) + ARRIVED * top
-    held = idle | (pressed & np.where(slope > 0, u <= 0, u >= 1))
-    ground = replace(ground, top=top, held=held)
-    still = ground.unchanging(at)
-    B = None if still.shape[1] == plain else ground.whole(at)
-    T = still if B is None else ground.tangents(at, B)
-    as_known = (
-        T.shape == still.shape and np.abs(T - still @ (still.T @ T)).max(initial=0) <= TURNING
-    )
-    ground = replace(ground, dimension=T.shape[1], exact=not as_known)
-    if B is None or as_known:
-        return ground, _Chart(at, u, still, ground.known(at))
-    return ground, _Chart(at, u, T, B)
-
-
 def _advance(
-    ground: _Ground, charts: Sequence[_Chart], i: int, t: Floats, h: float
-) -> tuple[_Chart | None, _Outcome]:
-    """Return the point at the end of a step along a tangent t from chart i, if it is a new one."""
-    chart = charts[i]
-    room = _room(chart.u, t)
-    least = ARRIVED if ground.dimension == 1 else SHORT * h
-    base = ground.held
-    while room.min() < least:  # go along the bounds that are in the way
-        base = base | (room < least)
-        along = chart.T @ scipy.linalg.null_space(chart.T[base])
+    context: Context, points: Sequence[TangentPoint], i: int, t: Floats, h: float
+) -> tuple[TangentPoint | None, _Outcome]:
+    """Return the point at the end of a step along a tangent t from point i, if it is a new one."""
+    point = points[i]
+    steps = steps_to_bounds(point.u, t)
+    least = ARRIVED if context.dimension == 1 else SHORT * h
+    base = context.held
+    while steps.min() < least:  # go along the bounds that are in the way
+        base = base | (steps < least)
+        along = point.T @ scipy.linalg.null_space(point.T[base])
         t = along @ (along.T @ t)
         size = float(np.linalg.norm(t))
         if size < SHORT:
             return None, _Outcome.BOUND
         t = np.where(base, 0.0, t / size)
-        room = _room(chart.u, t)
-    to_bound = float(room.min())
+        steps = steps_to_bounds(point.u, t)
+    to_bound = float(steps.min())
     length = min(h, to_bound)
     for _ in range(HALVINGS + 1):
         at_bound = length >= to_bound
-        ahead = np.clip(chart.u + length * t, 0, 1)
-        if _known(ahead, charts, NEAR * length):
+        ahead = np.clip(point.u + length * t, 0, 1)
+        if _known(ahead, points, NEAR * length):
             return None, _Outcome.INSIDE
-        held = base | (room <= length) if at_bound else base
-        found = _correct(ground, chart, ahead, held)
-        if found is not None and _continues(chart, found, length):
-            radius = NEAR * min(length, float(np.linalg.norm(found.u - chart.u)))
-            new = None if _known(found.u, charts, radius) else found
-            bound = bool((~ground.held & ((found.u == 0) | (found.u == 1))).any())
+        held = base | (steps <= length) if at_bound else base
+        corrected = context.corrected(point, ahead, held)
+        if corrected is not None and _continues(point, corrected, length):
+            radius = NEAR * min(length, float(np.linalg.norm(corrected.u - point.u)))
+            new = None if _known(corrected.u, points, radius) else corrected
+            bound = bool((~context.held & ((corrected.u == 0) | (corrected.u == 1))).any())
             return new, _Outcome.BOUND if bound else _Outcome.INSIDE
         length /= 2
     return None, _Outcome.FAILED
 
 
-def _room(u: Floats, t: Floats) -> Floats:
-    """Return the length of a step along t after which each variable meets its bound, (p,)."""
-    moving = np.abs(t) > np.finfo(float).eps
-    room = np.full(t.size, np.inf)
-    room[moving] = ((t > 0) - u)[moving] / t[moving]
-    return room
-
-
-def _continues(chart: _Chart, found: _Chart, length: float) -> bool:
-    """Return whether a point carries on from a chart: not back, and in a like direction."""
-    if np.linalg.norm(found.u - chart.u) < SHORT * length:
+def _continues(point: TangentPoint, new: TangentPoint, length: float) -> bool:
+    """Return whether a new point carries on from another: not back, and in a like direction."""
+    if np.linalg.norm(new.u - point.u) < SHORT * length:
         return False
-    return bool(np.linalg.svd(chart.T.T @ found.T, compute_uv=False)[-1] >= AHEAD)
+    return bool(np.linalg.svd(point.T.T @ new.T, compute_uv=False)[-1] >= AHEAD)
 
 
-def _correct(ground: _Ground, chart: _Chart, u: Floats, held: Bools) -> _Chart | None:
-    """Return the point of the manifold next to u, to which a step led from a chart, or None.
-
-    Each variable that is held at a bound takes a dimension away from what is left to move on; one
-    that leaves its bounds on the way is held there.
-    """
-    problem = ground.problem
-    for _ in range(CORRECTIONS):
-        at = problem.evaluate(problem.lower + u * (problem.upper - problem.lower))
-        d = ground.dimension - int((held & ~ground.held).sum())
-        if not at.feasible or d < 0:
-            return None
-        lam, V = _spectrum(chart.B if ground.exact else ground.known(at), ~held)
-        across, V = lam[d:], V[:, d:]
-        if (across <= FLAT * max(ground.top, across.max(initial=0.0))).any():
-            return None
-        s = -V @ ((V.T @ ground.slope(at)) / across)
-        if np.abs(s).max(initial=0.0) <= ARRIVED:
-            found = ground.chart(at, u) if ground.as_good(at) else None
-            there = found is not None and found.T.shape[1] == ground.dimension
-            return found if there else None
-        u = u + s
-        held = held | (u < 0) | (u > 1)
-        u = np.clip(u, 0, 1)
-    return None
-
-
-def _known(u: Floats, charts: Sequence[_Chart], radius: float) -> bool:
-    return any(float(np.linalg.norm(u - chart.u)) < radius for chart in charts)
+def _known(u: Floats, points: Sequence[TangentPoint], radius: float) -> bool:
+    """Return whether u is within a radius of one of the points."""
+    return any(float(np.linalg.norm(u - point.u)) < radius for point in points)

@@ -38,8 +38,8 @@ from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import Scalarisation
 
 PENALTY = 10.0
-"""Penalty at least. Of the points of fronts of three objectives, 1, 10 and 100 take as many
-evaluations within 5 %."""
+"""Penalty at least. Measured with 1, 10, 100 and 1000 on fronts of three to five objectives, the
+evaluations differ by less than 5 %."""
 
 
 @dataclass(frozen=True)

@@ -13,8 +13,8 @@ H         (n, p, p)  a part of their second derivatives that is known with the f
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
 from typing import Protocol
 
 import numpy as np
@@ -111,3 +111,47 @@ class Problem(Protocol):
 
     def on_branch(self, branch: tuple[int, ...]) -> Problem:
         """Return the problem of one smooth piece of the objectives, wherever it is evaluated."""
+
+
+@dataclass(frozen=True)
+class Wrapped:
+    """A problem that is evaluated in another way, and is the same in everything else.
+
+    Attributes
+    ----------
+    problem : the problem that is evaluated
+    evaluation : returns the evaluation of a problem at theta (p,), with derivatives or without
+    names : names of the objectives, where they are not those of the problem
+    """
+
+    problem: Problem
+    evaluation: Callable[[Problem, Floats, bool], Evaluation]
+    names: tuple[str, ...] | None = None
+
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """Names of the objectives."""
+        return self.problem.objectives if self.names is None else self.names
+
+    @property
+    def lower(self) -> Floats:
+        """Lower bounds, shape (p,)."""
+        return self.problem.lower
+
+    @property
+    def upper(self) -> Floats:
+        """Upper bounds, shape (p,)."""
+        return self.problem.upper
+
+    @property
+    def start(self) -> Floats:
+        """The first guess of the problem, shape (p,)."""
+        return self.problem.start
+
+    def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
+        """Return the objectives at ``theta``."""
+        return self.evaluation(self.problem, theta, derivatives)
+
+    def on_branch(self, branch: tuple[int, ...]) -> Problem:
+        """Return the problem of one smooth piece, which is evaluated in the same way."""
+        return replace(self, problem=self.problem.on_branch(branch))

@@ -22,9 +22,9 @@ from modefront._typing import Floats
 from modefront.solvers.problem import Evaluation
 
 SURE = 1e-6
-"""Cosine between v and s from which a correction is made: below it, v is divided by rounding. The
-usual one is 1e-8 (Nocedal & Wright, *Numerical Optimization*, 2006, equation 6.26); eigenvectors
-are not that exact."""
+"""Cosine between v and s from which a correction is made: below it, v is divided by rounding. With
+the usual 1e-8 (Nocedal & Wright, *Numerical Optimization*, 2006, equation 6.26), fronts of
+three objectives cost the same."""
 
 
 def learned_from(S: Floats, before: Evaluation, after: Evaluation) -> Floats:

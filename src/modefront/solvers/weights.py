@@ -32,13 +32,14 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.dominance import undominated
-from modefront.solvers.explore import EQUAL, Descent, Search, explore
+from modefront.solvers.explore import Descent, Search, explore
 from modefront.solvers.lexicographic import EXACT, TIE
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import LogSum, weighted
 from modefront.solvers.sqp import Options, Solution, Status, solve
 
 _TIGHT = Options(reduction=1e-17)
+"""Steps end at the tolerance of the parameters, whatever f: a sum of logarithms has any size."""
 
 
 def regular(J: Floats, sizes: Floats) -> bool:
@@ -64,7 +65,7 @@ def optimal_minima(
     """
     bounded = bool(np.any(np.asarray(floor) > 0))
     programme = LogSum(a, floor, 0.0 if bounded else EXACT * sizes)
-    return explore(problem, Descent(programme, EQUAL * a.sum()), search, starts, _TIGHT, rng=rng)
+    return explore(problem, Descent(programme, TIE * a.sum()), search, starts, _TIGHT, rng=rng)
 
 
 def accepted(
@@ -81,27 +82,27 @@ def accepted(
     of all models that were evaluated, ``scale`` (n,) the ranges of the objectives.
     """
     programme = LogSum(a)
-    values = [programme.value(one.at.J) for one in rivals if regular(one.at.J, sizes)]
+    values = [programme.value(rival.at.J) for rival in rivals if regular(rival.at.J, sizes)]
     least = min(values, default=np.inf)
-    out = []
-    for one in minima:
-        if (
-            regular(one.at.J, sizes)
-            and programme.value(one.at.J) <= least + TIE * a.sum()
-            and undominated(one.at.J[None], known, scale)[0]
-        ):
-            out.append(one)
-    return sorted(out, key=lambda one: programme.value(one.at.J))
+    out = [
+        minimum
+        for minimum in minima
+        if regular(minimum.at.J, sizes)
+        and programme.value(minimum.at.J) <= least + TIE * a.sum()
+        and undominated(minimum.at.J[None], known, scale)[0]
+    ]
+    return sorted(out, key=lambda minimum: programme.value(minimum.at.J))
 
 
 def least_along(points: Sequence[Solution], a: Floats, sizes: Floats) -> list[Solution]:
     """Return the points of a front in their order next to which I is greater, or not regular."""
     programme = LogSum(a)
-    values = [programme.value(one.at.J) if regular(one.at.J, sizes) else np.inf for one in points]
+    J = [point.at.J for point in points]
+    values = [programme.value(row) if regular(row, sizes) else np.inf for row in J]
     padded = [np.inf, *values, np.inf]
     return [
-        one
-        for k, one in enumerate(points)
+        point
+        for k, point in enumerate(points)
         if np.isfinite(values[k]) and values[k] <= min(padded[k], padded[k + 2])
     ]
 
@@ -121,11 +122,11 @@ def iterate_weights(
         if not regular(start.at.J, sizes):
             return None
         w = a / start.at.J
-        found = solve(problem, weighted(w / w.sum()), start, options)
-        evaluations += found.evaluations
-        moved = float(np.abs((found.at.theta - start.at.theta) / span).max())
-        start = replace(found, weights=w)
+        solution = solve(problem, weighted(w / w.sum()), start, options)
+        evaluations += solution.evaluations
+        moved = float(np.abs((solution.at.theta - start.at.theta) / span).max())
+        start = replace(solution, weights=w)
         if moved <= options.step:
-            status = found.status
+            status = solution.status
             break
     return replace(start, status=status, evaluations=evaluations)
