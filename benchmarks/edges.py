@@ -1,7 +1,7 @@
 r"""Edges, weighted models and points of fronts beside those of an independent optimiser.
 
-python benchmarks/edges.py [--kinds chain,frame] [--seeds 0:20] [--starts N] [--points N]
-                           [--data FOLDER] [--cache FILE] [--details FILE] [--study] [--only-cache]
+python benchmarks/edges.py --cache FILE [--kinds chain,frame] [--seeds 0:20] [--starts N]
+                           [--points N] [--data FOLDER] [--details FILE] [--study] [--only-cache]
 
 Prints a line for every random problem of `updating_problems`:
 
@@ -10,7 +10,7 @@ column      meaning
 ==========  ======================================================================================
 edges       worst relative excess of an edge: of J_i over the least J_i known, and where it is as
             small or an exact fit, of the sum of the others (over their typical sizes) over the
-            least known at no greater J_i
+            least known at no greater J_i, but for what a tie of J_i is worth in a minimum so flat
 weighted    worst relative excess of sum w J of a weighted model; optimal weights: of the mean
             exp(sum a ln J / sum a) over the best regular minimum known, or share by which a known
             model dominates them; missing where a regular minimum is known at which the mean is
@@ -49,6 +49,7 @@ from independent import (
     better,
     dominance,
     reference,
+    worth,
 )
 from smu import FOLDER
 from updating_problems import KINDS, Case, available, chain_case, make
@@ -122,7 +123,8 @@ def compare(case: Case, data: xr.Dataset, found: Reference, equation: Equation) 
     known = Reference([*found.known, *own], found.sizes, found.a)
     for i, name in enumerate(case.problem.objectives):
         if f"edge-{name}" in labels:
-            _edge(line, i, name, J[labels.index(f"edge-{name}")], known)
+            k = labels.index(f"edge-{name}")
+            _edge(line, i, name, theta[k], J[k], known, equation)
         else:
             line.edges[f"edge-{name} missing"] = np.inf
     _weighted(line, labels, J, known)
@@ -168,7 +170,15 @@ def behind(case: Case, J: dict[str, Floats], found: Reference) -> dict[str, floa
     return {name: x for name, x in out.items() if x > WORSE}
 
 
-def _edge(line: Line, i: int, name: str, J: Floats, known: Reference) -> None:
+def _edge(
+    line: Line,
+    i: int,
+    name: str,
+    theta: Floats,
+    J: Floats,
+    known: Reference,
+    equation: Equation,
+) -> None:
     label, least = f"edge-{name}", known.least(i)
     excess = (J[i] - least) / max(least, known.floor[i])
     if J[i] <= known.floor[i]:
@@ -180,6 +190,9 @@ def _edge(line: Line, i: int, name: str, J: Floats, known: Reference) -> None:
     own = float(known.others(i, J))
     floor = known.others(i, known.floor)
     second = (own - others) / max(others, float(floor))
+    if second > WORSE:
+        allowed = worth(equation, i, theta, float(model.J[i] - J[i]))
+        second = max(own - others - allowed, 0.0) / max(others, float(floor))
     if second > WORSE:
         line.better.append((f"{label} (others)", second, model))
     line.edges[label] = max(excess, second)
@@ -419,7 +432,7 @@ def main() -> None:
     parser.add_argument("--points", type=int, default=11, help="points of a front")
     parser.add_argument("--limit", type=int, default=300, help="seconds of a run of modefront")
     parser.add_argument("--data", type=Path, default=FOLDER, help="folder of published models")
-    parser.add_argument("--cache", type=Path, default=Path("/tmp/edges.jsonl"))
+    parser.add_argument("--cache", type=Path, required=True, help="file of known references")
     parser.add_argument("--details", type=Path, help="file of JSON lines to add better models to")
     parser.add_argument("--study", action="store_true", help="also the study of 18 storeys")
     parser.add_argument("--only-cache", action="store_true", help="references, not modefront")

@@ -64,6 +64,10 @@ RANKS = (1e-3, 1e-5, 1e-7)
 EPSILON = 10.0 ** -np.arange(1, 11)
 """Shares of the other objectives that lead to an edge, each from the one before it."""
 
+STEP, BENT = 1e-4, 1e-9
+"""Step of differences over the range of a parameter; curvature over the greatest one, up to which
+it is their error."""
+
 SWEEP = 10.0 ** np.linspace(-4, 4, 9)
 """Ratios of two weights."""
 
@@ -225,6 +229,36 @@ def agreement(equation: Equation, rng: np.random.Generator, points: int = 3) -> 
         error = np.abs(dJ - there.dJ).max(axis=1) / np.abs(dJ).max(axis=1)
         worst = max(worst, 1e-3 * float(error.max()))
     return worst
+
+
+def worth(equation: Equation, i: int, theta: Floats, more: float) -> float:
+    r"""Return by how much the others fall, at a minimum of J_i, if J_i may be greater by ``more``.
+
+    The others are summed over their typical sizes, with gradient g. With the second derivatives H
+    of J_i, :math:`\tfrac12 s^T H s \le` ``more`` holds a step s, and :math:`g^T s` is
+    :math:`\sqrt{2\, \text{more}\; g^T H^{-1} g}` at most. Along directions in which J_i does not
+    change, a minimum has to be best in the others: these count for nothing.
+    """
+    z = (theta - equation.lower) / equation.span
+    free = np.flatnonzero((z > STEP) & (z < 1 - STEP))
+    parts = equation.parts(theta)
+    if more <= 0 or parts is None or not free.size:
+        return 0.0
+    others = np.where(np.arange(equation.sizes.size) != i, 1 / equation.sizes, 0.0)
+    g = _sum(others)(parts)[1] * equation.span
+    dr = (parts[i].dr * equation.span)[:, free]
+    bend = []  # of the residuals; what their first derivatives give is exact
+    for unit in np.diag(equation.span)[free]:
+        ahead, behind = (equation.parts(theta + step * unit) for step in (STEP, -STEP))
+        if ahead is None or behind is None:
+            return 0.0
+        change = ((ahead[i].dr - behind[i].dr) * equation.span)[:, free]
+        bend.append(parts[i].r @ change / (2 * STEP))
+    S = np.array(bend)
+    curvature, V = np.linalg.eigh(2 * dr.T @ dr + S + S.T)
+    bent = curvature > BENT * curvature[-1]
+    along = (V.T @ g[free])[bent]
+    return float(np.sqrt(2 * more * np.sum(along**2 / curvature[bent])))
 
 
 # ---- optimisers ------------------------------------------------------------------------------
