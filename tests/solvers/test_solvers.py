@@ -38,10 +38,11 @@ from modefront.solvers.qp import solve_qp
 from modefront.solvers.scalarisation import LogSum, level, weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 from modefront.solvers.weights import iterate_weights, optimal_minima, regular
+from modefront.work.costs import counted
 
 
 def sizes_of(problem: Known) -> Floats:
-    sizes = typical_sizes(sample(problem, np.random.default_rng(0)))
+    sizes = typical_sizes(sample(problem, rng=np.random.default_rng(0)))
     assert sizes is not None
     return sizes
 
@@ -50,7 +51,7 @@ def edges_of(problem: Known) -> list[Solution]:
     sizes = sizes_of(problem)
     out = []
     for i in range(len(problem.objectives)):
-        found = edge(problem, i, sizes, np.random.default_rng(i), Search())
+        found = edge(problem, i, sizes, np.random.SeedSequence(i), Search())
         assert found is not None
         out.append(found.best)
     return out
@@ -174,9 +175,8 @@ def test_an_exhausted_search_says_so() -> None:
 
 def test_all_minima_are_kept() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
-    found = explore(
-        problem, Descent(weighted(np.array([1.0, 0.0]))), np.random.default_rng(0), Search()
-    )
+    first = Descent(weighted(np.array([1.0, 0.0])))
+    found = explore(problem, first, Search(), rng=np.random.default_rng(0))
     places = sorted(tuple(np.round(one.at.theta).astype(int).tolist()) for one in found)
     assert places == [(-1, -2), (-1, 2), (1, -2), (1, 2)]
 
@@ -193,8 +193,10 @@ def test_the_evolution_strategy_is_left_to_rugged_objectives() -> None:
     def cost(limit: int, evolutions: int) -> int:
         problem = box(many_minima, [-4, -4], [4, 4])
         search = Search(starts=3, limit=limit, evolutions=evolutions)
-        explore(problem, Descent(weighted(np.array([1.0, 0.0]))), np.random.default_rng(0), search)
-        return problem.counts["eigenproblems"]
+        first = Descent(weighted(np.array([1.0, 0.0])))
+        with counted() as costs:
+            explore(problem, first, search, rng=np.random.default_rng(0))
+        return costs.eigenproblems
 
     assert cost(60, 4) == cost(60, 0), "the starts met the rule"
     assert cost(3, 4) > cost(3, 0), "the starts did not suffice"
@@ -204,8 +206,10 @@ def test_searches_are_repeated_exactly_with_the_same_seed() -> None:
     runs = []
     for _ in range(2):
         problem = box(many_minima, [-4, -4], [4, 4])
-        found = explore(problem, Descent(weighted(np.ones(2))), np.random.default_rng(5), Search())
-        runs.append([*(one.at.theta.tolist() for one in found), problem.counts["eigenproblems"]])
+        rng = np.random.default_rng(5)
+        with counted() as costs:
+            found = explore(problem, Descent(weighted(np.ones(2))), Search(), rng=rng)
+        runs.append([*(one.at.theta.tolist() for one in found), costs.eigenproblems])
     assert runs[0] == runs[1]
 
 
@@ -299,7 +303,7 @@ def patches_front(_: np.random.Generator) -> Floats:
 def test_a_piece_of_the_front_between_the_edges_is_reached_from_its_own_minimum() -> None:
     problem = box(three_wells, [-1, -1.5], [2, 1.5])
     sizes = sizes_of(problem)
-    found = [edge(problem, i, sizes, np.random.default_rng(i), Search()) for i in range(2)]
+    found = [edge(problem, i, sizes, np.random.SeedSequence(i), Search()) for i in range(2)]
     edges = [one.best for one in found if one]
     assert [round(one.at.theta[1]) for one in edges] == [-1, 1]
     target = payoff(edges, sizes)
@@ -334,7 +338,7 @@ def test_fronts_of_three_objectives_are_covered_beyond_the_simplex(
 ) -> None:
     problem = box(function, lower, upper, 3)
     sizes = sizes_of(problem)
-    found = [edge(problem, i, sizes, np.random.default_rng(i), Search()) for i in range(3)]
+    found = [edge(problem, i, sizes, np.random.SeedSequence(i), Search()) for i in range(3)]
     edges = [one.best for one in found if one]
     minima = [one for each in found if each for one in each.minima]
     target = payoff(edges, sizes, minima)
@@ -371,9 +375,9 @@ def test_the_second_point_costs_few_evaluations() -> None:
     edges = edges_of(problem)
     target = payoff(edges, sizes_of(problem))
     assert target is not None
-    before = problem.counts["eigenproblems"]
-    nbi(problem, edges, target, simplex(2, 19))
-    assert (problem.counts["eigenproblems"] - before) / 20 <= 5
+    with counted() as costs:
+        nbi(problem, edges, target, simplex(2, 19))
+    assert costs.eigenproblems / 20 <= 5
 
 
 def test_one_best_model_is_a_front_of_one_point() -> None:
@@ -411,7 +415,7 @@ def test_optimal_weights_are_a_over_J_and_the_iteration_agrees() -> None:
 
     problem = box(offset, [-2, -2], [2, 2])
     a, sizes = np.array([3.0, 5.0]), sizes_of(problem)
-    best = optimal_minima(problem, a, sizes, np.random.default_rng(0), Search(), [])[0]
+    best = optimal_minima(problem, a, sizes, Search(), [], rng=np.random.default_rng(0))[0]
     again = solve(problem, weighted(a / best.at.J), begin(best.at))
     assert again.at.theta == pytest.approx(best.at.theta, abs=1e-6)
     start = solve(problem, weighted(np.ones(2)), begin(problem.evaluate(problem.start)))
@@ -428,7 +432,8 @@ def test_optimal_weights_are_a_over_J_and_the_iteration_agrees() -> None:
 def test_singular_minima_are_told_from_regular_ones() -> None:
     problem = box(circles, [-2, -2], [2, 2])
     sizes = sizes_of(problem)
-    found = optimal_minima(problem, np.ones(2), sizes, np.random.default_rng(0), Search(), [])
+    rng = np.random.default_rng(0)
+    found = optimal_minima(problem, np.ones(2), sizes, Search(), [], rng=rng)
     assert not any(regular(one.at.J, sizes) for one in found)
     exact = begin(problem.evaluate(np.zeros(2)))
     assert iterate_weights(problem, np.ones(2), sizes, exact) is None
