@@ -395,14 +395,15 @@ def _scatter(
     if unknown:
         text = f"{unknown} measured values have no standard deviation above 0: they count as exact"
         said.append((SCATTER, text))
-    missing = [label for label in labels if label not in analysis.scatter]
+    solved = [point.label for point in front.points if point.kind is not Kind.NOMINAL]
+    missing = [label for label in solved if label not in analysis.scatter]
     if missing:
-        said.append((DOUBTFUL, f"no scatter is known at {_places(missing, m)}"))
+        said.append((DOUBTFUL, f"no scatter is known at {_places(missing, len(solved))}"))
     known = [(label, analysis.scatter[label]) for label in labels if label in analysis.scatter]
     for doubt in Doubt:
         there = [label for label, one in known if doubt in one.doubts]
         if there:
-            where = _places(there, m)
+            where = _places(there, len(solved))
             text = f"the linearised scatter is doubtful at {where}: {doubt.value}"
             said.append((DOUBTFUL, text))
     doubts = {label: ", ".join(doubt.name.lower() for doubt in one.doubts) for label, one in known}
@@ -512,10 +513,12 @@ def _replicates(
     found = [[one.get(point.label) for point in front.points] for one in analysis.replicates]
     theta = _stacked(found, p, lambda one: one.at.theta)
     J = _stacked(found, n, lambda one: one.at.J)
-    failed = int(np.isnan(theta).all(axis=2).sum())
+    # The nominal model and points of evolutionary methods solve nothing.
+    solved = [point.label in analysis.replicates[0] for point in front.points]
+    failed = np.isnan(theta[:, solved]).all(axis=2)
     said = []
-    if failed:
-        said.append(f"bootstrap: {failed} of {theta[:, :, 0].size} solutions did not converge")
+    if failed.any():
+        said.append(f"bootstrap: {failed.sum()} of {failed.size} solutions did not converge")
     by = "with the data drawn again; NaN where it did not converge"
     return {
         "bootstrap_theta": (("replicate", "point", "parameter"), theta, f"theta {by}"),
