@@ -164,6 +164,7 @@ def test_results_lie_where_they_are_wanted(modefront_: Run, study: Path, done: P
     assert data.attrs["seed"] == 3
     labels = [f"nbi-{i + 1}" for i in range(3)]
     labels += ["edge-frequencies", "edge-shapes", "mine", "equal-weights", "optimal-weights"]
+    labels.append("nominal")
     assert data["label"].values.tolist() == labels
     mine = data.isel(point=labels.index("mine"))
     assert mine["weight"].values.tolist() == [2.0, 1.0]
@@ -244,19 +245,19 @@ def test_all_starts_failing_are_said_and_leave_no_results(
     assert not study.with_name("study-results").joinpath(FILE).exists()
 
 
-@pytest.mark.parametrize("pieces", [0, 5])
+@pytest.mark.parametrize("tasks", [0, 5])
 def test_an_interrupted_run_goes_on_to_the_same_results(
-    pieces: int, modefront_: Run, study: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
+    tasks: int, modefront_: Run, study: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     broken = study.with_name("broken")
-    interrupt_after(pieces, monkeypatch)
+    interrupt_after(tasks, monkeypatch)
     status, out, err = modefront_("run", study, "-o", broken)
     assert status == 130
     assert out == ""
     assert "interrupted; what was done is kept" in err
     assert not (broken / FILE).exists()
     kept = {path: path.stat().st_mtime_ns for path in broken.rglob("*.npz")}
-    assert len(kept) == pieces
+    assert len(kept) == tasks
     assert modefront_("run", study, "-o", broken)[0] == 0
     assert {path: path.stat().st_mtime_ns for path in kept} == kept, "they are not done again"
     assert_same(read(broken), read(whole))

@@ -30,6 +30,7 @@ def results(
     ]
     variables: dict[str, object] = {
         "label": (("point",), [*(f"nbi-{i + 1}" for i in range(count)), "optimal-weights"]),
+        "kind": (("point",), [*["front"] * count, "optimal-weights"]),
         "pareto": (("point",), [*pareto, True]),
         "error": (point, e),
         "objective": (point, e**2),
@@ -133,6 +134,7 @@ def test_what_cannot_be_compared_is_said_at_once(two: tuple[Path, Path], tmp_pat
 def test_a_front_of_one_point_has_no_length(two: tuple[Path, Path], tmp_path: Path) -> None:
     one = results([[1.0, 1.0]], [[1, 1]])
     one["label"] = ("point", ["edge-f", "optimal-weights"])
+    one["kind"] = ("point", ["edge", "optimal-weights"])
     point = save(tmp_path / "point", one)
     first, second = compare((point, two[0])).fronts
     assert (first.points, first.length, first.extent) == (1, 0.0, (0.0, 0.0))

@@ -55,7 +55,7 @@ def results(model: str) -> xr.Dataset:
 
 
 def nbi(data: xr.Dataset) -> xr.Dataset:
-    return data.isel(point=[label.startswith("nbi-") for label in data["label"].values])
+    return data.isel(point=data["kind"].values == "front")
 
 
 def errors(data: xr.Dataset) -> Floats:
@@ -226,7 +226,7 @@ def test_perfect_data_are_a_front_of_one_point() -> None:
     problem = mf.UpdatingProblem(base.model, data, GROUPS, base.lower, base.upper, base.start)
     found = mf.solve(problem, points=20, seed=1)
     assert found.attrs["front_is_a_point"]
-    assert not any(label.startswith("nbi-") for label in found["label"].values)
+    assert "front" not in found["kind"].values
     edge = found["theta"].values[found["label"].values.tolist().index("edge-frequencies")]
     assert edge == pytest.approx([1.2, 0.9, 1.1], abs=1e-5)
     assert "optimal-weights" not in found["label"].values
