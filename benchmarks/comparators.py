@@ -70,9 +70,7 @@ def main() -> None:
             runs[method] = data, time.perf_counter() - started
         data, _ = runs["nbi"]
         before = data.attrs["model_evaluations"] - data.attrs["front_evaluations"]
-        edges = data["objective"].values[
-            [label.startswith("edge-") for label in data["label"].values]
-        ]
+        edges = data["objective"].values[data["kind"].values == "edge"]
         utopia, scale = edges.min(axis=0), np.ptp(edges, axis=0)
         everything = np.concatenate([front(dense), *(front(data) for data, _ in runs.values())])
         R = (everything[nondominated(everything)] - utopia) / scale

@@ -40,7 +40,7 @@ from updating_problems import Affine, Case
 from modefront._typing import Floats, Ints
 from modefront.residuals.groups import Members
 from modefront.solvers.edges import sample
-from modefront.study.run import generator
+from modefront.work.task import seed_sequence
 
 SEED = 1
 """Seed of the runs of modefront."""
@@ -118,7 +118,8 @@ class Equation:
         The parameters are those of modefront: of three groups, the sum of two over these sizes
         says what the best in the others is.
         """
-        thetas = [one.at.theta for one in sample(self.case.problem, generator(SEED, "sample"))]
+        rng = np.random.default_rng(seed_sequence(SEED, "sample"))
+        thetas = [one.at.theta for one in sample(self.case.problem, rng=rng)]
         J = np.array([self.J(theta) for theta in thetas])
         return np.maximum(np.median(J[np.isfinite(J).all(axis=1)], axis=0), np.finfo(float).tiny)
 

@@ -13,6 +13,7 @@ import scipy.sparse
 
 from modefront import Group, ModalData, Pairing, UpdatingProblem, matrices, modal_data
 from modefront._typing import Floats
+from modefront.analysis.certified import POOR
 from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel, Snap
@@ -20,7 +21,6 @@ from modefront.pairing.match import modes_needed
 from modefront.residuals.groups import Scale
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Options, Solution, begin, solve
-from modefront.study.certified import POOR
 
 FOLDER = Path(__file__).resolve().parents[1].parent / "shared" / "data" / "smu"
 

@@ -30,15 +30,15 @@ def fronts(path: Path) -> None:
         with tempfile.TemporaryDirectory() as folder:
             write_example(f"three-story-{configuration}", Path(folder))
             data = mf.run(mf.load(Path(folder) / "study.toml"), Path(folder) / "results")
-        error, label = data["error"].values, data["label"].values
-        nbi = np.array([name.startswith("nbi-") for name in label])
+        error, kind = data["error"].values, data["kind"].values
+        nbi = kind == "front"
         optimal = data["pareto"].values
         name = f"M{configuration[1]}"
         axes.plot(*error[nbi & optimal].T, "o", color=colour, label=f"{name}, Pareto optimal")
         if (~optimal[nbi]).any():
             hidden = error[nbi & ~optimal].T
             axes.plot(*hidden, "o", color=colour, mfc="none", label=f"{name}, dominated")
-        (best,) = np.flatnonzero(label == "optimal-weights")
+        (best,) = np.flatnonzero(kind == "optimal-weights")
         axes.plot(*error[best], "*", color=colour, ms=14, mec="k", label=f"{name}, optimal weights")
     axes.set(xlabel="error of frequencies, $e_1$", ylabel="error of mode shapes, $e_2$")
     axes.legend(frameon=False)
@@ -53,9 +53,9 @@ def predictions(path: Path) -> None:
     figure, grid = plt.subplots(2, 2, figsize=(7.2, 5.2), sharex=True, sharey="row")
     for column, configuration in enumerate(("c0", "c1")):
         upper, lower = grid[:, column]
-        for kind, name, colour in (("", "", "tab:blue"), ("fe-", "_FE", "tab:orange")):
-            data = predicted(f"three-story-{kind}{configuration}")
-            front = data.isel(point=[x.startswith("nbi-") for x in data["label"].values])
+        for model, name, colour in (("", "", "tab:blue"), ("fe-", "_FE", "tab:orange")):
+            data = predicted(f"three-story-{model}{configuration}")
+            front = data.isel(point=front_points(data))
             optimal = front["pareto"].values
             peak = front["frf_peak"].sel(frf="force at floor 3: floor1").values
             along(upper, 1e3 * peak, optimal, colour, "o", f"M{column}{name}")
@@ -184,10 +184,9 @@ def weights(path: Path, dense: xr.Dataset) -> None:
     """Draw the equally and the optimally weighted model on the front of M0."""
     figure, axes = plt.subplots(figsize=(6.4, 3.8))
     draw_front(axes, dense)
-    labels = dense["label"].values.tolist()
-    for label, mark in (("equal-weights", "s"), ("optimal-weights", "*")):
-        J = dense["objective"].values[labels.index(label)]
-        name = label.replace("-", " ")
+    for kind, mark in (("equal-weights", "s"), ("optimal-weights", "*")):
+        (J,) = dense["objective"].values[dense["kind"].values == kind]
+        name = kind.replace("-", " ")
         axes.plot(*J, mark, ms=10, mec="k", label=f"{name}, J = ({J[0]:.2e}, {J[1]:.2e})")
     finish(figure, axes, path)
 

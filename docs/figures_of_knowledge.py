@@ -68,8 +68,7 @@ def uncertainty(path: Path) -> None:
     left.set(xlabel=r"$\theta_1$", ylabel=r"$\theta_2$", xlim=(0.85, 1.4), ylim=(0.6, 1.35))
     left.legend(frameon=False)
 
-    labels = data["label"].values.tolist()
-    best = data["theta"].values[labels.index("optimal-weights")]
+    (best,) = data["theta"].values[data["kind"].values == "optimal-weights"]
     C = data["posterior_covariance"].values
     axis, density = marginal(problem, best, C)
     levels = density.max() * np.exp([-2.0, -0.5])  # what the two ellipses are of a Gaussian
