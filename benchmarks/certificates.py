@@ -34,6 +34,7 @@ from modefront.models.matrices import MatrixModel, affine_model
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.modes import dense
+from modefront.work.costs import counted
 
 MODES, SPARE = 5, 3
 """Modes that are judged, and those that the basis has beyond them."""
@@ -241,11 +242,11 @@ def box(bounds: tuple[float, float], structures: int, count: int, seed: int) -> 
                 model.take(Snap(models(rng, lower, upper, 1)[0], MODES + SPARE))
         if not model.snapshots:
             continue
-        before = model.counts.factorisations
         thetas = models(rng, lower, upper, count)
-        for some in [thetas] if number % 2 else thetas[:, None]:
-            found += compared(model, some)
-        factorisations += model.counts.factorisations - before
+        with counted() as costs:
+            for some in [thetas] if number % 2 else thetas[:, None]:
+                found += compared(model, some)
+        factorisations += costs.factorisations
     estimate, shape, truth, true_shape, rounding = (
         np.concatenate([getattr(one, name) for one in found])
         for name in ("eigenvalue", "shape", "true_eigenvalue", "true_shape", "rounding")

@@ -21,9 +21,9 @@ from front import problem_of
 
 import modefront as mf
 from modefront._typing import Floats
+from modefront.results.selection import front_points
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.indicators import REFERENCE, hypervolume, igd_plus, largest_gap
-from modefront.study.results import front_points
 
 FEW = mf.Search(limit=20, evolutions=0)
 """Longer chains have very many local minima; the fronts are compared, not the search for edges."""
@@ -62,17 +62,17 @@ def main() -> None:
     problems = {name: (problem_of(name), mf.Search()) for name in ("M0", "M1")}
     problems |= {f"chain of {n}": (chain_problem(n), FEW) for n in (4, 8)}
     for name, (problem, search) in problems.items():
-        dense = mf.solve(problem, refined=0.005, seed=1, search=search)
+        dense = mf.solve(problem, refined=0.005, seed=1, search=search).dataset
         runs: dict[str, tuple[xr.Dataset, float]] = {}
         for method in METHODS:
             started = time.perf_counter()
-            data = mf.solve(problem, method=method, evaluations=evaluations, seed=1, search=search)
+            data = mf.solve(
+                problem, method=method, evaluations=evaluations, seed=1, search=search
+            ).dataset
             runs[method] = data, time.perf_counter() - started
         data, _ = runs["nbi"]
         before = data.attrs["model_evaluations"] - data.attrs["front_evaluations"]
-        edges = data["objective"].values[
-            [label.startswith("edge-") for label in data["label"].values]
-        ]
+        edges = data["objective"].values[data["kind"].values == "edge"]
         utopia, scale = edges.min(axis=0), np.ptp(edges, axis=0)
         everything = np.concatenate([front(dense), *(front(data) for data, _ in runs.values())])
         R = (everything[nondominated(everything)] - utopia) / scale

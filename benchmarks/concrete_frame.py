@@ -18,33 +18,31 @@ import time
 import numpy as np
 from smu import Structure, frequencies_and_shapes, read, weighted_minimum
 
-from modefront import Pairing, UpdatingProblem
+from modefront import Pairing
 from modefront._typing import Floats
+from modefront.work.costs import counted, total
 
 
 def run(structure: Structure, pairing: Pairing, starts: Floats, *, reduced: bool = False) -> None:
     """Print what became of all starts."""
     problem = frequencies_and_shapes(structure, pairing, reduced=reduced)
     assert structure.true is not None
-    found, seconds, cost = [], [], []
+    found, seconds, costs = [], [], []
     for theta in starts:
-        began, before = time.perf_counter(), solutions(problem)
-        last = weighted_minimum(problem, np.ones(2), theta, 150)
+        began = time.perf_counter()
+        with counted() as spent:
+            last = weighted_minimum(problem, np.ones(2), theta, 150)
         seconds.append(time.perf_counter() - began)
-        cost.append(solutions(problem) - before)
+        costs.append(spent)
         found.append(bool(np.abs(last.at.theta - structure.true).max() < 1e-3))
+    cost = [spent.model_evaluations for spent in costs]
     print(
         f"pairing by {pairing.method}{', reduced' * reduced}: "
         f"{sum(found)} of {len(starts)} starts find the truth; "
         f"seconds a start: median {np.median(seconds):.2f}, greatest {max(seconds):.2f}; "
         f"eigenproblems a start: median {np.median(cost):.0f}, greatest {max(cost)}, "
-        f"{problem.counts['eigenproblems']} of all in full"
+        f"{total(costs).eigenproblems} of all in full"
     )
-
-
-def solutions(problem: UpdatingProblem) -> int:
-    """Return how many eigenproblems were solved so far, in full or in a basis."""
-    return problem.counts["eigenproblems"] + problem.counts["reduced"]
 
 
 def main() -> None:

@@ -127,10 +127,10 @@ def compare(case: Case, data: xr.Dataset, found: Reference, equation: Equation) 
             _edge(line, i, name, theta[k], J[k], known, equation)
         else:
             line.edges[f"edge-{name} missing"] = np.inf
-    _weighted(line, labels, J, known)
+    _weighted(line, labels, _least_regular(data, known), J, known)
     line.behind = behind(case, dict(zip(labels, J, strict=True)), found)
     polished: list[Known] = []
-    points = [k for k, label in enumerate(labels) if label.startswith("nbi-") and pareto[k]]
+    points = np.flatnonzero((data["kind"].values == "front") & pareto).tolist()
     for k in points:
         share, models = better(equation, J[k], theta[k], found.known, found.floor)
         polished += models
@@ -198,7 +198,7 @@ def _edge(
     line.edges[label] = max(excess, second)
 
 
-def _weighted(line: Line, labels: list[str], J: Floats, known: Reference) -> None:
+def _weighted(line: Line, labels: list[str], along: float, J: Floats, known: Reference) -> None:
     w = np.ones(known.sizes.size)
     if "equal-weights" in labels:
         least, model = known.weighted(w)
@@ -210,7 +210,7 @@ def _weighted(line: Line, labels: list[str], J: Floats, known: Reference) -> Non
             line.better.append(("equal-weights", excess, model))
     else:
         line.weighted["equal-weights missing"] = np.inf
-    regular, along = known.regular(), _least_regular(labels, J, known)
+    regular = known.regular()
     if "optimal-weights" in labels:
         own = J[labels.index("optimal-weights")]
         share = dominance(known.J, own, known.floor)
@@ -228,15 +228,15 @@ def _weighted(line: Line, labels: list[str], J: Floats, known: Reference) -> Non
         line.better.append(("optimal-weights missing", np.inf, regular[1]))
 
 
-def _least_regular(labels: list[str], J: Floats, known: Reference) -> float:
+def _least_regular(data: xr.Dataset, known: Reference) -> float:
     """Return the least sum a ln J of equal weights and of the front where no group fits exactly.
 
     A minimum of that sum above it is none worth the name.
     """
     values = [
         float(known.a @ np.log(row))
-        for label, row in zip(labels, J, strict=True)
-        if label.startswith(("nbi-", "equal-weights")) and (known.floor < row).all()
+        for kind, row in zip(data["kind"].values, data["objective"].values, strict=True)
+        if kind in ("front", "equal-weights") and (known.floor < row).all()
     ]
     return min(values, default=np.inf)
 
@@ -340,7 +340,7 @@ def measured(case: Case, found: Reference, points: int, limit: int) -> Line:
                 points=points,
                 seed=SEED,
                 identifiability=mf.Identifiability(flat=0.0, models=0),
-            )
+            ).dataset
     except Exception as error:
         text = str(error).replace("\n", " ")
         return Line(case, failure=f"{type(error).__name__}: {text}")
@@ -371,7 +371,7 @@ def study(cache: Cache, starts: int) -> str:
     found = referenced(case, cache, starts)
     began = time.process_time()
     try:
-        data = mf.solve(case.problem, points=20, seed=SEED)
+        data = mf.solve(case.problem, points=20, seed=SEED).dataset
     except mf.UnfinishedError as error:
         return f"18 storeys, 4 modes: {error}"
     line = compare(case, data, found, Equation(case))

@@ -98,7 +98,7 @@ def main() -> None:
     limit = parser.parse_args().limit
     for model in ("M0", "M1"):
         started = time.perf_counter()
-        data = mf.solve(problem_of(model), points=20, seed=1)
+        data = mf.solve(problem_of(model), points=20, seed=1).dataset
         seconds = time.perf_counter() - started
         J = data["objective"].values[:20]
         scale = J.max(axis=0)

@@ -34,13 +34,13 @@ from functools import cached_property
 
 import numpy as np
 import scipy.linalg
-from modefront.study.run import generator
 from scipy.optimize import linear_sum_assignment, lsq_linear, minimize
 from updating_problems import Affine, Case
 
 from modefront._typing import Floats, Ints
 from modefront.residuals.groups import ModeNumbers
 from modefront.solvers.edges import sample
+from modefront.work.task import seed_sequence
 
 SEED = 1
 """Seed of the runs of modefront."""
@@ -122,7 +122,8 @@ class Equation:
         The parameters are those of modefront: of three groups, the sum of two over these sizes
         says what the best in the others is.
         """
-        thetas = [one.at.theta for one in sample(self.case.problem, generator(SEED, "sample"))]
+        rng = np.random.default_rng(seed_sequence(SEED, "sample"))
+        thetas = [one.at.theta for one in sample(self.case.problem, rng=rng)]
         J = np.array([self.J(theta) for theta in thetas])
         return np.maximum(np.median(J[np.isfinite(J).all(axis=1)], axis=0), np.finfo(float).tiny)
 

@@ -18,22 +18,26 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 from typing import Any
 
 import moocore
 import numpy as np
-from modefront.study.run import Front, pareto_front
 from pymoo.algorithms.moo.nsga2 import NSGA2
 from pymoo.algorithms.moo.sms import SMSEMOA
 from pymoo.core.problem import ElementwiseProblem
 from pymoo.optimize import minimize
 
 from modefront._typing import Floats
+from modefront.fronts.driver import pareto_front
+from modefront.fronts.front import Front
+from modefront.fronts.options import Pareto
+from modefront.fronts.point import Kind, of_kind
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.indicators import REFERENCE, hypervolume
 from modefront.solvers.problem import Evaluation, ObjectiveDerivatives
+from modefront.work.costs import Costs, counted, spend
 
 Derivatives = tuple[Floats, Floats, Floats]
 
@@ -43,7 +47,7 @@ BEHIND = 0.01
 
 @dataclass(frozen=True)
 class Case:
-    """A vector problem, which counts its evaluations, with points (m, n) of its true front."""
+    """A vector problem, whose evaluations are counted, with points (m, n) of its true front."""
 
     name: str
     function: Callable[[Floats], Derivatives]
@@ -51,7 +55,6 @@ class Case:
     upper: Floats
     truth: Callable[[], Floats]
     n: int = 2
-    counter: dict[str, int] = field(default_factory=lambda: {"evaluations": 0})
 
     @property
     def objectives(self) -> tuple[str, ...]:
@@ -63,14 +66,9 @@ class Case:
         """A first guess off the middle."""
         return self.lower + 0.37 * (self.upper - self.lower)
 
-    @property
-    def counts(self) -> Mapping[str, int]:
-        """How many evaluations were made."""
-        return self.counter
-
     def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
         """Return the objectives, and their derivatives if wanted."""
-        self.counter["evaluations"] += 1
+        spend(Costs(eigenproblems=1))
         J, dJ, H = self.function(theta)
         return Evaluation(theta, J, ObjectiveDerivatives(dJ, H) if derivatives else None)
 
@@ -375,12 +373,12 @@ def claimed(front: Front) -> Floats:
 
     A point is called optimal where no model that was evaluated dominates it.
     """
-    J = np.array([one.at.J for _, one in front.points])
+    J = np.array([point.solution.at.J for point in front.points])
     optimal = nondominated(np.vstack([J, front.known]), scale=front.scale)
     chosen = [
-        one.at.J
-        for (label, one), good in zip(front.points, optimal, strict=False)
-        if good and one.converged and label.startswith("nbi")
+        point.solution.at.J
+        for point, good in zip(front.points, optimal, strict=False)
+        if good and point.solution.converged and point.kind is Kind.FRONT
     ]
     return np.array(chosen).reshape(-1, J.shape[1])
 
@@ -389,12 +387,12 @@ def compare(case: Case, seed: int, populations: tuple[int, ...] = (20, 100)) -> 
     """Return the row of one case."""
     truth = case.truth()
     utopia, scale = truth.min(axis=0), np.ptp(truth, axis=0)
-    case.counter["evaluations"] = 0
     started = time.perf_counter()
-    front = pareto_front(case, np.full(case.n, 5.0), points=20, seed=seed)
+    with counted() as costs:
+        front = pareto_front(case, np.full(case.n, 5.0), Pareto(points=20), seed=seed)
     seconds = time.perf_counter() - started
-    spent = case.counter["evaluations"]
-    J = np.array([one.at.J for _, one in front.points])
+    spent = costs.eigenproblems
+    J = np.array([point.solution.at.J for point in front.points])
     others = {
         f"{name}-{size}": volume(evolution(case, method, size, spent, seed), utopia, scale)
         for name, method in (("NSGA-II", NSGA2), ("SMS-EMOA", SMSEMOA))
@@ -407,7 +405,7 @@ def compare(case: Case, seed: int, populations: tuple[int, ...] = (20, 100)) -> 
         volume(J, utopia, scale),
         others,
         spent,
-        sum(label.startswith("nbi") for label, _ in front.points),
+        len(of_kind(front.points, Kind.FRONT)),
         len(called),
         int((far > BEHIND).sum()),
         float(far.max(initial=0.0)),

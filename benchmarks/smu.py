@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 import scipy.sparse
-from modefront.study.certified import POOR
 
 from modefront import Group, ModalData, Pairing, UpdatingProblem, matrices, modal_data
 from modefront._typing import Floats
+from modefront.analysis.certified import POOR
 from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel, Snap

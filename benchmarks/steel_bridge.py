@@ -33,7 +33,7 @@ def front(structure: Structure, points: int, searches: int, *, reduced: bool) ->
         search=Search(searches, searches, 0),
         identifiability=Identifiability(flat=0, models=0),
         uncertainty=Uncertainty(source="none"),
-    )
+    ).dataset
     print(
         f"{'reduced' if reduced else 'full':8s} {time.process_time() - began:.0f} s, "
         f"{data.attrs['full_eigensolutions']} eigenproblems in full and "

@@ -16,9 +16,9 @@ from matplotlib.figure import Figure
 
 import modefront as mf
 from modefront._typing import Bools, Floats
+from modefront.results.selection import front_points
 from modefront.solvers.dominance import nondominated
 from modefront.study.examples import write_example
-from modefront.study.results import front_points
 
 HERE = Path(__file__).parent
 
@@ -29,16 +29,16 @@ def fronts(path: Path) -> None:
     for configuration, colour in (("c0", "tab:blue"), ("c1", "tab:orange")):
         with tempfile.TemporaryDirectory() as folder:
             write_example(f"three-story-{configuration}", Path(folder))
-            data = mf.run(mf.load(Path(folder) / "study.toml"), Path(folder) / "results")
-        error, label = data["error"].values, data["label"].values
-        nbi = np.array([name.startswith("nbi-") for name in label])
+            data = mf.run(mf.load(Path(folder) / "study.toml"), Path(folder) / "results").dataset
+        error, kind = data["error"].values, data["kind"].values
+        nbi = kind == "front"
         optimal = data["pareto"].values
         name = f"M{configuration[1]}"
         axes.plot(*error[nbi & optimal].T, "o", color=colour, label=f"{name}, Pareto optimal")
         if (~optimal[nbi]).any():
             hidden = error[nbi & ~optimal].T
             axes.plot(*hidden, "o", color=colour, mfc="none", label=f"{name}, dominated")
-        (best,) = np.flatnonzero(label == "optimal-weights")
+        (best,) = np.flatnonzero(kind == "optimal-weights")
         axes.plot(*error[best], "*", color=colour, ms=14, mec="k", label=f"{name}, optimal weights")
     axes.set(xlabel="error of frequencies, $e_1$", ylabel="error of mode shapes, $e_2$")
     axes.legend(frameon=False)
@@ -53,9 +53,9 @@ def predictions(path: Path) -> None:
     figure, grid = plt.subplots(2, 2, figsize=(7.2, 5.2), sharex=True, sharey="row")
     for column, configuration in enumerate(("c0", "c1")):
         upper, lower = grid[:, column]
-        for kind, name, colour in (("", "", "tab:blue"), ("fe-", "_FE", "tab:orange")):
-            data = predicted(f"three-story-{kind}{configuration}")
-            front = data.isel(point=[x.startswith("nbi-") for x in data["label"].values])
+        for model, name, colour in (("", "", "tab:blue"), ("fe-", "_FE", "tab:orange")):
+            data = predicted(f"three-story-{model}{configuration}")
+            front = data.isel(point=front_points(data))
             optimal = front["pareto"].values
             peak = front["frf_peak"].sel(frf="force at floor 3: floor1").values
             along(upper, 1e3 * peak, optimal, colour, "o", f"M{column}{name}")
@@ -90,7 +90,7 @@ def predicted(example: str) -> xr.Dataset:
         write_example(example, Path(folder))
         study = Path(folder) / "study.toml"
         study.write_text(study.read_text() + (HERE / "predictions.toml").read_text())
-        return mf.run(mf.load(study), Path(folder) / "results")
+        return mf.run(mf.load(study), Path(folder) / "results").dataset
 
 
 def example(configuration: str) -> mf.UpdatingProblem:
@@ -127,7 +127,7 @@ def finish(figure: Figure, axes: Axes, path: Path) -> None:
 def normals(path: Path, dense: xr.Dataset) -> None:
     """Draw the simplex of M0, the normals and where they meet the boundary."""
     figure, axes = plt.subplots(figsize=(6.4, 3.8))
-    J, optimal = points(mf.solve(example("c0"), seed=1))
+    J, optimal = points(mf.solve(example("c0"), seed=1).dataset)
     draw_front(axes, dense)
     beta = np.linspace(1, 0, len(J))[:, None]
     simplex = beta * J[0] + (1 - beta) * J[-1]
@@ -143,7 +143,7 @@ def beside(path: Path, dense: xr.Dataset, method: str, label: str) -> None:
     """Draw the points of another method on the front of M0."""
     figure, axes = plt.subplots(figsize=(6.4, 3.8))
     draw_front(axes, dense)
-    J, optimal = points(mf.solve(example("c0"), method=method, evaluations=2000, seed=1))
+    J, optimal = points(mf.solve(example("c0"), method=method, evaluations=2000, seed=1).dataset)
     axes.plot(*J[optimal].T, "o", ms=4, color="tab:red", label=label)
     axes.set(xlim=(-3e-4, 7e-3), ylim=(-0.04, 1.0))
     finish(figure, axes, path)
@@ -158,7 +158,7 @@ def three_groups(path: Path) -> None:
         mf.Group("shapes 2 and 3", shape=[2, 3]),
     )
     problem = mf.UpdatingProblem(base.model, base.data, groups, base.lower, base.upper, base.start)
-    data = mf.solve(problem, points=12, seed=1)
+    data = mf.solve(problem, points=12, seed=1).dataset
     J, _ = points(data)
     # One edge is nearly the best in two groups, so the simplex is the one of the ranges.
     single = np.isin(data["minimum_of"].values, data["group"].values)
@@ -184,10 +184,9 @@ def weights(path: Path, dense: xr.Dataset) -> None:
     """Draw the equally and the optimally weighted model on the front of M0."""
     figure, axes = plt.subplots(figsize=(6.4, 3.8))
     draw_front(axes, dense)
-    labels = dense["label"].values.tolist()
-    for label, mark in (("equal-weights", "s"), ("optimal-weights", "*")):
-        J = dense["objective"].values[labels.index(label)]
-        name = label.replace("-", " ")
+    for kind, mark in (("equal-weights", "s"), ("optimal-weights", "*")):
+        (J,) = dense["objective"].values[dense["kind"].values == kind]
+        name = kind.replace("-", " ")
         axes.plot(*J, mark, ms=10, mec="k", label=f"{name}, J = ({J[0]:.2e}, {J[1]:.2e})")
     finish(figure, axes, path)
 
@@ -218,7 +217,7 @@ if __name__ == "__main__":
     identifiability(HERE / "identifiability.svg")
     uncertainty(HERE / "uncertainty.svg")
     predictions(HERE / "predictions.svg")
-    refined = mf.solve(example("c0"), refined=0.01, seed=1)
+    refined = mf.solve(example("c0"), refined=0.01, seed=1).dataset
     pages = HERE / "methods"
     normals(pages / "nbi.svg", refined)
     three_groups(pages / "three-groups.svg")

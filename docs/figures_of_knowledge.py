@@ -24,7 +24,7 @@ def identifiability(path: Path) -> None:
     """Draw models that fit the shapes equally well, and a front with its flat part cut off."""
     _, (left, right) = plt.subplots(1, 2, figsize=(8.6, 3.8))
     chain = example("three-story-c0")
-    data = mf.solve(chain, points=20, seed=1)
+    data = mf.solve(chain, points=20, seed=1).dataset
     equal = data["equal_of"].values == "shapes"
     theta = data["equal_theta"].values[equal]
     left.plot(theta[:, 0], theta[:, 1], ".-", color="tab:orange", label="equally good in shapes")
@@ -36,7 +36,7 @@ def identifiability(path: Path) -> None:
     left.set(xlabel=r"$\theta_1$", ylabel=r"$\theta_2$", xlim=(0, 5), ylim=(0, 5))
     left.legend(frameon=False)
 
-    plates = mf.solve(example("three-story-fe-c0"), points=20, seed=1)
+    plates = mf.solve(example("three-story-fe-c0"), points=20, seed=1).dataset
     for part, style in (("whole", {"mfc": "none"}), ("identifiable", {})):
         error = plates["error"].values[plates["front_part"].values == part]
         right.plot(*error.T, "o", ms=5, color="tab:blue", label=f"M0_FE, {part} front", **style)
@@ -56,7 +56,9 @@ def uncertainty(path: Path) -> None:
         + 0 * problem.data.shape,
     )
     problem = replace(problem, data=known)
-    data = mf.solve(problem, points=20, seed=1, uncertainty=mf.Uncertainty("std", bootstrap=60))
+    data = mf.solve(
+        problem, points=20, seed=1, uncertainty=mf.Uncertainty("std", bootstrap=60)
+    ).dataset
     whole = np.flatnonzero((data["front_part"].values == "whole") & data["pareto"].values)
     drawn = data["bootstrap_theta"].values[:, whole]
     left.plot(*drawn.reshape(-1, 3)[:, :2].T, ".", ms=2, color="0.7", label="data drawn again")
@@ -68,8 +70,7 @@ def uncertainty(path: Path) -> None:
     left.set(xlabel=r"$\theta_1$", ylabel=r"$\theta_2$", xlim=(0.85, 1.4), ylim=(0.6, 1.35))
     left.legend(frameon=False)
 
-    labels = data["label"].values.tolist()
-    best = data["theta"].values[labels.index("optimal-weights")]
+    (best,) = data["theta"].values[data["kind"].values == "optimal-weights"]
     C = data["posterior_covariance"].values
     axis, density = marginal(problem, best, C)
     levels = density.max() * np.exp([-2.0, -0.5])  # what the two ellipses are of a Gaussian

@@ -35,8 +35,8 @@ PUBLISHED: dict[str, dict[str, Sequence[float]]] = {
 
 def front(folder: Path) -> dict[str, Sequence[float]]:
     """Return what the paper prints of a front, from results."""
-    data = mf.read_results(folder)
-    nbi = data.isel(point=[label.startswith("nbi-") for label in data["label"].values])
+    data = mf.read_results(folder).dataset
+    nbi = data.isel(point=data["kind"].values == "front")
     error = 100 * np.abs(nbi["frequency"].values / nbi["measured_frequency"].values - 1)
     return {
         "greatest frequency error, %": error.max(axis=0).tolist(),
@@ -48,9 +48,8 @@ def front(folder: Path) -> dict[str, Sequence[float]]:
 
 def nearest(data: xr.Dataset, nbi: xr.Dataset) -> int:
     """Return the position of the front point that is closest to the optimally weighted model."""
-    optimal = data.isel(point=data["label"].values.tolist().index("optimal-weights"))
-    distance = ((nbi["theta"] - optimal["theta"]) ** 2).sum("parameter")
-    return int(np.argmin(distance.values))
+    (optimal,) = data["theta"].values[data["kind"].values == "optimal-weights"]
+    return int(np.argmin(((nbi["theta"].values - optimal) ** 2).sum(axis=1)))
 
 
 def main(folder: Path) -> None:

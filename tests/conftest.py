@@ -3,14 +3,24 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 from hypothesis import settings
 from refusals import Check, command
 
+from modefront.work.costs import Costs, counted
+
 settings.register_profile("modefront", deadline=None, derandomize=True, print_blob=False)
 settings.load_profile("modefront")
+
+
+@pytest.fixture
+def costs() -> Iterator[Costs]:
+    """Count what the test spends."""
+    with counted() as spent:
+        yield spent
 
 
 @pytest.fixture

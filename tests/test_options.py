@@ -12,10 +12,11 @@ import numpy as np
 import pytest
 
 import modefront as mf
-from modefront.solvers import pareto
+from modefront.fronts import options as pareto
 from modefront.solvers.explore import LIMIT
 from modefront.study.examples import write_example
 from modefront.study.labels import labels_of
+from modefront.work.costs import counted
 
 METHODS = "'nbi', 'weights', 'spea2', 'nsga2'"
 
@@ -107,7 +108,6 @@ def _toml(value: object) -> str:
 
 def test_what_solve_is_given_is_checked_before_any_work(study: Path) -> None:
     problem = mf.load(study).problem
-    before = problem.model.counts.eigenproblems
     wrong: dict[str, Any]
     for wrong, says in (
         ({"method": "nbii"}, "method: expected one of"),
@@ -118,9 +118,9 @@ def test_what_solve_is_given_is_checked_before_any_work(study: Path) -> None:
         ({"weighted": [mf.Weighted("mine", {"frequencies": 1.0})]}, "'mine' weights shapes: expec"),
         ({"weighted": 2 * [mf.Weighted("a", {"frequencies": 1, "shapes": 1})]}, "each name once"),
     ):
-        with pytest.raises(mf.InputError, match=says):
+        with counted() as costs, pytest.raises(mf.InputError, match=says):
             mf.solve(problem, **wrong)
-    assert problem.model.counts.eigenproblems == before
+        assert costs.eigenproblems == 0
     with pytest.raises(TypeError, match="nodes"):
         mf.solve(problem, nodes=3)  # type: ignore[call-arg]
 
@@ -228,7 +228,7 @@ def test_labels_of_a_study_are_those_that_results_have(study: Path) -> None:
         assert name not in labels
     weighted = [mf.Weighted("sample", {"frequencies": 3.0, "shapes": 1.0})]
     quick: dict[str, Any] = {"points": 3, "search": mf.Search(1, 1, 0)}
-    data = mf.solve(mf.load(study).problem, weighted=weighted, **quick)
+    data = mf.solve(mf.load(study).problem, weighted=weighted, **quick).dataset
     assert set(data["label"].values.tolist()) - {"sample"} <= {
         *(name for name in data["label"].values.tolist() if name in labels)
     }
@@ -276,8 +276,8 @@ def test_options_that_take_the_place_of_those_of_a_file_are_other_inputs(study: 
 def test_pareto_and_its_options_may_be_given_together(study: Path) -> None:
     problem = mf.load(study).problem
     quick: dict[str, Any] = {"search": mf.Search(1, 1, 0), "seed": 2}
-    one = mf.solve(problem, pareto=mf.Pareto("weights", 9), points=3, **quick)
-    other = mf.solve(problem, method="weights", points=3, **quick)
+    one = mf.solve(problem, pareto=mf.Pareto("weights", 9), points=3, **quick).dataset
+    other = mf.solve(problem, method="weights", points=3, **quick).dataset
     np.testing.assert_array_equal(one["theta"], other["theta"])
 
 

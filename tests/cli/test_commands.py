@@ -20,9 +20,9 @@ from texts import two_of_each
 import modefront
 from modefront.cli.main import main
 from modefront.errors import UnfinishedError
+from modefront.results.files import FILE, read_dataset
 from modefront.solvers import edges
 from modefront.study import session
-from modefront.study.results import FILE, read
 
 STUDY = (
     """
@@ -159,18 +159,19 @@ def test_results_lie_where_they_are_wanted(modefront_: Run, study: Path, done: P
     status, out, _ = modefront_("run", study)
     assert status == 0
     assert f"modefront show {done}" in out
-    data = read(done)
+    data = read_dataset(done)
     assert data.attrs["study"] == "two masses"
     assert data.attrs["seed"] == 3
     labels = [f"nbi-{i + 1}" for i in range(3)]
     labels += ["edge-frequencies", "edge-shapes", "mine", "equal-weights", "optimal-weights"]
+    labels.append("nominal")
     assert data["label"].values.tolist() == labels
     mine = data.isel(point=labels.index("mine"))
     assert mine["weight"].values.tolist() == [2.0, 1.0]
 
     wanted = study.with_name("elsewhere") / "deep"
     assert modefront_("run", study, "-o", wanted)[0] == 0
-    assert_same(read(wanted), data)
+    assert_same(read_dataset(wanted), data)
 
 
 def test_show_prints_tables_and_json_without_nan(modefront_: Run, whole: Path) -> None:
@@ -185,7 +186,7 @@ def test_show_prints_tables_and_json_without_nan(modefront_: Run, whole: Path) -
     status, out, err = modefront_("show", whole, "--format", "json")
     assert (status, err) == (0, "")
     found = json.loads(out, parse_constant=refuse)
-    data = read(whole)
+    data = read_dataset(whole)
     assert set(found["variables"]) == set(data.variables)
     for name, value in found["variables"].items():
         assert tuple(value["dimensions"]) == data[name].dims
@@ -210,17 +211,17 @@ def test_compare_prints_tables_and_json(modefront_: Run, whole: Path) -> None:
 def test_a_front_is_refined_where_neighbours_are_far_apart(
     modefront_: Run, study: Path, done: Path
 ) -> None:
-    coarse = read(done)
+    coarse = read_dataset(done)
     status, out, _ = modefront_("run", study, "--refine", "0.1")
     assert status == 0
     assert "largest gap 0." in out
-    fine = read(done)
+    fine = read_dataset(done)
     assert fine.attrs["refined"] == 0.1
     assert fine.attrs["largest_gap"] <= 0.1 < coarse.attrs["largest_gap"]
     assert fine.attrs["hypervolume"] >= coarse.attrs["hypervolume"]
     assert bool(fine["converged"].all())
     assert modefront_("run", study)[0] == 0
-    assert_same(read(done), coarse)
+    assert_same(read_dataset(done), coarse)
 
 
 def test_bounds_within_which_there_is_no_model_are_said_and_leave_no_results(
@@ -244,22 +245,22 @@ def test_all_starts_failing_are_said_and_leave_no_results(
     assert not study.with_name("study-results").joinpath(FILE).exists()
 
 
-@pytest.mark.parametrize("pieces", [0, 5])
+@pytest.mark.parametrize("tasks", [0, 5])
 def test_an_interrupted_run_goes_on_to_the_same_results(
-    pieces: int, modefront_: Run, study: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
+    tasks: int, modefront_: Run, study: Path, whole: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     broken = study.with_name("broken")
-    interrupt_after(pieces, monkeypatch)
+    interrupt_after(tasks, monkeypatch)
     status, out, err = modefront_("run", study, "-o", broken)
     assert status == 130
     assert out == ""
     assert "interrupted; what was done is kept" in err
     assert not (broken / FILE).exists()
     kept = {path: path.stat().st_mtime_ns for path in broken.rglob("*.npz")}
-    assert len(kept) == pieces
+    assert len(kept) == tasks
     assert modefront_("run", study, "-o", broken)[0] == 0
     assert {path: path.stat().st_mtime_ns for path in kept} == kept, "they are not done again"
-    assert_same(read(broken), read(whole))
+    assert_same(read_dataset(broken), read_dataset(whole))
 
 
 def test_a_run_that_is_done_is_not_done_again(
@@ -267,7 +268,7 @@ def test_a_run_that_is_done_is_not_done_again(
 ) -> None:
     interrupt_after(0, monkeypatch)
     assert modefront_("run", study)[0] == 0
-    assert_same(read(done), read(whole))
+    assert_same(read_dataset(done), read_dataset(whole))
     assert [path.name for path in done.glob("*.nc")] == [FILE]
 
 
@@ -279,7 +280,7 @@ def test_a_damaged_piece_is_done_again(
         content = piece.read_bytes()
         piece.write_bytes([content[:-40], content[:30], b"no piece"][i % 3])
     assert modefront_("run", study)[0] == 0
-    assert_same(read(done), read(whole))
+    assert_same(read_dataset(done), read_dataset(whole))
 
 
 def test_fresh_starts_over_and_deletes_nothing(
@@ -290,7 +291,7 @@ def test_fresh_starts_over_and_deletes_nothing(
     assert modefront_("run", study, "--fresh")[0] == 130, "it does the work again"
     assert len(contents(done)) == len(before) + 1
     assert modefront_("run", study, "--fresh")[0] == 0
-    assert_same(read(done), read(whole))
+    assert_same(read_dataset(done), read_dataset(whole))
     after = contents(done)
     assert all(content in after for content in before)
     assert len(after) == 2 * len(before) + 1
@@ -313,7 +314,7 @@ def test_a_changed_study_mixes_with_nothing_old(
     changed.write_text(text.replace(old, new))
     assert modefront_("run", study)[0] == 0
     modefront_("run", study, "-o", clean)
-    assert_same(read(done), read(clean))
+    assert_same(read_dataset(done), read_dataset(clean))
     after = contents(done)
     assert all(content in after for content in before), "old pieces and results are kept"
 
@@ -367,7 +368,7 @@ def test_points_that_did_not_converge_are_said_and_kept(
 ) -> None:
     run = session.run
 
-    def doubtful(*arguments: Any, **options: Any) -> xr.Dataset:
+    def doubtful(*arguments: Any, **options: Any) -> modefront.Results:
         data = run(*arguments, **options)
         data["converged"][1] = False
         return data

@@ -15,7 +15,6 @@ from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, Monomials, sparse_affine
 from modefront.linalg.factorisation import SingularMatrixError
-from modefront.models.base import Counts
 from modefront.models.matrices import MatrixModel, affine_model, matrices
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced import window
@@ -23,6 +22,7 @@ from modefront.models.reduced.basis import snapshot
 from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.modes import derivatives as exact
 from modefront.modes.sparse import lowest
+from modefront.work.costs import Costs, uncounted
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
 NAMES = ("k1", "k2", "k3")
@@ -52,7 +52,7 @@ def massless(full: MatrixModel) -> MatrixModel:
     )
     mass = (keep @ full.pencil.M.at(np.ones(3)) @ keep).tocoo()
     constant = Monomials(np.zeros((1, 3)))
-    return replace(full, mass=sparse_affine([mass], constant, full.size), counts=Counts())
+    return replace(full, mass=sparse_affine([mass], constant, full.size))
 
 
 MODELS: dict[str, Callable[[], MatrixModel]] = {
@@ -161,13 +161,12 @@ def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int)
         assert (certificate.shape[sure] >= shape[sure] / 2).all()
 
 
-def test_costs_are_counted_once(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_costs_are_counted_once(monkeypatch: pytest.MonkeyPatch, costs: Costs) -> None:
     monkeypatch.setattr("modefront.models.reduced.model.WIDE", 1)
     model = reduced(plate())
-    counts = model.counts
 
     def cost() -> tuple[int, ...]:
-        return counts.eigenproblems, counts.factorisations, counts.corrected, counts.reduced
+        return costs.eigenproblems, costs.factorisations, costs.corrected, costs.reduced
 
     for _ in range(3):
         model.modes(np.ones(3), 8)
@@ -182,26 +181,27 @@ def test_costs_are_counted_once(monkeypatch: pytest.MonkeyPatch) -> None:
     model.modes(np.ones(3), 8)
     assert cost() == (2, 5, 8, 4)
     model.restart()
-    assert cost() == (1, 2, 0, 4), "only what the basis has cost is counted again"
+    assert cost() == (2, 5, 8, 4)
     model.modes(np.ones(3), 8)
-    assert cost() == (2, 4, 6, 5)
+    assert cost() == (3, 7, 14, 5), "what the basis of the first snapshot has cost is counted again"
 
 
 def truth(model: ReducedModel, thetas: Floats) -> Floats:
     """Return the greatest relative error of six eigenvalues at each of some parameters."""
-    pairs = [(model.modes(theta, 6).lam, model.full.modes(theta, 6).lam) for theta in thetas]
+    with uncounted():
+        pairs = [(model.modes(x, 6).lam, model.full.modes(x, 6).lam) for x in thetas]
     return np.array([np.max(found / expected - 1) for found, expected in pairs])
 
 
-def test_a_snapshot_of_several_models_is_exact_at_each() -> None:
+def test_a_snapshot_of_several_models_is_exact_at_each(costs: Costs) -> None:
     full = plate()
     model, thetas = reduced(full), np.array([[0.5, 1.0, 2.0], [1.5, 0.6, 0.8], [2.4, 2.0, 1.0]])
     model.modes(np.ones(3), 8)
-    before = model.counts.corrected
+    before = costs.corrected
     errors, off = truth(model, thetas), []
     model.take(Snap(thetas, 6))
-    assert model.counts.corrected == before + 3
-    assert model.counts.eigenproblems == 1
+    assert costs.corrected == before + 3
+    assert costs.eigenproblems == 1
     for theta in thetas:
         found, expected = model.modes(theta, 6), full.modes(theta, 6)
         assert found.lam == pytest.approx(expected.lam, rel=1e-9)
@@ -214,35 +214,37 @@ def test_a_snapshot_of_several_models_is_exact_at_each() -> None:
     assert max(off) < 0.2
 
 
-def test_a_snapshot_leaves_models_as_they_are_that_are_good_enough() -> None:
+def test_a_snapshot_leaves_models_as_they_are_that_are_good_enough(costs: Costs) -> None:
     full = plate()
     model, thetas = reduced(full), np.array([[0.5, 1.0, 2.0], [1.3, 0.8, 1.0], [2.4, 2.0, 1.0]])
     model.modes(np.ones(3), 8)
     errors = truth(model, thetas)
     assert 1e-9 < errors[1] < 0.2 * errors[[0, 2]].min()
     middle = float(np.sqrt(errors[1] * errors[[0, 2]].min()))
-    corrected, columns = model.counts.corrected, model.columns
+    corrected, columns = costs.corrected, model.columns
     found = model.take(Snap(thetas, 6, middle))
     assert 0.5 * errors.max() <= found <= errors.max() * (1 + 1e-6)
-    assert model.counts.corrected == corrected + 2
+    assert costs.corrected == corrected + 2
     after = truth(model, thetas)
     assert after[[0, 2]].max() < 1e-9
     assert after[1] > 1e-10
     assert model.columns > columns
     columns = model.columns
     assert 0.5 * after.max() <= model.take(Snap(thetas, 6, 2 * after[1])) < 2 * after[1]
-    assert (model.counts.corrected, model.columns) == (corrected + 2, columns)
+    assert (costs.corrected, model.columns) == (corrected + 2, columns)
 
 
-def test_models_too_far_for_the_factor_are_solved_in_full_and_the_others_are_not() -> None:
+def test_models_too_far_for_the_factor_are_solved_in_full_and_the_others_are_not(
+    costs: Costs,
+) -> None:
     full = plate()
     bounds = np.full(3, 0.01), np.full(3, 2.5)
     model = ReducedModel(full, 10, np.ones(3), *bounds)
     model.modes(np.ones(3), 8)
-    corrected = model.counts.corrected
+    corrected = costs.corrected
     model.take(Snap(np.array([[0.015, 2.0, 2.0], [0.9, 1.1, 1.0]]), 6))
-    assert model.counts.eigenproblems == 2
-    assert model.counts.corrected == corrected + 1
+    assert costs.eigenproblems == 2
+    assert costs.corrected == corrected + 1
     for theta in ([0.015, 2.0, 2.0], [0.9, 1.1, 1.0]):
         at = np.array(theta)
         assert model.modes(at, 6).lam == pytest.approx(full.modes(at, 6).lam, rel=1e-8)
@@ -250,27 +252,29 @@ def test_models_too_far_for_the_factor_are_solved_in_full_and_the_others_are_not
 
 def test_what_takes_too_many_steps_is_solved_in_full_where_it_must_be_exact(
     monkeypatch: pytest.MonkeyPatch,
+    costs: Costs,
 ) -> None:
     monkeypatch.setattr("modefront.models.reduced.corrections.STEPS", 1)
     full, corner = plate(), np.array([0.4, 2.5, 0.4])
     model = reduced(full)
     model.modes(np.ones(3), 8)
-    assert model.counts.eigenproblems == 1, "modes at the bounds are kept as far as they came"
+    assert costs.eigenproblems == 1, "modes at the bounds are kept as far as they came"
     assert model.columns > 12 + 3 * 10
     model.take(Snap(corner, 8))
-    assert model.counts.eigenproblems == 2
+    assert costs.eigenproblems == 2
     assert model.modes(corner, 8).lam == pytest.approx(full.modes(corner, 8).lam, rel=1e-9)
 
 
-def test_the_order_of_computing_snapshots_changes_no_digit() -> None:
+def test_the_order_of_computing_snapshots_changes_no_digit(costs: Costs) -> None:
     full, thetas = plate(), [np.ones(3), np.array([0.5, 1.0, 2.0])]
     one, other = reduced(full), reduced(plate())
-    for theta in thetas:
-        one.take(Snap(theta, 10))
+    with uncounted():
+        for theta in thetas:
+            one.take(Snap(theta, 10))
     other.resume([Snap(theta, 10) for theta in thetas])
     at = np.array([0.9, 0.6, 1.4])
     assert one.modes(at, 8).lam.tolist() == other.modes(at, 8).lam.tolist()
-    assert other.counts.eigenproblems == 0, "what was counted before is not counted again"
+    assert costs.eigenproblems == 0, "what was counted before is not counted again"
 
 
 def test_the_basis_keeps_within_its_memory() -> None:
@@ -292,13 +296,13 @@ def test_a_single_mode_is_a_basis_where_there_is_no_room_for_more() -> None:
     assert found.lam == pytest.approx(expected.lam, rel=1e-9)
 
 
-def test_a_snapshot_that_fails_leaves_the_model_as_it_was() -> None:
+def test_a_snapshot_that_fails_leaves_the_model_as_it_was(costs: Costs) -> None:
     model = reduced(plate())
     before = model.modes(np.ones(3), 8).lam
     with pytest.raises(ModelError):
         model.take(Snap(np.array([1.0, 1.0, -1.0]), 10))
     assert model.modes(np.ones(3), 8).lam.tolist() == before.tolist()
-    assert model.counts.eigenproblems == 1
+    assert costs.eigenproblems == 1
 
 
 def two_structures() -> MatrixModel:
@@ -319,19 +323,20 @@ def two_structures() -> MatrixModel:
     )
 
 
-def test_a_mode_that_the_basis_misses_is_found_by_inertia() -> None:
+def test_a_mode_that_the_basis_misses_is_found_by_inertia(costs: Costs) -> None:
     full = two_structures()
     bounds = np.full(2, 1e-4), np.full(2, 2.0)
     model = ReducedModel(full, 4, np.ones(2), *bounds)
     (near,) = model.certify([(np.array([0.99, 1.0]), np.arange(3))])
     assert near.eigenvalue.max() < 1e-3
-    assert model.counts.factorisations == 2, "there is no doubt near a snapshot"
+    assert costs.factorisations == 2, "there is no doubt near a snapshot"
     theta = np.array([1e-4, 1.0])
-    assert model.modes(theta, 4).lam[0] > 1.5 * full.modes(theta, 4).lam[0]
+    with uncounted():
+        assert model.modes(theta, 4).lam[0] > 1.5 * full.modes(theta, 4).lam[0]
     first, there = model.certify([(np.ones(2), np.arange(3)), (theta, np.arange(3))])
     assert np.isfinite(first.eigenvalue).all()
     assert np.isinf(there.eigenvalue).all()
-    assert model.counts.factorisations == 3
+    assert costs.factorisations == 3
     (alone,) = model.certify([(theta, np.arange(3))])
     assert np.isinf(alone.eigenvalue).all()
     model.take(Snap(theta, 10))
@@ -341,20 +346,21 @@ def test_a_mode_that_the_basis_misses_is_found_by_inertia() -> None:
 
 def test_a_proof_that_no_mode_is_missing_speaks_for_models_nearby(
     monkeypatch: pytest.MonkeyPatch,
+    costs: Costs,
 ) -> None:
     at, wanted = np.array([2.4, 0.6, 2.4]), np.arange(9)
     model = reduced(plate())
     (one,) = model.certify([(at, wanted)])
     assert one.known
-    assert model.counts.factorisations == 2, "the first snapshot has twice the modes for that"
+    assert costs.factorisations == 2, "the first snapshot has twice the modes for that"
     monkeypatch.setattr("modefront.models.reduced.model.WIDE", 1)
-    model = reduced(plate())
+    model, before = reduced(plate()), costs.factorisations
     thetas = [at, 0.995 * at, 1.005 * at, np.ones(3)]
     for one in model.certify([(theta, wanted) for theta in thetas]):
         assert np.isfinite(one.eigenvalue).all()
-    assert model.counts.factorisations == 3, "two of the snapshot, one where it was in doubt"
+    assert costs.factorisations - before == 3, "two of the snapshot, one where it was in doubt"
     model.certify([(np.ones(3), wanted)])
-    assert model.counts.factorisations == 3, "the snapshot speaks for itself"
+    assert costs.factorisations - before == 3, "the snapshot speaks for itself"
 
 
 def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
@@ -375,6 +381,7 @@ def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
 
 def test_an_estimate_that_does_not_settle_takes_a_factor_of_its_own(
     monkeypatch: pytest.MonkeyPatch,
+    costs: Costs,
 ) -> None:
     full = plate()
     bounds = np.full(3, 0.05), np.full(3, 2.5)
@@ -382,10 +389,10 @@ def test_an_estimate_that_does_not_settle_takes_a_factor_of_its_own(
     theta, wanted = np.array([1.0, 0.2, 2.4]), np.arange(6)
     lam, exact = model.modes(theta, 6).lam, full.modes(theta, 6).lam
     (settled,) = model.certify([(theta, wanted)])
-    factorisations = model.counts.factorisations
+    factorisations = costs.factorisations
     monkeypatch.setattr("modefront.models.reduced.certificate.STEPS", 0)
     (own,) = model.certify([(theta, wanted)])
-    assert model.counts.factorisations == factorisations + 1
+    assert costs.factorisations == factorisations + 1
     assert settled.eigenvalue == pytest.approx(lam / exact - 1, rel=0.3)
     assert own.eigenvalue == pytest.approx(lam / exact - 1, rel=1e-3)
 

@@ -162,7 +162,8 @@ def test_every_kind_returns_what_it_says_it_does(problem: mf.UpdatingProblem) ->
         expected = ready.kind.check.variables if ready.kind.check else ()
         assert set(checked) == {variable.key for variable in expected}
         assert all(values.shape == (n,) for values in [*found.values(), *checked.values()])
-        assert all(len(setting.values) == n for setting in ready.settings.values())
+        assert all(len(values) == n for values in ready.settings.values())
+        assert set(ready.settings) == {setting.name for setting in ready.kind.settings}
         names = [variable.name for variable in (*ready.kind.variables, *expected)]
         assert all(x.startswith(f"{ready.kind.dimension}_") for x in [*names, *ready.settings])
 

@@ -79,7 +79,7 @@ def test_the_results_say_so_too(frame: mf.UpdatingProblem) -> None:
     search = mf.Search(starts=1, limit=1, evolutions=0)
     data = mf.solve(
         first_two(frame), points=2, search=search, identifiability=mf.Identifiability(models=10)
-    )
+    ).dataset
     share = data["combination_share"].values
     at, of = data["combination_at"].values, data["combination_of"].values
     for place in ("optimal-weights", "edge-shapes"):

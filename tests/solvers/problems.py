@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field
+from collections.abc import Callable
+from dataclasses import dataclass
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, infeasible
+from modefront.work.costs import Costs, spend
 
 Derivatives = tuple[Floats, Floats, Floats]
 
@@ -22,16 +23,11 @@ class Known:
     upper: Floats
     start: Floats
     objectives: tuple[str, ...]
-    counter: dict[str, int] = field(default_factory=lambda: {"eigenproblems": 0})
-
-    @property
-    def counts(self) -> Mapping[str, int]:
-        return self.counter
 
     def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
         assert (theta >= self.lower).all()
         assert (theta <= self.upper).all()
-        self.counter["eigenproblems"] += 1
+        spend(Costs(eigenproblems=1))
         J, dJ, H = self.function(theta)
         if not np.isfinite(J).all():
             return infeasible(theta, len(self.objectives))

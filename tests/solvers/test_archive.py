@@ -8,10 +8,14 @@ from interruptions import interrupt_after
 from problems import box, circles, disconnected
 
 from modefront._typing import Floats
+from modefront.fronts.driver import pareto_front
+from modefront.fronts.front import Front
+from modefront.fronts.options import Pareto
 from modefront.solvers.archive import Archive
 from modefront.solvers.explore import Search
-from modefront.study.run import Front, pareto_front
-from modefront.study.store import Store
+from modefront.work.costs import Costs
+from modefront.work.serial import Serial
+from modefront.work.store import Store
 
 
 def dominated(J: Floats, others: Floats) -> bool:
@@ -40,7 +44,7 @@ def test_it_holds_the_nondominated_models_of_all(n: int) -> None:
         assert beaten.any() == dominated(row, finite)
 
 
-def test_models_are_remembered_that_are_evaluated_but_not_those_of_a_branch() -> None:
+def test_models_are_remembered_that_are_evaluated_but_not_those_of_a_branch(costs: Costs) -> None:
     problem = box(circles, [-1, -1], [2, 2])
     archive = Archive(problem)
     archive.on_branch(()).evaluate(np.array([0.5, 0.0]))
@@ -48,30 +52,31 @@ def test_models_are_remembered_that_are_evaluated_but_not_those_of_a_branch() ->
     for theta in ([0.5, 1.0], [0.5, 0.5], [0.0, 0.0]):
         archive.evaluate(np.array(theta), derivatives=False)
     assert archive.theta.tolist() == [[0.5, 0.5], [0.0, 0.0]]
-    assert problem.counter["eigenproblems"] == 4
+    assert costs.eigenproblems == 4
 
 
 def found(folder: Path) -> Front:
     problem = box(disconnected, [0, -1], [1, 1])
-    store = Store(folder, lambda: problem.counts, lambda _: None, {})
     search = Search(starts=2, limit=2, evolutions=0)
-    return pareto_front(problem, np.ones(2), points=7, refined=0.2, search=search, checkpoint=store)
+    options = Pareto(points=7, refined=0.2)
+    return pareto_front(problem, np.ones(2), options, search=search, work=Serial(Store(folder)))
 
 
-@pytest.mark.parametrize("pieces", [2, 9, 14])
+@pytest.mark.parametrize("tasks", [2, 9, 14])
 def test_a_run_that_is_continued_knows_the_same_models(
-    pieces: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    tasks: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     whole = found(tmp_path / "whole")
-    interrupt_after(pieces, monkeypatch)
+    interrupt_after(tasks, monkeypatch)
     with pytest.raises(KeyboardInterrupt):
         found(tmp_path / "broken")
     again = found(tmp_path / "broken")
     assert len(whole.known) > 20
     assert again.known.tobytes() == whole.known.tobytes()
     assert again.places.tolist() == whole.places.tolist()
-    assert [label for label, _ in again.points] == [label for label, _ in whole.points]
-    for (_, one), (_, other) in zip(again.points, whole.points, strict=True):
+    assert [x.label for x in again.points] == [x.label for x in whole.points]
+    for point, other_point in zip(again.points, whole.points, strict=True):
+        one, other = point.solution, other_point.solution
         assert one.at.theta.tobytes() == other.at.theta.tobytes()
         assert one.at.J.tobytes() == other.at.J.tobytes()
         assert one.status is other.status

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 import numpy as np
@@ -30,7 +29,6 @@ class Switching:
     start: Floats = field(default_factory=lambda: np.array([0.2]))
     objectives: tuple[str, ...] = ("J",)
     follows: bool = True
-    counts: Mapping[str, int] = field(default_factory=dict)
 
     def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
         del derivatives
@@ -51,7 +49,7 @@ class Switching:
 def test_a_start_is_followed_on_its_own_piece_too(follows: bool, least: float) -> None:
     search = Search.none()
     descent = Descent(weighted(np.ones(1)))
-    found = explore(Switching(follows=follows), descent, np.random.default_rng(0), search)
+    found = explore(Switching(follows=follows), descent, search, rng=np.random.default_rng(0))
     assert found[0].at.J[0] == pytest.approx(least, abs=1e-9)
     assert found[0].at.branch == ((0,) if follows else (1,))
     values = [float(one.at.J[0]) for one in found]

@@ -6,18 +6,20 @@ from problems import box, concave, disconnected
 
 from modefront._typing import Floats
 from modefront.solvers.curvature import second_order
+from modefront.work.costs import Costs
 
 
 @pytest.mark.parametrize("at", [[0.3, -0.2], [-2.0, 0.1], [2.0, 2.0], [1.9999, -1.9999]])
-def test_second_derivatives_within_and_at_the_bounds(at: list[float]) -> None:
+def test_second_derivatives_within_and_at_the_bounds(at: list[float], costs: Costs) -> None:
     theta = np.array(at)
     for function in (concave, disconnected):
         problem = box(function, [-2, -2], [2, 2])
+        before = costs.eigenproblems
         found = second_order(problem, problem.evaluate(theta))
         assert found is not None
+        assert costs.eigenproblems - before == 5
         expected = function(theta)[2]
         assert found.H == pytest.approx(expected, rel=1e-3, abs=1e-3 * np.abs(expected).max())
-        assert problem.counts["eigenproblems"] == 5
 
 
 def test_inside_they_are_exact_to_the_square_of_the_step() -> None:

@@ -39,7 +39,7 @@ def reference(key: Key, i: int) -> Reference:
 
 def found(key: Key, i: int) -> Solution:
     problem, sizes = equation(key).case.problem, reference(key, i).sizes
-    there = edge(problem, i, sizes, np.random.default_rng(i), SEARCH)
+    there = edge(problem, i, sizes, np.random.SeedSequence(i), SEARCH)
     assert there is not None
     return there.best
 

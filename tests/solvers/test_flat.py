@@ -6,7 +6,6 @@ from problems import Derivatives, Known, box, circles
 
 from modefront._typing import Floats
 from modefront.solvers.advance import simplex
-from modefront.solvers.checkpoint import compute_always
 from modefront.solvers.edges import edge
 from modefront.solvers.explore import Search
 from modefront.solvers.flat import flat_points, identifiable_part
@@ -26,7 +25,7 @@ def flat(theta: Floats) -> Derivatives:
 def whole_front(problem: Known, sizes: Floats) -> tuple[list[Solution], list[Solution]]:
     edges = []
     for i in range(2):
-        found = edge(problem, i, sizes, np.random.default_rng(i), Search(starts=3))
+        found = edge(problem, i, sizes, np.random.SeedSequence(i), Search(starts=3))
         assert found is not None
         edges.append(found.best)
     target = payoff(edges, sizes)
@@ -38,7 +37,7 @@ def test_a_flat_part_is_found_and_the_rest_covered_by_itself() -> None:
     problem = box(flat, [0, -1], [4, 1])
     sizes = np.array([16.0, 1.0])
     edges, along = whole_front(problem, sizes)
-    part = identifiable_part(problem, along, edges, along, 0.01, sizes, 19, compute_always)
+    part = identifiable_part(problem, along, edges, along, 0.01, sizes, 19)
     assert part is not None
     least = 1 + np.exp(-16.0)
     J = np.array([one.at.J for one in along])
@@ -66,7 +65,7 @@ def test_a_flat_part_of_which_the_end_is_not_found_is_counted_and_not_cut() -> N
         *(np.array([one.at.J for one in along]), np.array([0.0, 1 + np.exp(-16.0)])), 0.01, sizes
     )
     # Without a solution to start from, there is no way to the end.
-    part = identifiable_part(problem, along, edges, [], 0.01, sizes, 19, compute_always)
+    part = identifiable_part(problem, along, edges, [], 0.01, sizes, 19)
     assert part is not None
     assert beside[1] >= 8
     assert part.flat.tolist() == [0, 0]
@@ -80,7 +79,7 @@ def test_a_front_that_bends_everywhere_is_left_alone() -> None:
     problem = box(circles, [-2, -2], [2, 2])
     sizes = np.ones(2)
     edges, along = whole_front(problem, sizes)
-    assert identifiable_part(problem, along, edges, along, 0.01, sizes, 19, compute_always) is None
+    assert identifiable_part(problem, along, edges, along, 0.01, sizes, 19) is None
 
 
 def test_an_objective_that_is_fitted_exactly_has_no_flat_part() -> None:
@@ -109,12 +108,12 @@ def flat_three(theta: Floats) -> Derivatives:
 def test_a_flat_patch_of_three_objectives_is_left_out() -> None:
     problem = box(flat_three, [0, -1], [4, 2], 3)
     sizes = np.ones(3)
-    found = [edge(problem, i, sizes, np.random.default_rng(i), Search(starts=3)) for i in range(3)]
+    found = [edge(problem, i, sizes, np.random.SeedSequence(i), Search(starts=3)) for i in range(3)]
     edges = [one.best for one in found if one]
     target = payoff(edges, sizes)
     assert target is not None
     along = nbi(problem, edges, target, simplex(3, 9))
-    part = identifiable_part(problem, along, edges, along, 0.01, sizes, 9, compute_always)
+    part = identifiable_part(problem, along, edges, along, 0.01, sizes, 9)
     assert part is not None
     level = 1.01 * edges[2].at.J[2]
     J = np.array([one.at.J for one in along])

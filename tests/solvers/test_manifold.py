@@ -12,6 +12,7 @@ from modefront.solvers.explore import Descent, Search, explore
 from modefront.solvers.manifold import Extent, Manifold, equally_good, follow
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
+from modefront.work.costs import Costs
 
 ONE = weighted(np.ones(1))
 
@@ -51,7 +52,7 @@ def thetas(models: Sequence[Evaluation]) -> Floats:
     return np.array([one.theta for one in models])
 
 
-def test_a_circle_is_followed_until_it_closes() -> None:
+def test_a_circle_is_followed_until_it_closes(costs: Costs) -> None:
     problem = of(circle, [-1, -1], [1, 1])
     found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
     assert (found.dimension, found.extent) == (1, Extent.CLOSED)
@@ -64,7 +65,7 @@ def test_a_circle_is_followed_until_it_closes() -> None:
     # h = 0.05 of ranges of 2: chords of 0.1, but where the two ends meet.
     assert 0.7 * around.max() == pytest.approx(0.1, rel=0.71)
     assert 0.7 * around.min() > 0.06
-    assert problem.counts["eigenproblems"] <= 6 * len(found.models)
+    assert costs.eigenproblems <= 6 * len(found.models)
 
 
 def test_a_circle_that_the_bounds_cut_ends_on_them() -> None:
@@ -79,7 +80,7 @@ def test_a_circle_that_the_bounds_cut_ends_on_them() -> None:
 
 def test_disjoint_curves_are_all_followed_and_none_twice() -> None:
     problem = of(two_circles, [-2, -2], [2, 2])
-    minima = explore(problem, Descent(ONE), np.random.default_rng(0), Search(starts=20))
+    minima = explore(problem, Descent(ONE), Search(starts=20), rng=np.random.default_rng(0))
     assert len(minima) > 2
     found = equally_good(problem, ONE, [one.at for one in minima], h=0.03, limit=200)
     assert [one.extent for one in found] == [Extent.CLOSED] * 2
@@ -115,7 +116,7 @@ def test_a_sphere_within_narrow_bounds_ends_on_them() -> None:
 def test_isolated_minima_are_counted() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
     programme = weighted(np.array([1.0, 0.0]))
-    minima = explore(problem, Descent(programme), np.random.default_rng(0), Search())
+    minima = explore(problem, Descent(programme), Search(), rng=np.random.default_rng(0))
     found = equally_good(problem, programme, [one.at for one in minima])
     assert [one.extent for one in found] == [Extent.ISOLATED] * 4
     assert [one.dimension for one in found] == [0] * 4
@@ -157,7 +158,7 @@ def test_a_surface_is_followed_from_a_corner_along_the_bounds() -> None:
     assert away.max() < 0.2
 
 
-def test_residuals_that_bend_but_do_not_change_hold_a_minimum() -> None:
+def test_residuals_that_bend_but_do_not_change_hold_a_minimum(costs: Costs) -> None:
     def bowl(theta: Floats) -> Derivatives:
         x, y = theta
         return squares(np.array([1 + x**2, y]), np.array([[2 * x, 0], [0, 1]]))
@@ -165,7 +166,7 @@ def test_residuals_that_bend_but_do_not_change_hold_a_minimum() -> None:
     problem = of(bowl, [-1, -1], [1, 1])
     found = follow(problem, ONE, problem.evaluate(np.zeros(2)), h=0.05, limit=20)
     assert (found.dimension, found.extent) == (0, Extent.ISOLATED)
-    assert problem.counts["eigenproblems"] == 5, "no step was tried"
+    assert costs.eigenproblems == 5, "no step was tried"
 
 
 def test_a_direction_that_bends_is_no_part_of_a_manifold() -> None:
@@ -212,7 +213,7 @@ def turning_circle(theta: Floats) -> Derivatives:
     return squares(g * e, np.outer(e, dg) + g * (np.eye(2) - np.outer(e, e)) / rho)
 
 
-def test_residuals_that_turn_leave_a_closed_curve() -> None:
+def test_residuals_that_turn_leave_a_closed_curve(costs: Costs) -> None:
     problem = of(turning_circle, [-1, -1], [1, 1])
     found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
     assert (found.dimension, found.extent) == (1, Extent.CLOSED)
@@ -223,7 +224,7 @@ def test_residuals_that_turn_leave_a_closed_curve() -> None:
     assert (np.sign(steps) == np.sign(steps[0])).all(), "in order along the curve"
     assert np.abs(steps).sum() > 2 * np.pi - 0.3
     assert 0.7 * np.abs(steps).max() < 0.15
-    assert problem.counts["eigenproblems"] <= 12 * len(found.models)
+    assert costs.eigenproblems <= 12 * len(found.models)
 
 
 def test_a_circle_on_which_residuals_turn_ends_on_the_bounds() -> None:
@@ -296,6 +297,7 @@ def test_of_many_dimensions_each_parameter_is_followed_as_far_as_it_goes(
     lower: list[float],
     upper: list[float],
     dimension: int,
+    costs: Costs,
 ) -> None:
     problem = of(function, lower, upper)
     theta = np.array(start)
@@ -318,10 +320,10 @@ def test_of_many_dimensions_each_parameter_is_followed_as_far_as_it_goes(
     assert np.abs(reached - expected).max() < 0.02 * np.ptp([lower, upper])
     assert (reached[0] >= expected[0] - 1e-6).all()
     assert (reached[1] <= expected[1] + 1e-6).all()
-    assert problem.counts["eigenproblems"] == found.evaluations + 1 < 400
+    assert costs.eigenproblems == found.evaluations + 1 < 400
 
 
-def test_a_manifold_is_followed_once_from_wherever_its_minima_lie() -> None:
+def test_a_manifold_is_followed_once_from_wherever_its_minima_lie(costs: Costs) -> None:
     """Twenty minima of one manifold of dimension 4, all over it."""
     problem = of(hyperplane, [0] * 6, [1] * 6)
     A = np.array([[1.0, 1, 1, 1, 1, 1], [1.0, -1, 0, 0, 0.5, 0]])
@@ -332,10 +334,10 @@ def test_a_manifold_is_followed_once_from_wherever_its_minima_lie() -> None:
         theta = theta + np.linalg.pinv(A) @ (np.array([3.0, 0.25]) - A @ theta)
         if (theta >= 0).all() and (theta <= 1).all():
             minima.append(problem.evaluate(theta))
-    before = problem.counts["eigenproblems"]
+    before = costs.eigenproblems
     (found,) = equally_good(problem, ONE, minima)
     assert (found.dimension, found.minima) == (4, 20)
-    assert found.evaluations == problem.counts["eigenproblems"] - before < 300
+    assert found.evaluations == costs.eigenproblems - before < 300
 
 
 def test_another_programme_shares_a_manifold_that_is_as_good_for_it() -> None:
@@ -382,16 +384,16 @@ def test_a_model_from_which_all_steps_leave_the_bounds_is_no_curve() -> None:
     assert (found.dimension, found.extent, len(found.models)) == (0, Extent.ISOLATED, 1)
 
 
-def test_no_more_evaluations_than_allowed() -> None:
+def test_no_more_evaluations_than_allowed(costs: Costs) -> None:
     problem = of(hyperplane, [0] * 6, [1] * 6)
     A = np.array([[1.0, 1, 1, 1, 1, 1], [1.0, -1, 0, 0, 0.5, 0]])
     theta = np.linalg.pinv(A) @ np.array([3.0, 0.25])
     start = problem.evaluate(theta)
-    before = problem.counts["eigenproblems"]
+    before = costs.eigenproblems
     first, second = equally_good(
         problem, ONE, [start, problem.evaluate(0.1 * theta)], evaluations=21
     )
-    assert problem.counts["eigenproblems"] - before == 21 + 1
+    assert costs.eigenproblems - before == 21 + 1
     assert (first.extent, first.dimension) == (Extent.SPENT, 4)
     assert len(first.models) > 2
     assert (second.extent, len(second.models)) == (Extent.SPENT, 1)

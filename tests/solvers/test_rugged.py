@@ -3,14 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import numpy as np
 import pytest
-from modefront.solvers.checkpoint import Checkpoint, Solutions, compute_always
-from modefront.study.run import Front, pareto_front
-from problems import Derivatives, Known, box, circles, concave
+from problems import Derivatives, box, circles, concave
 
 from modefront._typing import Floats
+from modefront.fronts.driver import pareto_front
+from modefront.fronts.front import Front
+from modefront.fronts.options import Pareto
+from modefront.fronts.point import Kind, of_kind
 from modefront.solvers.advance import simplex
 from modefront.solvers.basins import explore_between, ranks
 from modefront.solvers.dominance import nondominated
@@ -18,7 +21,9 @@ from modefront.solvers.evolutionary import evolve_front
 from modefront.solvers.explore import Descent, Search, explore
 from modefront.solvers.indicators import hypervolume, igd_plus
 from modefront.solvers.scalarisation import LogSum, Squares, weighted
-from modefront.solvers.sqp import Status
+from modefront.work.costs import counted
+from modefront.work.serial import Serial
+from modefront.work.store import Store
 
 FEW = Search(starts=4, limit=12, evolutions=0)
 
@@ -57,37 +62,26 @@ def best(J: Floats, cell: float = 0.01) -> Floats:
 
 
 def objectives(front: Front) -> Floats:
-    return np.array([one.at.J for _, one in front.points])
-
-
-def counted(problem: Known, kept: dict[str, Solutions]) -> Checkpoint:
-    """Return a checkpoint that keeps what is computed by name."""
-
-    def checkpoint(name: str, compute: Callable[[], Solutions]) -> Solutions:
-        if name not in kept:
-            kept[name] = compute()
-        return kept[name]
-
-    return checkpoint
+    return np.array([point.solution.at.J for point in front.points])
 
 
 def test_a_rugged_front_is_not_behind_an_evolution_with_as_many_evaluations() -> None:
     problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
-    front = pareto_front(problem, np.array([4.0, 4.0]), points=12, seed=1, search=FEW)
-    spent = problem.counts["eigenproblems"]
+    with counted() as costs:
+        front = pareto_front(problem, np.array([4.0, 4.0]), Pareto(points=12), seed=1, search=FEW)
     truth = rastrigin_front()
     utopia, scale = truth.min(axis=0), np.ptp(truth, axis=0)
     J = (objectives(front) - utopia) / scale
     for seed in range(2):
         rng = np.random.default_rng(seed)
-        other = evolve_front(problem, "nsga2", 40, spent, rng)
+        other = evolve_front(problem, "nsga2", 40, costs.eigenproblems, rng)
         J_other = (np.array([one.at.J for one in other]) - utopia) / scale
         assert hypervolume(J) >= hypervolume(J_other)
     assert hypervolume(J) >= 0.98 * hypervolume((truth - utopia) / scale)
     called = [
         row
-        for row, optimal, (label, one) in zip(J, nondominated(J), front.points, strict=True)
-        if optimal and one.converged and label.startswith("nbi")
+        for row, optimal, point in zip(J, nondominated(J), front.points, strict=True)
+        if optimal and point.solution.converged and point.kind is Kind.FRONT
     ]
     R = (truth - utopia) / scale
     behind = sum((row - R).min(axis=1).max() > 0.01 for row in called)
@@ -106,7 +100,7 @@ def test_starts_end_where_each_leads_to_a_minimum_of_its_own() -> None:
     problem = box(many_waves, [-2.0] * 12, [2.0] * 12)
     search = Search(starts=12, limit=60, evolutions=0)
     first = Descent(weighted(np.array([1.0, 0.0])))
-    found = explore(problem, first, np.random.default_rng(1), search)
+    found = explore(problem, first, search, rng=np.random.default_rng(1))
     # The problem's own start and 15 others, of 60.
     assert 12 <= len(found) <= 16
 
@@ -114,8 +108,8 @@ def test_starts_end_where_each_leads_to_a_minimum_of_its_own() -> None:
 def test_no_evaluated_model_is_better_than_edges_and_weighted_models() -> None:
     problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
     search = Search(starts=2, limit=4, evolutions=0)
-    front = pareto_front(problem, np.array([4.0, 4.0]), points=6, seed=2, search=search)
-    models = {label: one.at.J for label, one in front.points}
+    front = pareto_front(problem, np.array([4.0, 4.0]), Pareto(points=6), seed=2, search=search)
+    models = {point.label: point.solution.at.J for point in front.points}
     least = front.known.sum(axis=1).min()
     assert models["equal-weights"].sum() <= least * (1 + 1e-5)
     for i in range(2):
@@ -123,52 +117,49 @@ def test_no_evaluated_model_is_better_than_edges_and_weighted_models() -> None:
         assert front.edges[i].best.at.J.tolist() == models[f"edge-J{i + 1}"].tolist()
 
 
-def test_an_evolution_that_is_continued_evaluates_nothing_again() -> None:
-    kept: dict[str, Solutions] = {}
-    fronts = []
+def test_an_evolution_that_is_continued_evaluates_nothing_again(tmp_path: Path) -> None:
+    fronts, evaluations = [], []
     search = Search(starts=4, limit=8, evolutions=0)
     for _ in range(2):
         problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
-        checkpoint = counted(problem, kept)
-        fronts.append(
-            pareto_front(
-                problem, np.ones(2), points=6, seed=3, search=search, checkpoint=checkpoint
+        work = Serial(Store(tmp_path))
+        with counted() as costs:
+            fronts.append(
+                pareto_front(
+                    problem, np.ones(2), Pareto(points=6), seed=3, search=search, work=work
+                )
             )
-        )
-    assert any(name.startswith("nbi-between-") for name in kept)
-    assert problem.counts["eigenproblems"] == 0
+        evaluations.append(costs.eigenproblems)
+        assert any(name[:3] == ("front", "nbi", "between") for name in work.costs)
+        assert work.total().eigenproblems == evaluations[0], "what tasks cost is kept"
+    assert evaluations[0] > 0
+    assert evaluations[1] == 0
     assert objectives(fronts[0]).tolist() == objectives(fronts[1]).tolist()
 
 
 @pytest.mark.parametrize("function", [circles, concave])
 def test_smooth_fronts_cost_a_few_probes(function: Callable[[Floats], Derivatives]) -> None:
     problem = box(function, [-2, -2], [2, 2])
-    kept: dict[str, Solutions] = {}
-    front = pareto_front(
-        problem, np.ones(2), points=10, seed=1, search=FEW, checkpoint=counted(problem, kept)
-    )
-    assert not any(name.startswith("nbi-between-") for name in kept)
-    assert sum(label.startswith("nbi") for label, _ in front.points) == 10
-    # Models that were only visited on the way are kept with the piece of work.
-    ends = [one for one in kept["between-probes"] if one.status is not Status.VISITED]
-    probes = sum(1 + one.evaluations for one in ends)
-    assert 3 <= probes <= 30
+    work = Serial()
+    options = Pareto(points=10)
+    front = pareto_front(problem, np.ones(2), options, seed=1, search=FEW, work=work)
+    assert not any(name[:3] == ("front", "nbi", "between") for name in work.costs)
+    assert len(of_kind(front.points, Kind.FRONT)) == 10
+    assert 3 <= work.total(lambda stage: stage == "probe").eigenproblems <= 30
 
 
 def test_no_starts_mean_no_exploration() -> None:
     problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
-    front = pareto_front(problem, np.ones(2), points=4, seed=1, search=FEW)
+    front = pareto_front(problem, np.ones(2), Pareto(points=4), seed=1, search=FEW)
     assert front.target is not None
-    points = [one for label, one in front.points if label.startswith("nbi")]
-    before = problem.counts["eigenproblems"]
+    points = [point.solution for point in of_kind(front.points, Kind.FRONT)]
     none = Search.none()
     rng = np.random.default_rng(0)
-    same = explore_between(
-        problem, front.target, points, [], simplex(2, 3), rng, none, compute_always
-    )
+    with counted() as costs:
+        same = explore_between(problem, front.target, points, [], simplex(2, 3), rng, none)
     # Points compete with each other all the same.
     assert [one.beta is None for one in same] == [one.beta is None for one in points]
-    assert problem.counts["eigenproblems"] - before <= 100
+    assert costs.eigenproblems <= 100
 
 
 def test_ranks_are_those_of_dominance() -> None:
@@ -214,10 +205,9 @@ def product_front(n: int, *, linear: bool) -> Callable[[Floats], Derivatives]:
 @pytest.mark.parametrize(("n", "linear"), [(4, True), (4, False), (5, False)])
 def test_fronts_of_four_and_five_objectives_whose_edges_coincide(n: int, linear: bool) -> None:
     problem = box(product_front(n, linear=linear), [0.0] * n, [1.0] * n, n)
-    front = pareto_front(problem, np.ones(n), points=3, seed=1, search=FEW)
-    J = np.array(
-        [one.at.J for label, one in front.points if label.startswith("nbi") and one.converged]
-    )
+    front = pareto_front(problem, np.ones(n), Pareto(points=3), seed=1, search=FEW)
+    along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
+    J = np.array([one.at.J for one in along if one.converged])
     size = J.sum(axis=1) if linear else np.linalg.norm(J, axis=1)
     assert size == pytest.approx(1, abs=1e-5)
     assert len(J) >= n + n * (n - 1) // 2

@@ -36,14 +36,15 @@ from modefront.solvers.indicators import hypervolume, igd_plus, largest_gap
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import payoff
 from modefront.solvers.pieces import gaps, piece_numbers
-from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Problem
 from modefront.solvers.scalarisation import LogSum, level, weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 from modefront.solvers.weights import iterate_weights, optimal_minima, regular
+from modefront.work.costs import counted
 
 
 def sizes_of(problem: Known) -> Floats:
-    sizes = typical_sizes(sample(problem, np.random.default_rng(0)))
+    sizes = typical_sizes(sample(problem, rng=np.random.default_rng(0)))
     assert sizes is not None
     return sizes
 
@@ -52,7 +53,7 @@ def edges_of(problem: Known) -> list[Solution]:
     sizes = sizes_of(problem)
     out = []
     for i in range(len(problem.objectives)):
-        found = edge(problem, i, sizes, np.random.default_rng(i), Search())
+        found = edge(problem, i, sizes, np.random.SeedSequence(i), Search())
         assert found is not None
         out.append(found.best)
     return out
@@ -132,9 +133,8 @@ def test_an_exhausted_search_says_so() -> None:
 
 def test_all_minima_are_kept() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
-    found = explore(
-        problem, Descent(weighted(np.array([1.0, 0.0]))), np.random.default_rng(0), Search()
-    )
+    first = Descent(weighted(np.array([1.0, 0.0])))
+    found = explore(problem, first, Search(), rng=np.random.default_rng(0))
     places = sorted(tuple(np.round(one.at.theta).astype(int).tolist()) for one in found)
     assert places == [(-1, -2), (-1, 2), (1, -2), (1, 2)]
 
@@ -153,7 +153,7 @@ def test_a_start_without_derivatives_is_not_taken_for_a_minimum() -> None:
     start = begin(problem.evaluate(np.array([0.6, 1.6]), derivatives=False))
     search = Search(starts=0, limit=0, evolutions=0)
     descent = Descent(weighted(np.array([1.0, 0.0])))
-    found = explore(problem, descent, np.random.default_rng(0), search, starts=[start])
+    found = explore(problem, descent, search, [start], rng=np.random.default_rng(0))
     places = [np.round(one.at.theta, 3).tolist() for one in found]
     assert [1.0, 2.0] in places
     assert [0.6, 1.6] not in places
@@ -163,8 +163,10 @@ def test_the_evolution_strategy_is_left_to_rugged_objectives() -> None:
     def cost(limit: int, evolutions: int) -> int:
         problem = box(many_minima, [-4, -4], [4, 4])
         search = Search(starts=3, limit=limit, evolutions=evolutions)
-        explore(problem, Descent(weighted(np.array([1.0, 0.0]))), np.random.default_rng(0), search)
-        return problem.counts["eigenproblems"]
+        first = Descent(weighted(np.array([1.0, 0.0])))
+        with counted() as costs:
+            explore(problem, first, search, rng=np.random.default_rng(0))
+        return costs.eigenproblems
 
     assert cost(60, 4) == cost(60, 0), "the starts met the rule"
     assert cost(3, 4) > cost(3, 0), "the starts did not suffice"
@@ -174,8 +176,10 @@ def test_searches_are_repeated_exactly_with_the_same_seed() -> None:
     runs = []
     for _ in range(2):
         problem = box(many_minima, [-4, -4], [4, 4])
-        found = explore(problem, Descent(weighted(np.ones(2))), np.random.default_rng(5), Search())
-        runs.append([*(one.at.theta.tolist() for one in found), problem.counts["eigenproblems"]])
+        rng = np.random.default_rng(5)
+        with counted() as costs:
+            found = explore(problem, Descent(weighted(np.ones(2))), Search(), rng=rng)
+        runs.append([*(one.at.theta.tolist() for one in found), costs.eigenproblems])
     assert runs[0] == runs[1]
 
 
@@ -295,7 +299,7 @@ class TwoBasins:
 def at_theta(theta: float) -> Solution:
     """Return a solution with J = (1 - theta, 1 - theta)."""
     none = np.zeros((2, 1, 1))
-    at = Evaluation(np.array([theta]), np.full(2, 1 - theta), none[0], none)
+    at = Evaluation(np.array([theta]), np.full(2, 1 - theta), ObjectiveDerivatives(none[0], none))
     return Solution(at, none, np.ones(2), 0.0, Status.CONVERGED, 1)
 
 
@@ -309,7 +313,7 @@ def test_a_point_far_from_its_neighbour_is_solved_from_there_though_the_way_back
 def test_a_piece_of_the_front_between_the_edges_is_reached_from_its_own_minimum() -> None:
     problem = box(three_wells, [-1, -1.5], [2, 1.5])
     sizes = sizes_of(problem)
-    found = [edge(problem, i, sizes, np.random.default_rng(i), Search()) for i in range(2)]
+    found = [edge(problem, i, sizes, np.random.SeedSequence(i), Search()) for i in range(2)]
     edges = [one.best for one in found if one]
     assert [round(one.at.theta[1]) for one in edges] == [-1, 1]
     target = payoff(edges, sizes)
@@ -344,7 +348,7 @@ def test_fronts_of_three_objectives_are_covered_beyond_the_simplex(
 ) -> None:
     problem = box(function, lower, upper, 3)
     sizes = sizes_of(problem)
-    found = [edge(problem, i, sizes, np.random.default_rng(i), Search()) for i in range(3)]
+    found = [edge(problem, i, sizes, np.random.SeedSequence(i), Search()) for i in range(3)]
     edges = [one.best for one in found if one]
     minima = [one for each in found if each for one in each.minima]
     target = payoff(edges, sizes, minima)
@@ -366,9 +370,10 @@ def test_nothing_is_evaluated_where_the_front_ends() -> None:
     assert target is not None
     programmes = Attainment(target, np.array([one.at.theta for one in corners]))
     # Beyond the first corner, J1 = 0 holds the bound: Phi beta = (-0.2, 0.5, 0.5).
-    beyond, before = np.array([1.2, -0.1, -0.1]), problem.counts["eigenproblems"]
-    found = programmes.solve(problem, beyond, corners[0])
-    assert problem.counts["eigenproblems"] == before
+    beyond = np.array([1.2, -0.1, -0.1])
+    with counted() as costs:
+        found = programmes.solve(problem, beyond, corners[0])
+    assert costs.eigenproblems == 0
     assert found.status is Status.STALLED
     assert found.at is corners[0].at
     within = programmes.solve(problem, np.array([0.8, 0.1, 0.1]), corners[0])
@@ -397,9 +402,9 @@ def test_the_second_point_costs_few_evaluations() -> None:
     edges = edges_of(problem)
     target = payoff(edges, sizes_of(problem))
     assert target is not None
-    before = problem.counts["eigenproblems"]
-    nbi(problem, edges, target, simplex(2, 19))
-    assert (problem.counts["eigenproblems"] - before) / 20 <= 5
+    with counted() as costs:
+        nbi(problem, edges, target, simplex(2, 19))
+    assert costs.eigenproblems / 20 <= 5
 
 
 def test_one_best_model_is_a_front_of_one_point() -> None:
@@ -437,7 +442,7 @@ def test_optimal_weights_are_a_over_J_and_the_iteration_agrees() -> None:
 
     problem = box(offset, [-2, -2], [2, 2])
     a, sizes = np.array([3.0, 5.0]), sizes_of(problem)
-    best = optimal_minima(problem, a, sizes, np.random.default_rng(0), Search(), [])[0]
+    best = optimal_minima(problem, a, sizes, Search(), [], rng=np.random.default_rng(0))[0]
     again = solve(problem, weighted(a / best.at.J), begin(best.at))
     assert again.at.theta == pytest.approx(best.at.theta, abs=1e-6)
     start = solve(problem, weighted(np.ones(2)), begin(problem.evaluate(problem.start)))
@@ -454,7 +459,8 @@ def test_optimal_weights_are_a_over_J_and_the_iteration_agrees() -> None:
 def test_singular_minima_are_told_from_regular_ones() -> None:
     problem = box(circles, [-2, -2], [2, 2])
     sizes = sizes_of(problem)
-    found = optimal_minima(problem, np.ones(2), sizes, np.random.default_rng(0), Search(), [])
+    rng = np.random.default_rng(0)
+    found = optimal_minima(problem, np.ones(2), sizes, Search(), [], rng=rng)
     assert not any(regular(one.at.J, sizes) for one in found)
     exact = begin(problem.evaluate(np.zeros(2)))
     assert iterate_weights(problem, np.ones(2), sizes, exact) is None

@@ -12,7 +12,7 @@ from problems import Derivatives, Known, bowls, box, curved, sphere
 from modefront._typing import Floats
 from modefront.solvers.correction import Correction
 from modefront.solvers.merit import Merit, Multipliers, projected, surplus
-from modefront.solvers.problem import Evaluation, Residual
+from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Residual
 from modefront.solvers.scalarisation import Achievement, Scalarisation, level, weighted
 from modefront.solvers.secant import learned_from
 from modefront.solvers.sqp import Options, Status, begin, solve
@@ -57,7 +57,7 @@ def test_equal_functions_have_no_surplus(seed: int, nu: float) -> None:
 
 
 def test_an_undefined_point_is_worse_than_any_other() -> None:
-    nowhere = Evaluation(np.zeros(1), np.array([np.inf]), np.zeros((1, 1)), np.zeros((1, 1, 1)))
+    nowhere = Evaluation(np.zeros(1), np.array([np.inf]))
     assert Merit(weighted(np.ones(1)), NONE, 10.0).at(nowhere) == np.inf
 
 
@@ -73,7 +73,9 @@ def test_second_derivatives_of_quadratic_objectives_are_learned(seed: int, p: in
     assume(np.linalg.cond(full).max() < 1e3)
 
     def evaluation(theta: Floats) -> Evaluation:
-        return Evaluation(theta, np.zeros(n), full @ theta, np.zeros((n, p, p)))
+        return Evaluation(
+            theta, np.zeros(n), ObjectiveDerivatives(full @ theta, np.zeros((n, p, p)))
+        )
 
     S, at = np.zeros((n, p, p)), evaluation(rng.normal(size=p))
     for step in np.linalg.qr(rng.normal(size=(p, p)))[0]:
@@ -93,7 +95,8 @@ def test_a_correction_leads_back_into_a_bent_valley() -> None:
         x, y = theta
         r = Residual(np.array([y - x**2]), np.array([[-2 * x, 1.0]]))
         J, dJ = np.array([r.r @ r.r]), 2 * (r.r @ r.dr)[None]
-        return Evaluation(theta, J, dJ, 2 * (r.dr.T @ r.dr)[None], residuals=[r])
+        H = 2 * (r.dr.T @ r.dr)[None]
+        return Evaluation(theta, J, ObjectiveDerivatives(dJ, H), residuals=[r])
 
     class Valley(Known):
         def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:

@@ -69,7 +69,7 @@ def bounded(
 ) -> Solution:
     problem = box(function, [-1.0, -1.0], [3.0, 3.0])
     rng = np.random.default_rng(0)
-    found = optimal_minima(problem, np.array(a), ONES, rng, SEARCH, [], np.array(b))
+    found = optimal_minima(problem, np.array(a), ONES, SEARCH, [], np.array(b), rng=rng)
     assert found[0].converged
     return found[0]
 
@@ -96,7 +96,7 @@ def test_bounded_weights_have_their_minimum_where_a_grid_has_it(
 def test_without_a_floor_the_sum_falls_without_bound_and_with_one_it_ends() -> None:
     """On the segment between the circles' centres, sum ln J is least at its ends, exact fits."""
     problem = box(circles, [-1.0, -1.0], [3.0, 3.0])
-    found = optimal_minima(problem, ONES, ONES, np.random.default_rng(0), SEARCH, [])
+    found = optimal_minima(problem, ONES, ONES, SEARCH, [], rng=np.random.default_rng(0))
     assert found == []
     ends = bounded(circles, (2.0, 1.0), (1e-3, 1e-3))
     t = float(np.sqrt(ends.at.J[0]))

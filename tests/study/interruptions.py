@@ -1,40 +1,41 @@
-"""Runs that are interrupted when a piece of work is to be written."""
+"""Runs that are interrupted when the result of a task is to be kept."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from pathlib import Path
 from typing import Any
 
 import pytest
 
-from modefront.study import store
+from modefront.work.costs import Costs
+from modefront.work.store import Store
+from modefront.work.task import Task
 
 
-def interrupt(monkeypatch: pytest.MonkeyPatch, when: Callable[[Path, int], bool]) -> None:
-    """Interrupt the next run, once, before the piece of which ``when`` is true.
+def interrupt(monkeypatch: pytest.MonkeyPatch, when: Callable[[Task[Any], int], bool]) -> None:
+    """Interrupt the next run, once, before the result of which ``when`` is true is kept.
 
-    It is asked with the path of the piece and the number of those that have been written.
+    It is asked with the task and the number of results that have been kept.
     """
-    write = store.write_piece
+    write = Store.write
     written = 0
 
-    def stop(path: Path, *rest: Any) -> None:
+    def stop(store: Store, task: Task[Any], result: Any, costs: Costs) -> None:
         nonlocal written
-        if when(path, written):
-            monkeypatch.setattr(store, "write_piece", write)
+        if when(task, written):
+            monkeypatch.setattr(Store, "write", write)
             raise KeyboardInterrupt
         written += 1
-        write(path, *rest)
+        write(store, task, result, costs)
 
-    monkeypatch.setattr(store, "write_piece", stop)
+    monkeypatch.setattr(Store, "write", stop)
 
 
-def interrupt_after(pieces: int, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Interrupt the next run when so many pieces have been written."""
-    interrupt(monkeypatch, lambda path, written: written == pieces)
+def interrupt_after(tasks: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Interrupt the next run when the results of so many tasks have been kept."""
+    interrupt(monkeypatch, lambda _, written: written == tasks)
 
 
 def interrupt_at(name: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    """Interrupt the next run when it comes to write a piece with this in its name."""
-    interrupt(monkeypatch, lambda path, written: name in path.name)
+    """Interrupt the next run when it comes to keep the result of a task with this in its name."""
+    interrupt(monkeypatch, lambda task, _: name in task.name)

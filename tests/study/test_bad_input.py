@@ -20,7 +20,7 @@ import scipy.io
 import scipy.sparse
 from refusals import Check, command, edited
 
-from modefront.solvers import pareto
+from modefront.fronts import options as pareto
 
 STUDY = """\
 [study]
@@ -1290,7 +1290,10 @@ def test_results_of_another_program(tmp_path: Path, capsys: pytest.CaptureFixtur
     xr.Dataset({"label": ("point", ["a"])}).to_netcdf(tmp_path / "results.nc", engine="h5netcdf")
     assert command("show", tmp_path) == 2
     err = capsys.readouterr().err
-    assert "results.nc: variables: expected results of modefront, found none called pareto" in err
+    assert (
+        "results.nc: variables: expected results of modefront, found none called kind, pareto"
+        in err
+    )
 
 
 def test_a_folder_that_cannot_be_written_to(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import shutil
 import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -17,8 +18,9 @@ import modefront as mf
 from modefront.cli.main import main
 from modefront.fem import grids
 from modefront.models.reduced.model import ReducedModel
+from modefront.results.files import read_dataset
 from modefront.study.check import check
-from modefront.study.results import read
+from modefront.work.costs import Costs, counted
 
 N = 14
 STUDY = (
@@ -102,7 +104,7 @@ def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
 
 @pytest.fixture(scope="module")
 def whole(file: Path) -> xr.Dataset:
-    return mf.run(mf.load(file), file.with_name("whole"))
+    return mf.run(mf.load(file), file.with_name("whole")).dataset
 
 
 def variant(file: Path, name: str, old: str, new: str) -> Path:
@@ -114,7 +116,7 @@ def variant(file: Path, name: str, old: str, new: str) -> Path:
 
 def test_the_front_is_that_of_full_solutions(file: Path, whole: xr.Dataset) -> None:
     study = mf.load(variant(file, "off", "reduction = 1e-8", 'reduction = "off"'))
-    full = mf.run(study, file.with_name("off"))
+    full = mf.run(study, file.with_name("off")).dataset
     assert "certified" not in full
     assert full.attrs["reduced_solutions"] == 0
     assert full.attrs["full_eigensolutions"] == full.attrs["model_evaluations"]
@@ -145,30 +147,31 @@ def test_a_few_full_solutions_are_enough_and_all_models_hold(whole: xr.Dataset) 
         assert whole["minimum_eigenvalue_error"].values[i].max() < 1e-3
     assert float(whole["eigenvalue_error"].max()) <= whole.attrs["eigenvalue_tolerance"] == 1e-8
     assert whole.attrs["full_eigensolutions"] == 1
-    assert whole.attrs["factorisations"] <= 4, "two of the snapshot, others where modes may miss"
+    # Two of the snapshot, and one for the units of parameters of each of four tasks.
+    assert whole.attrs["factorisations"] == 2 + 4
     assert 4 < whole.attrs["corrected_eigensolutions"] <= 10, "four of them at the bounds"
     assert whole.attrs["reduced_solutions"] > 100
     total = whole.attrs["full_eigensolutions"] + whole.attrs["reduced_solutions"]
     assert whole.attrs["model_evaluations"] == total
 
 
-@pytest.mark.parametrize("pieces", [1, 20])
+@pytest.mark.parametrize("tasks", [1, 20])
 def test_an_interrupted_run_goes_on_to_the_same_digits(
-    pieces: int, file: Path, whole: xr.Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+    tasks: int, file: Path, whole: xr.Dataset, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
 ) -> None:
-    interrupt_after(pieces, monkeypatch)
+    interrupt_after(tasks, monkeypatch)
     with pytest.raises(KeyboardInterrupt):
         mf.run(mf.load(file), tmp_path)
-    xr.testing.assert_identical(mf.run(mf.load(file), tmp_path), whole)
+    xr.testing.assert_identical(mf.run(mf.load(file), tmp_path).dataset, whole)
 
 
 def test_a_run_that_is_done_solves_nothing_again(file: Path, whole: xr.Dataset) -> None:
     study = mf.load(file)
     model = study.problem.model
     assert isinstance(model, ReducedModel)
-    before = model.counts.reduced
-    xr.testing.assert_identical(mf.run(study, file.with_name("whole")), whole)
-    assert model.counts.reduced == before
+    with counted() as costs:
+        xr.testing.assert_identical(mf.run(study, file.with_name("whole")).dataset, whole)
+    assert replace(costs, factorisations=0) == Costs(), "but for the units of parameters"
 
 
 def command(monkeypatch: pytest.MonkeyPatch, *arguments: object) -> int | str | None:
@@ -219,7 +222,7 @@ def test_predictions_are_made_in_full_and_that_is_said(
     study = variant(file, "predicted", "[pareto]", f"{PREDICTION}[pareto]")
     assert command(monkeypatch, "run", study, "-o", folder) == 0
     out = capfd.readouterr().out
-    data = read(folder)
+    data = read_dataset(folder)
     basis = whole.attrs["full_eigensolutions"]
     n = data.sizes["point"] + 4  # two models along each of two axes of the posterior
     assert data.attrs["prediction_eigensolutions"] == n
@@ -238,7 +241,7 @@ def test_what_cannot_be_met_in_the_memory_is_said_and_is_an_exit_of_1(
     folder = file.with_name("small")
     assert command(monkeypatch, "run", small, "-o", folder) == 1
     out, err = capfd.readouterr()
-    data = read(folder)
+    data = read_dataset(folder)
     failed = data["label"].values[~data["certified"].values]
     assert failed.size
     assert data.attrs["full_eigensolutions"] == 1

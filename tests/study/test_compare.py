@@ -7,8 +7,9 @@ import pytest
 import xarray as xr
 
 from modefront.errors import InputError
-from modefront.study.compare import compare
-from modefront.study.results import ATTRIBUTES, FILE
+from modefront.results.compare import compare
+from modefront.results.files import FILE
+from modefront.results.schema import ATTRIBUTES
 
 
 def results(
@@ -30,6 +31,7 @@ def results(
     ]
     variables: dict[str, object] = {
         "label": (("point",), [*(f"nbi-{i + 1}" for i in range(count)), "optimal-weights"]),
+        "kind": (("point",), [*["front"] * count, "optimal-weights"]),
         "pareto": (("point",), [*pareto, True]),
         "error": (point, e),
         "objective": (point, e**2),
@@ -133,6 +135,7 @@ def test_what_cannot_be_compared_is_said_at_once(two: tuple[Path, Path], tmp_pat
 def test_a_front_of_one_point_has_no_length(two: tuple[Path, Path], tmp_path: Path) -> None:
     one = results([[1.0, 1.0]], [[1, 1]])
     one["label"] = ("point", ["edge-f", "optimal-weights"])
+    one["kind"] = ("point", ["edge", "optimal-weights"])
     point = save(tmp_path / "point", one)
     first, second = compare((point, two[0])).fronts
     assert (first.points, first.length, first.extent) == (1, 0.0, (0.0, 0.0))

@@ -12,10 +12,10 @@ from interruptions import interrupt_at
 
 import modefront as mf
 from modefront._typing import Floats
+from modefront.results.selection import front_points
 from modefront.solvers.dominance import nondominated
 from modefront.study.examples import write_example
-from modefront.study.results import front_points
-from modefront.study.store import read_piece
+from modefront.work.costs import counted
 
 METHODS = ("nbi", "weights", "spea2", "nsga2")
 
@@ -34,7 +34,7 @@ def grouped(configuration: str, *groups: mf.Group) -> mf.UpdatingProblem:
 
 @cache
 def results(method: str) -> xr.Dataset:
-    return mf.solve(problem("c0"), method=method, population=40, evaluations=2000, seed=1)
+    return mf.solve(problem("c0"), method=method, population=40, evaluations=2000, seed=1).dataset
 
 
 def front(data: xr.Dataset) -> Floats:
@@ -66,9 +66,9 @@ def test_all_methods_give_the_same_variables_and_count_alike(method: str) -> Non
 
 @pytest.mark.parametrize("method", ["spea2", "nsga2"])
 def test_evolution_repeats_with_the_same_seed_and_stays_behind(method: str) -> None:
-    again = mf.solve(problem("c0"), method=method, population=40, evaluations=2000, seed=1)
+    again = mf.solve(problem("c0"), method=method, population=40, evaluations=2000, seed=1).dataset
     assert again.identical(results(method))
-    other = mf.solve(problem("c0"), method=method, population=40, evaluations=2000, seed=2)
+    other = mf.solve(problem("c0"), method=method, population=40, evaluations=2000, seed=2).dataset
     assert not np.array_equal(front(other)[:5], front(again)[:5])
     assert again.attrs["hypervolume"] < results("nbi").attrs["hypervolume"] * 1.01
 
@@ -88,7 +88,7 @@ def test_the_weight_sweep_misses_the_branch_next_to_the_frequency_edge() -> None
 @pytest.mark.parametrize("size", [0.06, 0.02])
 def test_refining_closes_the_gaps_of_each_piece_up_to_its_end(size: float) -> None:
     coarse = results("nbi")
-    fine = mf.solve(problem("c0"), refined=size, seed=1)
+    fine = mf.solve(problem("c0"), refined=size, seed=1).dataset
     assert fine.attrs["largest_gap"] <= size < coarse.attrs["largest_gap"]
     assert bool(fine["converged"].all())
     J, scale = front(fine), np.ptp(front(coarse), axis=0)
@@ -105,9 +105,9 @@ def test_refining_closes_the_gaps_of_each_piece_up_to_its_end(size: float) -> No
 
 def test_refining_finds_a_gap_that_few_points_step_over() -> None:
     """Of 8 points, none lies in the gap of M0: only that nothing is found there tells of it."""
-    coarse, expected = (mf.solve(problem("c0"), points=n, seed=1) for n in (8, 20))
+    coarse, expected = (mf.solve(problem("c0"), points=n, seed=1).dataset for n in (8, 20))
     assert coarse.sizes["end"] == 0
-    fine = mf.solve(problem("c0"), points=8, refined=0.1, seed=1)
+    fine = mf.solve(problem("c0"), points=8, refined=0.1, seed=1).dataset
     assert fine["end_label"].values.tolist() == ["end-1", "start-2"]
     assert fine["end_objective"].values == pytest.approx(expected["end_objective"].values, rel=1e-4)
     assert fine.attrs["largest_gap"] <= 0.1
@@ -123,9 +123,8 @@ def test_edges_of_three_groups_are_pareto_optimal() -> None:
         mf.Group("shape 1", shape=[1]),
         mf.Group("shapes 2 and 3", shape=[2, 3]),
     )
-    data = mf.solve(grouped("c0", *groups), points=4, seed=1)
-    edges = [str(label).startswith("edge-") for label in data["label"].values]
-    assert data["pareto"].values[edges].all()
+    data = mf.solve(grouped("c0", *groups), points=4, seed=1).dataset
+    assert data["pareto"].values[data["kind"].values == "edge"].all()
 
 
 def test_three_groups_are_covered_within_and_beyond_the_simplex() -> None:
@@ -134,7 +133,7 @@ def test_three_groups_are_covered_within_and_beyond_the_simplex() -> None:
         mf.Group("shape 1", shape=[1]),
         mf.Group("shapes 2 and 3", shape=[2, 3]),
     )
-    data = mf.solve(grouped("c1", *groups), points=6, seed=1)
+    data = mf.solve(grouped("c1", *groups), points=6, seed=1).dataset
     J = front(data)
     assert len(J) > 21
     assert bool(data["converged"].all())
@@ -146,7 +145,7 @@ def test_three_groups_are_covered_within_and_beyond_the_simplex() -> None:
 def test_each_property_a_group() -> None:
     groups = [mf.Group(f"f{r}", frequency=[r]) for r in (1, 2, 3)]
     groups += [mf.Group(f"s{r}", shape=[r]) for r in (1, 2, 3)]
-    data = mf.solve(grouped("c1", *groups), points=2, seed=1)
+    data = mf.solve(grouped("c1", *groups), points=2, seed=1).dataset
     J = front(data)
     assert len(J) >= 6
     assert bool(data["converged"].all())
@@ -160,7 +159,7 @@ def test_perfect_data_are_one_model_for_every_method(method: str) -> None:
     modes = base.model.modes(np.array([1.2, 0.9, 1.1]), 3)
     data = mf.modal_data(modes.frequency, modes.phi.T, base.model.sensors)
     perfect = mf.UpdatingProblem(base.model, data, base.groups, base.lower, base.upper, base.start)
-    found = mf.solve(perfect, method=method, seed=1)
+    found = mf.solve(perfect, method=method, seed=1).dataset
     assert found.attrs["front_is_a_point"]
     assert front_points(found).size == 0
     assert found.attrs["front_evaluations"] == 0
@@ -176,12 +175,12 @@ def test_scatter_next_to_the_end_of_a_piece_is_doubtful() -> None:
         frequency_std=0.005 * base.data.frequency,
         shape_std=0.02 * np.abs(base.data.shape).max(axis=2, keepdims=True) + 0 * base.data.shape,
     )
-    data = mf.solve(replace(base, data=known), points=12, seed=1)
+    data = mf.solve(replace(base, data=known), points=12, seed=1).dataset
     J, reach = data["objective"].values, data["objective_std"].values
     ends = data["end_objective"].values
     assert len(ends) == 2
     near = (np.abs(J[:, None] - ends) <= reach[:, None]).all(axis=2).any(axis=1)
-    near &= np.char.startswith(data["label"].values.astype(str), "nbi-")
+    near &= data["kind"].values == "front"
     doubts = data["scatter_doubt"].values.tolist()
     assert [text for text, there in zip(doubts, near, strict=True) if there] == ["ends"] * 2
     assert set(doubts) == {"", "ends"}
@@ -198,15 +197,14 @@ def test_an_interrupted_evolution_goes_on_where_it_stopped(
     settings = f'method = "{method}"\npopulation = 20\nevaluations = 200'
     search = "\n[search]\nstarts = 1\nlimit = 1\nevolutions = 0\n"
     path.write_text(path.read_text().replace('method = "nbi"', settings) + search)
-    whole = mf.run(mf.load(path), tmp_path / "whole")
-    interrupt_at(f"{method}-100-", monkeypatch)
+    whole = mf.run(mf.load(path), tmp_path / "whole").dataset
+    interrupt_at(f"front-{method}-100-", monkeypatch)
     with pytest.raises(KeyboardInterrupt):
         mf.run(mf.load(path), tmp_path / "results")
     before = set((tmp_path / "results" / "pieces").rglob("*.npz"))
-    assert sum(file.name.startswith(f"{method}-") for file in before) == 5
-    study = mf.load(path)
-    assert mf.run(study, tmp_path / "results").identical(whole)
+    assert sum(file.name.startswith(f"front-{method}-") for file in before) == 5
+    with counted() as costs:
+        assert mf.run(mf.load(path), tmp_path / "results").dataset.identical(whole)
     new = set((tmp_path / "results" / "pieces").rglob("*.npz")) - before
-    assert sum(file.name.startswith(f"{method}-") for file in new) == 5
-    spent = sum(piece[2]["eigenproblems"] for piece in map(read_piece, new) if piece)
-    assert study.problem.counts["eigenproblems"] < spent + 20, "no generation is evaluated again"
+    assert sum(file.name.startswith(f"front-{method}-") for file in new) == 5
+    assert 5 * 20 <= costs.eigenproblems < whole.attrs["model_evaluations"] - 5 * 20

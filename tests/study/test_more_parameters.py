@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 import xarray as xr
 from interruptions import interrupt_after
-from modefront.study.certified import certified_front
-from modefront.study.run import Front
 
 import modefront as mf
 from modefront._typing import Floats
+from modefront.analysis.certified import certified_front
+from modefront.fronts.front import Front
 from modefront.identifiability.options import Identifiability
 from modefront.solvers.explore import Search
 from modefront.study import session
@@ -62,7 +62,7 @@ def solved(*, std: bool) -> tuple[xr.Dataset, Front]:
             seed=2,
             search=SEARCH,
             identifiability=Identifiability(models=0),
-        )
+        ).dataset
     return data, fronts[0]
 
 
@@ -128,7 +128,7 @@ def test_pareto_is_what_no_model_reported_or_evaluated_dominates(std: bool) -> N
     everything = np.vstack([J[np.isfinite(J).all(axis=1)] for J in known])
     expected = [not dominated(J, everything, front.scale) for J in data["objective"].values]
     assert data["pareto"].values.tolist() == expected
-    along = np.array([str(label).startswith("nbi-") for label in data["label"].values])
+    along = data["kind"].values == "front"
     J = data["objective"].values
     among = [on and dominated(own, J[along], front.scale) for on, own in zip(along, J, strict=True)]
     assert data["dominated_among_front"].values.tolist() == among
@@ -194,15 +194,15 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_digits(
     (tmp_path / "modes.csv").write_text(DATA)
     (tmp_path / "study.toml").write_text(STUDY)
     study = mf.load(tmp_path / "study.toml")
-    whole = mf.run(study, tmp_path / "whole")
+    whole = mf.run(study, tmp_path / "whole").dataset
     assert whole.attrs["reference"] == "bounded-weights"
     # As many values as parameters: all are fitted, and no model is better by more than rounding.
     assert whole.attrs["front_is_a_point"]
-    assert whole["pareto"].values.all()
+    assert (whole["pareto"].values == (whole["kind"].values != "nominal")).all()
     written = len(list((tmp_path / "whole").rglob("*.npz")))
-    for pieces in (3, written - 2):
-        interrupt_after(pieces, monkeypatch)
+    for tasks in (3, written - 2):
+        interrupt_after(tasks, monkeypatch)
         with pytest.raises(KeyboardInterrupt):
-            mf.run(mf.load(tmp_path / "study.toml"), tmp_path / f"broken-{pieces}")
-        again = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / f"broken-{pieces}")
+            mf.run(mf.load(tmp_path / "study.toml"), tmp_path / f"broken-{tasks}")
+        again = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / f"broken-{tasks}").dataset
         assert again.identical(whole)

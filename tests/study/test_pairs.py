@@ -38,7 +38,7 @@ def test_residuals_do_not_see_modes_cross(s: float) -> None:
 
 
 def test_modes_that_change_places_along_the_front_are_reported() -> None:
-    data = solve(crossing(), points=8)
+    data = solve(crossing(), points=8).dataset
     assert bool(data["converged"].all())
     s = data["theta"].values[:8, 0]
     assert (np.diff(s) > 0).all()

@@ -18,10 +18,9 @@ from modefront._typing import Floats
 from modefront.cli.show import remarks
 from modefront.predictions import Passage, PeakResponse, Prediction
 from modefront.study.examples import write_example
-from modefront.study.predictions import pieces_of
-from modefront.study.session import Progress
 from modefront.uncertainty.differences import STEP
 from modefront.uncertainty.prediction import SUMMARY
+from modefront.work.progress import Progress, State
 
 K, MASS, DAMPING = 400.0, 2.0, 0.03
 ONE_MASS = mf.chain(["k"], [MASS], [K], stiffness_parameters=["k"])
@@ -52,7 +51,7 @@ def solved(
         search=mf.Search(starts=1, limit=1, evolutions=0),
         uncertainty=mf.Uncertainty("none", draws=draws),
         predictions=predictions,
-    )
+    ).dataset
 
 
 def passage(
@@ -217,8 +216,8 @@ def with_draws(count: int) -> str:
 def test_an_interrupted_run_has_the_same_digits(
     drawn: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    for piece in ("shaken-posterior-axis-2", "drifts-posterior-axis-3", "drifts-posterior-draw-2"):
-        interrupt_at(piece, monkeypatch)
+    for task in ("shaken-axis-2", "drifts-axis-3", "drifts-draw-2"):
+        interrupt_at(task, monkeypatch)
         with pytest.raises(KeyboardInterrupt):
             run(tmp_path, with_draws(5))
         assert not (tmp_path / "results" / "results.nc").exists()
@@ -232,19 +231,19 @@ def test_more_draws_cost_only_themselves(drawn: xr.Dataset, tmp_path: Path) -> N
     folder = tmp_path / "results" / "pieces"
     before = set(folder.rglob("*.npz"))
     study = mf.load(write_study(tmp_path, with_draws(7)))
-    expected: list[int] = []
-    done: list[str] = []
-    data = mf.run(study, tmp_path / "results", progress=Progress(expected.append, done.append))
+    states: list[State] = []
+    data = mf.run(study, tmp_path / "results", progress=Progress(states.append)).dataset
     new = set(folder.rglob("*.npz")) - before
     assert len(new) == 6 * 7
-    assert all("-posterior-draw-" in path.name for path in new)
+    assert all("-draw-" in path.name for path in new)
     for name in ("draw_theta", "draw_frf_peak", "draw_failure_probability"):
         np.testing.assert_array_equal(data[name][:5], drawn[name])
     np.testing.assert_array_equal(data["posterior_frf_peak_std"], drawn["posterior_frf_peak_std"])
-    # The last extent that is told is that of the work.
-    assert expected[-1] == len(done) == len(set(done))
-    of_predictions = sum(name.startswith("predict-") for name in done)
-    assert of_predictions == pieces_of(study) == 6 * (7 + 2 * 2 + 7) + 1
+    # The last extent that is told is that of the work: of 8 models, 4 on axes and 7 drawn.
+    last = states[-1]
+    assert (last.done, last.running) == (last.expected, 0)
+    of_predictions = {state.done for state in states if state.stage == "predict"}
+    assert max(of_predictions) - min(of_predictions) == 6 * (8 + 2 * 2 + 7) + 1
 
 
 def exact_problem() -> mf.UpdatingProblem:

@@ -1,8 +1,7 @@
 """What is reported of ends that are not known, of copies, and of flat parts that are not cut."""
 
 import json
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -13,8 +12,14 @@ import xarray as xr
 
 import modefront as mf
 from modefront._typing import Floats
+from modefront.analysis import front as analysis
 from modefront.cli.show import as_json, print_results, remarks
+from modefront.fronts.driver import pareto_front
+from modefront.fronts.methods import nbi
+from modefront.fronts.options import Pareto
+from modefront.fronts.point import Kind, of_kind
 from modefront.identifiability.options import Identifiability
+from modefront.results.assemble import _lattice
 from modefront.solvers.advance import Simplex, simplex
 from modefront.solvers.explore import Search
 from modefront.solvers.flat import Identifiable
@@ -22,9 +27,7 @@ from modefront.solvers.payoff import Payoff
 from modefront.solvers.pieces import Gap
 from modefront.solvers.problem import Evaluation, ObjectiveDerivatives
 from modefront.solvers.sqp import Solution, Status, begin
-from modefront.study import knowledge, run
 from modefront.study.examples import write_example
-from modefront.study.results import _lattice
 
 
 def on_a_line(theta: Floats) -> tuple[Floats, Floats, Floats]:
@@ -41,7 +44,6 @@ class Bowls:
     upper: Floats
     start: Floats
     objectives: tuple[str, ...] = ("left", "middle", "right")
-    counts: Mapping[str, int] = field(default_factory=dict)
 
     def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
         del derivatives
@@ -64,7 +66,7 @@ def c0() -> mf.UpdatingProblem:
 
 def solved(**more: Any) -> xr.Dataset:
     how = Identifiability(models=0)
-    return mf.solve(c0(), points=8, search=SEARCH, seed=1, identifiability=how, **more)
+    return mf.solve(c0(), points=8, search=SEARCH, seed=1, identifiability=how, **more).dataset
 
 
 def test_an_end_that_is_not_known_is_said_and_is_no_number(
@@ -73,7 +75,7 @@ def test_an_end_that_is_not_known_is_said_and_is_no_number(
     def unknown(_: object, points: list[Solution], *__: object, **___: object) -> list[Gap]:
         return [Gap(points[2], points[3], None, points[3])]
 
-    monkeypatch.setattr(run, "gaps", unknown)
+    monkeypatch.setattr(nbi, "gaps", unknown)
     data = solved()
     assert data["end_label"].values.tolist() == ["end-1", "start-2"]
     assert np.isnan(data["end_objective"].values[0]).all()
@@ -103,7 +105,7 @@ def test_a_flat_part_that_is_not_cut_is_said(monkeypatch: pytest.MonkeyPatch) ->
     def uncut(_: object, __: object, edges: list[Solution], *___: object) -> object:
         return replace(part, ends=edges)
 
-    monkeypatch.setattr(knowledge, "identifiable_part", uncut)
+    monkeypatch.setattr(analysis, "identifiable_part", uncut)
     data = solved()
     (said,) = [text for text in data["finding"].values.tolist() if "flat" in text]
     assert said == (
@@ -115,22 +117,22 @@ def test_a_flat_part_that_is_not_cut_is_said(monkeypatch: pytest.MonkeyPatch) ->
 
 def test_no_point_of_three_groups_comes_twice_and_places_tell_where_they_led() -> None:
     problem = Bowls(np.array([-1.0, -1.0]), np.array([3.0, 1.0]), np.array([0.2, 0.4]))
-    front = run.pareto_front(problem, np.ones(3), points=4, search=SEARCH)
+    front = pareto_front(problem, np.ones(3), Pareto(points=4), search=SEARCH)
     assert front.scale is not None
-    along = [one for label, one in front.points if label.startswith("nbi-")]
+    along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
     J = np.array([one.at.J for one in along]) / front.scale
     apart = np.abs(J[:, None] - J).max(axis=2) + np.eye(len(J))
     assert (apart > 1e-5).all()
-    places, of = _lattice(front)["lattice"][1], _lattice(front)["lattice_label"][1]
-    beta, labels = np.asarray(places), np.asarray(of).tolist()
+    lattice = _lattice(front)
+    beta, labels = np.asarray(lattice["lattice"]), np.asarray(lattice["lattice_label"]).tolist()
     assert beta.shape == (10, 3)
     assert set(labels) <= {f"nbi-{k + 1}" for k in range(len(along))}
     assert len(set(labels)) < 10, "several places lead to one point"
     # Each edge lies where the others have no part.
+    thetas = {point.label: point.solution.at.theta for point in front.points}
     for i in (0, 1, 2):
         label = labels[np.flatnonzero(beta[:, i] == 1)[0]]
-        own = dict(front.points)[label].at.theta
-        assert own == pytest.approx([i, 0.0], abs=1e-4)
+        assert thetas[label] == pytest.approx([i, 0.0], abs=1e-4)
 
 
 def point(J: Floats, beta: Floats | None, *, converged: bool = True) -> Solution:
@@ -148,7 +150,7 @@ def test_copies_are_merged_and_their_places_kept() -> None:
     at[0] = replace(at[0], status=Status.STALLED)
     better = point(at[0].at.J - 1e-6, None)
     along = [*at[:5], better]
-    found = run._without_copies(lattice, at, along, target)
+    found = nbi._without_copies(lattice, at, along, target)
     # The third is a copy of the second, what came last is the first, but converged; the sixth
     # place led to nothing that is left.
     assert [one.at.J.tolist() for one in found.points] == [

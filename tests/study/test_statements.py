@@ -29,7 +29,7 @@ def stiffnesses_and_masses() -> mf.UpdatingProblem:
 
 def test_a_null_manifold_is_followed_once_and_said_once() -> None:
     problem = stiffnesses_and_masses()
-    data = mf.solve(problem, points=2, search=SEARCH)
+    data = mf.solve(problem, points=2, search=SEARCH).dataset
     said = data["finding"].values.tolist()
     assert len(said) <= MOST
     manifolds = [text for text in said if "equally well" in text]
@@ -55,7 +55,7 @@ def test_a_null_manifold_is_followed_once_and_said_once() -> None:
 
 
 def test_findings_are_cut_where_they_are_printed_and_nowhere_else() -> None:
-    data = mf.solve(stiffnesses_and_masses(), points=2, search=SEARCH)
+    data = mf.solve(stiffnesses_and_masses(), points=2, search=SEARCH).dataset
     many = np.array([f"finding {i}" for i in range(25)])
     data = data.drop_vars("finding").assign(finding=(("finding",), many))
     assert [text for text in remarks(data) if text.startswith("finding")] == many.tolist()

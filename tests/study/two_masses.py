@@ -118,7 +118,7 @@ def write_study(folder: Path, predictions: str) -> Path:
 
 
 def run(folder: Path, predictions: str) -> xr.Dataset:
-    return mf.run(mf.load(write_study(folder, predictions)), folder / "results")
+    return mf.run(mf.load(write_study(folder, predictions)), folder / "results").dataset
 
 
 def matrices(theta: Floats) -> tuple[Floats, Floats, Floats, Floats]:

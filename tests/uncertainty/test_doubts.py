@@ -9,6 +9,9 @@ import pytest
 from problems import Derivatives, Known, box, many_minima
 
 from modefront._typing import Floats
+from modefront.analysis.neighbours import with_neighbours
+from modefront.fronts.front import Front
+from modefront.fronts.point import Kind, Point
 from modefront.solvers.attainment import Attainment
 from modefront.solvers.curvature import SecondOrder, second_order
 from modefront.solvers.edges import Edge
@@ -16,8 +19,6 @@ from modefront.solvers.nbi import programmes
 from modefront.solvers.payoff import spanned
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Status, begin, solve
-from modefront.study.doubtful import with_neighbours
-from modefront.study.run import Front
 from modefront.uncertainty.conditions import (
     between,
     boundary,
@@ -26,7 +27,7 @@ from modefront.uncertainty.conditions import (
 )
 from modefront.uncertainty.doubts import Doubt
 from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.points import Point, Role
+from modefront.uncertainty.points import Role, SolvedPoint
 from modefront.uncertainty.scatter import Scatter, scatter
 
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
@@ -149,10 +150,10 @@ def test_another_model_that_fits_as_well_is_a_rival(
     assert other.at.J - best.at.J == pytest.approx([0, 20])
     best = replace(best, status=status)
     edges = [Edge(best, [best, other]), Edge(other, [other])]
-    front = Front("nbi", [("edge-J1", best)], edges, [], None, (True, False), None, [])
+    front = Front("nbi", [Point(Kind.EDGE, best, "J1")], edges, [], None, (True, False), None, [])
     points = [
-        Point("edge-J1", best, Role("edge", objective=0)),
-        Point("nbi-1", best, Role("end", ("edge-J1",))),
+        SolvedPoint("edge-J1", best, Role("edge", objective=0)),
+        SolvedPoint("nbi-1", best, Role("end", ("edge-J1",))),
     ]
     none = np.zeros((1, 2))
     own = Scatter(none, np.array([[0.0, std]]), none, np.zeros(2, bool), none.T, ())

@@ -104,7 +104,8 @@ class ReportedModel:
 class Results:
     """Results of a study, over the dataset that ``results.nc`` holds.
 
-    Variables are looked up as in the dataset: ``results["theta"]``.
+    Variables are looked up as in the dataset, ``results["theta"]``, and so is all that is not
+    listed here: ``results.sizes``, ``results.isel(point=0)``.
 
     Attributes
     ----------
@@ -127,6 +128,12 @@ class Results:
 
     def __iter__(self) -> Iterator[ReportedModel]:
         return map(self.model, range(len(self)))
+
+    def __getattr__(self, name: str) -> Any:
+        """Return an attribute of the dataset."""
+        if name.startswith("_"):
+            raise AttributeError(name)
+        return getattr(self.dataset, name)
 
     @property
     def attrs(self) -> dict[Any, Any]:

@@ -77,4 +77,5 @@ def decode(value: Any, arrays: Mapping[str, Floats]) -> Any:
     kind = _REGISTERED[value["record"]]
     if not is_dataclass(kind):
         raise ValueError(f"expected a record, found {kind.__name__}")
-    return kind(**{name: decode(part, arrays) for name, part in value["fields"].items()})
+    fields = dict(value["fields"])
+    return kind(**{name: decode(part, arrays) for name, part in fields.items()})

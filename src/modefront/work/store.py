@@ -28,6 +28,10 @@ FOLDER = "pieces"
 LONGEST = 60
 """Characters of a key at most in a file name, which ends in a hash."""
 
+_DAMAGED = (OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, zipfile.BadZipFile)
+"""What files raise that are damaged; RuntimeError where their bytes ask for decryption or for
+another compression."""
+
 
 @dataclass(frozen=True)
 class Store:
@@ -41,17 +45,17 @@ class Store:
             with self._path(task).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
                 arrays = {key: file[key] for key in file.files}
             head = json.loads(arrays.pop("head").tobytes())
-            if head["key"] != task.name:
+            if head["key"] != _identity(task):
                 return None
             return decode(head["result"], arrays), Costs(**head["costs"])
-        except (OSError, EOFError, ValueError, KeyError, TypeError, zipfile.BadZipFile):
+        except _DAMAGED:
             return None
 
     def write(self, task: Task[Any], result: Any, costs: Costs) -> None:
         """Keep the result of a task, whole or not at all."""
         arrays: dict[str, Floats] = {}
         content = encode(result, arrays)
-        head = json.dumps({"key": task.name, "costs": vars(costs), "result": content})
+        head = json.dumps({"key": _identity(task), "costs": vars(costs), "result": content})
         path = self._path(task)
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = path.with_suffix(".tmp")
@@ -63,13 +67,18 @@ class Store:
         temporary.replace(path)
 
     def _path(self, task: Task[Any]) -> Path:
-        return self.folder / f"{_file_name(task.name)}.npz"
+        return self.folder / f"{_file_name(task)}.npz"
 
 
-def _file_name(name: str) -> str:
-    """Return a file name that no other key has, whatever its characters and their case."""
-    safe = "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "." for c in name)
-    return f"{safe[:LONGEST]}-{hash_text(name)[:8]}"
+def _identity(task: Task[Any]) -> str:
+    """Return what tells a task from all others: its parts, which may hold any characters."""
+    return repr((task.key, task.turn))
+
+
+def _file_name(task: Task[Any]) -> str:
+    """Return a file name that no other task has, whatever the characters of its key and case."""
+    safe = "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "." for c in task.name)
+    return f"{safe[:LONGEST]}-{hash_text(_identity(task))[:8]}"
 
 
 def hash_text(text: str) -> str:
