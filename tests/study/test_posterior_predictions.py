@@ -10,6 +10,7 @@ import scipy.integrate
 import scipy.stats
 import xarray as xr
 from interruptions import interrupt_at
+from modefront.study.predictions import pieces_of
 from refusals import command
 from two_masses import FRF, PASSAGE, ZETA, direct, run, write_study
 
@@ -18,7 +19,6 @@ from modefront._typing import Floats
 from modefront.cli.show import remarks
 from modefront.predictions import Passage, PeakResponse, Prediction
 from modefront.study.examples import write_example
-from modefront.study.predictions import pieces_of
 from modefront.study.session import Progress
 from modefront.uncertainty.differences import STEP
 from modefront.uncertainty.prediction import SUMMARY

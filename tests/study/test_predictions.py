@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 import xarray as xr
 from interruptions import interrupt_at
+from modefront.study.results import read
 from scipy.signal import lsim
 from two_masses import FRF, MASSES, PASSAGE, ZETA, direct, matrices, run, write_study
 
@@ -22,7 +23,6 @@ from modefront.predictions import Passage, PeakResponse
 from modefront.reliability.gaussian import gaussian_response
 from modefront.study import store
 from modefront.study.examples import write_example
-from modefront.study.results import read
 
 AXES = 4
 """Models along the two axes of the posterior that each prediction is made with besides."""
