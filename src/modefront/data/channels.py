@@ -64,22 +64,22 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
     quantity = _quantity(channels, quantity)
     _check_values(channels)
     if turned:
-        channels = [_turned(one) for one in channels]
-    references = tuple(dict.fromkeys(one.reference for one in channels))
-    responses = tuple(dict.fromkeys(one.response for one in channels))
+        channels = [_turned(channel) for channel in channels]
+    references = tuple(dict.fromkeys(channel.reference for channel in channels))
+    responses = tuple(dict.fromkeys(channel.response for channel in channels))
     groups: dict[tuple[int, int], list[Channel]] = {}
-    for one in channels:
-        key = references.index(one.reference), responses.index(one.response)
-        groups.setdefault(key, []).append(one)
+    for channel in channels:
+        key = references.index(channel.reference), responses.index(channel.response)
+        groups.setdefault(key, []).append(channel)
     blows = max(map(len, groups.values()))
     frequency = channels[0].frequency
     H = np.full((blows, len(references), len(responses), len(frequency)), np.nan, complex)
     coherence = np.full(H.shape[1:], np.nan)
     for (j, i), group in groups.items():
-        for b, one in enumerate(group):
-            H[b, j, i] = one.H
-            if one.coherence is not None:
-                coherence[j, i] = one.coherence
+        for b, channel in enumerate(group):
+            H[b, j, i] = channel.H
+            if channel.coherence is not None:
+                coherence[j, i] = channel.coherence
     dead = ~(np.abs(np.nan_to_num(H)) > 0).any(axis=(0, 3))
     H[:, dead] = np.nan
     warnings = _warnings(name, H, frequency, references, responses, groups, dead)
@@ -94,27 +94,27 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
     return Assembled(data, tuple(warnings))
 
 
-def _turned(one: Channel) -> Channel:
+def _turned(channel: Channel) -> Channel:
     return Channel(
-        *(one.file, one.place, one.response, one.reference, one.frequency, one.H),
-        *(one.quantity, one.coherence),
+        *(channel.file, channel.place, channel.response, channel.reference),
+        *(channel.frequency, channel.H, channel.quantity, channel.coherence),
     )
 
 
 def _check_axes(channels: Sequence[Channel]) -> None:
     first = channels[0]
     faults = []
-    for one in channels:
-        f = one.frequency
+    for channel in channels:
+        f = channel.frequency
         if not (np.isfinite(f).all() and (np.diff(f) > 0).all() and (f >= 0).all()):
             expected = "frequencies in Hz that ascend from zero or above"
-            faults.append(Fault(one.file, one.place, expected, "others"))
+            faults.append(Fault(channel.file, channel.place, expected, "others"))
         elif len(f) != len(first.frequency):
             expected = f"{len(first.frequency)} lines, as in {first.file}"
-            faults.append(Fault(one.file, one.place, expected, f"{len(f)} lines"))
+            faults.append(Fault(channel.file, channel.place, expected, f"{len(f)} lines"))
         elif np.abs(f - first.frequency).max() > SAME_LINES * first.frequency[-1]:
             expected = f"the frequency axis of {first.file}, {_axis(first.frequency)}"
-            faults.append(Fault(one.file, one.place, expected, _axis(f)))
+            faults.append(Fault(channel.file, channel.place, expected, _axis(f)))
     if faults:
         raise InputError(faults)
 
@@ -125,29 +125,30 @@ def _axis(f: Floats) -> str:
 
 def _quantity(channels: Sequence[Channel], declared: str) -> str:
     faults = []
-    found = declared
-    for one in channels:
-        if not one.quantity and not declared:
+    known = declared
+    for channel in channels:
+        if not channel.quantity and not declared:
             expected = "quantity = 'receptance', 'mobility' or 'accelerance' in [test]"
-            faults.append(Fault(one.file, one.place, expected, "a file that does not say it"))
-        elif one.quantity and found and one.quantity != found:
-            faults.append(Fault(one.file, one.place, f"{found}, as in the others", one.quantity))
-        found = found or one.quantity
+            found = "a file that does not say it"
+            faults.append(Fault(channel.file, channel.place, expected, found))
+        elif channel.quantity and known and channel.quantity != known:
+            expected = f"{known}, as in the others"
+            faults.append(Fault(channel.file, channel.place, expected, channel.quantity))
+        known = known or channel.quantity
     if faults:
         raise InputError(faults[:5])
-    return found
+    return known
 
 
 def _check_values(channels: Sequence[Channel]) -> None:
     faults = []
-    for one in channels:
-        bad = np.flatnonzero(np.isinf(one.H) | np.isnan(one.H))
+    for channel in channels:
+        bad = np.flatnonzero(np.isinf(channel.H) | np.isnan(channel.H))
         if len(bad):
-            at = f"at {one.frequency[bad[0]]:g} Hz" + (f" and {len(bad) - 1} more" * (len(bad) > 1))
-            faults.append(
-                Fault(one.file, one.place, "finite numbers", f"{one.H[bad[0]].real:g} {at}")
-            )
-    if all(not np.any(one.H) for one in channels) and not faults:
+            found = f"{channel.H[bad[0]].real:g} at {channel.frequency[bad[0]]:g} Hz"
+            found += f" and {len(bad) - 1} more" * (len(bad) > 1)
+            faults.append(Fault(channel.file, channel.place, "finite numbers", found))
+    if all(not np.any(channel.H) for channel in channels) and not faults:
         expected = "functions that are not zero everywhere"
         faults.append(Fault(channels[0].file, channels[0].place, expected, "only zeros"))
     if faults:

@@ -88,7 +88,7 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
         raise InputError(Fault(file, "line 2", "a row for each line of frequency", "the end"))
     faults: list[Fault] = []
     values = np.empty((len(numbered), len(header)))
-    for at, (number, row) in enumerate(numbered):
+    for row_number, (number, row) in enumerate(numbered):
         fields = row.split(",")
         if len(fields) != len(header):
             expected = f"{len(header)} fields, as in the header"
@@ -97,7 +97,7 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
         for k, field in enumerate(fields):
             text = field.strip()
             if NUMBER.fullmatch(text) and np.isfinite(float(text)):
-                values[at, k] = float(text)
+                values[row_number, k] = float(text)
             else:
                 place = f"line {number}, column {header[k]!r}"
                 faults.append(Fault(file, place, "a finite number", repr(text)))

@@ -94,7 +94,7 @@ def _from_toml(path: Path) -> ModalTest:
     root.close()
     if faults:
         raise InputError(faults)
-    found = []
+    data_sets = []
     for title, files, references in sets:
         channels = [
             channel
@@ -103,8 +103,8 @@ def _from_toml(path: Path) -> ModalTest:
         ]
         if faults:
             raise InputError(faults)
-        found.append(DataSet(title, _assembled(channels, title, settings, root)))
-    return ModalTest(name, band, modes, tuple(found))
+        data_sets.append(DataSet(title, _assembled(channels, title, settings, root)))
+    return ModalTest(name, band, modes, tuple(data_sets))
 
 
 def _parsed(path: Path) -> dict[str, object]:
@@ -182,19 +182,19 @@ def _channels(root: Table, path: Path, reference: str) -> list[Channel]:
     try:
         if not is_universal(path):
             return read_frf_csv(path, reference)
-        found = read_uff(path)
+        channels = read_uff(path)
     except InputError as error:
         root.faults.extend(error.faults)
         return []
     if not reference:
-        return found
-    return [_renamed(one, reference, one.response) for one in found]
+        return channels
+    return [_renamed(channel, reference, channel.response) for channel in channels]
 
 
-def _renamed(one: Channel, reference: str, response: str, sign: int = 1) -> Channel:
+def _renamed(channel: Channel, reference: str, response: str, sign: int = 1) -> Channel:
     return Channel(
-        *(one.file, one.place, reference, response, one.frequency, sign * one.H),
-        *(one.quantity, one.coherence),
+        *(channel.file, channel.place, reference, response, channel.frequency, sign * channel.H),
+        *(channel.quantity, channel.coherence),
     )
 
 
@@ -202,25 +202,27 @@ def _assembled(
     channels: list[Channel], name: str, settings: _Settings, root: Table | None = None
 ) -> Assembled:
     """Return one data set with the names of the test file, at the side that has the sensors."""
-    responses = {one.response for one in channels}
-    references = {one.reference for one in channels}
+    responses = {channel.response for channel in channels}
+    references = {channel.reference for channel in channels}
     named = settings.sensors
     if named:
         plain = {channel.replace("-", "") for channel in named}
         turned = len(plain & references) > len(plain & responses)
         missing = plain - (references if turned else responses)
         if missing and root is not None:
-            for channel in sorted(missing):
-                there = sorted(references if turned else responses)
+            for label in sorted(missing):
+                labels = sorted(references if turned else responses)
                 root.fault(
-                    f"[sensors] {named.get(channel, '')}",
-                    "a channel of the files: " + ", ".join(there[:8]),
-                    suggestion(channel, there),
+                    f"[sensors] {named.get(label, '')}",
+                    "a channel of the files: " + ", ".join(labels[:8]),
+                    suggestion(label, labels),
                 )
             raise InputError(root.faults)
     else:
         turned = len(references) > len(responses) == 1
-    return assemble([_named(one, named) for one in channels], settings.quantity, name, turned)
+    return assemble(
+        [_named(channel, named) for channel in channels], settings.quantity, name, turned
+    )
 
 
 def _named(one: Channel, names: dict[str, str]) -> Channel:

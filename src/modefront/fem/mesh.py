@@ -81,16 +81,16 @@ class Mesh:
         FemError
             If there is neither.
         """
-        found = [b.cells.ravel() for b in self.blocks if b.group == name]
+        blocks = [b.cells.ravel() for b in self.blocks if b.group == name]
         if name in self.node_sets:
-            found.append(self.node_sets[name])
-        if not found:
+            blocks.append(self.node_sets[name])
+        if not blocks:
             names = sorted({b.group for b in self.blocks} | set(self.node_sets))
             raise FemError(
                 f"mesh: no group or set of nodes named {name!r}; there are:"
                 f" {', '.join(names) or 'none'}"
             )
-        return np.unique(np.concatenate(found))
+        return np.unique(np.concatenate(blocks))
 
 
 def read_mesh(path: str | Path) -> Mesh:

@@ -179,8 +179,8 @@ def _diagram(
         orders = sorted(set(np.linspace(2, most, min(MOST_ORDERS, most - 1)).astype(int).tolist()))
     z = lscf.generalised_frequency(omega, omega[0], rate)
     sums = lscf.moments(H, weight, z, max(orders))
-    found = lscf.poles(sums, orders, omega[0], rate)
-    return stabilisation_diagram(found, H, omega, ORDERS[data.quantity])
+    all_poles = lscf.poles(sums, orders, omega[0], rate)
+    return stabilisation_diagram(all_poles, H, omega, ORDERS[data.quantity])
 
 
 def _select(
@@ -249,8 +249,8 @@ def _result(
     clusters: list[Cluster],
     count: int | None,
 ) -> Identification:
-    found = residuals(task, fit)
-    estimates = mode_estimates(task, fit, found, omega)
+    misfit = residuals(task, fit)
+    estimates = mode_estimates(task, fit, misfit, omega)
     reasons = _reasons(data, task, fit, estimates, diagram, count is not None)
     kept = [one for one, why in zip(estimates, reasons, strict=True) if not why]
     rejected = [
@@ -269,7 +269,7 @@ def _result(
         tuple(sorted(rejected, key=lambda one: one.frequency)),
         diagram,
         synthesised,
-        found,
+        misfit,
         variance,
         fit.evaluations,
         fit.converged,

@@ -64,21 +64,21 @@ class CombinedModes:
     index: tuple[tuple[int, ...], ...]
 
 
-def combine(sets: Sequence[str], found: Sequence[Identification]) -> CombinedModes:
+def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> CombinedModes:
     """Return the modes of several data sets under common numbers, by frequency."""
-    sensors = tuple(dict.fromkeys(name for one in found for name in one.data.responses))
-    groups = _groups(found, sensors)
-    K, R = len(found), len(groups)
+    sensors = tuple(dict.fromkeys(name for each in identifications for name in each.data.responses))
+    groups = _groups(identifications, sensors)
+    K, R = len(identifications), len(groups)
     index = tuple(tuple(group.get(k, -1) for group in groups) for k in range(K))
     f, z, f_std, z_std = (np.full((K, R), np.nan) for _ in range(4))
     phi, phi_std = np.full((K, R, len(sensors)), np.nan), np.full((K, R, len(sensors)), np.nan)
     for r, group in enumerate(groups):
         for k, at in group.items():
-            mode = found[k].modes[at]
+            mode = identifications[k].modes[at]
             f[k, r], f_std[k, r] = mode.frequency, mode.frequency_std
             z[k, r], z_std[k, r] = mode.damping, mode.damping_std
-            phi[k, r] = _at(mode.shape.shape, found[k], sensors)
-            phi_std[k, r] = _at(mode.shape_std, found[k], sensors)
+            phi[k, r] = _at(mode.shape.shape, identifications[k], sensors)
+            phi_std[k, r] = _at(mode.shape_std, identifications[k], sensors)
     spread = np.zeros((R, 2))
     for r in range(R):
         spread[r] = between(f[:, r], f_std[:, r]), between(z[:, r], z_std[:, r])
@@ -106,22 +106,25 @@ def between(x: Floats, std: Floats) -> float:
     return float(np.sqrt((Q - freedom) / (weight.sum() - np.sum(weight**2) / weight.sum())))
 
 
-def _at(values: Floats, one: Identification, sensors: Sequence[str]) -> Floats:
-    where = dict(zip(one.data.responses, values, strict=True))
+def _at(values: Floats, identification: Identification, sensors: Sequence[str]) -> Floats:
+    where = dict(zip(identification.data.responses, values, strict=True))
     return np.array([where.get(name, np.nan) for name in sensors])
 
 
-def _groups(found: Sequence[Identification], sensors: Sequence[str]) -> list[dict[int, int]]:
+def _groups(
+    identifications: Sequence[Identification], sensors: Sequence[str]
+) -> list[dict[int, int]]:
     """Return, for every mode of the structure, which mode of each set it is."""
     groups: list[dict[int, int]] = []
-    for k, one in enumerate(found):
-        for at, mode in enumerate(one.modes):
+    for k, identification in enumerate(identifications):
+        for at, mode in enumerate(identification.modes):
             best, most = None, LEAST_MAC
             for group in groups:
                 if k in group:
                     continue
                 first, index = next(iter(group.items()))
-                mac = _agreement(mode, one, found[first].modes[index], found[first], sensors)
+                other = identifications[first]
+                mac = _agreement(mode, identification, other.modes[index], other, sensors)
                 if mac > most:
                     best, most = group, mac
             if best is None:
@@ -130,7 +133,7 @@ def _groups(found: Sequence[Identification], sensors: Sequence[str]) -> list[dic
                 best[k] = at
 
     def mean(group: dict[int, int]) -> float:
-        return float(np.mean([found[k].modes[at].frequency for k, at in group.items()]))
+        return float(np.mean([identifications[k].modes[at].frequency for k, at in group.items()]))
 
     return sorted(groups, key=mean)
 

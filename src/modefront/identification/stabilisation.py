@@ -100,14 +100,14 @@ class Cluster:
 
 
 def stabilisation_diagram(
-    found: Sequence[Poles], H: Complexes, omega: Floats, quantity_order: int
+    estimates: Sequence[Poles], H: Complexes, omega: Floats, quantity_order: int
 ) -> tuple[StabilisationDiagram, list[Cluster]]:
     """Return the diagram of the poles of ascending orders, and its clusters by pole.
 
     ``H`` is (references, responses, lines) without NaN, at circular frequencies ``omega``.
     """
-    kept = [_usable(one) for one in found]
-    shapes = [_shapes(one, H, omega, quantity_order) for one in kept]
+    kept = [_usable(poles) for poles in estimates]
+    shapes = [_shapes(poles, H, omega, quantity_order) for poles in kept]
     distance = np.concatenate(
         [np.full(len(kept[0].value), np.inf)]
         + [
@@ -117,8 +117,8 @@ def stabilisation_diagram(
             )
         ]
     )
-    pole = np.concatenate([one.value for one in kept])
-    order = np.concatenate([np.full(len(one.value), one.order) for one in kept])
+    pole = np.concatenate([poles.value for poles in kept])
+    order = np.concatenate([np.full(len(poles.value), poles.order) for poles in kept])
     stable, cut = _split(distance)
     cluster = np.full(len(pole), -1)
     members = np.flatnonzero(stable)
@@ -132,32 +132,32 @@ def stabilisation_diagram(
     diagram = StabilisationDiagram(
         order,
         pole,
-        np.concatenate([one.participation for one in kept]),
+        np.concatenate([poles.participation for poles in kept]),
         distance,
         stable,
         cluster,
-        tuple(one.order for one in found),
+        tuple(poles.order for poles in estimates),
     )
     return diagram, _clusters(diagram)
 
 
-def _usable(one: Poles) -> Poles:
-    good = -one.value.real < MOST_DAMPING * np.abs(one.value)
-    return Poles(one.order, one.value[good], one.participation[good])
+def _usable(poles: Poles) -> Poles:
+    good = -poles.value.real < MOST_DAMPING * np.abs(poles.value)
+    return Poles(poles.order, poles.value[good], poles.participation[good])
 
 
-def _shapes(one: Poles, H: Complexes, omega: Floats, q: int) -> Complexes:
+def _shapes(poles: Poles, H: Complexes, omega: Floats, q: int) -> Complexes:
     """Return shapes of the poles of one order, (poles, responses), by linear least squares."""
-    n, n_in = one.participation.shape
+    n, n_in = poles.participation.shape
     s = 1j * omega
     front = (s / omega[-1]) ** q
-    modal = front * omega[-1] / (s - one.value[:, None])
+    modal = front * omega[-1] / (s - poles.value[:, None])
     residual = np.stack([front, front * (omega[-1] / s) ** 2])
     normal = np.zeros((n + 2 * n_in, n + 2 * n_in), complex)
     right = np.zeros((n + 2 * n_in, H.shape[1]), complex)
     for j in range(n_in):
         basis = np.zeros((n + 2 * n_in, len(s)), complex)
-        basis[:n] = one.participation[:, j, None] * modal
+        basis[:n] = poles.participation[:, j, None] * modal
         basis[n + 2 * j : n + 2 * j + 2] = residual
         normal += basis.conj() @ basis.T
         right += basis.conj() @ H[j].T

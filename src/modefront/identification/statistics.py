@@ -155,13 +155,15 @@ def _force(task: Problem, H: Complexes, r: Complexes) -> Floats:
     return out
 
 
-def mode_estimates(task: Problem, fit: Fit, found: Residuals, omega: float) -> list[ModeEstimate]:
+def mode_estimates(
+    task: Problem, fit: Fit, residuals: Residuals, omega: float
+) -> list[ModeEstimate]:
     """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
     model = fit.model
     n_out = model.phi.shape[1]
     shapes = [real_shape(phi) for phi in model.phi]
     inverse = _inverse(fit.information)
-    linear, alpha = _own_roots(task, fit, found)
+    linear, alpha = _own_roots(task, fit, residuals)
     C = np.einsum("ka,iae,lb,ibe->kl", inverse, alpha, inverse, alpha, optimize=True)
     variance = np.zeros(model.phi.shape)
     for r, shape in enumerate(shapes):
@@ -172,11 +174,11 @@ def mode_estimates(task: Problem, fit: Fit, found: Residuals, omega: float) -> l
             direct[i] = _as_complex(linear[i, rows][None])[0]
             change = shape.differential(direct) - answer @ alpha[i]
             variance[r] += (change**2).sum(axis=1)
-    for steps, phi in _force_influence(task, fit, found.force):
+    for steps, phi in _force_influence(task, fit, residuals.force):
         C = C + steps @ steps.T
         for r, shape in enumerate(shapes):
             variance[r] += (shape.differential(phi[:, r]) ** 2).sum(axis=1)
-    C, variance = C * found.scale, variance * found.scale
+    C, variance = C * residuals.scale, variance * residuals.scale
     variance[:, ~task.weight.any(axis=(0, 2))] = np.nan
     return [
         _estimate(complex(model.lam[r]), C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2], omega, *rest)
@@ -190,7 +192,7 @@ def _as_complex(pairs: Floats) -> Complexes:
     return out
 
 
-def _own_roots(task: Problem, fit: Fit, found: Residuals) -> tuple[Floats, Floats]:
+def _own_roots(task: Problem, fit: Fit, residuals: Residuals) -> tuple[Floats, Floats]:
     """Return what independent errors of each response do, as roots of their covariance.
 
     (responses, 2 modes, errors): G^-1 Phi^T dy of the shapes; (responses, alphas, errors):
@@ -203,9 +205,9 @@ def _own_roots(task: Problem, fit: Fit, found: Residuals) -> tuple[Floats, Float
     first = T.shape[1]
     X[:, :, :first] -= np.einsum("jqa,iak->jiqk", T, fit.Z)
     weight = task.weight
-    if found.force.any():
+    if residuals.force.any():
         H = synthesise(task, model)
-        share = found.force[:, None, None] * weight * np.abs(H) ** 2
+        share = residuals.force[:, None, None] * weight * np.abs(H) ** 2
         weight = weight * np.maximum(1 - share, 0)
     M = gram(replace(task, weight=weight), E)
     P = np.zeros((*M.shape[:3], 2 * n + X.shape[3]))

@@ -95,8 +95,8 @@ class DenseAffine:
     @property
     def used(self) -> Bools:
         """Which parameters the matrix depends on, shape (parameters,)."""
-        there = self.terms.any(axis=(1, 2))
-        return np.asarray(self.coefficients.exponents[there].any(axis=0))
+        nonzero = self.terms.any(axis=(1, 2))
+        return np.asarray(self.coefficients.exponents[nonzero].any(axis=0))
 
     def at(self, theta: Floats) -> Floats:
         """Return A(theta), shape (N, N)."""
@@ -135,8 +135,8 @@ class SparseAffine:
     @property
     def used(self) -> Bools:
         """Which parameters the matrix depends on, shape (parameters,)."""
-        there = np.diff(self.terms.indptr) > 0
-        return np.asarray(self.coefficients.exponents[there].any(axis=0))
+        nonzero = np.diff(self.terms.indptr) > 0
+        return np.asarray(self.coefficients.exponents[nonzero].any(axis=0))
 
     def at(self, theta: Floats) -> scipy.sparse.csr_array:
         """Return A(theta), N x N; it holds every entry of the pattern, zero or not."""
@@ -244,15 +244,15 @@ def sparse_affine(
 
     The pattern is the union of theirs; entries that are zero in all of them are left out.
     """
-    found = [scipy.sparse.coo_array(A) for A in terms]
-    row = np.concatenate([A.row for A in found]).astype(np.intp)
-    column = np.concatenate([A.col for A in found]).astype(np.intp)
-    term = np.repeat(np.arange(len(found)), [A.nnz for A in found])
-    values = np.concatenate([A.data for A in found]).astype(float)
-    there = values != 0
-    keys, position = np.unique((row * size + column)[there], return_inverse=True)
-    entries = values[there], (position, term[there])
-    data = scipy.sparse.csc_array(entries, shape=(keys.size, len(found)))
+    matrices = [scipy.sparse.coo_array(A) for A in terms]
+    row = np.concatenate([A.row for A in matrices]).astype(np.intp)
+    column = np.concatenate([A.col for A in matrices]).astype(np.intp)
+    term = np.repeat(np.arange(len(matrices)), [A.nnz for A in matrices])
+    values = np.concatenate([A.data for A in matrices]).astype(float)
+    nonzero = values != 0
+    keys, position = np.unique((row * size + column)[nonzero], return_inverse=True)
+    entries = values[nonzero], (position, term[nonzero])
+    data = scipy.sparse.csc_array(entries, shape=(keys.size, len(matrices)))
     indptr = np.searchsorted(keys, np.arange(size + 1) * size)
     return SparseAffine(indptr.astype(np.int32), (keys % size).astype(np.int32), data, coefficients)
 

@@ -136,13 +136,13 @@ class MatrixModel:
         else:
             motion = self.base[ports.base][:, None]
             loads, rigid = -(self.mass.at(theta) @ motion), gram(outputs, motion)
-        found = self.full_modes(theta, count, loads)
-        phi = self.selection @ found.Phi
+        solution = self.full_modes(theta, count, loads)
+        phi = self.selection @ solution.Phi
         return Transfer(
-            Modes(found.lam, phi),
-            input=gram(found.Phi, loads),
-            output=gram(outputs, found.Phi),
-            static=None if found.static is None else gram(outputs, found.static),
+            Modes(solution.lam, phi),
+            input=gram(solution.Phi, loads),
+            output=gram(outputs, solution.Phi),
+            static=None if solution.static is None else gram(outputs, solution.static),
             rigid=rigid,
         )
 
@@ -167,8 +167,8 @@ class MatrixModel:
         """The sparse pencil; its pattern is analysed at the first evaluation, and only then."""
         if isinstance(self.stiffness, DenseAffine) or isinstance(self.mass, DenseAffine):
             raise TypeError("stiffness and mass have to be both dense or both sparse")
-        found = pencil(self.stiffness, self.mass)
-        return replace(found, symbolic=_Counted(found.symbolic))
+        whole = pencil(self.stiffness, self.mass)
+        return replace(whole, symbolic=_Counted(whole.symbolic))
 
 
 def matrices(
@@ -234,8 +234,8 @@ def affine(parameters: Sequence[str], terms: Mapping[str, Matrix], size: int) ->
     for row, name in enumerate(terms):
         if name != BASE:
             exponents[row, list(parameters).index(name)] = 1
-    found = [scipy.sparse.coo_array(A) for A in terms.values()]
-    return sparse_affine(found, Monomials(exponents), size)
+    sparse_terms = [scipy.sparse.coo_array(A) for A in terms.values()]
+    return sparse_affine(sparse_terms, Monomials(exponents), size)
 
 
 def select(sensors: Mapping[str, SensorSpec], size: int) -> scipy.sparse.csr_array:

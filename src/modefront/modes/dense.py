@@ -61,15 +61,15 @@ def modes(
     frequency than asked for.
     """
     Kt, Mt = K.at(theta), M.at(theta)
-    found = decompose(Kt, Mt)
-    lam = found.lam
+    decomposition = decompose(Kt, Mt)
+    lam = decomposition.lam
     if lam.size < count:
         raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")
-    phi = sensors @ found.Phi[:, :count]
+    phi = sensors @ decomposition.Phi[:, :count]
     if not derivatives:
         return Modes(lam[:count], phi)
-    dlam, S, coincident = nelson(K, M, theta, found, count)
-    dphi = first_axis(sensors @ found.X, S[:, :count])
+    dlam, S, coincident = nelson(K, M, theta, decomposition, count)
+    dphi = first_axis(sensors @ decomposition.X, S[:, :count])
     return Modes(lam[:count], phi, ModeDerivatives(dlam[:count], dphi, coincident[:count]))
 
 
@@ -141,13 +141,13 @@ def _inverse_eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
 
 
 def nelson(
-    K: DenseAffine, M: DenseAffine, theta: Floats, found: Decomposition, count: int
+    K: DenseAffine, M: DenseAffine, theta: Floats, decomposition: Decomposition, count: int
 ) -> tuple[Floats, Floats, Bools]:
     """Return dlam (count, p), S with dPhi = X S, and which modes coincide with another one.
 
     X (N, N) are the eigenvectors, S is (N, count, p). Some modes more than asked for may come.
     """
-    lam, Phi = found.lam, found.Phi
+    lam, Phi = decomposition.lam, decomposition.Phi
     magnitude = np.abs(lam) + SHIFT * lam[-1]
     rounding = _ROUNDING * magnitude**2 / magnitude[0]
     distance = np.abs(lam[:, None] - lam)
@@ -159,16 +159,17 @@ def nelson(
 
     dM_phi = M.derivatives_times(theta, Phi[:, r])
     force = K.derivatives_times(theta, Phi[:, r]) - lam[r, None] * dM_phi
-    S = first_axis(found.X.T, force)  # S[j, r] = x_j^T (K' - lam_r M') phi_r
-    dlam = S[r, r] / np.sqrt(found.mu[r, None])
+    S = first_axis(decomposition.X.T, force)  # S[j, r] = x_j^T (K' - lam_r M') phi_r
+    dlam = S[r, r] / np.sqrt(decomposition.mu[r, None])
     coincident = np.asarray(same.sum(axis=0) > 1)
     for group in {tuple(np.flatnonzero(same[r, k])) for k in np.flatnonzero(coincident)}:
         block = np.tensordot(Phi[:, group].T, force[:, group], axes=1)
         dlam[list(group)] = np.linalg.eigvalsh(np.moveaxis(block, 2, 0)).T
 
-    denominator = 1 - (lam[r] + found.sigma) * found.mu[:, None]
-    denominator[: lam.size][close] = (found.mu[: lam.size, None] * (lam[:, None] - lam[r]))[close]
+    denominator = 1 - (lam[r] + decomposition.sigma) * decomposition.mu[:, None]
+    exact = decomposition.mu[: lam.size, None] * (lam[:, None] - lam[r])
+    denominator[: lam.size][close] = exact[close]
     denominator[: lam.size][same] = np.inf
     S /= -denominator[:, :, None]
-    S[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi) / np.sqrt(found.mu[r, None])
+    S[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi) / np.sqrt(decomposition.mu[r, None])
     return dlam, S, coincident

@@ -80,7 +80,7 @@ def at_sensors(
     pencil: Pencil,
     sensors: Sensors,
     theta: Floats,
-    found: Spectrum,
+    spectrum: Spectrum,
     count: int,
     tolerance: float = TOLERANCE,
 ) -> tuple[Floats, Floats, Bools]:
@@ -90,17 +90,17 @@ def at_sensors(
     ``tolerance`` is the residual of the part of dphi outside the known modes over that of zero.
     Raises ModelError where the iteration fails.
     """
-    lam, noise = found.lam, found.noise + np.finfo(float).eps * np.abs(found.lam)
+    lam, noise = spectrum.lam, spectrum.noise + np.finfo(float).eps * np.abs(spectrum.lam)
     distance = np.abs(lam[:, None] - lam)
     same = distance * COINCIDENT <= np.maximum(noise, noise[:, None])
     c, p = count, theta.size
-    while c < found.proved and same[c, :c].any():
+    while c < spectrum.proved and same[c, :c].any():
         c += 1
     r = np.arange(c)
-    dM = pencil.M.derivative_rows(theta, found.Phi[:, :c])
+    dM = pencil.M.derivative_rows(theta, spectrum.Phi[:, :c])
     scale = scipy.sparse.dia_array((np.repeat(lam[:c], p)[None], 0), shape=(c * p, c * p))
-    force = pencil.K.derivative_rows(theta, found.Phi[:, :c]) - scale @ dM
-    S = (force @ found.Phi).reshape(c, p, -1)  # S[r, i, j] = phi_j^T (K_i' - lam_r M_i') phi_r
+    force = pencil.K.derivative_rows(theta, spectrum.Phi[:, :c]) - scale @ dM
+    S = (force @ spectrum.Phi).reshape(c, p, -1)  # S[r, i, j] = phi_j^T (K_i' - lam_r M_i') phi_r
     dlam = S[r, :, r]
     coincident = np.asarray(same[:c, :c].sum(axis=0) > 1)
     for group in {tuple(np.flatnonzero(same[k, :c])) for k in np.flatnonzero(coincident)}:
@@ -109,52 +109,52 @@ def at_sensors(
 
     gap = lam[:count, None] - lam
     inside = S[:count] * np.where(same[:count], 0.0, 1 / np.where(same[:count], 1.0, gap))[:, None]
-    inside[r[:count], :, r[:count]] = -0.5 * (dM @ found.Phi).reshape(c, p, -1)[r, :, r][:count]
-    dphi = np.tensordot(sensors @ found.Phi, inside, axes=(1, 2))
+    inside[r[:count], :, r[:count]] = -0.5 * (dM @ spectrum.Phi).reshape(c, p, -1)[r, :, r][:count]
+    dphi = np.tensordot(sensors @ spectrum.Phi, inside, axes=(1, 2))
     force = force[: count * p].tocsr()
-    dphi -= outside(sensors, force, found, count, tolerance)
+    dphi -= outside(sensors, force, spectrum, count, tolerance)
     return dlam[:count], dphi, coincident[:count]
 
 
 def outside(
     sensors: Sensors,
     force: scipy.sparse.csr_array,
-    found: Spectrum,
+    spectrum: Spectrum,
     count: int,
     tolerance: float = TOLERANCE,
 ) -> Floats:
     """Return sensors (K - lam_r M)^+ f_ri, shape (sensors, count, p); f has rows (r, i)."""
-    nearest, steps = _nearest(found, count, tolerance)
+    nearest, steps = _nearest(spectrum, count, tolerance)
     p = force.shape[0] // count
     out = np.zeros((sensors.shape[0], count, p))
     groups = [np.flatnonzero(nearest == which) for which in (0, 1)]
     direct = p * steps.sum()
     adjoint = sensors.shape[0] * sum(steps[r].max() for r in groups if r.size)
     for which, group in enumerate(groups):
-        shifted = found.factors[which]
-        tau = shifted.sigma - found.lam[group]
+        shifted = spectrum.factors[which]
+        tau = shifted.sigma - spectrum.lam[group]
         rows = force[(group[:, None] * p + np.arange(p)).ravel()]
         if not rows.nnz:
             continue
         if adjoint < direct:
             for some in _chunks(sensors):
                 right = _columns(sensors, some)
-                product = _forms(shifted, found, right, tau[:, None], rows, tolerance)
+                product = _forms(shifted, spectrum, right, tau[:, None], rows, tolerance)
                 terms = np.diagonal(product.reshape(group.size, p, *product.shape[1:]), 0, 0, 2)
                 out[some[:, None], group] = terms.transpose(1, 2, 0)
         else:
             for some in _chunks(rows):
                 right = _columns(rows, some)
-                product = _forms(shifted, found, right, tau[some // p][None], sensors, tolerance)
+                product = _forms(shifted, spectrum, right, tau[some // p][None], sensors, tolerance)
                 out[:, group[some // p], some % p] = product[:, 0]
     return out
 
 
-def _nearest(found: Spectrum, count: int, tolerance: float) -> tuple[Ints, Floats]:
+def _nearest(spectrum: Spectrum, count: int, tolerance: float) -> tuple[Ints, Floats]:
     """Return the better factor for each mode, and how many steps it is expected to take."""
-    sigma = np.array([shifted.sigma for shifted in found.factors])
-    tau = sigma[:, None] - found.lam[:count]
-    condition = 1 + tau / np.maximum(found.beyond - sigma, 1e-300)[:, None]
+    sigma = np.array([shifted.sigma for shifted in spectrum.factors])
+    tau = sigma[:, None] - spectrum.lam[:count]
+    condition = 1 + tau / np.maximum(spectrum.beyond - sigma, 1e-300)[:, None]
     condition = np.maximum(condition, 1 / condition)
     root = np.sqrt(condition)
     nearest = np.argmin(condition, axis=0)
@@ -177,7 +177,7 @@ def _columns(rows: Sensors, some: Ints) -> Floats:
 
 def _forms(
     shifted: Shifted,
-    found: Spectrum,
+    spectrum: Spectrum,
     right: Floats,
     tau: Floats,
     left: Sensors,
@@ -188,8 +188,8 @@ def _forms(
     ``tau`` holds sigma - lam_r: (shifts, 1), or one for each column, (1, columns). ``d``,
     ``lower`` (left of d in L), ``u`` and ``P`` belong to the last step.
     """
-    dual = right - combine(found.MPhi, gram(found.Phi, right))
-    W = _projected(found, shifted.factor.solve(dual))
+    dual = right - combine(spectrum.MPhi, gram(spectrum.Phi, right))
+    W = _projected(spectrum, shifted.factor.solve(dual))
     first = beta = _norm(W, dual)
     Q_old, dual_old = np.zeros_like(W), np.zeros_like(W)
     lower = np.zeros((tau.shape[0], beta.size))
@@ -200,7 +200,7 @@ def _forms(
         scale = np.divide(1.0, beta, out=np.zeros_like(beta), where=beta > 0)
         W *= scale
         dual *= scale
-        MQ = times(found.M, W)
+        MQ = times(spectrum.M, W)
         alpha = np.einsum("nc,nc->c", W, MQ)
         if step:
             lower = tau * beta / d
@@ -215,7 +215,7 @@ def _forms(
         Q_old -= alpha * W
         dual_old += MQ
         dual_old -= alpha * dual
-        Q_old, W = W, _projected(found, Q_old)
+        Q_old, W = W, _projected(spectrum, Q_old)
         dual_old, dual = dual, dual_old
         beta = _norm(W, dual)
         if (np.abs(tau * beta * u / d) <= tolerance * first).all():
@@ -223,9 +223,9 @@ def _forms(
     raise ModelError("the derivatives do not converge: the matrices are too ill-conditioned")
 
 
-def _projected(found: Spectrum, W: Floats) -> Floats:
+def _projected(spectrum: Spectrum, W: Floats) -> Floats:
     """Return the part of W on the M-complement of the known modes; W is overwritten."""
-    W -= combine(found.Phi, gram(found.MPhi, W))
+    W -= combine(spectrum.Phi, gram(spectrum.MPhi, W))
     return W
 
 

@@ -50,8 +50,8 @@ def dense_modes(
     Raises ModelError where K or M is indefinite, or there are fewer modes with a finite frequency.
     """
     Kt = K.at(theta)
-    found = dense.decompose(Kt, M.at(theta))
-    lam, Phi = found.lam, found.Phi
+    decomposition = dense.decompose(Kt, M.at(theta))
+    lam, Phi = decomposition.lam, decomposition.Phi
     if lam.size < count:
         raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")
     lam = _without_rounding(lam, Phi, np.diag(Kt))
@@ -66,12 +66,12 @@ def dense_modes(
 
 def sparse_modes(pencil: Pencil, theta: Floats, count: int, loads: Floats) -> FullModes:
     """Return the same for sparse matrices; raises ModelError as `modefront.modes.sparse.modes`."""
-    found = sparse.lowest(pencil, theta, count)
-    lam = _without_rounding(found.lam, found.Phi, pencil.K.at(theta).diagonal())
-    below = found.factors[0]
+    spectrum = sparse.lowest(pencil, theta, count)
+    lam = _without_rounding(spectrum.lam, spectrum.Phi, pencil.K.at(theta).diagonal())
+    below = spectrum.factors[0]
     regular = below.sigma == 0 and lam[0] > 0
     static = below.factor.solve(np.ascontiguousarray(loads)) if regular else None
-    return FullModes(lam[:count], found.Phi[:, :count], static)
+    return FullModes(lam[:count], spectrum.Phi[:, :count], static)
 
 
 def _without_rounding(lam: Floats, Phi: Floats, diagonal: Floats) -> Floats:

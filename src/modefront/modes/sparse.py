@@ -77,12 +77,12 @@ def modes(
     are fewer modes with a finite frequency than asked for, or where it cannot be proved that none
     was missed.
     """
-    found = lowest(pencil, theta, count)
-    phi = sensors @ found.Phi[:, :count]
+    spectrum = lowest(pencil, theta, count)
+    phi = sensors @ spectrum.Phi[:, :count]
     if not derivatives:
-        return Modes(found.lam[:count], phi)
-    slopes = exact.at_sensors(pencil, sensors, theta, found, count)
-    return Modes(found.lam[:count], phi, ModeDerivatives(*slopes))
+        return Modes(spectrum.lam[:count], phi)
+    slopes = exact.at_sensors(pencil, sensors, theta, spectrum, count)
+    return Modes(spectrum.lam[:count], phi, ModeDerivatives(*slopes))
 
 
 def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
@@ -153,9 +153,9 @@ def _gap(lam: Floats, known: int, count: int, s: float, complete: bool) -> tuple
         gap = lam[count:known] - lam[count - 1 : known - 1]
         relative = gap / (np.abs(lam[count:known]) + s)
         wide = np.flatnonzero(relative > GAP)
-        at = int(wide[0] if wide.size else np.argmax(relative))
-        if relative[at] > NARROW:
-            return count + at, lam[count - 1 + at] + 0.2 * gap[at]
+        widest = int(wide[0] if wide.size else np.argmax(relative))
+        if relative[widest] > NARROW:
+            return count + widest, lam[count - 1 + widest] + 0.2 * gap[widest]
     return (known, lam[known - 1] + max(abs(lam[known - 1]), s)) if complete else None
 
 
@@ -178,8 +178,8 @@ def _positive_definite(
             dof = int(np.argmax(np.abs(start).max(axis=1))) if start.size else None
             raise ModelError(_why_not(dof))
         ritz = greatest(factor.solve, A, M, start, wanted, steps=6)
-        there = ritz.mu > SINGULAR * ritz.mu[0]
-        mu, X = ritz.mu[there], ritz.X[:, there]
+        finite = ritz.mu > SINGULAR * ritz.mu[0]
+        mu, X = ritz.mu[finite], ritz.X[:, finite]
         noise = 1e3 * SINGULAR * (K.diagonal() @ X**2 / mu).max()
         elastic = np.maximum(1 / mu - s, noise)[min(wanted, mu.size) - 1 :]
         target = elastic[int(np.argmax(elastic > noise))]

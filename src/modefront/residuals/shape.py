@@ -100,52 +100,54 @@ class ShapeResiduals:
     @cached_property
     def sets(self) -> Ints:
         """Data set of each component."""
-        return np.repeat([one.k for one in self.shapes], [one.sensors.size for one in self.shapes])
+        sizes = [part.sensors.size for part in self.shapes]
+        return np.repeat([part.k for part in self.shapes], sizes)
 
     @property
     def remark(self) -> str:
         """Why any model fits the shape, if it does."""
-        if max(one.sensors.size for one in self.shapes) > 1:
+        if max(part.sensors.size for part in self.shapes) > 1:
             return ""
         return "a shape that is measured at a single sensor fits any model"
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals; see `modefront.residuals.base.Member`."""
         q, parts = pairs.index[self.mode], []
-        for one in self.shapes:
-            chi = one.weight * modes.phi[one.sensors, q]
+        for part in self.shapes:
+            chi = part.weight * modes.phi[part.sensors, q]
             b = chi @ chi
-            parts.append((one.psi @ chi / b if b > 0 else 0.0) * chi - one.psi)
+            parts.append((part.psi @ chi / b if b > 0 else 0.0) * chi - part.psi)
         return np.concatenate(parts)
 
     def dr(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the derivatives of the residuals, shape (rows, p); 0 for a shape that is 0."""
         q, parts = pairs.index[self.mode], []
-        for one in self.shapes:
-            chi = one.weight * modes.phi[one.sensors, q]
-            dchi = one.weight[:, None] * modes.dphi[one.sensors, q]
+        for part in self.shapes:
+            chi = part.weight * modes.phi[part.sensors, q]
+            dchi = part.weight[:, None] * modes.dphi[part.sensors, q]
             b = chi @ chi
             if b == 0:
                 parts.append(np.zeros(dchi.shape))
                 continue
-            beta = one.psi @ chi / b
-            dbeta = (one.psi @ dchi - 2 * beta * (chi @ dchi)) / b
+            beta = part.psi @ chi / b
+            dbeta = (part.psi @ dchi - 2 * beta * (chi @ dchi)) / b
             parts.append(chi[:, None] * dbeta + beta * dchi)
         return np.concatenate(parts)
 
     def margin(self, eigenvalue: Floats, shape: Floats) -> float:  # noqa: ARG002
         """Return the square of the greatest change of r by errors of the paired modes."""
-        return float(shape[self.mode] ** 2 * sum(one.psi @ one.psi for one in self.shapes))
+        return float(shape[self.mode] ** 2 * sum(part.psi @ part.psi for part in self.shapes))
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield what one standard deviation of each measured component does to J."""
         q = pairs.index[self.mode]
-        for one in self.shapes:
-            std = self.data.shape_std[one.k, self.mode, one.sensors]
+        for part in self.shapes:
+            std = self.data.shape_std[part.k, self.mode, part.sensors]
             relative = self.scale == "measured"
             unit = np.ones(std.size) if relative else without_negligible(std)
-            psi = self.data.shape[one.k, self.mode, one.sensors] / unit
-            chi, dchi = modes.phi[one.sensors, q] / unit, modes.dphi[one.sensors, q] / unit[:, None]
+            psi = self.data.shape[part.k, self.mode, part.sensors] / unit
+            chi = modes.phi[part.sensors, q] / unit
+            dchi = modes.dphi[part.sensors, q] / unit[:, None]
             c, a, b = psi @ chi, psi @ psi, chi @ chi
             dc, db = psi @ dchi, 2 * chi @ dchi
             projection = c * chi / b
@@ -156,7 +158,7 @@ class ShapeResiduals:
                 ds = 2 * c * dc / (a * b) - s * db / b
             step = known_std(std) / len(self.shapes)
             yield Sensitivity(
-                value_numbers(self.data, one.k, self.mode)[1:][one.sensors],
+                value_numbers(self.data, part.k, self.mode)[1:][part.sensors],
                 -2 * w * (projection - s * psi) / unit * step,
                 -2 * w * (dprojection - np.outer(psi, ds)) / unit[:, None] * step[:, None],
             )
@@ -167,14 +169,14 @@ class ShapeResiduals:
         Errors along the shape count as its scale: no residual has them.
         """
         out = 0.0
-        for one in self.shapes:
-            std = known_std(self.data.shape_std[one.k, self.mode, one.sensors])
-            out += float((one.weight * std) ** 2 @ (1 - one.psi**2 / (one.psi @ one.psi)))
+        for part in self.shapes:
+            std = known_std(self.data.shape_std[part.k, self.mode, part.sensors])
+            out += float((part.weight * std) ** 2 @ (1 - part.psi**2 / (part.psi @ part.psi)))
         return out
 
     def floor_of_sets(self) -> float:
         """Return the same for the variance of the data sets, at sensors that all of them have."""
-        sets = [one.k for one in self.shapes]
+        sets = [part.k for part in self.shapes]
         common = np.asarray(self._measured[sets].all(axis=0))
         if len(sets) < 2 or common.sum() < 2:
             return 0.0
@@ -183,10 +185,10 @@ class ShapeResiduals:
         factor = (values @ values[0]) / (values**2).sum(axis=1)
         mean = factor @ values
         out = 0.0
-        for one in self.shapes:
-            psi, chi = one.psi[common[one.sensors]], one.weight[common[one.sensors]] * mean
+        for part in self.shapes:
+            psi, chi = part.psi[common[part.sensors]], part.weight[common[part.sensors]] * mean
             away = psi - (psi @ chi) / (chi @ chi) * chi
-            out += float((away @ away) * (one.psi @ one.psi) / (psi @ psi))
+            out += float((away @ away) * (part.psi @ part.psi) / (psi @ psi))
         return out * len(sets) / (len(sets) - 1)
 
 

@@ -33,7 +33,7 @@ from modefront._typing import Floats
 from modefront.linalg.affine import DenseAffine
 from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, combine_all, gram
-from modefront.models.reduced import window
+from modefront.models.reduced import completeness
 from modefront.modes.sparse import lowest
 from modefront.modes.spectrum import Shifted
 
@@ -86,7 +86,7 @@ class Basis:
     @cached_property
     def semidefinite(self) -> bool:
         """Whether no projected term shows that a term of K or M is indefinite."""
-        return window.semidefinite(self.K) and window.semidefinite(self.M)
+        return completeness.semidefinite(self.K) and completeness.semidefinite(self.M)
 
     @property
     def A(self) -> Floats:
@@ -103,10 +103,10 @@ def snapshot(pencil: Pencil, theta: Floats, count: int) -> Snapshot:
 
     Raises ModelError where the model has no such modes.
     """
-    found = lowest(pencil, theta, count)
-    below, above = found.factors
-    modes = found.Phi / np.sqrt(found.lam - below.sigma)
-    return Snapshot(theta, above.sigma, found.proved, modes, below)
+    spectrum = lowest(pencil, theta, count)
+    below, above = spectrum.factors
+    modes = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
+    return Snapshot(theta, above.sigma, spectrum.proved, modes, below)
 
 
 def empty(pencil: Pencil, first: Snapshot) -> Basis:

@@ -11,8 +11,8 @@ The basis is extended by :math:`A^{-1} r` for the residuals r of all models that
 without cancellation, s being the mode that x stands for; the error of its shape is the root of the
 sum of the other :math:`c_j^2`. Both grow towards the errors in the full model as the space does.
 How much of them is found has to be known from elsewhere. Let m eigenvalues of the full model, and
-no more, be below :math:`\sigma`, see `modefront.models.reduced.window`, and let :math:`\rho_k` and
-R be the lowest m Ritz values and residuals in any space.
+no more, be below :math:`\sigma`, see `modefront.models.reduced.completeness`, and let
+:math:`\rho_k` and R be the lowest m Ritz values and residuals in any space.
 
 **With the factor of another model**, :math:`g A \le K + s M \le b A`. What is outside the m Ritz
 vectors has Rayleigh quotients above :math:`\sigma` (Schur), so that at most as many eigenvalues are
@@ -123,7 +123,7 @@ def missing(modes: int) -> Certificate:
 
 
 @dataclass(frozen=True, eq=False)
-class Asked:
+class CertificateRequest:
     """What is to be judged.
 
     Attributes
@@ -148,7 +148,7 @@ class Asked:
 
 
 @dataclass(frozen=True, eq=False)
-class _Judged:
+class _ErrorEstimate:
     """Errors as a space knows them, of eigenvalues and shapes; and the modes of that space."""
 
     eigenvalue: Floats
@@ -171,7 +171,7 @@ def estimates(
     sensors: scipy.sparse.csr_array,
     basis: Basis,
     factor: Factor,
-    asked: Sequence[Asked],
+    asked: Sequence[CertificateRequest],
 ) -> list[Certificate | None]:
     """Return the certificates of some models, with the factor of another one.
 
@@ -179,33 +179,33 @@ def estimates(
     """
     shift, space = factor.below.sigma, basis
     zeros = [np.zeros(one.lam.shape) for one in asked]
-    found = [_Judged(z, z, one.lam, one.Y) for one, z in zip(asked, zeros, strict=True)]
+    errors = [_ErrorEstimate(z, z, one.lam, one.Y) for one, z in zip(asked, zeros, strict=True)]
     out: list[Certificate | None] = [None] * len(asked)
     rounding = list(zip(zeros, zeros, strict=True))
     pending = [k for k, one in enumerate(asked) if _steps(one, shift) <= STEPS]
     for step in range(1, STEPS + 1):
         if not pending:
             break
-        models = [(asked[k].theta, found[k]) for k in pending]
+        models = [(asked[k].theta, errors[k]) for k in pending]
         solved = _solutions(pencil, space, factor, models)
         space = _with_solutions(pencil, space, factor, solved)
         seen = np.hstack([sensors @ block for block in space.blocks])
         unsettled = []
         for k, one in zip(pending, solved, strict=True):
             of = asked[k]
-            proof = _Proof(of, shift, found[k].eigenvalue, gram(one.R, one.Z), step)
+            proof = _Proof(of, shift, errors[k].eigenvalue, gram(one.R, one.Z), step)
             if step == 1:
                 K0 = pencil.K.at(of.theta)
                 rounding[k] = _rounding(K0, one.X, gram(one.X, one.R), of.lam)
             try:
                 K, M = space.K.at(of.theta), space.M.at(of.theta)
-                found[k] = _judged(K, M, basis.columns, of.lam, of.Y)
+                errors[k] = _judged(K, M, basis.columns, of.lam, of.Y)
             except ModelError:
                 continue
-            if not proof.is_leading(found[k].eigenvalue):
+            if not proof.is_leading(errors[k].eigenvalue):
                 continue
-            if proof.holds(found[k]):
-                out[k] = _certificate(proof, found[k], seen, rounding[k])
+            if proof.holds(errors[k]):
+                out[k] = _certificate(proof, errors[k], seen, rounding[k])
             else:
                 unsettled.append(k)
         pending = unsettled
@@ -216,7 +216,7 @@ def own_estimate(
     pencil: Pencil,
     sensors: scipy.sparse.csr_array,
     basis: Basis,
-    asked: Asked,
+    asked: CertificateRequest,
     own: Shifted,
 ) -> Certificate:
     """Return the certificate of a model with its own factor of K - sigma M, sigma being the level.
@@ -237,18 +237,18 @@ def own_estimate(
         unit = np.sqrt(start.lam - shift)
         of = replace(asked, lam=start.lam, Y=np.diag(unit))
         S, n = combine(X, start.Phi / unit), m
-        found = _Judged(np.zeros(m), np.zeros(m), of.lam, of.Y)
+        errors = _ErrorEstimate(np.zeros(m), np.zeros(m), of.lam, of.Y)
         for step in range(1, OWN_STEPS + 1):
-            X = combine(S, found.Y)
-            R = times(K, X) - times(M, X) * found.lam
+            X = combine(S, errors.Y)
+            R = times(K, X) - times(M, X) * errors.lam
             Z = own.factor.solve(R)
-            proof = _Proof(of, shift, found.eigenvalue, gram(R, Z), step, own.sigma)
+            proof = _Proof(of, shift, errors.eigenvalue, gram(R, Z), step, own.sigma)
             S = np.hstack([S, orthonormal(K, M, shift, S, Z)])
             inner, mass = gram(S, times(K, S)), gram(S, times(M, S))
             Y = np.vstack([of.Y, np.zeros((S.shape[1] - n, m))])[:n]
-            found = _judged(inner, mass, n, of.lam, Y)
-            if proof.holds(found):
-                return _certificate(proof, found, sensors @ S, rounding)
+            errors = _judged(inner, mass, n, of.lam, Y)
+            if proof.holds(errors):
+                return _certificate(proof, errors, sensors @ S, rounding)
     except ModelError:
         pass
     return missing(asked.wanted.size)
@@ -268,7 +268,7 @@ class _Proof:
     own : the shift of the factor, if it is that of the model itself
     """
 
-    of: Asked
+    of: CertificateRequest
     shift: float
     known: Floats
     energy: Floats
@@ -282,24 +282,24 @@ class _Proof:
         small = error <= LARGE * (of.lam - self.shift)
         return bool(small.all() and (of.proved or (above.size and above[0] > of.sigma)))
 
-    def holds(self, found: _Judged) -> bool:
+    def holds(self, errors: _ErrorEstimate) -> bool:
         """Return whether a third of the errors of all modes in question is found."""
         of = self.of
         iterated = (1 - self._missed >= FOUND) if self.own is None else np.zeros(1, dtype=np.bool_)
-        eigenvalues = iterated | self._bounded(found.eigenvalue, FOUND)
-        shapes = FOUND * self.most(found) <= np.maximum(found.shape[: of.below], TOO_SMALL)
+        eigenvalues = iterated | self._bounded(errors.eigenvalue, FOUND)
+        shapes = FOUND * self.most(errors) <= np.maximum(errors.shape[: of.below], TOO_SMALL)
         return bool((eigenvalues & shapes)[of.wanted].all())
 
-    def most(self, found: _Judged) -> Floats:
+    def most(self, errors: _ErrorEstimate) -> Floats:
         """Return the errors of shapes that what is left of the energy allows, (below,)."""
         of, m, tiny = self.of, self.of.below, np.finfo(float).tiny
-        error = found.eigenvalue[:m]
+        error = errors.eigenvalue[:m]
         left, lam = self._left(error), of.lam[:m] - error
         distance = np.abs(lam[:, None] - lam)
         np.fill_diagonal(distance, np.inf)
         close = (left[:, None] / np.maximum(distance, tiny) ** 2).sum(axis=0) * left
         outside = left / np.maximum(of.sigma - lam, tiny)
-        return np.sqrt(found.shape[:m] ** 2 + outside + close)
+        return np.sqrt(errors.shape[:m] ** 2 + outside + close)
 
     def _left(self, error: Floats) -> Floats:
         """Return what is left of the errors of modes below the level at most, (below,)."""
@@ -316,12 +316,12 @@ class _Proof:
         """Share of the errors that the extensions have not found at most, to leading order."""
         return 1 / np.cosh(self.step * _rate(self.of, self.shift)) ** 2
 
-    def _bounded(self, error: Floats, found: float) -> Bools:
+    def _bounded(self, error: Floats, part: float) -> Bools:
         """Return for which modes residuals show that at least a share of the error is found."""
         of, m = self.of, self.of.below
         known, energy = self.known[:m], self.energy[:m, :m]
         rho, level = of.lam[:m] - self.shift, of.sigma - self.shift
-        share = error[:m] / np.maximum(rho - error[:m], np.finfo(float).tiny) / found
+        share = error[:m] / np.maximum(rho - error[:m], np.finfo(float).tiny) / part
         allowed = rho * np.maximum(share / (1 + share), NOTHING)
         out = np.zeros(m, dtype=np.bool_)
         for j in range(m):
@@ -342,7 +342,7 @@ class _Proof:
         return out
 
 
-def _rate(of: Asked, shift: float) -> Floats:
+def _rate(of: CertificateRequest, shift: float) -> Floats:
     """Return arcosh of (kappa + 1) / (kappa - 1) for each mode below the level, (below,)."""
     g, b = of.bounds
     gap = 1 - (of.lam[: of.below] - shift) / (of.sigma - shift)
@@ -350,23 +350,23 @@ def _rate(of: Asked, shift: float) -> Floats:
     return np.arccosh((1 + inverse) / (1 - inverse))
 
 
-def _steps(of: Asked, shift: float) -> float:
+def _steps(of: CertificateRequest, shift: float) -> float:
     """Return after how many extensions enough is found of the errors, to leading order."""
     rate = float(_rate(of, shift)[of.wanted].min())
     return np.arccosh(1 / np.sqrt(1 - FOUND)) / rate if rate > 0 else np.inf
 
 
 def _certificate(
-    proof: _Proof, found: _Judged, seen: Floats, rounding: tuple[Floats, Floats]
+    proof: _Proof, errors: _ErrorEstimate, seen: Floats, rounding: tuple[Floats, Floats]
 ) -> Certificate:
     """Return the certificate from the errors found; ``seen`` is the space at the sensors."""
     of, m = proof.of, proof.of.below
-    error, tiny = found.eigenvalue[:m], np.finfo(float).tiny
-    shape = np.minimum(np.hypot(found.shape[:m], rounding[1][:m]), 1.0)
+    error, tiny = errors.eigenvalue[:m], np.finfo(float).tiny
+    shape = np.minimum(np.hypot(errors.shape[:m], rounding[1][:m]), 1.0)
     error = error + rounding[0][:m]
     relative = error / np.maximum(of.lam[:m] - proof.shift - error, tiny)
-    phi = seen @ found.Y
-    return Certificate(relative[of.wanted], shape[of.wanted], found.lam, phi)
+    phi = seen @ errors.Y
+    return Certificate(relative[of.wanted], shape[of.wanted], errors.lam, phi)
 
 
 def _rounding(
@@ -386,7 +386,7 @@ def _rounding(
 
 
 def _solutions(
-    pencil: Pencil, space: Basis, factor: Factor, models: Sequence[tuple[Floats, _Judged]]
+    pencil: Pencil, space: Basis, factor: Factor, models: Sequence[tuple[Floats, _ErrorEstimate]]
 ) -> list[_Solutions]:
     """Return the solutions for the residuals of some modes of each model."""
     thetas = np.repeat([theta for theta, _ in models], [one.lam.size for _, one in models], axis=0)
@@ -409,7 +409,7 @@ def _with_solutions(
     return factor.extend(pencil, space, Z * unit, R * unit, np.sqrt(SHARE))
 
 
-def _judged(K: Floats, M: Floats, n: int, lam: Floats, Y: Floats) -> _Judged:
+def _judged(K: Floats, M: Floats, n: int, lam: Floats, Y: Floats) -> _ErrorEstimate:
     """Return how wrong the lowest modes of a basis are, given the matrices in a space.
 
     The basis is the first n columns of the space, and the modes have the eigenvalues lam (modes,)
@@ -428,4 +428,4 @@ def _judged(K: Floats, M: Floats, n: int, lam: Floats, Y: Floats) -> _Judged:
     c[s, s] = 0.0
     eigenvalue = (c**2 * (1 - (lam + shift) * mu)).sum(axis=0)
     shape = np.sqrt((c**2 * np.maximum(mu, 0.0)).sum(axis=0))
-    return _Judged(np.maximum(eigenvalue, 0.0), shape, lam, modes.Phi[:, s])
+    return _ErrorEstimate(np.maximum(eigenvalue, 0.0), shape, lam, modes.Phi[:, s])

@@ -54,7 +54,7 @@ STEPS = 30
 
 
 @dataclass(frozen=True)
-class Wanted:
+class CorrectionRequest:
     """How exactly a basis is to know models.
 
     Attributes
@@ -95,7 +95,7 @@ class Factor:
         return extended(pencil, space, solutions, shortest, pencil.size)
 
 
-class _Found(Protocol):
+class _KnownColumns(Protocol):
     """Modes or derivatives of them as a space has them, of unit energy, in columns."""
 
     @property
@@ -126,9 +126,9 @@ class _Modes:
 
 
 def _modes(pencil: Pencil, models: Sequence[Floats], count: int, space: Basis) -> _Modes:
-    found = [dense.decompose(space.K.at(at), space.M.at(at)) for at in models]
-    lam = np.concatenate([one.lam[:count] for one in found])
-    Y = np.hstack([one.Phi[:, :count] for one in found]) / np.sqrt(lam - space.sigma)
+    decompositions = [dense.decompose(space.K.at(at), space.M.at(at)) for at in models]
+    lam = np.concatenate([one.lam[:count] for one in decompositions])
+    Y = np.hstack([one.Phi[:, :count] for one in decompositions]) / np.sqrt(lam - space.sigma)
     return _Modes(pencil, space, np.repeat(models, count, axis=0), Y, lam)
 
 
@@ -177,7 +177,7 @@ def with_modes(
     factor: Factor,
     thetas: Sequence[Floats],
     count: int,
-    wanted: Wanted,
+    wanted: CorrectionRequest,
 ) -> tuple[Basis, Floats] | None:
     """Return the basis with what the ``count`` lowest modes at some parameters lack in it.
 
@@ -190,11 +190,11 @@ def with_modes(
         some = thetas[first : first + width]
         columns = np.arange(len(some) * count).reshape(-1, count)
         sought = partial(_modes, pencil, some, count)
-        found = _with(pencil, basis, factor, sought, columns, wanted)
-        if not (found.settled or wanted.share):
+        corrected = _with(pencil, basis, factor, sought, columns, wanted)
+        if not (corrected.settled or wanted.share):
             return None
-        basis = found.basis
-        errors.append(found.errors)
+        basis = corrected.basis
+        errors.append(corrected.errors)
     return basis, np.concatenate(errors)
 
 
@@ -205,7 +205,7 @@ def with_derivatives(
     theta: Floats,
     count: int,
     half_range: Floats,
-    wanted: Wanted,
+    wanted: CorrectionRequest,
 ) -> Basis:
     """Return the basis with what the derivatives of the ``count`` lowest modes lack in it.
 
@@ -240,25 +240,25 @@ def _with(
     pencil: Pencil,
     basis: Basis,
     factor: Factor,
-    sought: Callable[[Basis], _Found],
+    sought: Callable[[Basis], _KnownColumns],
     columns: Ints,
-    wanted: Wanted,
+    wanted: CorrectionRequest,
 ) -> _Known:
     """Return the basis with some of what is sought.
 
     Each row of ``columns`` (models, some) is of one model.
     """
     space, active, errors = basis, columns.ravel(), np.zeros(0)
-    found = sought(space)
-    total, last = np.zeros((2, found.lam.size))
+    current = sought(space)
+    total, last = np.zeros((2, current.lam.size))
     for step in range(STEPS):
-        R = found.residuals(active)
+        R = current.residuals(active)
         Z = factor.below.factor.solve(R)
         worth = np.einsum("nc,nc->c", R, Z)
         space = factor.extend(pencil, space, Z, R, wanted.shortest)
-        before, found = found, sought(space)
+        before, current = current, sought(space)
         if step == 0:
-            gain = (before.lam - found.lam) / (found.lam - space.sigma)
+            gain = (before.lam - current.lam) / (current.lam - space.sigma)
             errors = np.maximum(gain[columns].max(axis=1), 0.0)
             columns = columns[errors >= wanted.enough]
         total[active] += worth
@@ -270,7 +270,7 @@ def _with(
         active = active[np.isin(active, columns)]
         if not active.size:
             break
-    Y = found.Y[:, columns.ravel()]
+    Y = current.Y[:, columns.ravel()]
     kept = trimmed(basis, space, Y, wanted.shortest, wanted.capacity)
     return _Known(kept, errors, not active.size)
 

@@ -15,18 +15,18 @@ from modefront.errors import ModelError
 from modefront.linalg.factorisation import SingularMatrixError
 from modefront.models.matrices import MatrixModel
 from modefront.models.ports import Ports, Transfer
-from modefront.models.reduced import window
+from modefront.models.reduced import completeness
 from modefront.models.reduced.basis import Basis, Snapshot, empty, extended, snapshot
 from modefront.models.reduced.certificate import (
-    Asked,
     Certificate,
+    CertificateRequest,
     estimates,
     missing,
     own_estimate,
 )
 from modefront.models.reduced.corrections import (
+    CorrectionRequest,
     Factor,
-    Wanted,
     together,
     with_derivatives,
     with_modes,
@@ -98,7 +98,7 @@ class Snap:
 
 
 @dataclass(frozen=True)
-class Complete:
+class InertiaProof:
     """The proof that at ``theta`` as many modes as ``count`` are below an eigenvalue."""
 
     theta: Floats
@@ -107,7 +107,7 @@ class Complete:
 
 
 @dataclass(frozen=True)
-class _Taken:
+class _TakenSnapshot:
     """A snapshot, what it took, and the error that it found."""
 
     what: Snap
@@ -121,14 +121,14 @@ class _Space:
 
     basis: Basis
     factor: Factor
-    proofs: tuple[Complete, ...]
+    proofs: tuple[InertiaProof, ...]
 
 
 @dataclass(frozen=True)
 class _State:
     """The space of some snapshots, and the basis as the sensors see it."""
 
-    taken: tuple[_Taken, ...]
+    taken: tuple[_TakenSnapshot, ...]
     space: _Space
     sensed: Floats
 
@@ -246,15 +246,15 @@ class ReducedModel:
         state = self._ready()
         started = time.perf_counter()
         K, M = state.space.basis.K, state.space.basis.M
-        found = dense.modes(K, M, state.sensed, theta, count, derivatives)
+        modes = dense.modes(K, M, state.sensed, theta, count, derivatives)
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
-        return found
+        return modes
 
     def distance(self, theta: Floats) -> float:
         """Return how far the nearest snapshot is, over the ranges of the parameters."""
         span = self.upper - self.lower
-        there = [at for one in self._wanted if one.modes for at in one.models]
-        return float(min(np.linalg.norm((theta - at) / span) for at in there))
+        thetas = [at for snap in self._wanted if snap.modes for at in snap.models]
+        return float(min(np.linalg.norm((theta - at) / span) for at in thetas))
 
     def certify(self, asked: Sequence[tuple[Floats, Ints]], lowest: int = 0) -> list[Certificate]:
         """Return how wrong modes are at some parameters; see `Certificate`.
@@ -295,7 +295,7 @@ class ReducedModel:
                 continue
             last = min(lowest, ritz.lam.size - 1) - 1
             if last >= 0 and not _knows(basis, proofs, theta, ritz.lam[last]):
-                reach = max(_reach(basis, one, theta) for one in proofs) / ritz.lam[last]
+                reach = max(_reach(basis, proof, theta) for proof in proofs) / ritz.lam[last]
                 doubtful.append((reach, pair, theta, ritz.lam, last))
         return [
             theta
@@ -304,12 +304,12 @@ class ReducedModel:
         ]
 
     def _certified(
-        self, space: _Space, some: Sequence[tuple[Floats, Ints, int]], proofs: list[Complete]
+        self, space: _Space, some: Sequence[tuple[Floats, Ints, int]], proofs: list[InertiaProof]
     ) -> list[Certificate]:
         """Return the certificates of some models, with the factor at hand where that will do."""
         pencil, sensors = self.full.pencil, self.full.selection
         found: dict[int, Certificate] = {}
-        shared: dict[int, Asked] = {}
+        shared: dict[int, CertificateRequest] = {}
         for k, (theta, wanted, count) in enumerate(some):
             near = _near(space, theta, wanted, count, proofs)
             if near is None:
@@ -322,7 +322,7 @@ class ReducedModel:
         return [found[k] for k in range(len(some))]
 
     def _certified_alone(
-        self, space: _Space, theta: Floats, wanted: Ints, count: int, proofs: list[Complete]
+        self, space: _Space, theta: Floats, wanted: Ints, count: int, proofs: list[InertiaProof]
     ) -> Certificate:
         """Return the certificate of a model with its own factor, which proves modes complete."""
         basis, pencil = space.basis, self.full.pencil
@@ -330,7 +330,7 @@ class ReducedModel:
             ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
         except ModelError:
             return missing(wanted.size)
-        gap = window.level(ritz.lam, count, basis.sigma, np.inf)
+        gap = completeness.level(ritz.lam, count, basis.sigma, np.inf)
         if gap is None:
             return missing(wanted.size)
         below, sigma = gap
@@ -340,12 +340,13 @@ class ReducedModel:
             return missing(wanted.size)
         if factor.negative != below:
             return missing(wanted.size)
-        proofs.append(Complete(theta, sigma, below))
-        asked = Asked(theta, wanted, ritz.lam[:below], ritz.Phi[:, :below], below, sigma)
-        return own_estimate(pencil, self.full.selection, basis, asked, Shifted(sigma, factor))
+        proofs.append(InertiaProof(theta, sigma, below))
+        lam, Y = ritz.lam[:below], ritz.Phi[:, :below]
+        request = CertificateRequest(theta, wanted, lam, Y, below, sigma)
+        return own_estimate(pencil, self.full.selection, basis, request, Shifted(sigma, factor))
 
     def _misses(
-        self, basis: Basis, theta: Floats, lam: Floats, last: int, proofs: list[Complete]
+        self, basis: Basis, theta: Floats, lam: Floats, last: int, proofs: list[InertiaProof]
     ) -> bool:
         """Return whether modes below the Ritz value of the ``last`` one wanted are missing.
 
@@ -354,14 +355,14 @@ class ReducedModel:
         if _knows(basis, proofs, theta, lam[last]):
             return False
         pencil = self.full.pencil
-        below, sigma = window.gap_above(lam, last)
+        below, sigma = completeness.gap_above(lam, last)
         try:
             factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
         except SingularMatrixError:
             return True
         if factor.negative != below:
             return True
-        proofs.append(Complete(theta, sigma, below))
+        proofs.append(InertiaProof(theta, sigma, below))
         return False
 
     def _ready(self) -> _State:
@@ -375,11 +376,11 @@ class ReducedModel:
                 what = self._wanted[len(self._state.taken) if self._state else 0]
                 with counted() as costs:
                     taken, space, error = self._added(what)
-                last = _Taken(what, costs, error)
+                last = _TakenSnapshot(what, costs, error)
                 self._state = self._sensed((*taken, last), space)
         return self._state
 
-    def _added(self, what: Snap) -> tuple[tuple[_Taken, ...], _Space, float]:
+    def _added(self, what: Snap) -> tuple[tuple[_TakenSnapshot, ...], _Space, float]:
         """Return the snapshots before another one, the space with it, and the error that it found.
 
         It is computed with the factor at hand, or with factors of its own. Models that have no
@@ -415,11 +416,11 @@ class ReducedModel:
         spend(Costs(eigenproblems=solved, corrected=corrected))
         return taken, space, error
 
-    def _sensed(self, taken: tuple[_Taken, ...], space: _Space) -> _State:
+    def _sensed(self, taken: tuple[_TakenSnapshot, ...], space: _Space) -> _State:
         sensed = np.hstack([self.full.selection @ block for block in space.basis.blocks])
         return _State(taken, space, sensed)
 
-    def _refactored(self, basis: Basis, proofs: tuple[Complete, ...]) -> _Space:
+    def _refactored(self, basis: Basis, proofs: tuple[InertiaProof, ...]) -> _Space:
         """Return the space with the factor in whose norm the basis is orthonormal."""
         pencil = self.full.pencil
         K, M = pencil.K.at(basis.theta), pencil.M.at(basis.theta)
@@ -442,7 +443,7 @@ class ReducedModel:
     def _solved(
         self,
         known: Basis | None,
-        proofs: tuple[Complete, ...],
+        proofs: tuple[InertiaProof, ...],
         theta: Floats,
         modes: int,
     ) -> tuple[_Space, int]:
@@ -459,7 +460,7 @@ class ReducedModel:
         bounds = [] if known else self._bounds(basis, theta, one.below.sigma)
         basis = self._at_bounds(basis, factor, bounds)
         spend(Costs(corrected_time=time.perf_counter() - solved))
-        return _Space(basis, factor, (*proofs, Complete(theta, one.beyond, one.proved))), len(
+        return _Space(basis, factor, (*proofs, InertiaProof(theta, one.beyond, one.proved))), len(
             bounds
         )
 
@@ -492,7 +493,7 @@ class ReducedModel:
             return None
         new = tuple(proofs[len(space.proofs) :])
         count = what.modes + SPARE if new else what.modes  # all modes that a proof is of
-        wanted = Wanted(0.0, self._shortest, self.capacity, what.enough)
+        wanted = CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
         try:
             found = with_modes(self.full.pencil, basis, factor, here, count, wanted)
         except ModelError:
@@ -507,7 +508,7 @@ class ReducedModel:
         return _Space(basis, factor, (*space.proofs, *new)), errors, others
 
     def _is_near(
-        self, basis: Basis, factor: Factor, theta: Floats, modes: int, proofs: list[Complete]
+        self, basis: Basis, factor: Factor, theta: Floats, modes: int, proofs: list[InertiaProof]
     ) -> bool:
         """Return whether the factor at hand is of use for a snapshot, and no mode is missing."""
         try:
@@ -516,14 +517,14 @@ class ReducedModel:
             return False
         return (
             ritz.lam.size >= modes + 2 * SPARE
-            and window.condition_within(basis.K, basis.M, theta, factor.below.sigma) <= FAR
+            and completeness.condition_within(basis.K, basis.M, theta, factor.below.sigma) <= FAR
             and not self._misses(basis, theta, ritz.lam, modes - 1, proofs)
         )
 
     def _with_derivatives(self, basis: Basis, factor: Factor, theta: Floats, modes: int) -> Basis:
         """Return the basis of some modes with their derivatives."""
         count, half = min(modes, basis.columns - 1), (self.upper - self.lower) / 2
-        wanted = Wanted(SHARE, self._shortest, self.capacity)
+        wanted = CorrectionRequest(SHARE, self._shortest, self.capacity)
         if count < 1:
             return basis
         return with_derivatives(self.full.pencil, basis, factor, theta, count, half, wanted)
@@ -536,7 +537,7 @@ class ReducedModel:
                 for halving in range(HALVINGS + 1):
                     at = theta.copy()
                     at[i] += (end - theta[i]) / 2**halving
-                    if window.condition_within(basis.K, basis.M, at, sigma) <= FAR:
+                    if completeness.condition_within(basis.K, basis.M, at, sigma) <= FAR:
                         out.append(at)
                         break
         return out
@@ -550,7 +551,7 @@ class ReducedModel:
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis
-        wanted = Wanted(SHARE, COARSE, capacity)
+        wanted = CorrectionRequest(SHARE, COARSE, capacity)
         try:
             found = with_modes(self.full.pencil, basis, factor, bounds, count, wanted)
             return found[0] if found else basis
@@ -566,19 +567,19 @@ class ReducedModel:
         return SHORTEST * float(np.sqrt(self.tolerance))
 
 
-def _reach(basis: Basis, proof: Complete, theta: Floats) -> float:
+def _reach(basis: Basis, proof: InertiaProof, theta: Floats) -> float:
     """Return the level at ``theta`` below which a proof says that no modes are missing."""
-    return window.lower_bound(basis.K, basis.M, theta, proof.theta) * proof.beyond
+    return completeness.lower_bound(basis.K, basis.M, theta, proof.theta) * proof.beyond
 
 
-def _knows(basis: Basis, proofs: Sequence[Complete], theta: Floats, lam: float) -> bool:
+def _knows(basis: Basis, proofs: Sequence[InertiaProof], theta: Floats, lam: float) -> bool:
     """Return whether proofs rule out that modes below ``lam`` are missing in the basis."""
     return basis.semidefinite and any(_reach(basis, one, theta) > lam for one in proofs)
 
 
 def _near(
-    space: _Space, theta: Floats, wanted: Ints, count: int, proofs: Sequence[Complete]
-) -> Asked | None:
+    space: _Space, theta: Floats, wanted: Ints, count: int, proofs: Sequence[InertiaProof]
+) -> CertificateRequest | None:
     """Return what the factor at hand may judge; None where modes may be missing without proof."""
     basis, factor = space.basis, space.factor
     if not basis.semidefinite:
@@ -588,21 +589,21 @@ def _near(
     except ModelError:
         return None
     K, M, shift = basis.K, basis.M, factor.below.sigma
-    bounds = window.bounds(K, M, theta, factor.theta, shift)
-    found: Asked | None = None
+    bounds = completeness.bounds(K, M, theta, factor.theta, shift)
+    found: CertificateRequest | None = None
     for one in proofs:
         most = _reach(basis, one, theta)
-        gap = window.level(ritz.lam, count, shift, most)
+        gap = completeness.level(ritz.lam, count, shift, most)
         proved = int((ritz.lam < most).sum()) == one.count
         if gap and (found is None or (proved, gap[1]) > (found.proved, found.sigma)):
             below, sigma = gap
             some = below + int(not proved)
-            Y = ritz.Phi[:, :some]
-            found = Asked(theta, wanted, ritz.lam[:some], Y, below, sigma, bounds, proved)
+            lam, Y = ritz.lam[:some], ritz.Phi[:, :some]
+            found = CertificateRequest(theta, wanted, lam, Y, below, sigma, bounds, proved)
     return found
 
 
-def _begins(wanted: Sequence[Snap], taken: Sequence[_Taken]) -> bool:
+def _begins(wanted: Sequence[Snap], taken: Sequence[_TakenSnapshot]) -> bool:
     """Return whether the snapshots wanted begin with those that were taken."""
     return len(taken) <= len(wanted) and all(
         one.what.same(other) for one, other in zip(taken, wanted, strict=False)

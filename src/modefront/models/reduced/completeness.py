@@ -41,41 +41,41 @@ def semidefinite(A: DenseAffine) -> bool:
     return bool((values[:, 0] >= -INDEFINITE * np.abs(values).max(axis=1)).all())
 
 
-def ratios(A: DenseAffine, at: Floats, snapshot: Floats) -> tuple[float, float]:
+def ratios(A: DenseAffine, theta: Floats, snapshot: Floats) -> tuple[float, float]:
     """Return the least and the greatest ratio of coefficients at two parameters.
 
     They are 0 and infinite where nothing is known, since a coefficient is negative.
     """
-    now, then = A.coefficients.values(at), A.coefficients.values(snapshot)
-    there = (now != 0) | (then != 0)
-    now, then = now[there], then[there]
+    now, then = A.coefficients.values(theta), A.coefficients.values(snapshot)
+    nonzero = (now != 0) | (then != 0)
+    now, then = now[nonzero], then[nonzero]
     if not (np.isfinite(now).all() and np.isfinite(then).all()) or min(now.min(), then.min()) < 0:
         return 0.0, np.inf
     ratio = np.divide(now, then, out=np.full(now.shape, np.inf), where=then > 0)
     return float(ratio.min()), float(ratio.max())
 
 
-def lower_bound(K: DenseAffine, M: DenseAffine, at: Floats, snapshot: Floats) -> float:
+def lower_bound(K: DenseAffine, M: DenseAffine, theta: Floats, snapshot: Floats) -> float:
     """Return a / b, the least ratio of eigenvalues at two parameters; 0 where nothing is known."""
-    return ratios(K, at, snapshot)[0] / ratios(M, at, snapshot)[1]
+    return ratios(K, theta, snapshot)[0] / ratios(M, theta, snapshot)[1]
 
 
 def bounds(
-    K: DenseAffine, M: DenseAffine, at: Floats, snapshot: Floats, sigma: float
+    K: DenseAffine, M: DenseAffine, theta: Floats, snapshot: Floats, sigma: float
 ) -> tuple[float, float]:
     """Return g and b with g A <= K - sigma M <= b A for A at the snapshot and sigma <= 0."""
-    some = [ratios(A, at, snapshot) for A in ((K,) if sigma == 0 else (K, M))]
+    some = [ratios(A, theta, snapshot) for A in ((K,) if sigma == 0 else (K, M))]
     return min(g for g, _ in some), max(b for _, b in some)
 
 
-def condition_within(K: DenseAffine, M: DenseAffine, at: Floats, sigma: float) -> float:
+def condition_within(K: DenseAffine, M: DenseAffine, theta: Floats, sigma: float) -> float:
     """Return the condition of K - sigma M in a basis that is orthonormal in A: that of A^-1 K.
 
     It is infinite where the matrices are indefinite there.
     """
-    if np.linalg.eigvalsh(M.at(at))[0] < -INDEFINITE * np.abs(M.at(at)).max():
+    if np.linalg.eigvalsh(M.at(theta))[0] < -INDEFINITE * np.abs(M.at(theta)).max():
         return np.inf
-    values = np.linalg.eigvalsh(K.at(at) - sigma * M.at(at))
+    values = np.linalg.eigvalsh(K.at(theta) - sigma * M.at(theta))
     return float(values[-1] / values[0]) if values[0] > 0 else np.inf
 
 
@@ -86,8 +86,8 @@ def gap_above(lam: Floats, last: int) -> tuple[int, float]:
     """
     gap = np.diff(lam[last:]) / np.maximum(np.abs(lam[last + 1 :]), np.finfo(float).tiny)
     near = int(np.argmax(gap[:2]))
-    at = last + (near if gap[near] > GAP else int(np.argmax(gap)))
-    return at + 1, float(lam[at] + 0.5 * (lam[at + 1] - lam[at]))
+    k = last + (near if gap[near] > GAP else int(np.argmax(gap)))
+    return k + 1, float(lam[k] + 0.5 * (lam[k + 1] - lam[k]))
 
 
 def level(lam: Floats, count: int, shift: float, most: float) -> tuple[int, float] | None:
