@@ -249,7 +249,7 @@ def _solved_points(
     known += [(point.label, point.solution) for point in minima]
     worst = _labels_of(front.target, known)
     reach = _labels_of(part.target if part else None, cut)
-    out = [point for point in minima if point.label in worst]
+    out = [point for point in minima if worst and point.label in worst]
     for i, (name, edge) in enumerate(zip(names, front.edges, strict=True)):
         solution, text = edges[name].solution, edges[name].label
         if tolerance > 0 and not same(solution, edge.best):
@@ -282,18 +282,30 @@ def _solved_points(
 def _between(
     solution: Solution,
     ends: tuple[str, ...],
-    worst: tuple[str, ...],
+    worst: tuple[str, ...] | None,
     known: Sequence[tuple[str, Solution]],
-) -> Role:
-    """Return the role of a point of NBI between labelled ends, or of one of these ends."""
+) -> Role | None:
+    """Return the role of a point of NBI between labelled ends, or of one of these ends.
+
+    None where the ranges of its simplex follow from no programme.
+    """
     own = [text for text, end in known if text in ends and same(solution, end)]
-    return Role("end", (own[0],)) if own else Role("boundary", ends, worst)
+    if own:
+        return Role("end", (own[0],))
+    return None if worst is None else Role("boundary", ends, worst)
 
 
-def _labels_of(target: Payoff | None, known: Sequence[tuple[str, Solution]]) -> tuple[str, ...]:
-    """Return the labels of the models up to which ranges reach that a simplex is made of."""
+def _labels_of(
+    target: Payoff | None, known: Sequence[tuple[str, Solution]]
+) -> tuple[str, ...] | None:
+    """Return the labels of the models up to which ranges reach that a simplex is made of.
+
+    None where one of them is a corner (`modefront.solvers.payoff.corners`), which solves nothing
+    that data determine.
+    """
     worst = target.worst if target else ()
-    return tuple(next(text for text, x in known if same(x, end)) for end in worst)
+    labels = [next((text for text, x in known if same(x, end)), "") for end in worst]
+    return tuple(labels) if all(labels) else None
 
 
 @dataclass(frozen=True)
