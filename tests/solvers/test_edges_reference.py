@@ -11,8 +11,9 @@ from functools import cache
 import numpy as np
 import pytest
 from independent import Equation, Reference, agreement, edge_reference
-from updating_problems import chain_case
+from updating_problems import chain_case, make
 
+import modefront as mf
 from modefront.solvers.edges import edge
 from modefront.solvers.explore import Search
 from modefront.solvers.sqp import Solution
@@ -119,3 +120,14 @@ def test_a_manifold_of_exact_fits(key: Key, i: int) -> None:
     assert exact
     assert flatness < 1e-9
     assert_as_good(key, i)
+
+
+def test_a_front_on_which_other_modes_are_paired() -> None:
+    """Of this frame, SLSQP finds models between the points of two pairings, on the second one."""
+    problem = make("frame", 29).problem
+    without = mf.Identifiability(flat=0.0, models=0)
+    data = mf.solve(problem, points=11, seed=1, identifiability=without)
+    J = data["objective"].values[data["pareto"].values]
+    for known in ([0.0022630944, 0.0363256539], [0.0024306762, 0.0311083138]):
+        worse = (np.array(known) * (1 + WORSE) <= J).all(axis=1)
+        assert not worse.any()

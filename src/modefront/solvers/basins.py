@@ -40,7 +40,7 @@ from functools import partial
 import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.solvers.advance import BETTER, Simplex, simplex
+from modefront.solvers.advance import BETTER, JUMP, Simplex, simplex
 from modefront.solvers.archive import Archive
 from modefront.solvers.attainment import Attainment
 from modefront.solvers.dominance import nondominated
@@ -412,7 +412,33 @@ class _Between:
         out = [*points, *others]
         if self.target.utopia.size > 2:
             return out
-        return sorted(out, key=lambda one: -float(self.target.place(one.at.J)[0]))
+        out.sort(key=lambda one: -float(self.target.place(one.at.J)[0]))
+        along = self.checkpoint("nbi-between-along", partial(self._continued, out))
+        return sorted(along, key=lambda one: -float(self.target.place(one.at.J)[0]))
+
+    def _continued(self, points: Sequence[Solution]) -> list[Solution]:
+        """Return points in their order along a front, each branch continued as far as it is best.
+
+        A point of which a neighbour lies far away or on another smooth piece of the objectives is
+        solved again from that one, and on its piece.
+        """
+        out, span = list(points), self.problem.upper - self.problem.lower
+        for order in (range(1, len(out)), range(len(out) - 2, -1, -1)):
+            for k in order:
+                near = out[k - order.step]
+                far = bool((np.abs(out[k].at.theta - near.at.theta) > JUMP * span).any())
+                other = out[k].at.branch != near.at.branch
+                if not (near.at.feasible and (far or other)):
+                    continue
+                problem = self.problem.on_branch(near.at.branch) if other else self.problem
+                beta = self.own_place(out[k])
+                found = self.programmes.solve_again(problem, beta, near)
+                if other:
+                    start = begin(self.problem.evaluate(found.at.theta))
+                    found = self.programmes.solve_again(self.problem, beta, start)
+                if self._better(found, out[k]):
+                    out[k] = found
+        return out
 
 
 def programmes_of(problem: Problem, target: Payoff) -> Projection | Attainment:
