@@ -466,7 +466,10 @@ def test_bounds_of_ratios_hold_for_terms_that_are_not_there() -> None:
     K = DenseAffine(np.tile(np.eye(2), (3, 1, 1)), Monomials(np.eye(3)))
     at = np.array([2.0, 0.5, 0.0])
     assert completeness.ratios(K, at, np.array([1.0, 1.0, 0.0])) == (0.5, 2.0)
-    assert completeness.ratios(K, np.array([1.0, 1.0, 1.0]), np.array([1.0, 1.0, 0.0])) == (1.0, np.inf)
+    assert completeness.ratios(K, np.array([1.0, 1.0, 1.0]), np.array([1.0, 1.0, 0.0])) == (
+        1.0,
+        np.inf,
+    )
     assert completeness.ratios(K, np.array([1.0, -1.0, 1.0]), np.ones(3)) == (0.0, np.inf)
 
 

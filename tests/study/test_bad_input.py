@@ -20,7 +20,7 @@ import scipy.io
 import scipy.sparse
 from refusals import Check, command, edited
 
-from modefront.fronts import options as pareto
+from modefront.fronts.methods import evolutionary
 
 STUDY = """\
 [study]
@@ -712,7 +712,7 @@ def test_groups_that_cannot_make_a_front(
 def test_a_method_whose_package_is_missing(
     folder: Path, refused: Check, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(pareto, "available", lambda: False)
+    monkeypatch.setattr(evolutionary, "available", lambda: False)
     for method in ("spea2", "nsga2"):
         study = folder / "wrong.toml"
         study.write_text(edited(STUDY, ('method = "nbi"', f'method = "{method}"')))

@@ -394,16 +394,9 @@ class _Between:
                 ]
             )
             for k, one in zip(starts, found, strict=True):
-                if self._better(one, current[k]):
+                if _is_better(self.target, one, current[k]):
                     current[k] = one
         return current
-
-    def _better(self, found: Solution, known: Solution) -> bool:
-        """Return whether a solution of the same programme is better than one that is known."""
-        if found.converged != known.converged:
-            return found.converged
-        own, other = self.excess(known, np.array([found.at.J, known.at.J]))
-        return bool(own < other - BETTER)
 
     def with_others(self, points: Sequence[Solution], models: Models) -> list[Solution]:
         """Return the points and, of two objectives in their order, optimal models besides them."""
@@ -413,32 +406,9 @@ class _Between:
         if self.target.utopia.size > 2:
             return out
         out.sort(key=lambda one: -float(self.target.place(one.at.J)[0]))
-        along = self.checkpoint("nbi-between-along", partial(self._continued, out))
+        arguments = (self.problem, self.target, out)
+        (along,) = self.work.run([Task(("front", "nbi", "along"), _continued, arguments)])
         return sorted(along, key=lambda one: -float(self.target.place(one.at.J)[0]))
-
-    def _continued(self, points: Sequence[Solution]) -> list[Solution]:
-        """Return points in their order along a front, each branch continued as far as it is best.
-
-        A point of which a neighbour lies far away or on another smooth piece of the objectives is
-        solved again from that one, and on its piece.
-        """
-        out, span = list(points), self.problem.upper - self.problem.lower
-        for order in (range(1, len(out)), range(len(out) - 2, -1, -1)):
-            for k in order:
-                near = out[k - order.step]
-                far = bool((np.abs(out[k].at.theta - near.at.theta) > JUMP * span).any())
-                other = out[k].at.branch != near.at.branch
-                if not (near.at.feasible and (far or other)):
-                    continue
-                problem = self.problem.on_branch(near.at.branch) if other else self.problem
-                beta = self.own_place(out[k])
-                found = self.programmes.solve_again(problem, beta, near)
-                if other:
-                    start = begin(self.problem.evaluate(found.at.theta))
-                    found = self.programmes.solve_again(self.problem, beta, start)
-                if self._better(found, out[k]):
-                    out[k] = found
-        return out
 
 
 def programmes_of(problem: Problem, target: Payoff) -> Projection | Attainment:
@@ -515,6 +485,41 @@ def _bottom(problem: Problem, target: Payoff, theta: Floats) -> Solution:
     if own[0] <= other[0] + BETTER:
         return end
     return replace(start, status=Status.STALLED, beta=beta)
+
+
+def _continued(problem: Problem, target: Payoff, points: Sequence[Solution]) -> list[Solution]:
+    """Return points in their order along a front, each branch continued as far as it is best.
+
+    A point of which a neighbour lies far away or on another smooth piece of the objectives is
+    solved again from that one, and on its piece.
+    """
+    out, span = list(points), problem.upper - problem.lower
+    programmes = programmes_of(problem, target)
+    for order in (range(1, len(out)), range(len(out) - 2, -1, -1)):
+        for k in order:
+            near = out[k - order.step]
+            far = bool((np.abs(out[k].at.theta - near.at.theta) > JUMP * span).any())
+            other = out[k].at.branch != near.at.branch
+            if not (near.at.feasible and (far or other)):
+                continue
+            piece = problem.on_branch(near.at.branch) if other else problem
+            beta = place_of(target, out[k])
+            solution = programmes.solve_again(piece, beta, near)
+            if other:
+                start = begin(problem.evaluate(solution.at.theta))
+                solution = programmes.solve_again(problem, beta, start)
+            if _is_better(target, solution, out[k]):
+                out[k] = solution
+    return out
+
+
+def _is_better(target: Payoff, solution: Solution, known: Solution) -> bool:
+    """Return whether a solution is better than a known one of the same point of the front."""
+    if solution.converged != known.converged:
+        return solution.converged
+    J = np.array([solution.at.J, known.at.J])
+    own, other = place_on_normals(target, place_of(target, known)[None], J)[:, 0]
+    return bool(own < other - BETTER)
 
 
 def _evaluated(problem: Problem, thetas: Floats) -> Models:
