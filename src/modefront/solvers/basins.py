@@ -406,8 +406,8 @@ class _Between:
         if self.target.utopia.size > 2:
             return out
         out.sort(key=lambda one: -float(self.target.place(one.at.J)[0]))
-        arguments = (self.problem, self.target, out)
-        (along,) = self.work.run([Task(("front", "nbi", "along"), _continued, arguments)])
+        task = Task(("front", "nbi", "along"), _continued, (self.problem, self.target, out))
+        (along,) = self.work.run([task])
         return sorted(along, key=lambda one: -float(self.target.place(one.at.J)[0]))
 
 
