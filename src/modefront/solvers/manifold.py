@@ -184,7 +184,7 @@ def equally_good(
     in all, ten times as many where nothing is said. One that is among the ``known`` manifolds, of
     other programmes, is not followed again. Parameters that are ``idle`` (p,), without effect on
     any objective, are left where they are. Minima for which no evaluation is left are manifolds of
-    one model.
+    one model. What is by keyword are independent limits and knowledge, hence their number.
     """
     meter = _Meter(SPEND * limit if evaluations is None else evaluations)
     metered = Wrapped(problem, meter.evaluation)

@@ -49,9 +49,10 @@ import scipy.linalg
 
 from modefront._typing import Floats
 from modefront.solvers.correction import Correction
-from modefront.solvers.merit import PENALTY, Merit, Multipliers, surplus
+from modefront.solvers.linearised import length, linearised
+from modefront.solvers.merit import PENALTY, Merit, Multipliers
 from modefront.solvers.problem import Evaluation, Problem
-from modefront.solvers.qp import QuadraticProgramme, QuadraticStep, solve_qp
+from modefront.solvers.qp import QuadraticProgramme
 from modefront.solvers.scalarisation import Scalarisation
 from modefront.solvers.secant import learned_from
 from modefront.work.codec import record
@@ -75,9 +76,6 @@ FUNNEL = 10.0
 """Growth of the violation of the start, up to which a step is judged; 1 is always allowed, the
 range of the objectives where constraints are in units of these."""
 
-STEEP = 1e6
-"""Greatest multiplier of a constraint, with objective and constraints in their own units."""
-
 SWITCH = 0.5
 """Share of the error of a prediction, below which the other model is the better one: with 1, the
 models would take turns near a solution, where both are right."""
@@ -96,9 +94,6 @@ tried; actual over predicted reduction up to which a step is corrected."""
 SLOW = 10
 """Iterations after which a solution counts as slow, and its steps are corrected: most end earlier,
 and a correction costs an evaluation."""
-
-NOISE = 1e-11
-"""Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
 
 
 @record
@@ -191,20 +186,22 @@ def solve(
     trusted, escaped, failed = bool(S.any()), False, 0
     radius, penalty = options.radius, PENALTY
     multipliers: Multipliers | None = None
-    progress = _Progress(options, _length(programme.constraints.at(at.J)))
-    for count in range(options.iterations + 1):
-        local = _linearised(problem, programme, at)
+    progress = _Progress(options, length(programme.constraints.at(at.J)))
+    count = -1
+    while True:
+        count += 1
+        local = linearised(problem, programme, at)
         if local.f == -np.inf:
             return Solution(at, S, local.df, 0.0, Status.UNBOUNDED, count)
         qp, step, multipliers = local.step(at.H + S if trusted else at.H, radius, multipliers)
         s, w = step.s, multipliers.weights(programme, at.J)
-        violation = _length(local.c)
-        progress.proposed(_length(s), radius)
-        still = _length(s) <= options.step or local.unchanging(s, options.reduction)
+        violation = length(local.c)
+        progress.proposed(length(s), radius)
+        still = length(s) <= options.step or local.unchanging(s, options.reduction)
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
             still = not s.any()
-        status = progress.outcome(count, violation, still, _length(s), radius)
+        status = progress.outcome(count, violation, still, length(s), radius)
         if status or count == options.iterations:
             return Solution(at, S, w, violation, status or Status.EXHAUSTED, count)
 
@@ -220,8 +217,8 @@ def solve(
             if corrected is None:
                 break
             new = corrected
-        if not new.feasible or _length(programme.constraints.at(new.J)) > progress.farthest:
-            radius = _length(s) / 4
+        if not new.feasible or length(programme.constraints.at(new.J)) > progress.farthest:
+            radius = length(s) / 4
             continue
         actual = merit.at(at) - merit.at(new)
         rest = 0.5 * w @ (S @ (s * local.span) @ (s * local.span)) * (1 if trusted else -1)
@@ -233,8 +230,7 @@ def solve(
             S = learned_from(S, at, new)
         if ratio > TAKEN:
             at = new
-        radius = _next_radius(radius, _length(s), ratio)
-    raise AssertionError("the last iteration returns")
+        radius = _next_radius(radius, length(s), ratio)
 
 
 @dataclass
@@ -251,17 +247,17 @@ class _Progress:
         """Violation of the constraints up to which a step is judged."""
         return max(1.0, FUNNEL * self.start)
 
-    def proposed(self, length: float, radius: float) -> None:
+    def proposed(self, step: float, radius: float) -> None:
         """Remember the length of a step that the trust region does not hold back."""
-        if length < WHOLE * radius:
-            self.proposal = length
+        if step < WHOLE * radius:
+            self.proposal = step
 
     def outcome(
-        self, count: int, violation: float, still: bool, length: float, radius: float
+        self, count: int, violation: float, still: bool, step: float, radius: float
     ) -> Status | None:
         """Return how the solution ends at a point; None where it goes on.
 
-        ``still`` says whether no step is worth making, ``length`` is that of the next one.
+        ``still`` says whether no step is worth making, ``step`` is the length of the next one.
         """
         self.worst = max(self.worst, violation)
         if count % PATIENCE == 0:
@@ -270,141 +266,18 @@ class _Progress:
             self.worst = violation
         if still and violation <= self.options.constraint:
             return Status.CONVERGED
-        if length > np.finfo(float).eps and radius > self.options.step * COLLAPSED:
+        if step > np.finfo(float).eps and radius > self.options.step * COLLAPSED:
             return None
         # Steps that were not held back were below the tolerance: rounding of J stops it here.
         near = self.proposal <= self.options.step and violation <= 10 * self.options.constraint
         return Status.CONVERGED if near else Status.STALLED
 
 
-@dataclass(frozen=True)
-class _Linearised:
-    """A programme at a point, in u; see the module for the symbols.
-
-    ``reach`` (2, p) are the steps to the lower and the upper bounds, ``df`` (n,) is the slope of f
-    with respect to J.
-    """
-
-    programme: Scalarisation
-    at: Evaluation
-    span: Floats
-    reach: Floats
-    df: Floats
-    g: Floats
-    c: Floats
-    dc: Floats
-    y: Floats
-    dy: Floats
-
-    @property
-    def f(self) -> float:
-        """Smooth part of what is minimised."""
-        return self.programme.value(self.at.J)
-
-    def step(
-        self, H: Floats, radius: float, multipliers: Multipliers | None
-    ) -> tuple[QuadraticProgramme, QuadraticStep, Multipliers]:
-        """Return the quadratic programme, its solution, and the multipliers there.
-
-        ``H`` (n, p, p) are second derivatives of the objectives with respect to theta. B takes the
-        ``multipliers`` of the step before; where there is none, those of the slopes at the point
-        and, of functions of which the maximum counts, those of another step.
-        """
-        dJ, span = self.at.dJ * self.span, np.outer(self.span, self.span)
-        lo, hi = np.maximum(self.reach[0], -radius), np.minimum(self.reach[1], radius)
-        curved = dJ.T @ self.programme.hessian(self.at.J) @ dJ
-        qp = QuadraticProgramme(curved, self.g, self.dc, -self.c, lo, hi, self.dy, self.y)
-        passes = 1
-        if multipliers is None:
-            multipliers, passes = self._first(qp), 2 if self.y.size else 1
-        for _ in range(passes):
-            w = multipliers.weights(self.programme, self.at.J)
-            qp = replace(qp, B=np.tensordot(w, H, axes=1) * span + curved)
-            step = solve_qp(qp)
-            multipliers = self._bounded(qp, step)
-        return qp, step, multipliers
-
-    def _first(self, qp: QuadraticProgramme) -> Multipliers:
-        """Return multipliers of the slopes at the point, and the same one of all functions."""
-        still = QuadraticStep(np.zeros_like(self.g), [])
-        mu = self._bounded(qp, still).mu
-        return Multipliers(mu, np.full(self.y.size, 1 / max(self.y.size, 1)))
-
-    def _bounded(self, qp: QuadraticProgramme, step: QuadraticStep) -> Multipliers:
-        """Return the multipliers at the end of a step.
-
-        Where the constraints hardly depend on the variables that are free, they say nothing.
-        """
-        A = self.programme.constraints.matrix
-        most = STEEP * _length(self.df) / float(np.abs(A).max(initial=np.finfo(float).tiny))
-        free = (qp.lo - step.s < 0) & (qp.hi - step.s > 0)
-        mu, kappa = qp.multipliers(step.s, step.active, free)
-        kappa = np.maximum(kappa, 0.0)
-        return Multipliers(np.clip(mu, -most, most), kappa / kappa.sum() if step.active else kappa)
-
-    def slope(self, multipliers: Multipliers) -> Floats:
-        """Return the slope of the Lagrangian, shape (p,)."""
-        return np.asarray(self.g + multipliers.mu @ self.dc + multipliers.kappa @ self.dy)
-
-    def tied(self, active: list[int]) -> Floats:
-        """Return the rows (., n) of A, and the differences of active functions from the base."""
-        A, C = self.programme.constraints.matrix, self.programme.maximised.matrix
-        return np.vstack([A, C[active[1:]] - C[active[:1]]])
-
-    def unchanging(self, s: Floats, reduction: float) -> bool:
-        """Return whether what is minimised changes by less than its share along a step."""
-        before = self.y.max() if self.y.size else 0.0
-        after = (self.y + self.dy @ s).max() if self.y.size else 0.0
-        return bool(abs(self.g @ s + (after - before)) <= reduction * abs(self.f + before))
-
-    def predicted(
-        self, B: Floats, s: Floats, multipliers: Multipliers, penalty: float
-    ) -> tuple[float, float]:
-        """Return the reduction of the augmented Lagrangian by a step, and the penalty in it.
-
-        That is as great as makes the reduction positive; it falls slowly.
-        """
-        c, y = self.c + self.dc @ s, self.y + self.dy @ s
-        kappa = multipliers.kappa
-        gain = -self.slope(multipliers) @ s - 0.5 * s @ B @ s
-        squares = 0.5 * (self.c @ self.c - c @ c)
-        drop = squares + (surplus(self.y, kappa, penalty) - surplus(y, kappa, penalty)) / penalty
-        if drop > 0:
-            penalty = max(PENALTY, 0.1 * penalty, float(-2 * gain / drop))
-        above = surplus(self.y, kappa, penalty) - surplus(y, kappa, penalty)
-        return float(gain + penalty * squares + above), penalty
-
-    def end(self, problem: Problem, s: Floats) -> Floats:
-        """Return the parameters at the end of a step."""
-        return np.clip(self.at.theta + s * self.span, problem.lower, problem.upper)
-
-    def noise(self, multipliers: Multipliers) -> float:
-        """Return the change of the augmented Lagrangian that may be rounding."""
-        A, C = self.programme.constraints.matrix, self.programme.maximised.matrix
-        rows = np.abs(multipliers.mu) @ np.abs(A @ self.at.J)
-        rows += multipliers.kappa @ np.abs(C @ self.at.J)
-        return float(NOISE * (abs(self.f) + rows))
-
-
-def _linearised(problem: Problem, programme: Scalarisation, at: Evaluation) -> _Linearised:
-    span = problem.upper - problem.lower
-    reach = np.array([problem.lower - at.theta, problem.upper - at.theta]) / span
-    df, dJ = programme.gradient(at.J), at.dJ * span
-    constraints, maximised = programme.constraints, programme.maximised
-    c, dc = constraints.at(at.J), constraints.matrix @ dJ
-    y, dy = maximised.at(at.J), maximised.matrix @ dJ
-    return _Linearised(programme, at, span, reach, df, df @ dJ, c, dc, y, dy)
-
-
-def _length(s: Floats) -> float:
-    return float(np.max(np.abs(s), initial=0.0))
-
-
-def _next_radius(radius: float, length: float, ratio: float) -> float:
-    """Return the radius after a step of this length, actual over predicted reduction."""
+def _next_radius(radius: float, step: float, ratio: float) -> float:
+    """Return the radius after a step of this length, with its actual over predicted reduction."""
     if ratio < POOR:
-        return length / (4 if ratio < TAKEN else 2)
-    return min(2 * radius, 1.0) if ratio > GOOD and length > FULL * radius else radius
+        return step / (4 if ratio < TAKEN else 2)
+    return min(2 * radius, 1.0) if ratio > GOOD and step > FULL * radius else radius
 
 
 def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) -> Floats:

@@ -61,7 +61,7 @@ def optimal_minima(
 
     ``a`` (n,) counts the measured properties of each group, ``sizes`` (n,) are typical sizes of
     the objectives; ``starts`` are solved from first. With a ``floor`` b (n,) the weights are
-    bounded.
+    bounded. All arguments are independent of each other, hence their number.
     """
     bounded = bool(np.any(np.asarray(floor) > 0))
     programme = LogSum(a, floor, 0.0 if bounded else EXACT * sizes)

@@ -1,0 +1,157 @@
+r"""A programme at a point: its linearisation, the step from there, and what that promises.
+
+With the symbols of `modefront.solvers.sqp`, what is minimised is near the point
+
+.. math:: f + g^T s + \tfrac12 s^T B s + \max_i\,(y + \partial y\, s)_i
+    \quad\text{subject to}\quad c + \partial c\, s = 0 ,
+
+and the augmented Lagrangian (`modefront.solvers.merit`) falls along a step s by
+
+.. math:: -(g + \partial c^T \mu + \partial y^T \kappa)^T s - \tfrac12 s^T B s
+    + \tfrac\nu2 \big( \|c\|^2 - \|c + \partial c\, s\|^2 \big)
+
+and the fall of the surplus of y.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.solvers.merit import PENALTY, Multipliers, surplus
+from modefront.solvers.problem import Evaluation, Problem
+from modefront.solvers.qp import QuadraticProgramme, QuadraticStep, solve_qp
+from modefront.solvers.scalarisation import Scalarisation
+
+STEEP = 1e6
+"""Greatest multiplier of a constraint, with objective and constraints in their own units."""
+
+NOISE = 1e-11
+"""Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """A programme at a point, in u; see the module for the symbols.
+
+    ``reach`` (2, p) are the steps to the lower and the upper bounds, ``df`` (n,) is the slope of f
+    with respect to J.
+    """
+
+    programme: Scalarisation
+    at: Evaluation
+    span: Floats
+    reach: Floats
+    df: Floats
+    g: Floats
+    c: Floats
+    dc: Floats
+    y: Floats
+    dy: Floats
+
+    @property
+    def f(self) -> float:
+        """Smooth part of what is minimised."""
+        return self.programme.value(self.at.J)
+
+    def step(
+        self, H: Floats, radius: float, multipliers: Multipliers | None
+    ) -> tuple[QuadraticProgramme, QuadraticStep, Multipliers]:
+        """Return the quadratic programme, its solution, and the multipliers there.
+
+        ``H`` (n, p, p) are second derivatives of the objectives with respect to theta. B takes the
+        ``multipliers`` of the step before; where there is none, those of the slopes at the point
+        and, of functions of which the maximum counts, those of another step.
+        """
+        dJ, span = self.at.dJ * self.span, np.outer(self.span, self.span)
+        lo, hi = np.maximum(self.reach[0], -radius), np.minimum(self.reach[1], radius)
+        curved = dJ.T @ self.programme.hessian(self.at.J) @ dJ
+        qp = QuadraticProgramme(curved, self.g, self.dc, -self.c, lo, hi, self.dy, self.y)
+        passes = 1
+        if multipliers is None:
+            multipliers, passes = self._first(qp), 2 if self.y.size else 1
+        for _ in range(passes):
+            w = multipliers.weights(self.programme, self.at.J)
+            qp = replace(qp, B=np.tensordot(w, H, axes=1) * span + curved)
+            step = solve_qp(qp)
+            multipliers = self._bounded(qp, step)
+        return qp, step, multipliers
+
+    def _first(self, qp: QuadraticProgramme) -> Multipliers:
+        """Return multipliers of the slopes at the point, and the same one of all functions."""
+        still = QuadraticStep(np.zeros_like(self.g), [])
+        mu = self._bounded(qp, still).mu
+        return Multipliers(mu, np.full(self.y.size, 1 / max(self.y.size, 1)))
+
+    def _bounded(self, qp: QuadraticProgramme, step: QuadraticStep) -> Multipliers:
+        """Return the multipliers at the end of a step.
+
+        Where the constraints hardly depend on the variables that are free, they say nothing.
+        """
+        A = self.programme.constraints.matrix
+        most = STEEP * length(self.df) / float(np.abs(A).max(initial=np.finfo(float).tiny))
+        free = (qp.lo - step.s < 0) & (qp.hi - step.s > 0)
+        mu, kappa = qp.multipliers(step.s, step.active, free)
+        kappa = np.maximum(kappa, 0.0)
+        return Multipliers(np.clip(mu, -most, most), kappa / kappa.sum() if step.active else kappa)
+
+    def slope(self, multipliers: Multipliers) -> Floats:
+        """Return the slope of the Lagrangian, shape (p,)."""
+        return np.asarray(self.g + multipliers.mu @ self.dc + multipliers.kappa @ self.dy)
+
+    def tied(self, active: list[int]) -> Floats:
+        """Return the rows (., n) of A, and the differences of active functions from the base."""
+        A, C = self.programme.constraints.matrix, self.programme.maximised.matrix
+        return np.vstack([A, C[active[1:]] - C[active[:1]]])
+
+    def unchanging(self, s: Floats, reduction: float) -> bool:
+        """Return whether what is minimised changes by less than its share along a step."""
+        before = self.y.max() if self.y.size else 0.0
+        after = (self.y + self.dy @ s).max() if self.y.size else 0.0
+        return bool(abs(self.g @ s + (after - before)) <= reduction * abs(self.f + before))
+
+    def predicted(
+        self, B: Floats, s: Floats, multipliers: Multipliers, penalty: float
+    ) -> tuple[float, float]:
+        """Return the reduction of the augmented Lagrangian by a step, and the penalty in it.
+
+        That is as great as makes the reduction positive; it falls slowly.
+        """
+        c, y = self.c + self.dc @ s, self.y + self.dy @ s
+        kappa = multipliers.kappa
+        gain = -self.slope(multipliers) @ s - 0.5 * s @ B @ s
+        squares = 0.5 * (self.c @ self.c - c @ c)
+        drop = squares + (surplus(self.y, kappa, penalty) - surplus(y, kappa, penalty)) / penalty
+        if drop > 0:
+            penalty = max(PENALTY, 0.1 * penalty, float(-2 * gain / drop))
+        above = surplus(self.y, kappa, penalty) - surplus(y, kappa, penalty)
+        return float(gain + penalty * squares + above), penalty
+
+    def end(self, problem: Problem, s: Floats) -> Floats:
+        """Return the parameters at the end of a step."""
+        return np.clip(self.at.theta + s * self.span, problem.lower, problem.upper)
+
+    def noise(self, multipliers: Multipliers) -> float:
+        """Return the change of the augmented Lagrangian that may be rounding."""
+        A, C = self.programme.constraints.matrix, self.programme.maximised.matrix
+        rows = np.abs(multipliers.mu) @ np.abs(A @ self.at.J)
+        rows += multipliers.kappa @ np.abs(C @ self.at.J)
+        return float(NOISE * (abs(self.f) + rows))
+
+
+def linearised(problem: Problem, programme: Scalarisation, at: Evaluation) -> Linearised:
+    """Return a programme at an evaluation with derivatives."""
+    span = problem.upper - problem.lower
+    reach = np.array([problem.lower - at.theta, problem.upper - at.theta]) / span
+    df, dJ = programme.gradient(at.J), at.dJ * span
+    constraints, maximised = programme.constraints, programme.maximised
+    c, dc = constraints.at(at.J), constraints.matrix @ dJ
+    y, dy = maximised.at(at.J), maximised.matrix @ dJ
+    return Linearised(programme, at, span, reach, df, df @ dJ, c, dc, y, dy)
+
+
+def length(s: Floats) -> float:
+    """Return the greatest component; 0 of nothing."""
+    return float(np.max(np.abs(s), initial=0.0))
