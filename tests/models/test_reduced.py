@@ -17,7 +17,7 @@ from modefront.linalg.affine import DenseAffine, Monomials, sparse_affine
 from modefront.linalg.factorisation import SingularMatrixError
 from modefront.models.matrices import MatrixModel, affine_model, matrices
 from modefront.models.mesh import mesh_model
-from modefront.models.reduced import window
+from modefront.models.reduced import completeness
 from modefront.models.reduced.basis import snapshot
 from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.modes import derivatives as exact
@@ -370,13 +370,13 @@ def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
     model = reduced(full)
     model.take(Snap(np.ones(3), 10))
     basis = model._ready().space.basis
-    assert window.semidefinite(basis.K)
+    assert completeness.semidefinite(basis.K)
     for theta in rng.uniform(0.4, 2.5, (5, 3)):
-        ratio = window.lower_bound(basis.K, basis.M, theta, one.theta)
+        ratio = completeness.lower_bound(basis.K, basis.M, theta, one.theta)
         assert ratio == pytest.approx(theta.min())
         now, then = (full.modes(at, 8, derivatives=False).lam for at in (theta, one.theta))
         assert (now >= ratio * then * (1 - 1e-9)).all()
-    assert window.lower_bound(basis.K, basis.M, np.array([1.0, -1.0, 1.0]), one.theta) == 0
+    assert completeness.lower_bound(basis.K, basis.M, np.array([1.0, -1.0, 1.0]), one.theta) == 0
 
 
 def test_an_estimate_that_does_not_settle_takes_a_factor_of_its_own(
@@ -465,9 +465,12 @@ def test_a_third_of_every_error_is_found_over_many_decades(bounds: tuple[float, 
 def test_bounds_of_ratios_hold_for_terms_that_are_not_there() -> None:
     K = DenseAffine(np.tile(np.eye(2), (3, 1, 1)), Monomials(np.eye(3)))
     at = np.array([2.0, 0.5, 0.0])
-    assert window.ratios(K, at, np.array([1.0, 1.0, 0.0])) == (0.5, 2.0)
-    assert window.ratios(K, np.array([1.0, 1.0, 1.0]), np.array([1.0, 1.0, 0.0])) == (1.0, np.inf)
-    assert window.ratios(K, np.array([1.0, -1.0, 1.0]), np.ones(3)) == (0.0, np.inf)
+    assert completeness.ratios(K, at, np.array([1.0, 1.0, 0.0])) == (0.5, 2.0)
+    assert completeness.ratios(K, np.array([1.0, 1.0, 1.0]), np.array([1.0, 1.0, 0.0])) == (
+        1.0,
+        np.inf,
+    )
+    assert completeness.ratios(K, np.array([1.0, -1.0, 1.0]), np.ones(3)) == (0.0, np.inf)
 
 
 def test_a_mode_that_enters_where_two_stiffnesses_drop_is_looked_for() -> None:
