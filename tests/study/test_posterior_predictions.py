@@ -11,7 +11,7 @@ import scipy.stats
 import xarray as xr
 from interruptions import interrupt_at
 from refusals import command
-from two_masses import FRF, PASSAGE, ZETA, direct, run, write_study
+from two_masses import FRF, QUICK, ZETA, direct, run, write_study
 
 import modefront as mf
 from modefront._typing import Floats
@@ -27,7 +27,6 @@ ONE_MASS = mf.chain(["k"], [MASS], [K], stiffness_parameters=["k"])
 TWO_MASSES = mf.chain(["k1", "k2"], [2.0, 1.0], [3e3, 2e3], stiffness_parameters=["k1", "k2"])
 PEAK = PeakResponse("peak", "floor1", "floor1", band=(0.5, 5.0), modes=1, damping=DAMPING)
 SEED = np.random.SeedSequence(0)
-QUICK = PASSAGE.replace("samples = 1500", "samples = 20")
 
 
 def problem_of(

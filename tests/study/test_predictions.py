@@ -1,5 +1,6 @@
 """Predictions through the whole path of a study, against solutions that share nothing with it."""
 
+import shutil
 import sys
 from pathlib import Path
 from typing import Any
@@ -9,7 +10,7 @@ import pytest
 import xarray as xr
 from interruptions import interrupt_at
 from scipy.signal import lsim
-from two_masses import FRF, MASSES, PASSAGE, ZETA, direct, matrices, run, write_study
+from two_masses import FRF, MASSES, PASSAGE, QUICK, ZETA, direct, matrices, run, write_study
 
 import modefront as mf
 from modefront._typing import Floats
@@ -32,6 +33,13 @@ AXES = 4
 @pytest.fixture(scope="module")
 def results(tmp_path_factory: pytest.TempPathFactory) -> xr.Dataset:
     return run(tmp_path_factory.mktemp("all"), FRF + PASSAGE)
+
+
+@pytest.fixture(scope="module")
+def quick(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
+    """The folder and the results of a run with few samples."""
+    folder = tmp_path_factory.mktemp("quick")
+    return folder, run(folder, FRF + QUICK)
 
 
 def assert_peaks(
@@ -172,14 +180,14 @@ def assert_same(one: xr.Dataset, other: xr.Dataset) -> None:
 
 
 def test_an_interrupted_run_predicts_the_same_digits(
-    results: xr.Dataset, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+    quick: tuple[Path, xr.Dataset], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     for task in ("predict-shaken-point-nbi-2", "predict-drifts-point-edge", "half-step"):
         interrupt_at(task, monkeypatch)
         with pytest.raises(KeyboardInterrupt):
-            run(tmp_path, FRF + PASSAGE)
+            run(tmp_path, FRF + QUICK)
         assert not (tmp_path / "results" / "results.nc").exists()
-    assert_same(run(tmp_path, FRF + PASSAGE), results)
+    assert_same(run(tmp_path, FRF + QUICK), quick[1])
 
 
 def test_other_predictions_do_no_old_work_again(
@@ -261,14 +269,16 @@ def test_several_inputs_have_noise_of_their_own(tmp_path: Path) -> None:
     assert total == pytest.approx(parts, rel=1e-9, abs=1e-12 * parts.max())
 
 
-def test_in_memory_and_from_a_file_are_the_same(results: xr.Dataset, tmp_path: Path) -> None:
-    study = mf.load(write_study(tmp_path, FRF + PASSAGE))
+def test_in_memory_and_from_a_file_are_the_same(
+    quick: tuple[Path, xr.Dataset], tmp_path: Path
+) -> None:
+    study = mf.load(write_study(tmp_path, FRF + QUICK))
     assert [one.name for one in study.predictions][-1] == "drifts"
     data = mf.solve(
         study.problem, points=3, seed=3, search=study.search, predictions=study.predictions
     ).dataset
-    for name in results.variables:
-        np.testing.assert_array_equal(data[name], results[name])
+    for name in quick[1].variables:
+        np.testing.assert_array_equal(data[name], quick[1][name])
 
 
 SHAKEN_BUILDING = """
@@ -315,10 +325,13 @@ def command(*arguments: object) -> int:
 
 
 def test_show_prints_and_draws_predictions(
-    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+    quick: tuple[Path, xr.Dataset],
+    tmp_path: Path,
+    capsys: pytest.CaptureFixture[str],
+    monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    quick = PASSAGE.replace("samples = 1500", "samples = 20")
-    data = run(tmp_path, FRF + quick)
+    folder, data = quick
+    shutil.copytree(folder / "results", tmp_path / "results")
     assert command("show", tmp_path / "results") == 0
     out = capsys.readouterr().out
     for text in (

@@ -104,6 +104,8 @@ samples = 1500
 damping = 0.02
 """
 
+QUICK = PASSAGE.replace("samples = 1500", "samples = 20")
+
 DATA = """set,mode,frequency,damping,low,high
 a,1,4.2,0.02,0.6,1.0
 a,2,10.5,,1.0,-0.7

@@ -1,0 +1,356 @@
+"""Executors: each task once, in its order, with costs and random numbers of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from itertools import pairwise
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from problems import Known, box, circles
+
+from modefront._typing import Floats
+from modefront.solvers.archive import Archive, Archiving
+from modefront.solvers.problem import Problem
+from modefront.work.costs import Costs, counted, spend, total, uncounted
+from modefront.work.progress import Progress, State
+from modefront.work.serial import Serial
+from modefront.work.store import Store
+from modefront.work.task import IMMEDIATE, R, Task, Within, seed_sequence
+
+CALLS: list[int] = []
+
+
+@pytest.fixture(autouse=True)
+def _no_calls() -> None:
+    CALLS.clear()
+
+
+def square(x: int) -> int:
+    CALLS.append(x)
+    spend(Costs(eigenproblems=x))
+    return x * x
+
+
+def normal(scale: float, *, rng: np.random.Generator) -> Floats:
+    return scale * rng.normal(size=2)
+
+
+def squares(*numbers: int) -> list[Task[int]]:
+    return [Task(("square", x), square, (x,)) for x in numbers]
+
+
+def test_results_come_in_the_order_of_tasks() -> None:
+    for work in (IMMEDIATE, Serial()):
+        assert work.run(squares(3, 1, 2)) == [9, 1, 4]
+        assert work.run([]) == []
+
+
+def test_two_tasks_of_one_key_are_refused() -> None:
+    work = Serial()
+    with pytest.raises(ValueError, match="two tasks are named square-3"):
+        work.run(squares(3, 3))
+    with pytest.raises(ValueError, match="two tasks are named square-3"):
+        work.run(squares(3))
+    assert Within(work, turn=("round", 2)).run(squares(3)) == [9], "another turn is another task"
+    assert CALLS == [3, 3]
+
+
+def test_what_is_kept_is_not_computed_again(tmp_path: Path) -> None:
+    first = Serial(Store(tmp_path))
+    first.run(squares(1, 2))
+    again = Serial(Store(tmp_path))
+    assert again.run(squares(1, 2, 3)) == [1, 4, 9]
+    assert CALLS == [1, 2, 3]
+    assert again.total().eigenproblems == 1 + 2 + 3, "what it has cost then counts"
+    assert again.progress.spent.eigenproblems == 3, "what it costs now is told apart"
+    Serial().run(squares(1))
+    assert CALLS == [1, 2, 3, 1], "nothing is kept without a store"
+
+
+def test_each_task_has_its_own_costs_and_all_of_them_add_up(costs: Costs) -> None:
+    work = Serial()
+    spend(Costs(eigenproblems=100))
+    work.run(squares(1, 2))
+    work.run([Task(("other", "x"), square, (5,))])
+    assert {key: each.eigenproblems for key, each in work.costs.items()} == {
+        ("square", 1): 1,
+        ("square", 2): 2,
+        ("other", "x"): 5,
+    }
+    assert work.total(lambda stage: stage == "square").eigenproblems == 3
+    assert work.total() == total(work.costs.values())
+    assert costs.eigenproblems == 100 + 1 + 2 + 5
+
+
+def test_counts_are_nested_and_work_may_be_left_out(costs: Costs) -> None:
+    with counted() as outer:
+        spend(Costs(reduced=1))
+        with counted() as inner, uncounted():
+            spend(Costs(reduced=10))
+            with counted() as alone:
+                spend(Costs(reduced=100))
+        spend(Costs(eigenproblems=2, corrected=3))
+    spend(Costs(reduced=1000))
+    assert (inner.reduced, alone.reduced) == (0, 100)
+    assert outer == Costs(eigenproblems=2, reduced=1, corrected=3)
+    assert outer.model_evaluations == 3
+    assert costs.reduced == 1001
+    failed = Costs()
+
+    def fail() -> None:
+        nonlocal failed
+        with counted() as failed:
+            spend(Costs(reduced=1))
+            raise ZeroDivisionError
+
+    with pytest.raises(ZeroDivisionError):
+        fail()
+    spend(Costs(reduced=1))
+    assert failed.reduced == 1, "a count ends where its context does"
+
+
+def test_a_task_that_fails_keeps_nothing_and_can_be_run_again(tmp_path: Path) -> None:
+    work = Serial(Store(tmp_path))
+    with pytest.raises(TypeError):
+        work.run([*squares(1), Task(("wrong",), square, ("x",))])
+    again = Serial(Store(tmp_path))
+    again.run([*squares(1), Task(("wrong",), square, (7,))])
+    assert CALLS == [1, "x", 7]
+
+
+def test_random_numbers_are_those_of_the_task_alone() -> None:
+    tasks = [
+        Task(("normal", k), normal, (2.0,), seed_sequence(seed, "normal", k))
+        for seed in (1, 2)
+        for k in range(2)
+    ]
+    found = IMMEDIATE.run(tasks)
+    assert len({one.tobytes() for one in found}) == 4
+    other_way = IMMEDIATE.run(tasks[::-1])[::-1]
+    assert [one.tobytes() for one in other_way] == [one.tobytes() for one in found]
+    expected = 2.0 * np.random.default_rng(seed_sequence(2, "normal", 1)).normal(size=2)
+    assert found[-1].tolist() == expected.tolist()
+
+
+@dataclass
+class Noting:
+    """An executor that takes note of what it is given."""
+
+    tasks: list[Task[Any]] = field(default_factory=list)
+    stages: list[Mapping[str, int]] = field(default_factory=list)
+
+    def run(self, tasks: Sequence[Task[R]]) -> list[R]:
+        self.tasks += tasks
+        return [task() for task in tasks]
+
+    def expect(self, stages: Mapping[str, int]) -> None:
+        self.stages.append(stages)
+
+
+def test_tasks_of_a_part_and_of_a_turn_are_named_so() -> None:
+    noting = Noting()
+    part = Within(noting, part=("identifiable",))
+    again = Within(part, turn=("again", 1))
+    again.run([Task(("square", (1, 2)), square, (3,), turn=("round", 2))])
+    (task,) = noting.tasks
+    assert (task.key, task.turn) == (
+        ("identifiable", "square", (1, 2)),
+        ("round", 2, "again", 1),
+    )
+    assert task.stage == "identifiable"
+    assert task.name == "identifiable-square-1_2-round-2-again-1"
+    assert task() == 9
+    for work in (again, Within(noting, turn=("again", 1))):
+        work.expect({"square": 2, "other": 3})
+    assert noting.stages == [{"identifiable": 5}, {"square": 2, "other": 3}]
+
+
+# ---- archives ----------------------------------------------------------------------------------
+
+
+def visited(problem: Problem, thetas: Sequence[Floats]) -> float:
+    return sum(float(problem.evaluate(theta).J.sum()) for theta in thetas)
+
+
+def tasks_on(problem: Known, seed: int) -> list[Task[float]]:
+    rng = np.random.default_rng(seed)
+    thetas = rng.uniform(-1, 2, size=(6, 5, 2))
+    return [Task(("visit", k), visited, (problem, some)) for k, some in enumerate(thetas)]
+
+
+@dataclass
+class Backwards:
+    """An executor that computes the last task first, as one of many processes may."""
+
+    def run(self, tasks: Sequence[Task[R]]) -> list[R]:
+        return [task() for task in tasks[::-1]][::-1]
+
+    def expect(self, stages: Mapping[str, int]) -> None:
+        pass
+
+
+@given(st.integers(0, 2**16))
+def test_the_archive_is_that_of_one_evaluation_after_another(seed: int) -> None:
+    problem = box(circles, [-1, -1], [2, 2])
+    tasks = tasks_on(problem, seed)
+    straight = Archive(problem)
+    sums = [visited(straight, task.arguments[1]) for task in tasks]
+    for work in (IMMEDIATE, Serial(), Backwards(), Within(Serial(), turn=("again", 1))):
+        archive = Archive(problem)
+        assert Archiving(work, archive).run(tasks) == sums
+        assert archive.theta.tolist() == straight.theta.tolist(), "in the order of the tasks"
+        assert archive.J.tolist() == straight.J.tolist()
+
+
+def test_kept_tasks_bring_the_models_that_they_had_evaluated(tmp_path: Path) -> None:
+    problem = box(circles, [-1, -1], [2, 2])
+    archives = []
+    for _ in range(2):
+        archive = Archive(problem)
+        archives.append(archive)
+        with counted() as costs:
+            Archiving(Serial(Store(tmp_path)), archive).run(tasks_on(problem, 0))
+    assert costs.eigenproblems == 0
+    assert archives[0].J.tolist() == archives[1].J.tolist()
+    assert archives[0].theta.tolist() == archives[1].theta.tolist()
+
+
+def test_an_archiving_executor_passes_the_extent_on() -> None:
+    noting = Noting()
+    Archiving(noting, Archive(box(circles, [-1, -1], [2, 2]))).expect({"front": 3})
+    assert noting.stages == [{"front": 3}]
+
+
+# ---- progress ----------------------------------------------------------------------------------
+
+
+@dataclass
+class Clock:
+    """Seconds that pass as they are told to."""
+
+    now: float = 1000.0
+
+    def __call__(self) -> float:
+        return self.now
+
+
+def progress() -> tuple[Progress, list[State], Clock]:
+    states: list[State] = []
+    clock = Clock()
+    return Progress(states.append, clock), states, clock
+
+
+def test_a_run_is_followed_from_task_to_task() -> None:
+    follow, states, clock = progress()
+    assert follow.state == State("", 0, 0, 0, 0.0, None)
+    follow.expect({"edge": 2, "front": 8})
+    clock.now += 5
+    follow.start("edge")
+    assert states[-1] == State("edge", 0, 1, 10, 0.0, None), "time runs from the first task"
+    clock.now += 3
+    follow.end("edge", 3.0)
+    assert states[-1] == State("edge", 1, 0, 10, 3.0, 9 * 3.0)
+    follow.start("edge")
+    clock.now += 1
+    follow.end("edge", 1.0)
+    assert states[-1] == State("edge", 2, 0, 10, 4.0, 8 * 2.0)
+    assert len(states) == 5, "after every change"
+
+
+def test_kept_tasks_are_done_and_tell_nothing_of_the_time_left() -> None:
+    follow, states, clock = progress()
+    follow.expect({"edge": 4})
+    follow.start("edge")
+    follow.end("edge", None)
+    assert (states[-1].done, states[-1].left) == (1, None)
+    follow.start("edge")
+    clock.now += 10
+    follow.end("edge", 10.0)
+    assert (states[-1].done, states[-1].left) == (2, 2 * 10.0)
+
+
+def test_a_stage_ends_where_another_one_starts() -> None:
+    follow, states, _ = progress()
+    follow.expect({"front": 20, "gap": 2})
+    for _ in range(3):
+        follow.start("front")
+        follow.end("front", 1.0)
+    assert states[-1].expected == 22
+    follow.start("gap")
+    assert states[-1] == State("gap", 3, 1, 3 + 2, 0.0, 2 * 1.0)
+    follow.end("gap", 1.0)
+    for _ in range(4):
+        follow.start("gap")
+        follow.end("gap", 1.0)
+    assert (states[-1].done, states[-1].expected) == (8, 8), "more than was expected"
+
+
+def test_what_is_expected_is_still_to_come() -> None:
+    follow, states, _ = progress()
+    follow.expect({"front": 2})
+    for _ in range(2):
+        follow.start("front")
+        follow.end("front", 1.0)
+    follow.expect({"front": 3})
+    assert (states[-1].done, states[-1].expected) == (2, 5)
+    follow.start("other")
+    follow.expect({"front": 0})
+    assert states[-1].expected == 3
+
+
+STAGES = st.sampled_from(["a", "b", "c"])
+EVENTS = st.lists(
+    st.tuples(st.just("expect"), st.dictionaries(STAGES, st.integers(0, 5)))
+    | st.tuples(st.just("start"), STAGES)
+    | st.tuples(st.just("end"), st.floats(0, 9) | st.none()),
+    max_size=40,
+)
+
+
+@given(EVENTS)
+def test_never_more_is_done_than_expected_whatever_happens(
+    events: list[tuple[str, Any]],
+) -> None:
+    follow, states, clock = progress()
+    running: list[str] = []
+    ended: list[float | None] = []
+    for event, value in events:
+        clock.now += 1
+        if event == "expect":
+            follow.expect(value)
+        elif event == "start":
+            follow.start(value)
+            running.append(value)
+        elif running:
+            follow.end(running.pop(0), value)
+            ended.append(value)
+    for state in states:
+        assert state.done + state.running <= state.expected
+        assert state.left is None or state.left >= 0
+    assert all(one.done <= other.done for one, other in pairwise(states))
+    last = follow.state
+    assert (last.done, last.running) == (len(ended), len(running))
+    computed = [seconds for seconds in ended if seconds is not None]
+    assert (last.left is None) == (not computed)
+    if computed:
+        mean = sum(computed) / len(computed)
+        assert last.left == pytest.approx((last.expected - last.done) * mean)
+
+
+def test_serial_tells_of_every_task_and_of_what_it_took(tmp_path: Path) -> None:
+    Serial(Store(tmp_path)).run(squares(1))
+    follow, states, _ = progress()
+    work = Serial(Store(tmp_path), follow)
+    work.expect({"square": 4})
+    work.run(squares(1, 2, 3))
+    assert [(state.done, state.running) for state in states[1:]] == [
+        *((0, 1), (1, 0), (1, 1), (2, 0), (2, 1), (3, 0))
+    ]
+    assert all(state.expected == 4 for state in states)
+    assert follow.spent.eigenproblems == 2 + 3
