@@ -11,7 +11,7 @@ from modefront.solvers.problem import Evaluation, Problem, Wrapped
 
 def doubled(problem: Problem, theta: Floats, derivatives: bool) -> Evaluation:
     at = problem.evaluate(theta, derivatives=derivatives)
-    return replace(at, J=2 * at.J, dJ=2 * at.dJ, H=2 * at.H)
+    return replace(at, J=2 * at.J)
 
 
 def test_a_wrapped_problem_differs_in_its_evaluations_alone() -> None:
@@ -24,5 +24,5 @@ def test_a_wrapped_problem_differs_in_its_evaluations_alone() -> None:
         assert each.upper.tolist() == [2.0, 3.0]
         assert each.start.tolist() == problem.start.tolist()
         assert each.evaluate(theta).J.tolist() == (2 * problem.evaluate(theta).J).tolist()
-        assert not each.evaluate(theta, derivatives=False).dJ.any()
+        assert each.evaluate(theta, derivatives=False).derivatives is None
     assert Wrapped(problem, doubled, ("a", "b")).objectives == ("a", "b")
