@@ -39,8 +39,8 @@ def grouped(configuration: str, *groups: mf.Group) -> mf.UpdatingProblem:
 
 
 def solved(method: str, seed: int) -> xr.Dataset:
-    evaluations = {"population": 40, "evaluations": EVALUATIONS}
-    return mf.solve(problem("c0"), method=method, seed=seed, **evaluations).dataset
+    pareto = mf.Pareto(method, population=40, evaluations=EVALUATIONS)
+    return mf.solve(problem("c0"), pareto=pareto, seed=seed).dataset
 
 
 @cache
