@@ -6,7 +6,11 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
+import scipy.io
+import scipy.sparse
+from faultless import CHAIN, DATA, K0, K1, K2, MATRICES, STUDY, M
 from hypothesis import settings
 from refusals import Check, command
 
@@ -47,3 +51,21 @@ def refused(capsys: pytest.CaptureFixture[str]) -> Check:
         assert not list(study.parent.glob("*-results"))
 
     return refuse
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    """A folder with a study of a chain and of matrices in which nothing is wrong."""
+    (tmp_path / "chain.toml").write_text(STUDY)
+    (tmp_path / "matrices.toml").write_text(STUDY.replace(CHAIN, MATRICES))
+    (tmp_path / "modes.csv").write_text(DATA)
+    scipy.io.mmwrite(tmp_path / "K0.mtx", K0)
+    np.save(tmp_path / "K1.npy", K1)
+    scipy.sparse.save_npz(tmp_path / "K2.npz", scipy.sparse.csr_array(K2))
+    scipy.io.mmwrite(tmp_path / "M.mtx", scipy.sparse.coo_array(M))
+    (tmp_path / "folder.csv").mkdir()
+    scipy.io.savemat(tmp_path / "all.mat", {"K0": K0, "K1": K1, "text": "K1", "rows": 2.0})
+    scipy.io.savemat(tmp_path / "none.mat", {"rows": 2.0})
+    (tmp_path / "bad.mat").write_bytes((tmp_path / "all.mat").read_bytes()[:150])
+    (tmp_path / "folder.mtx").mkdir()
+    return tmp_path

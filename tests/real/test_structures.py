@@ -30,10 +30,10 @@ def test_random_starts_find_the_true_concrete_frame(costs: Costs) -> None:
     assert frame.true is not None
     problem = frequencies_and_shapes(frame, Pairing("order"))
     rng = np.random.default_rng(7)
-    for theta in rng.uniform(frame.lower, frame.upper, (12, 12)):
+    for theta in rng.uniform(frame.lower, frame.upper, (6, 12)):
         found = descend(problem, weighted(np.ones(2)), begin(problem.evaluate(theta)))
         np.testing.assert_allclose(found.at.theta, frame.true, atol=1e-5)
-    assert costs.eigenproblems < 12 * 25
+    assert costs.eigenproblems < 6 * 25
 
 
 def test_modes_of_the_steel_bridge_come_in_another_order_than_in_the_test() -> None:
@@ -123,6 +123,7 @@ def test_the_front_of_the_steel_bridge_over_its_standard_deviations(tmp_path: Pa
     data = run(study, tmp_path / "results").dataset
     assert bool(data["converged"].all())
     theta, bounds = data["theta"].values, data["bounds"].values
+    theta = theta[data["kind"].values != "nominal"]
     at_bounds = (theta <= bounds[:, 0]) | (theta >= bounds[:, 1])
     assert at_bounds.any(axis=1).all()
     named = next(line for line in remarks(data) if line.startswith("parameters at a bound"))
