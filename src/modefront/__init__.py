@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 from modefront._version import __version__ as __version__
 
 if TYPE_CHECKING:
+    from modefront import fem as fem
     from modefront.data.csv import read_csv as read_csv
     from modefront.data.modal import ModalData as ModalData
     from modefront.data.modal import modal_data as modal_data
@@ -22,21 +23,27 @@ if TYPE_CHECKING:
     from modefront.identifiability.combinations import combinations as combinations
     from modefront.identifiability.options import Identifiability as Identifiability
     from modefront.models.chain import chain as chain
+    from modefront.models.files import read_matrix as read_matrix
+    from modefront.models.function import function_model as function_model
     from modefront.models.matrices import matrices as matrices
+    from modefront.models.mesh import mesh_model as mesh_model
     from modefront.models.parameters import Parameter as Parameter
     from modefront.models.reduced.options import Reduction as Reduction
     from modefront.pairing.mac import mac as mac
     from modefront.pairing.match import Pairing as Pairing
     from modefront.predictions import Passage as Passage
     from modefront.predictions import PeakResponse as PeakResponse
+    from modefront.predictions import Prediction as Prediction
     from modefront.predictions import SoilFilter as SoilFilter
     from modefront.residuals.groups import Group as Group
     from modefront.residuals.problem import UpdatingProblem as UpdatingProblem
     from modefront.residuals.problem import updating_problem as updating_problem
+    from modefront.results.compare import compare as compare
     from modefront.results.results import ReportedModel as ReportedModel
     from modefront.results.results import Results as Results
     from modefront.results.results import read_results as read_results
     from modefront.solvers.explore import Search as Search
+    from modefront.study.check import check as check
     from modefront.study.definition import Study as Study
     from modefront.study.file import load as load
     from modefront.study.session import run as run
@@ -54,7 +61,10 @@ _HOMES = {
     "Pareto": "fronts.options",
     "Passage": "predictions",
     "PeakResponse": "predictions",
+    "Prediction": "predictions",
     "Reduction": "models.reduced.options",
+    "ReportedModel": "results.results",
+    "Results": "results.results",
     "Search": "solvers.explore",
     "SoilFilter": "predictions",
     "Study": "study.definition",
@@ -63,19 +73,26 @@ _HOMES = {
     "UpdatingProblem": "residuals.problem",
     "Weighted": "fronts.given",
     "chain": "models.chain",
+    "check": "study.check",
     "combinations": "identifiability.combinations",
+    "compare": "results.compare",
+    "function_model": "models.function",
     "load": "study.file",
     "mac": "pairing.mac",
     "matrices": "models.matrices",
+    "mesh_model": "models.mesh",
     "modal_data": "data.modal",
     "read_csv": "data.csv",
-    "ReportedModel": "results.results",
-    "Results": "results.results",
+    "read_matrix": "models.files",
     "read_results": "results.results",
     "run": "study.session",
     "solve": "study.session",
     "updating_problem": "residuals.problem",
 }
+"""Modules of the public names."""
+
+_PACKAGES = ("fem",)
+"""Public parts that are packages."""
 
 __all__ = [
     "Group",
@@ -88,6 +105,7 @@ __all__ = [
     "Pareto",
     "Passage",
     "PeakResponse",
+    "Prediction",
     "Reduction",
     "ReportedModel",
     "Results",
@@ -99,12 +117,18 @@ __all__ = [
     "UpdatingProblem",
     "Weighted",
     "chain",
+    "check",
     "combinations",
+    "compare",
+    "fem",
+    "function_model",
     "load",
     "mac",
     "matrices",
+    "mesh_model",
     "modal_data",
     "read_csv",
+    "read_matrix",
     "read_results",
     "run",
     "solve",
@@ -113,7 +137,12 @@ __all__ = [
 
 
 def __getattr__(name: str) -> Any:
+    if name in _PACKAGES:
+        return import_module(f"modefront.{name}")
     if name not in _HOMES:
         raise AttributeError(f"module 'modefront' has no attribute '{name}'")
-    module, _, original = _HOMES[name].partition(":")
-    return getattr(import_module(f"modefront.{module}"), original or name)
+    return getattr(import_module(f"modefront.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

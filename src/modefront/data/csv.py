@@ -41,12 +41,23 @@ def is_reserved(name: str, sensors: Collection[str]) -> bool:
     return name in (*KEYS, *QUANTITIES) or (base != name and base in (*QUANTITIES, *sensors))
 
 
-def read_csv(path: Path, sensors: Sequence[str] | None = None) -> ModalData:
-    """Read modal data at the named sensors; by default, at those that the columns name.
+def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalData:
+    """Return the modal data of a CSV file.
 
-    Raises InputError that names every row and column in which something is wrong.
+    Parameters
+    ----------
+    path
+        File with the columns ``set, mode, frequency, damping``, then one a sensor, and standard
+        deviations in columns of the same names with ``_std`` behind them; frequencies in Hz.
+    sensors
+        Names of the sensors, in the order of the shapes; those of the columns unless given.
+
+    Raises
+    ------
+    InputError
+        With every row and column in which something is wrong.
     """
-    file = str(path)
+    path, file = Path(path), str(path)
     header, lines = _table(path)
     if sensors is None:
         sensors = [

@@ -54,10 +54,28 @@ def modal_data(
     frequency_std: Floats | None = None,
     shape_std: Floats | None = None,
 ) -> ModalData:
-    """Return the data of modes 1, 2, ... from arrays.
+    """Return the data of modes 1, 2, ... from arrays, in which NaN is not measured.
 
-    ``frequency`` is (modes,) or (sets, modes) in Hz; ``shape`` (modes, sensors) or
-    (sets, modes, sensors). Raises ValueError where shapes do not fit.
+    Parameters
+    ----------
+    frequency
+        Natural frequencies in Hz, (modes,), or (sets, modes) for several data sets.
+    shape
+        Mode shapes at the sensors, (modes, sensors) or (sets, modes, sensors), in any scale and
+        with any sign.
+    sensors
+        Names of the sensors, those of the model in the same order.
+    sets
+        Names of the data sets; ``"1"``, ``"2"`` and so on unless given.
+    damping
+        Damping ratios, like ``frequency``; not measured unless given.
+    frequency_std, shape_std
+        Standard deviations, like ``frequency`` and ``shape``; not known unless given.
+
+    Raises
+    ------
+    ValueError
+        If the arrays do not fit together.
     """
     f = np.atleast_2d(np.asarray(frequency, float))
     phi = np.asarray(shape, float).reshape(*f.shape, -1)

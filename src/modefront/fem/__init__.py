@@ -21,6 +21,7 @@ from modefront.fem.assembly import StructureMatrices, assemble
 from modefront.fem.dofs import DIRECTIONS, Dofs
 from modefront.fem.errors import FemError
 from modefront.fem.material import Material
+from modefront.fem.mesh import Mesh, read_mesh
 from modefront.fem.section import Section, circle, hollow_rectangle, rectangle, tube
 from modefront.fem.structure import (
     ALL,
@@ -47,6 +48,7 @@ __all__ = [
     "Link",
     "Mass",
     "Material",
+    "Mesh",
     "Parameter",
     "Section",
     "Sensor",
@@ -60,6 +62,7 @@ __all__ = [
     "circle",
     "grids",
     "hollow_rectangle",
+    "read_mesh",
     "rectangle",
     "tube",
 ]

@@ -12,14 +12,17 @@ KUHN = ((0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0
 
 
 def line(start: Floats, end: Floats, count: int) -> tuple[Floats, Ints]:
-    """Nodes (count + 1, 3) and cells (count, 2) of a straight line."""
+    """Return nodes (count + 1, 3) and cells (count, 2) of a straight line."""
     s = np.linspace(0, 1, count + 1)[:, None]
     n = np.arange(count)
     return (1 - s) * np.asarray(start) + s * np.asarray(end), np.stack([n, n + 1], 1)
 
 
 def plate(a: float, b: float, n_x: int, n_y: int) -> tuple[Floats, Ints]:
-    """Nodes and quadrilaterals of the rectangle [0, a] x [0, b] at z = 0; y runs fastest."""
+    """Return nodes (nodes, 3) and quadrilaterals (n_x n_y, 4) of a rectangle at z = 0.
+
+    It is [0, a] x [0, b], with n_x and n_y divisions; y runs fastest.
+    """
     X = _lattice(np.linspace(0, a, n_x + 1), np.linspace(0, b, n_y + 1), np.zeros(1))
     i, j = (g.ravel() for g in np.meshgrid(np.arange(n_x), np.arange(n_y), indexing="ij"))
     q = i * (n_y + 1) + j
@@ -27,12 +30,12 @@ def plate(a: float, b: float, n_x: int, n_y: int) -> tuple[Floats, Ints]:
 
 
 def triangles(quadrilaterals: Ints) -> Ints:
-    """Each quadrilateral cut along a diagonal."""
+    """Return two triangles for each quadrilateral (cells, 4), shape (2 cells, 3)."""
     return np.concatenate([quadrilaterals[:, [0, 1, 2]], quadrilaterals[:, [0, 2, 3]]])
 
 
 def box(size: tuple[float, float, float], counts: tuple[int, int, int]) -> tuple[Floats, Ints]:
-    """Nodes and bricks of a box from the origin; z runs fastest."""
+    """Return nodes (nodes, 3) and bricks (cells, 8) of a box at the origin; z runs fastest."""
     X = _lattice(*(np.linspace(0, s, n + 1) for s, n in zip(size, counts, strict=True)))
     i, j, k = (g.ravel() for g in np.meshgrid(*(np.arange(n) for n in counts), indexing="ij"))
     n_y, n_z = counts[1] + 1, counts[2] + 1
@@ -43,7 +46,10 @@ def box(size: tuple[float, float, float], counts: tuple[int, int, int]) -> tuple
 
 
 def tetrahedra(X: Floats, bricks: Ints) -> tuple[Floats, Ints]:
-    """Each brick as six tetrahedra of 10 nodes; nodes at midpoints of edges are added."""
+    """Return nodes and six tetrahedra of 10 nodes for each brick (cells, 8).
+
+    Nodes at the middle of edges are added to the nodes X (nodes, 3).
+    """
     corners = bricks[:, KUHN].reshape(-1, 4)
     i, j = np.array(TETRAHEDRON_EDGES).T
     ends = np.sort(np.stack([corners[:, i], corners[:, j]], -1), -1)

@@ -47,7 +47,17 @@ class CellBlock:
 
 @dataclass(frozen=True)
 class Mesh:
-    """Nodes (nodes, 3), blocks of cells and named sets of nodes."""
+    """Nodes, blocks of cells and named sets of nodes, as `read_mesh` returns them.
+
+    Attributes
+    ----------
+    nodes
+        Coordinates (nodes, 3).
+    blocks
+        Cells of each type in each group.
+    node_sets
+        Nodes by the name of the set.
+    """
 
     nodes: Floats
     blocks: tuple[CellBlock, ...]

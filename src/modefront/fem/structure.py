@@ -73,7 +73,17 @@ class Shells:
 
 @dataclass(frozen=True)
 class Solids:
-    """Group of bricks (elements, 8) or tetrahedra (elements, 10) in VTK node order."""
+    """Group of bricks or tetrahedra.
+
+    Attributes
+    ----------
+    name
+        Of the group; several blocks may share it.
+    cells
+        Nodes of bricks (elements, 8) or of tetrahedra (elements, 10), in the order of VTK.
+    material
+        Of all elements.
+    """
 
     name: str
     cells: npt.ArrayLike
@@ -82,7 +92,15 @@ class Solids:
 
 @dataclass(frozen=True)
 class Support:
-    """Nodes held in the given directions."""
+    """Nodes held in the given directions.
+
+    Attributes
+    ----------
+    nodes
+        A node, or (nodes,), counted from 0.
+    directions
+        Of x, y, z, rx, ry, rz; all of them unless given.
+    """
 
     nodes: npt.ArrayLike
     directions: Sequence[str] = ALL
@@ -142,7 +160,17 @@ class Mass:
 
 @dataclass(frozen=True)
 class Link:
-    """Rigid link: the slaves follow the master in the given directions."""
+    """Rigid link: the slaves follow the master in the given directions.
+
+    Attributes
+    ----------
+    master
+        Node, counted from 0.
+    slaves
+        A node, or (nodes,).
+    directions
+        Of x, y, z, rx, ry, rz; all of them unless given.
+    """
 
     master: int
     slaves: npt.ArrayLike
@@ -174,7 +202,17 @@ class Sensor:
 
 @dataclass(frozen=True)
 class Parameter:
-    """Factor on a quantity of all members with the given names."""
+    """Parameter of a structure: a factor on a quantity of all members with the given names.
+
+    Attributes
+    ----------
+    name
+        As in the study; `modefront.Parameter` has its bounds.
+    quantity
+        "E", "density" or "thickness" of groups, "spring" stiffness, or "mass".
+    of
+        Names of groups, springs or masses.
+    """
 
     name: str
     quantity: Quantity
@@ -183,7 +221,21 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Structure:
-    """What a model is made of; see the members' classes."""
+    """Nodes, members, supports, links, sensors and parameters of a structure.
+
+    Attributes
+    ----------
+    nodes
+        Coordinates (nodes, 3).
+    groups
+        Beams, shells and solids.
+    supports, springs, masses, links
+        At nodes.
+    sensors
+        In the order of the measured shapes.
+    parameters
+        Factors that are updated.
+    """
 
     nodes: npt.ArrayLike
     groups: Sequence[Beams | Shells | Solids] = ()

@@ -62,11 +62,25 @@ def combinations(
     weights: Floats | None = None,
     scale: Scale | None = None,
 ) -> list[Combination]:
-    """Return orthogonal combinations of the parameters at ``theta``, best determined first.
+    """Return orthogonal combinations of the parameters, the best determined one first.
 
-    ``group`` counts from 0; None takes the residuals of all groups together, each times the root
-    of its weight (groups,), by default 1. ``scale`` is that at ``theta``, if it is known. Raises
-    ModelError where the model has no modes there.
+    Parameters
+    ----------
+    problem
+        The updating problem.
+    theta
+        Parameters (p,) of the model at which the residuals are linearised.
+    group
+        Number of the group whose residuals determine them, from 0; None for all groups together.
+    weights
+        Weights (groups,) of all groups together; 1 unless given.
+    scale
+        Units of the parameters at ``theta``; computed unless given.
+
+    Raises
+    ------
+    ModelError
+        If the model has no modes at ``theta``.
     """
     residuals = problem.residuals(theta)
     w = np.ones(len(residuals)) if weights is None else weights

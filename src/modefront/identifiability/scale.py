@@ -43,9 +43,8 @@ import scipy.sparse
 from modefront._typing import Bools, Floats
 from modefront.linalg.affine import DenseAffine, SparseAffine
 from modefront.linalg.factorisation import Factorisation, SingularMatrixError
-from modefront.models.base import Model
+from modefront.models.local import matrices_at
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.model import ReducedModel
 from modefront.residuals.problem import UpdatingProblem
 
 STEPS = 12
@@ -98,7 +97,7 @@ class Scale:
 
 def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
     """Return the scale of a problem at ``theta``, shape (parameters,)."""
-    span, model = problem.upper - problem.lower, _matrices(problem.model)
+    span, model = problem.upper - problem.lower, matrices_at(problem.model, theta)
     positive = problem.lower > 0
     if model is None:
         return Scale(theta, span, positive)
@@ -113,12 +112,6 @@ def _shift(problem: UpdatingProblem) -> float:
     f = f[np.isfinite(f)]
     elastic = f[f > RIGID * f.max(initial=0.0)]
     return SHIFT * (2 * np.pi * float(elastic.min())) ** 2 if elastic.size else 0.0
-
-
-def _matrices(model: Model) -> MatrixModel | None:
-    """Return the matrices of a model, in full; None where it has none."""
-    full = model.full if isinstance(model, ReducedModel) else model
-    return full if isinstance(full, MatrixModel) else None
 
 
 def _of_stiffness(model: MatrixModel, theta: Floats, shift: float) -> Floats:

@@ -1,15 +1,19 @@
 r"""Matrices that depend on the parameters through products of powers.
 
-.. math:: A(\theta) = \sum_j c_j(\theta) A_j, \qquad c_j(\theta) = \prod_i \theta_i^{e_{ji}}
+.. math::
+    A(\theta) = \sum_j c_j(\theta) A_j, \qquad
+    c_j(\theta) = \prod_i (\theta_i - \theta_{0i})^{e_{ji}}
 
-All terms share one storage (dense, or one sparsity pattern), so that assembly is one
-matrix-vector product with the data of the terms.
+The origin :math:`\theta_0` is 0 but for matrices of which only values and first derivatives at one
+:math:`\theta_0` are known, and are exact there. All terms share one storage (dense, or one sparsity
+pattern), so that assembly is one matrix-vector product with the data of the terms.
 
 ========  =====================================================
 symbol    meaning
 ========  =====================================================
 A_j       terms, N x N, symmetric
 e         exponents, terms x parameters; a row of zeros is constant
+theta_0   origin of the parameters in the coefficients
 c(theta)  coefficients of the terms
 ========  =====================================================
 """
@@ -45,9 +49,16 @@ def first_axis(A: Floats, B: Floats) -> Floats:
 
 @dataclass(frozen=True)
 class Monomials:
-    """Coefficients c_j(theta) = prod_i theta_i ** exponents[j, i]."""
+    """Coefficients c_j(theta) = prod_i (theta_i - origin_i) ** exponents[j, i].
+
+    Attributes
+    ----------
+    exponents : (terms, parameters) e
+    origin : (parameters,) theta_0; None for zeros
+    """
 
     exponents: Floats
+    origin: Floats | None = None
 
     @cached_property
     def _linear(self) -> bool:
@@ -61,6 +72,7 @@ class Monomials:
 
     def values(self, theta: Floats) -> Floats:
         """Return c(theta), shape (terms,)."""
+        theta = theta if self.origin is None else theta - self.origin
         if self._linear:
             linear: Floats = self._constant + self.exponents @ theta
             return linear
@@ -72,6 +84,7 @@ class Monomials:
         e = self.exponents
         if self._linear:
             return e
+        theta = theta if self.origin is None else theta - self.origin
         out = np.zeros(e.shape)
         for i in np.flatnonzero(e.any(axis=0)):
             lowered = e.copy()
@@ -137,6 +150,12 @@ class SparseAffine:
         """Which parameters the matrix depends on, shape (parameters,)."""
         nonzero = np.diff(self.terms.indptr) > 0
         return np.asarray(self.coefficients.exponents[nonzero].any(axis=0))
+
+    def has_pattern_of(self, other: SparseAffine) -> bool:
+        """Return whether both matrices have the same pattern."""
+        return np.array_equal(self.indptr, other.indptr) and np.array_equal(
+            self.indices, other.indices
+        )
 
     def at(self, theta: Floats) -> scipy.sparse.csr_array:
         """Return A(theta), N x N; it holds every entry of the pattern, zero or not."""

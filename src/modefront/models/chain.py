@@ -12,6 +12,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.errors import Fault, refuse, wrong
 from modefront.models.matrices import BASE, MatrixModel, SensorSpec, matrices
 
 BASE_DIRECTION = "x"
@@ -20,27 +21,62 @@ BASE_DIRECTION = "x"
 
 def chain(
     parameters: Sequence[str],
-    masses: Sequence[float],
-    stiffnesses: Sequence[float],
+    masses: Sequence[float] | Floats,
+    stiffnesses: Sequence[float] | Floats,
     *,
-    added_masses: Sequence[float] | None = None,
+    added_masses: Sequence[float] | Floats | None = None,
     stiffness_parameters: Sequence[str | None] | None = None,
     mass_parameters: Sequence[str | None] | None = None,
     sensors: Mapping[str, SensorSpec] | None = None,
     outputs: Mapping[str, SensorSpec] | None = None,
 ) -> MatrixModel:
-    """Return a chain of masses (kg) and springs (N/m), or in any other consistent units.
+    """Return a chain of masses and springs, such as a shear building.
 
-    ``added_masses`` are attached to the masses and are never scaled; ``stiffness_parameters`` and
-    ``mass_parameters`` name the parameter that scales each spring and each mass (None: fixed).
-    Sensors default to every mass, named ``floor1``, ``floor2``, ...; ``outputs`` are other places
-    that predictions may name. The ground can move in the direction of the chain, ``"x"``.
+    Parameters
+    ----------
+    parameters
+        Names of the parameters, in the order of theta.
+    masses
+        N masses, kg or in another consistent unit.
+    stiffnesses
+        N or N + 1 springs, N/m: from the ground to mass 1, from mass 1 to mass 2 and so on; one
+        more joins the last mass to the ground.
+    added_masses
+        N masses that are attached to the others and that no parameter scales; None for none.
+    stiffness_parameters, mass_parameters
+        The parameter that scales each spring and each mass, None for one that is fixed.
+    sensors
+        For the name of each sensor, in the order of the measured shapes, a mass counted from 0, or
+        pairs (mass, weight) that are summed; every mass, ``floor1``, ``floor2`` and so on, unless
+        given.
+    outputs
+        Places besides the sensors that predictions may name, in the form of ``sensors``. The
+        ground can move along the chain, ``"x"``.
+
+    Raises
+    ------
+    InputError
+        For lists of different lengths, parameters without a name in ``parameters``, and sensors
+        that there are not.
     """
     n = len(masses)
     stiffness_scales = stiffness_parameters or [None] * len(stiffnesses)
     mass_scales = mass_parameters or [None] * n
+    added = [0.0] * n if added_masses is None else added_masses
+    if not n:
+        raise wrong("masses", "at least one", "none")
+    refuse(
+        Fault("", place, expected, str(len(values)))
+        for place, expected, values, lengths in (
+            ("stiffnesses", f"{n} or {n + 1}, as there are {n} masses", stiffnesses, (n, n + 1)),
+            ("stiffness_parameters", "one a spring", stiffness_scales, (len(stiffnesses),)),
+            ("mass_parameters", "one a mass", mass_scales, (n,)),
+            ("added_masses", "one a mass", added, (n,)),
+        )
+        if len(values) not in lengths
+    )
     K = {BASE: np.zeros((n, n))}
-    M = {BASE: np.diag(np.array(added_masses if added_masses is not None else np.zeros(n), float))}
+    M = {BASE: np.diag(np.array(added, float))}
     for i, (k, name) in enumerate(zip(stiffnesses, stiffness_scales, strict=True)):
         K.setdefault(name or BASE, np.zeros((n, n)))
         K[name or BASE] += k * _spring(n, i)

@@ -19,12 +19,23 @@ SYMMETRY = 1e-8
 """Greatest difference of A and its transpose, over the greatest entry, that passes for rounding."""
 
 
-def read_matrix(path: Path, name: str | None = None) -> scipy.sparse.coo_array:
-    """Return a real symmetric matrix, exactly symmetrised, with its entries that are not zero.
+def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_array:
+    """Return a real symmetric matrix from a file, exactly symmetrised and without zeros.
 
-    ``name`` says which one of a file of several variables (.mat); None where there is one matrix.
-    Nothing is unpickled. Raises InputError that says what is wrong with the file or the matrix.
+    Parameters
+    ----------
+    path
+        Matrix Market ``.mtx``, SciPy sparse ``.npz``, NumPy ``.npy`` or MATLAB ``.mat``. Nothing is
+        unpickled.
+    name
+        Name of the matrix in a ``.mat`` file; None for the only one.
+
+    Raises
+    ------
+    InputError
+        If the file cannot be read, or the matrix is not square, finite, real and symmetric.
     """
+    path = Path(path)
     kind = {each.suffix: each for each in FORMATS}.get(path.suffix)
     if kind is None:
         suffixes = ", ".join(each.suffix for each in FORMATS)

@@ -12,6 +12,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
+from modefront.errors import Fault, refuse, suggestion, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Factorisation, Symbolic
 from modefront.linalg.pencil import Pencil, pencil
@@ -158,6 +159,18 @@ class MatrixModel:
                 column += weight * row
         return out
 
+    def with_matrices(
+        self, stiffness: DenseAffine | SparseAffine, mass: DenseAffine | SparseAffine
+    ) -> MatrixModel:
+        """Return the model with other matrices; those of the same pattern share its analysis."""
+        out = replace(self, stiffness=stiffness, mass=mass)
+        if isinstance(stiffness, SparseAffine) and isinstance(mass, SparseAffine):
+            known = self.pencil
+            if stiffness.has_pattern_of(known.K) and mass.has_pattern_of(known.M):
+                # The analysis costs more than a factorisation, and is that of the pattern alone.
+                vars(out)["pencil"] = replace(known, K=stiffness, M=mass)
+        return out
+
     @cached_property
     def _dense_selection(self) -> Floats:
         return self.selection.toarray()
@@ -181,23 +194,50 @@ def matrices(
     outputs: Mapping[str, SensorSpec] | None = None,
     base: Mapping[str, SensorSpec] | None = None,
 ) -> MatrixModel:
-    """Return the model with K(theta) = base + sum_j theta_j K_j and M(theta) likewise.
+    """Return the model with K(theta) = K_0 + sum_j theta_j K_j and M(theta) likewise.
 
-    ``stiffness`` and ``mass`` map ``"base"`` and names of parameters to symmetric matrices N x N,
-    dense or sparse; ``floating`` says whether rigid-body modes are wanted. For predictions,
-    ``outputs`` are places besides the sensors, and ``base`` says for each direction in which the
-    base can move which degrees of freedom move with it, and how far. Raises ValueError for a term
-    that is no parameter.
+    Parameters
+    ----------
+    parameters
+        Names of the parameters, in the order of theta.
+    stiffness, mass
+        Symmetric matrices (N, N), dense or scipy-sparse, in consistent units: eigenvalues of K with
+        respect to M are in (rad/s)². K_0 is called ``"base"``, K_j by its parameter; what is not
+        given is zero. The mass matrix may be singular (degrees of freedom without mass).
+    sensors
+        For the name of each sensor, in the order of the measured shapes, a degree of freedom
+        counted from 0, or pairs (degree of freedom, weight) that are summed.
+    floating
+        Whether the structure may have rigid-body modes. `modefront check` reports a singular
+        stiffness matrix where it may not.
+    outputs
+        Places besides the sensors that predictions may name, in the form of ``sensors``.
+    base
+        For the name of each direction in which the base can move, the degrees of freedom that move
+        with it and how far, in the form of ``sensors``.
+
+    Raises
+    ------
+    InputError
+        For a term that is no parameter, matrices of different sizes, and degrees of freedom that
+        there are not.
+
+    Examples
+    --------
+    >>> import modefront as mf
+    >>> model = mf.matrices(["k"], {"k": np.array([[4.0]])}, {"base": np.eye(1)}, {"floor": 0})
+    >>> model.modes(np.array([1.0]), 1).lam.tolist()
+    [4.0]
     """
-    size = next(iter(mass.values())).shape[0]
+    size = _common_size(parameters, {"stiffness": stiffness, "mass": mass})
     model = affine_model(
         parameters,
         tuple(sensors),
         select(sensors, size),
         affine(parameters, stiffness, size),
         affine(parameters, mass, size),
-        outputs=_rows(outputs or {}, size),
-        base=_rows(base or {}, size),
+        outputs=weights_of(outputs or {}, size, "outputs"),
+        base=weights_of(base or {}, size, "base"),
     )
     return replace(model, floating=floating)
 
@@ -238,15 +278,46 @@ def affine(parameters: Sequence[str], terms: Mapping[str, Matrix], size: int) ->
     return sparse_affine(sparse_terms, Monomials(exponents), size)
 
 
-def select(sensors: Mapping[str, SensorSpec], size: int) -> scipy.sparse.csr_array:
-    """Return the weights of the degrees of freedom at each sensor, shape (sensors, N)."""
+def _common_size(parameters: Sequence[str], tables: Mapping[str, Mapping[str, Matrix]]) -> int:
+    """Return N where all terms are N x N and named.
+
+    Raises InputError where they are not.
+    """
+    faults = []
+    shapes = [A.shape for terms in tables.values() for A in terms.values()]
+    size = shapes[0][0] if shapes and shapes[0] else 0
+    for place, terms in tables.items():
+        if not terms:
+            faults.append(Fault("", place, f"'{BASE}' or a parameter", "nothing"))
+        for name, A in terms.items():
+            if name != BASE and name not in parameters:
+                found = suggestion(name, [BASE, *parameters])
+                faults.append(Fault("", place, f"'{BASE}' or a parameter", found))
+            if A.shape != (size, size):
+                expected = f"a matrix {size} x {size}, as the first one"
+                found = " x ".join(map(str, A.shape))
+                faults.append(Fault("", f"{place} '{name}'", expected, found))
+    refuse(faults)
+    return size
+
+
+def select(
+    sensors: Mapping[str, SensorSpec], size: int, place: str = "sensors"
+) -> scipy.sparse.csr_array:
+    """Return the weights of the degrees of freedom at each sensor, shape (sensors, N).
+
+    Raises InputError, which names the ``place``, for degrees of freedom that there are not.
+    """
     selection = scipy.sparse.lil_array((len(sensors), size))
-    for row, spec in enumerate(sensors.values()):
-        for dof, weight in [(spec, 1.0)] if isinstance(spec, int) else spec:
+    for row, (name, spec) in enumerate(sensors.items()):
+        for dof, weight in [(spec, 1.0)] if isinstance(spec, int | np.integer) else spec:
+            if not 0 <= dof < size:
+                expected = f"a degree of freedom from 0 to {size - 1}"
+                raise wrong(f"{place} '{name}'", expected, dof)
             selection[row, dof] += weight
     return selection.tocsr()
 
 
-def _rows(places: Mapping[str, SensorSpec], size: int) -> dict[str, Floats]:
-    """Return the weights (size,) of the degrees of freedom at each place, by name."""
-    return dict(zip(places, select(places, size).toarray(), strict=True))
+def weights_of(places: Mapping[str, SensorSpec], size: int, place: str) -> dict[str, Floats]:
+    """Return the weights (size,) of the degrees of freedom at each of some places, by name."""
+    return dict(zip(places, select(places, size, place).toarray(), strict=True))

@@ -9,6 +9,7 @@ import numpy as np
 
 from modefront import fem
 from modefront._typing import Floats
+from modefront.errors import wrong
 from modefront.linalg.affine import Monomials, SparseAffine
 from modefront.models.matrices import MatrixModel, affine_model
 
@@ -20,16 +21,43 @@ def mesh_model(
     floating: bool = False,
     outputs: Sequence[fem.Sensor] = (),
 ) -> MatrixModel:
-    """Return the model of a structure, with parameters in the order given.
+    """Return the finite-element model of a structure.
 
-    ``parameters`` names all of the structure's, and may name more, on which then nothing
-    depends. ``floating`` allows the structure as a whole to move as a rigid body. ``outputs`` are
-    places besides the sensors that predictions may name. The base can move along x, y and z, as
-    far as anything is free to do so. Raises `modefront.fem.FemError` where the structure is wrong.
+    Parameters
+    ----------
+    structure
+        Nodes, members, supports, links, sensors and the factors that are parameters, in consistent
+        units, see `modefront.fem.Structure`. Sensors are in the order of the measured shapes.
+    parameters
+        Names of the parameters, in the order of theta: those of the structure, and any others, on
+        which nothing depends.
+    floating
+        Whether the structure as a whole may move as a rigid body; otherwise it has to be held.
+    outputs
+        Places besides the sensors that predictions may name.
+
+    Returns
+    -------
+    MatrixModel
+        K(theta) and M(theta) at the free degrees of freedom, sparse from some 200 on. The base can
+        move along ``"x"``, ``"y"`` and ``"z"``, as far as anything is free to do so.
+
+    Raises
+    ------
+    modefront.fem.FemError
+        If the structure is wrong: unknown nodes, distorted elements, parts that can move freely,
+        sensors where nothing moves.
+    InputError
+        For a parameter of the structure that is not among ``parameters``.
     """
     whole = replace(structure, sensors=(*structure.sensors, *outputs))
     built = fem.assemble(whole, floating=floating)
     sensors, others = np.split(np.arange(len(built.sensors)), [len(structure.sensors)])
+    for name in built.parameters:
+        if name not in parameters:
+            raise wrong(
+                "parameters", f"the structure's {', '.join(built.parameters)}", "no " + name
+            )
     columns = [list(parameters).index(name) for name in built.parameters]
 
     def placed(matrix: SparseAffine) -> SparseAffine:

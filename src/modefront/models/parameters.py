@@ -17,9 +17,15 @@ BOUNDS = numbers(
 
 @dataclass(frozen=True)
 class Parameter:
-    """A parameter of a model: its nominal value, where the search starts, and its bounds.
+    """A parameter of a model.
 
     Raises InputError for bounds of no width and for a nominal value beyond them.
+
+    Attributes
+    ----------
+    name : name of the parameter in the model
+    nominal : nominal value, at which the search starts
+    bounds : lower and upper bound
     """
 
     name: Annotated[str, text("the name of the parameter")]

@@ -29,11 +29,20 @@ from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Residual
 
 @dataclass(frozen=True)
 class UpdatingProblem:
-    """Objectives of a model, measured data and groups; see `modefront.solvers.problem.Problem`.
+    """Objectives of a model, measured data and groups; `updating_problem` makes it.
 
-    ``lower``, ``upper`` and ``start`` are the bounds and the nominal values of the parameters.
-    ``pairs`` are the model modes, from 0, that are paired with the measured ones whatever their MAC
-    is; None where they are matched. Raises ValueError for a group whose members the data lack.
+    What the solvers see of it is `modefront.solvers.problem.Problem`. Raises ValueError for a group
+    whose members the data lack.
+
+    Attributes
+    ----------
+    model : gives the modes at the sensors as a function of the parameters
+    data : the measured modes
+    groups : the measured properties of each objective
+    lower, upper, start : (parameters,) bounds and nominal values
+    pairing : how measured modes and model modes are paired
+    pairs : model modes, from 0, that are paired with the measured ones whatever their MAC is; None
+        where they are matched
     """
 
     model: Model
@@ -134,10 +143,29 @@ def updating_problem(
 ) -> UpdatingProblem:
     """Return the problem of updating a model.
 
-    Its parameters are given as such, in any order, or as bounds and nominal values by their names;
-    it is solved in full unless a ``reduction`` says otherwise. Raises ValueError where a parameter
-    is not given once, has bounds of no width or a nominal value beyond them, a group has no
-    members, or data and model differ in their sensors.
+    Parameters
+    ----------
+    model
+        The model: `chain`, `matrices`, `mesh_model` or `function_model` makes one.
+    data
+        Measured modes at the sensors of the model, in the same order.
+    groups
+        The objectives, one a group of measured properties.
+    bounds, nominal
+        Bounds (lower, upper) and nominal value of each parameter, by its name; these or
+        ``parameters``.
+    pairing
+        How measured modes and model modes are paired; by their MAC unless given.
+    parameters
+        The parameters with bounds and nominal values, in any order.
+    reduction
+        Whether a reduced basis takes the place of the model; it is solved in full unless given.
+
+    Raises
+    ------
+    ValueError
+        If a parameter is not given once, has bounds of no width or a nominal value beyond them
+        (`InputError`), if a group has no members, or if data and model differ in their sensors.
     """
     if data.sensors != model.sensors:
         raise ValueError(f"expected data at sensors {model.sensors}, found {data.sensors}")

@@ -15,8 +15,8 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.fronts.point import Kind
+from modefront.models.local import matrices_at
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.model import ReducedModel
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
 from modefront.results.selection import front_points
@@ -93,10 +93,10 @@ class ReportedModel:
                 "the matrices of a model: expected results with their study, "
                 "read_results(folder, study), found results alone"
             )
-        model = self.problem.model
-        model = model.full if isinstance(model, ReducedModel) else model
-        if not isinstance(model, MatrixModel):
-            raise ModelError(f"expected a model with matrices, found {type(model).__name__}")
+        model = matrices_at(self.problem.model, self._values)
+        if model is None:
+            found = type(self.problem.model).__name__
+            raise ModelError(f"expected a model with matrices, found {found}")
         return model
 
 

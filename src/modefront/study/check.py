@@ -64,9 +64,17 @@ class Findings:
 
 
 def check(study: Study) -> Findings:
-    """Return the error of the derivatives, and warnings of what the data do not determine.
+    """Return the error of the derivatives of a study, and warnings before it is run.
 
-    Raises InputError where no parameter changes a group.
+    Parameters
+    ----------
+    study
+        The study; a few models are evaluated, and none is sought.
+
+    Raises
+    ------
+    InputError
+        If no parameter changes a group.
     """
     problem = study.problem
     refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))

@@ -35,9 +35,17 @@ from modefront.uncertainty.options import Uncertainty
 
 
 def load(path: Path | str) -> Study:
-    """Return the study that a file, with all files that it names, describes.
+    """Return the study that a file describes.
 
-    Raises InputError with everything that is wrong.
+    Parameters
+    ----------
+    path
+        The study file, TOML; the files that it names are relative to it.
+
+    Raises
+    ------
+    InputError
+        With everything that is wrong with the file and the files that it names.
     """
     path = Path(path)
     values, content = _parse(path)

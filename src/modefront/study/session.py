@@ -59,12 +59,35 @@ def solve(
     predictions: Sequence[Prediction] = (),
     **front: Unpack[ParetoOptions],
 ) -> Results:
-    """Return all Pareto-optimal models, edges and weighted models of a problem.
+    """Return the Pareto-optimal models, the edges and the weighted models of a problem.
 
-    The arguments are the options of `modefront.Study`. Those of ``pareto`` may be given by
-    themselves, ``method="weights", points=10``, and then take the place of its own. Raises
-    InputError for options that are not possible and where no parameter changes a group,
-    UnfinishedError where no minimum of a group can be found.
+    Parameters
+    ----------
+    problem
+        The updating problem, see `updating_problem`.
+    pareto
+        How the front is found; normal-boundary intersection unless given.
+    weighted
+        Weights for models besides those with equal and optimal weights.
+    seed
+        Seed of all random numbers; the same seed gives the same digits.
+    search
+        How global minima are sought.
+    identifiability
+        Which flat parts of the front and which equivalent models are sought.
+    uncertainty
+        How errors of the data are carried to models, front and predictions.
+    predictions
+        Predictions of all models, such as `PeakResponse` and `Passage`.
+    front
+        Fields of ``pareto`` as keywords, ``method="weights", points=10``, in place of its own.
+
+    Raises
+    ------
+    InputError
+        For options that are not possible, and if no parameter changes a group.
+    UnfinishedError
+        If no minimum of a group is found.
     """
     study = Study(
         problem,
@@ -99,11 +122,27 @@ def run(
 ) -> Results:
     """Write the results of a study to ``results.nc`` in a folder, and return them.
 
-    Tasks that an earlier run of the same inputs has done are not done again. ``fresh`` sets their
-    results aside, as is always done with those of a study that was made in Python. ``refined``
-    takes the place of that of the study. Raises InputError where the folder cannot be written to,
-    the front cannot be refined or no parameter changes a group, and UnfinishedError where the work
-    cannot be done.
+    Parameters
+    ----------
+    study
+        The study. One that was read from a file continues where an interrupted run stopped: tasks
+        that are done are not done again. One that was made in Python starts over.
+    folder
+        Folder for ``results.nc`` and the results of the tasks; made where there is none.
+    fresh
+        Whether a study from a file starts over as well. Earlier results are renamed, never deleted.
+    refined
+        Distance of neighbours on the front, in place of that of the study's `Pareto`.
+    progress
+        Receives reports of tasks that are begun and done; None for no reports.
+
+    Raises
+    ------
+    InputError
+        If the folder cannot be written to, the front cannot be refined, or no parameter changes a
+        group.
+    UnfinishedError
+        If the work cannot be done; what is done is kept.
     """
     from modefront.results.files import FILE, write
     from modefront.results.results import Results

@@ -1,0 +1,55 @@
+"""Pages of the documentation that are made from the program, or run by it."""
+
+from __future__ import annotations
+
+import importlib.util
+import re
+from pathlib import Path
+from types import ModuleType
+
+import pytest
+
+from modefront.fronts.point import Kind
+from modefront.results.schema import ATTRIBUTES, FORMAT, VARIABLES
+
+DOCS = Path(__file__).parents[1] / "docs"
+
+
+def script(name: str) -> ModuleType:
+    """Return a script of the documentation as a module."""
+    spec = importlib.util.spec_from_file_location(name, DOCS / f"{name}.py")
+    assert spec is not None
+    assert spec.loader is not None
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    return module
+
+
+def test_the_page_of_results_is_what_the_schema_makes() -> None:
+    text = (DOCS / "results.md").read_text(encoding="utf-8")
+    assert script("make_results").page(text) == text, "run: python docs/make_results.py"
+    assert f"format <!-- format -->{FORMAT};" in text
+    for name in (*VARIABLES, *ATTRIBUTES):
+        assert f"| `{name}`" in text
+
+
+def test_the_page_of_results_lists_every_kind_of_models() -> None:
+    text = (DOCS / "results.md").read_text(encoding="utf-8")
+    models = text[text.index("## Models") : text.index("<!-- table: Models")]
+    assert re.findall(r"^\| `([a-z-]+)` \|", models, re.MULTILINE) == [
+        kind.value for kind in sorted(Kind, key=lambda kind: kind is Kind.NOMINAL)
+    ]
+
+
+def test_a_page_without_a_table_of_the_schema_is_refused() -> None:
+    with pytest.raises(ValueError, match="expected one table each"):
+        script("make_results").page("<!-- table: Models -->\n<!-- end -->\n")
+
+
+def test_what_is_between_the_comments_is_replaced_and_nothing_else() -> None:
+    make = script("make_results")
+    text = (DOCS / "results.md").read_text(encoding="utf-8")
+    spoiled = text.replace("| `theta` *", "| `theta_0` *")
+    assert spoiled != text
+    assert make.page(spoiled) == text
+    assert make.page("by hand\n" + text) == "by hand\n" + text
