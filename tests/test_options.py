@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import modefront as mf
-from modefront.fronts import options as pareto
+from modefront.fronts.methods import evolutionary
 from modefront.solvers.explore import LIMIT
 from modefront.study.examples import write_example
 from modefront.study.labels import labels_of
@@ -137,7 +137,7 @@ def test_one_group_cannot_be_refined_nor_can_a_simplex_have_too_many_points(stud
 
 @pytest.mark.parametrize("method", ["spea2", "nsga2"])
 def test_a_method_whose_package_is_missing(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(pareto, "available", lambda: False)
+    monkeypatch.setattr(evolutionary, "available", lambda: False)
     with pytest.raises(mf.InputError, match=f"method: expected the package pymoo for '{method}'"):
         mf.Pareto(method)
 
