@@ -297,6 +297,7 @@ def test_fresh_starts_over_and_deletes_nothing(
     assert len(after) == 2 * len(before) + 1
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("file", "old", "new"),
     [

@@ -24,6 +24,7 @@ from modefront.work.costs import Costs
 pytestmark = pytest.mark.skipif(not FOLDER.is_dir(), reason=f"there is no folder {FOLDER}")
 
 
+@pytest.mark.slow
 def test_random_starts_find_the_true_concrete_frame(costs: Costs) -> None:
     """913 of its 2,302 degrees of freedom have no mass; some starts are next to a mechanism."""
     frame = read("concrete_frame_sim")
@@ -114,6 +115,7 @@ source = "none"
     return study
 
 
+@pytest.mark.slow
 def test_the_front_of_the_steel_bridge_over_its_standard_deviations(tmp_path: Path) -> None:
     """474 of its 946 degrees of freedom have no mass; what scales a shape has no deviation."""
     study = load(write_study(read("steel_bridge_exp"), tmp_path))

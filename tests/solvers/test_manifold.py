@@ -63,9 +63,10 @@ def test_a_circle_is_followed_until_it_closes(costs: Costs) -> None:
     assert (np.sign(steps) == np.sign(steps[0])).all(), "in order along the curve"
     around = np.append(np.abs(steps), 2 * np.pi - np.abs(steps).sum())
     # h = 0.05 of ranges of 2: chords of 0.1, but where the two ends meet.
-    assert 0.7 * around.max() == pytest.approx(0.1, rel=0.71)
-    assert 0.7 * around.min() > 0.06
-    assert costs.eigenproblems <= 6 * len(found.models)
+    *chords, last = np.sort(0.7 * around)
+    assert chords == pytest.approx([0.1] * len(chords), rel=0.01)
+    assert 0.1 < last < 0.15
+    assert costs.eigenproblems == pytest.approx(134, rel=0.05), "three a model"
 
 
 def test_a_circle_that_the_bounds_cut_ends_on_them() -> None:
@@ -224,7 +225,7 @@ def test_residuals_that_turn_leave_a_closed_curve(costs: Costs) -> None:
     assert (np.sign(steps) == np.sign(steps[0])).all(), "in order along the curve"
     assert np.abs(steps).sum() > 2 * np.pi - 0.3
     assert 0.7 * np.abs(steps).max() < 0.15
-    assert costs.eigenproblems <= 12 * len(found.models)
+    assert costs.eigenproblems == pytest.approx(349, rel=0.05), "eight a model"
 
 
 def test_a_circle_on_which_residuals_turn_ends_on_the_bounds() -> None:
@@ -285,10 +286,10 @@ def extents_by_slsqp(
 
 
 @pytest.mark.parametrize(
-    ("function", "start", "lower", "upper", "dimension"),
+    ("function", "start", "lower", "upper", "dimension", "evaluations"),
     [
-        (hyperplane, [0.6, 0.5, 0.4, 0.5, 0.3, 0.7], [0.0] * 6, [0.9, 1, 1, 0.8, 1, 1], 4),
-        (bent, [0.6, 0.4, -0.4, 0.2, -0.3], [-1.0, -0.2, -1, -1, -1], [1.0, 1, 1, 1, 0.5], 4),
+        (hyperplane, [0.6, 0.5, 0.4, 0.5, 0.3, 0.7], [0.0] * 6, [0.9, 1, 1, 0.8, 1, 1], 4, 27),
+        (bent, [0.6, 0.4, -0.4, 0.2, -0.3], [-1.0, -0.2, -1, -1, -1], [1.0, 1, 1, 1, 0.5], 4, 324),
     ],
 )
 def test_of_many_dimensions_each_parameter_is_followed_as_far_as_it_goes(
@@ -297,6 +298,7 @@ def test_of_many_dimensions_each_parameter_is_followed_as_far_as_it_goes(
     lower: list[float],
     upper: list[float],
     dimension: int,
+    evaluations: int,
     costs: Costs,
 ) -> None:
     problem = of(function, lower, upper)
@@ -320,7 +322,8 @@ def test_of_many_dimensions_each_parameter_is_followed_as_far_as_it_goes(
     assert np.abs(reached - expected).max() < 0.02 * np.ptp([lower, upper])
     assert (reached[0] >= expected[0] - 1e-6).all()
     assert (reached[1] <= expected[1] + 1e-6).all()
-    assert costs.eigenproblems == found.evaluations + 1 < 400
+    assert costs.eigenproblems == found.evaluations + 1
+    assert found.evaluations == pytest.approx(evaluations, rel=0.05)
 
 
 def test_a_manifold_is_followed_once_from_wherever_its_minima_lie(costs: Costs) -> None:
@@ -337,7 +340,8 @@ def test_a_manifold_is_followed_once_from_wherever_its_minima_lie(costs: Costs) 
     before = costs.eigenproblems
     (found,) = equally_good(problem, ONE, minima)
     assert (found.dimension, found.minima) == (4, 20)
-    assert found.evaluations == costs.eigenproblems - before < 300
+    assert found.evaluations == costs.eigenproblems - before
+    assert found.evaluations == pytest.approx(97, rel=0.05)
 
 
 def test_another_programme_shares_a_manifold_that_is_as_good_for_it() -> None:

@@ -9,7 +9,7 @@ import xarray as xr
 from modefront.errors import InputError
 from modefront.results.compare import compare
 from modefront.results.files import FILE
-from modefront.results.schema import ATTRIBUTES
+from modefront.results.schema import ATTRIBUTES, FORMAT
 
 
 def results(
@@ -33,6 +33,7 @@ def results(
         "label": (("point",), [*(f"nbi-{i + 1}" for i in range(count)), "optimal-weights"]),
         "kind": (("point",), [*["front"] * count, "optimal-weights"]),
         "pareto": (("point",), [*pareto, True]),
+        "dominated_among_front": (("point",), [*(not x for x in pareto), False]),
         "error": (point, e),
         "objective": (point, e**2),
         "weight": (point, e),
@@ -50,7 +51,7 @@ def results(
         "minimum_theta": (("minimum", "parameter"), t[:1]),
         "minimum_objective": (("minimum", "group"), e[:1]),
         "failure_probability": (("point", "failure"), np.column_stack([t[:, 0], 2 * t[:, 0]])),
-        "finding": (("finding_number",), np.array([], dtype=str)),
+        "finding": (("finding",), np.array([], dtype=str)),
     }
     if piece:
         variables["piece"] = (("point",), [*piece, piece[-1]])
@@ -63,7 +64,10 @@ def results(
             "failure": ["drift: 0.1", "drift: 0.2"],
         },
     )
-    data.attrs |= dict.fromkeys(ATTRIBUTES, 0) | {"method": "nbi", "study": "a", "version": "1"}
+    data.attrs |= {
+        name: "" if attribute.values == "text" else 0 for name, attribute in ATTRIBUTES.items()
+    }
+    data.attrs |= {"format": FORMAT, "method": "nbi", "study": "a", "version": "1"}
     return data
 
 

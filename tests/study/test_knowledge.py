@@ -96,6 +96,7 @@ def test_exact_fits_of_the_frequencies_are_points() -> None:
         assert at == pytest.approx(problem_of(std=0.002).data.frequency[0], rel=1e-7)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("source", ["std", "sets"])
 def test_linearised_scatter_is_that_of_synthetic_data(source: str) -> None:
     """100 drawings tell a standard deviation to 7 %; where it is smooth, the linear one agrees.
@@ -115,6 +116,7 @@ def test_linearised_scatter_is_that_of_synthetic_data(source: str) -> None:
     assert at(data, "theta_std", "nbi-2") == pytest.approx(at(data, "theta_std", "edge-shapes"))
 
 
+@pytest.mark.slow
 def test_points_of_three_groups_scatter_as_synthetic_data_do() -> None:
     """30 drawings tell a standard deviation to 13 %: within the simplex, on its border, beyond."""
     base = problem_of(std=0.002)
@@ -246,6 +248,7 @@ shape = [2]
 """
 
 
+@pytest.mark.slow
 def test_the_scatter_of_three_groups_runs_on_with_the_same_digits(tmp_path: Path) -> None:
     write_data(tmp_path)
     head, tail = STUDY.split('[[group]]\nname = "shapes"\nshape = "all"\n')

@@ -39,8 +39,10 @@ def grouped(configuration: str, *groups: mf.Group) -> mf.UpdatingProblem:
 
 
 def solved(method: str, seed: int) -> xr.Dataset:
-    pareto = mf.Pareto(method, population=40, evaluations=EVALUATIONS)
-    return mf.solve(problem("c0"), pareto=pareto, seed=seed).dataset
+    found = mf.solve(
+        problem("c0"), method=method, population=40, evaluations=EVALUATIONS, seed=seed
+    )
+    return found.dataset
 
 
 @cache
@@ -65,7 +67,8 @@ def test_all_methods_give_the_same_variables_and_count_alike(method: str) -> Non
     assert data["label"].values[:n].tolist() == [f"{method}-{i + 1}" for i in range(n)]
     evolutionary = method in ("spea2", "nsga2")
     spent = data.attrs["front_evaluations"]
-    assert spent == EVALUATIONS if evolutionary else spent <= 6 * 20
+    few = {"nbi": 93, "weights": 64}
+    assert spent == (EVALUATIONS if evolutionary else pytest.approx(few[method], rel=0.05))
     converged = data["converged"].values[:n]
     assert not converged.any() if evolutionary else converged.all()
     assert bool(data["converged"].values[n:].all())
@@ -75,6 +78,7 @@ def test_all_methods_give_the_same_variables_and_count_alike(method: str) -> Non
         assert data.attrs[name] > 0
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["spea2", "nsga2"])
 def test_evolution_repeats_with_the_same_seed_and_stays_behind(method: str) -> None:
     again = solved(method, seed=1)
@@ -96,8 +100,10 @@ def test_the_weight_sweep_misses_the_branch_next_to_the_frequency_edge() -> None
     assert nondominated(found).all(), "what it finds is optimal"
 
 
-@pytest.mark.parametrize("size", [0.06, 0.02])
-def test_refining_closes_the_gaps_of_each_piece_up_to_its_end(size: float) -> None:
+@pytest.mark.parametrize(("size", "expected"), [(0.06, (17, 85)), (0.02, (111, 369))])
+def test_refining_closes_the_gaps_of_each_piece_up_to_its_end(
+    size: float, expected: tuple[int, int]
+) -> None:
     coarse = results("nbi")
     fine = mf.solve(problem("c0"), refined=size, seed=1).dataset
     assert fine.attrs["largest_gap"] <= size < coarse.attrs["largest_gap"]
@@ -111,7 +117,7 @@ def test_refining_closes_the_gaps_of_each_piece_up_to_its_end(size: float) -> No
     # The cost is that of the new points, as few a point as of the first ones.
     new = len(J) - len(front(coarse))
     extra = fine.attrs["model_evaluations"] - coarse.attrs["model_evaluations"]
-    assert extra <= 6 * new + 40
+    assert (new, extra) == (expected[0], pytest.approx(expected[1], rel=0.05))
 
 
 def test_refining_finds_a_gap_that_few_points_step_over() -> None:
@@ -127,6 +133,7 @@ def test_refining_finds_a_gap_that_few_points_step_over() -> None:
     assert (fine["piece"].values[front_points(fine)][behind] == 0).all()
 
 
+@pytest.mark.slow
 def test_edges_of_three_groups_are_pareto_optimal() -> None:
     """Next to an edge, what is lost in its own objective is of the second order."""
     groups = (
@@ -150,9 +157,10 @@ def test_three_groups_are_covered_within_and_beyond_the_simplex() -> None:
     assert bool(data["converged"].all())
     weights = data["stationary_weight"].values[front_points(data)]
     assert (weights > -1e-6).all(), "every point is a local Pareto optimum"
-    assert data.attrs["front_evaluations"] <= 25 * len(J)
+    assert data.attrs["front_evaluations"] == pytest.approx(373, rel=0.05)
 
 
+@pytest.mark.slow
 def test_each_property_a_group() -> None:
     groups = [mf.Group(f"f{r}", frequency=[r]) for r in (1, 2, 3)]
     groups += [mf.Group(f"s{r}", shape=[r]) for r in (1, 2, 3)]
@@ -199,6 +207,7 @@ def test_scatter_next_to_the_end_of_a_piece_is_doubtful() -> None:
     assert any(f"scatter is doubtful at {named}: a piece" in x for x in data["finding"].values)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("method", ["spea2", "nsga2"])
 def test_an_interrupted_evolution_goes_on_where_it_stopped(
     method: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch

@@ -179,6 +179,7 @@ def assert_same(one: xr.Dataset, other: xr.Dataset) -> None:
     assert one.attrs == other.attrs
 
 
+@pytest.mark.slow
 def test_an_interrupted_run_predicts_the_same_digits(
     quick: tuple[Path, xr.Dataset], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -190,6 +191,7 @@ def test_an_interrupted_run_predicts_the_same_digits(
     assert_same(run(tmp_path, FRF + QUICK), quick[1])
 
 
+@pytest.mark.slow
 def test_other_predictions_do_no_old_work_again(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -324,6 +326,7 @@ def command(*arguments: object) -> int:
     return left.value.code
 
 
+@pytest.mark.slow
 def test_show_prints_and_draws_predictions(
     quick: tuple[Path, xr.Dataset],
     tmp_path: Path,

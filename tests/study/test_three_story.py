@@ -117,17 +117,18 @@ def test_the_optimal_weights_of_M0_are_regular_and_confirmed() -> None:
 
 
 def test_the_front_costs_few_eigenproblems() -> None:
-    for model in ("M0", "M1"):
+    for model, front, total in (("M0", 93, 847), ("M1", 83, 580)):
         data = results(model)
-        assert data.attrs["nbi_evaluations"] / 20 <= 5
-        assert data.attrs["model_evaluations"] <= 1500
+        assert data.attrs["nbi_evaluations"] == pytest.approx(front, rel=0.05)
+        assert data.attrs["model_evaluations"] == pytest.approx(total, rel=0.05)
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("model", ["M0", "M1"])
 def test_global_optima_do_not_depend_on_the_seed(model: str) -> None:
     expected = results(model)
     labels = ["edge-frequencies", "edge-shapes", "equal-weights", "optimal-weights"]
-    for seed in range(11, 15):
+    for seed in (11, 12):
         found = mf.solve(problem_of(model), points=2, seed=seed).dataset
         for label in labels:
             one, other = (

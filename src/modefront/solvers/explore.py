@@ -20,7 +20,7 @@ from __future__ import annotations
 
 import warnings
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import Annotated, Protocol, cast
 
 import numpy as np
@@ -159,79 +159,93 @@ def explore(
     others until the rule is met. Solutions that did not converge are among them where they are
     better than all minima. Empty where the problem is defined at no start.
     """
-    options = options or Options()
-    minima: list[Solution] = []
-    unfinished: list[Solution] = []
-    arrived: list[Solution] = []
-
-    def follow(start: Solution) -> bool:
-        """Go to the minima below a start; say whether one is new.
-
-        Where the way down leaves the smooth piece of the objectives on which it began, the minimum
-        of that piece is another start.
-        """
-        near = replace(options, step=NEAR / 4)
-        if start.at.derivatives is None:
-            start = begin(problem.evaluate(start.at.theta))
-        rough = local.solve(problem, start, near)
-        new = finish(rough)
-        if rough.at.branch != start.at.branch:
-            on_branch = local.solve(problem.on_branch(start.at.branch), start, near)
-            new |= finish(local.solve(problem, begin(problem.evaluate(on_branch.at.theta)), near))
-        return new
-
-    def finish(rough: Solution) -> bool:
-        """Go on to the minimum near a half-finished search; say whether it is a new one."""
-        if not distinct(minima, rough, problem, NEAR):
-            arrived.append(rough)
-            return False
-        found = local.solve(problem, rough, options)
-        if not found.at.feasible or not np.isfinite(local.value(found.at.J)):
-            return False
-        if not found.converged:
-            unfinished.append(found)
-            return False
-        arrived.append(found)
-        new = distinct(minima, found, problem)
-        if new:
-            minima.append(found)
-        return new
-
-    def agreed() -> bool:
-        """Return whether enough searches have arrived at the best minimum."""
-        best = min(minima, key=lambda one: local.value(one.at.J), default=None)
-        close = [one for one in arrived if best and not distinct([best], one, problem, NEAR)]
-        return len(close) >= AGREED
-
+    work = _Exploration(problem, local, options or Options())
     for start in [*starts, begin(problem.evaluate(problem.start))]:
-        follow(start)
+        work.follow(start)
     fewest = 0 if starts else search.starts
     rugged, hopeless = True, False
     for tried, theta in enumerate(latin_hypercube(problem, rng, search.limit)):
-        N, w = tried + len(starts), _different(minima, local)
-        if tried >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2):
-            rugged = False
-            break
-        if tried >= ENOUGH and agreed():
+        N, w = tried + len(starts), _different(work.minima, local)
+        few_left = tried >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2)
+        if few_left or (tried >= ENOUGH and work.agreed()):
             rugged = False
             break
         hopeless = tried >= ESTIMATED and w * (N - 1) > MANY * search.limit * (N - w - 2)
         if hopeless:
             break
-        follow(begin(problem.evaluate(theta)))
+        work.follow(begin(problem.evaluate(theta)))
     for _ in range(search.evolutions if rugged else 0):
-        before = _least(minima, local)
+        before = work.least
         theta = evolve(problem, local, rng, search)
-        new = follow(begin(problem.evaluate(theta)))
-        if not new or (hopeless and _least(minima, local) >= before):
+        new = work.follow(begin(problem.evaluate(theta)))
+        if not new or (hopeless and work.least >= before):
             break
-    least = _least(minima, local)
-    ahead = [one for one in unfinished if local.value(one.at.J) < least]
-    return sorted([*minima, *ahead], key=lambda one: local.value(one.at.J))
+    ahead = [x for x in work.unfinished if local.value(x.at.J) < work.least]
+    return sorted([*work.minima, *ahead], key=lambda x: local.value(x.at.J))
 
 
-def _least(minima: Sequence[Solution], local: LocalSearch) -> float:
-    return min((local.value(one.at.J) for one in minima), default=np.inf)
+@dataclass
+class _Exploration:
+    """Searches for minima from many starts.
+
+    Attributes
+    ----------
+    minima : distinct minima so far
+    unfinished : ends of searches that did not converge
+    arrived : ends of searches at any minimum, half-finished ones included
+    """
+
+    problem: Problem
+    local: LocalSearch
+    options: Options
+    minima: list[Solution] = field(default_factory=list)
+    unfinished: list[Solution] = field(default_factory=list)
+    arrived: list[Solution] = field(default_factory=list)
+
+    @property
+    def least(self) -> float:
+        """Least value of all minima; infinite without any."""
+        return min((self.local.value(x.at.J) for x in self.minima), default=np.inf)
+
+    def follow(self, start: Solution) -> bool:
+        """Go to the minima below a start; return whether one is new.
+
+        Where the way down leaves the smooth piece of the objectives on which it began, the minimum
+        of that piece is another start.
+        """
+        problem, near = self.problem, replace(self.options, step=NEAR / 4)
+        if start.at.derivatives is None:
+            start = begin(problem.evaluate(start.at.theta))
+        rough = self.local.solve(problem, start, near)
+        new = self.finish(rough)
+        if rough.at.branch != start.at.branch:
+            on_branch = self.local.solve(problem.on_branch(start.at.branch), start, near)
+            again = begin(problem.evaluate(on_branch.at.theta))
+            new |= self.finish(self.local.solve(problem, again, near))
+        return new
+
+    def finish(self, rough: Solution) -> bool:
+        """Go on to the minimum near a half-finished search; return whether it is a new one."""
+        if not distinct(self.minima, rough, self.problem, NEAR):
+            self.arrived.append(rough)
+            return False
+        end = self.local.solve(self.problem, rough, self.options)
+        if not end.at.feasible or not np.isfinite(self.local.value(end.at.J)):
+            return False
+        if not end.converged:
+            self.unfinished.append(end)
+            return False
+        self.arrived.append(end)
+        new = distinct(self.minima, end, self.problem)
+        if new:
+            self.minima.append(end)
+        return new
+
+    def agreed(self) -> bool:
+        """Return whether enough searches have arrived at the best minimum."""
+        best = min(self.minima, key=lambda x: self.local.value(x.at.J), default=None)
+        close = [x for x in self.arrived if best and not distinct([best], x, self.problem, NEAR)]
+        return len(close) >= AGREED
 
 
 def _different(minima: Sequence[Solution], local: LocalSearch) -> int:
