@@ -53,3 +53,22 @@ def test_what_is_between_the_comments_is_replaced_and_nothing_else() -> None:
     assert spoiled != text
     assert make.page(spoiled) == text
     assert make.page("by hand\n" + text) == "by hand\n" + text
+
+
+def blocks(page: Path) -> list[tuple[str, str]]:
+    """Return the code blocks of a page with the output that is printed behind each."""
+    text = page.read_text(encoding="utf-8")
+    pattern = r"```python\n(.*?)```\n(?:\n```text\n(.*?)```\n)?"
+    return re.findall(pattern, text, re.DOTALL)
+
+
+def test_the_page_of_python_runs_and_prints_what_it_says(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    found = blocks(DOCS / "python.md")
+    assert len(found) >= 12
+    names: dict[str, object] = {}
+    for code, output in found:
+        exec(compile(code, "docs/python.md", "exec"), names)
+        assert capsys.readouterr().out == output, code

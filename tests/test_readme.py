@@ -14,4 +14,4 @@ def test_the_python_example_runs(capsys: pytest.CaptureFixture[str]) -> None:
     names: dict[str, object] = {}
     exec(code, names)
     printed = capsys.readouterr().out
-    assert "8.857" in printed
+    assert "0.8857" in printed

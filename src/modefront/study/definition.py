@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import hashlib
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
@@ -68,11 +68,11 @@ class Study:
     name: Annotated[str, text("a text")] = "study"
     seed: Annotated[int, whole(0, 2**63 - 1)] = 0
     pareto: Pareto = field(default_factory=Pareto)
-    weighted: tuple[Weighted, ...] = ()
+    weighted: Sequence[Weighted] = ()
     search: Search = field(default_factory=Search)
     identifiability: Identifiability = field(default_factory=Identifiability)
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
-    predictions: tuple[Prediction, ...] = ()
+    predictions: Sequence[Prediction] = ()
     origin: Origin | None = None
 
     def __post_init__(self) -> None:
