@@ -121,35 +121,9 @@ def remarks(data: xr.Dataset, where: str | None = None) -> list[str]:
         )
     if is_optimal:
         out.append(_iteration(data))
-    for i in range(0, data.sizes.get("end", 0), 2):
-        end, start = data["end_objective"].values[i : i + 2]
-        if np.isfinite([end, start]).all():
-            out.append(
-                f"the front has a gap: branch {i // 2 + 1} ends at J = {_vector(end)}, "
-                f"branch {i // 2 + 2} starts at J = {_vector(start)}"
-            )
-    if "piece" in data:
-        on_front = np.isin(np.arange(data.sizes["point"]), front_points(data))
-        dominated = ~data["pareto"].values & ~data["dominated_among_front"].values
-        inside = on_front & dominated
-        if inside.any():
-            out.append(
-                f"{', '.join(data['label'].values[inside])}: dominated by a known model that is "
-                "no point of the front, such as the start of a branch"
-            )
-    wanted = data.attrs.get("refined", np.inf)
-    if data.attrs["largest_gap"] > wanted:
-        out.append(
-            f"neighbours on the front are up to {data.attrs['largest_gap']:.3g} apart, though "
-            f"{wanted:g} was asked for: no point was found between them"
-        )
-    negative = (data["stationary_weight"].values < -1e-6).any(axis=1)
-    negative &= ~np.isnan(data["stationary_weight"].values).any(axis=1)
-    if negative.any():
-        out.append(
-            f"{', '.join(data['label'].values[negative])}: no local Pareto optimum "
-            "(a weight is negative)"
-        )
+    out += _branches(data)
+    out += _spacing(data)
+    out += _not_optimal(data)
     out += certificate_remarks(data)
     out += _poor_pairs(data)
     bounded = _at_bounds(data)
@@ -166,6 +140,51 @@ def remarks(data: xr.Dataset, where: str | None = None) -> list[str]:
         )
     findings = data["finding"].values.tolist()
     return [*out, *(findings if where is None else digest(findings, where))]
+
+
+def _branches(data: xr.Dataset) -> list[str]:
+    """Return where the branches of the front end, and which points lie between them."""
+    out = []
+    for i in range(0, data.sizes.get("end", 0), 2):
+        end, start = data["end_objective"].values[i : i + 2]
+        if np.isfinite([end, start]).all():
+            out.append(
+                f"the front has a gap: branch {i // 2 + 1} ends at J = {_vector(end)}, "
+                f"branch {i // 2 + 2} starts at J = {_vector(start)}"
+            )
+    if "piece" in data:
+        on_front = np.isin(np.arange(data.sizes["point"]), front_points(data))
+        dominated = ~data["pareto"].values & ~data["dominated_among_front"].values
+        inside = on_front & dominated
+        if inside.any():
+            out.append(
+                f"{', '.join(data['label'].values[inside])}: dominated by a known model that is "
+                "no point of the front, such as the start of a branch"
+            )
+    return out
+
+
+def _spacing(data: xr.Dataset) -> list[str]:
+    """Return whether neighbours on the front are farther apart than requested."""
+    requested = data.attrs.get("refined", np.inf)
+    if data.attrs["largest_gap"] <= requested or np.isnan(data.attrs["largest_gap"]):
+        return []
+    return [
+        f"neighbours on the front are up to {data.attrs['largest_gap']:.3g} apart, though "
+        f"{requested:g} was asked for: no point was found between them"
+    ]
+
+
+def _not_optimal(data: xr.Dataset) -> list[str]:
+    """Return which points are no local Pareto optima."""
+    negative = (data["stationary_weight"].values < -1e-6).any(axis=1)
+    negative &= ~np.isnan(data["stationary_weight"].values).any(axis=1)
+    if not negative.any():
+        return []
+    return [
+        f"{', '.join(data['label'].values[negative])}: no local Pareto optimum "
+        "(a weight is negative)"
+    ]
 
 
 def in_numbers(data: xr.Dataset) -> str:
@@ -228,59 +247,16 @@ def _at_bounds(data: xr.Dataset) -> str:
 def print_results(data: xr.Dataset, *, every: bool = False) -> None:
     """Print all results as tables, with the ten first findings or ``every`` one."""
     screen = console()
-    names = [safe(name) for name in data["parameter"].values]
-    groups = [safe(name) for name in data["group"].values]
     attrs = data.attrs
     _print(
         screen, f"{attrs.get('study', '')}  (modefront {attrs['version']}, seed {attrs['seed']})"
     )
-    points = table(
-        "models: * Pareto optimal among these, ! not converged",
-        ["model", "", *(f"J {g}" for g in groups), *(f"error {g}" for g in groups), *names],
-    )
-    for i, label in enumerate(data["label"].values):
-        marks = "*" * int(data["pareto"].values[i]) + "!" * int(not data["converged"].values[i])
-        points.add_row(
-            safe(label),
-            marks,
-            *(f"{x:.5g}" for x in data["objective"].values[i]),
-            *(f"{x:.4g}" for x in data["error"].values[i]),
-            *(f"{x:.5g}" for x in data["theta"].values[i]),
-        )
-    screen.print(points)
-    modes = data["mode"].values
-    modal = table(
-        "frequencies in Hz and MAC",
-        ["model", *(f"f{r}" for r in modes), *(f"error f{r} %" for r in modes)]
-        + [f"MAC {r}" for r in modes],
-    )
-    measured = data["measured_frequency"].values
-    modal.add_row("measured", *map(_number, measured), *[""] * (2 * modes.size))
-    for i, label in enumerate(data["label"].values):
-        f = data["frequency"].values[i]
-        modal.add_row(
-            safe(label),
-            *map(_number, f),
-            *(f"{x:+.2f}" for x in 100 * (f / measured - 1)),
-            *(f"{x:.4f}" for x in data["mac"].values[i]),
-        )
-    screen.print(modal)
+    screen.print(_models(data))
+    screen.print(_modes(data))
     if "certified" in data:
         screen.print(_errors(data))
-    weights = table("weights", ["model", *groups])
-    for i in np.flatnonzero(~np.isnan(data["weight"].values).all(axis=1)).tolist():
-        weights.add_row(
-            safe(data["label"].values[i]), *(f"{x:.5g}" for x in data["weight"].values[i])
-        )
-    screen.print(weights)
-    minima = table("minima", ["of", *(f"J {g}" for g in groups), *names])
-    for i, of in enumerate(data["minimum_of"].values):
-        minima.add_row(
-            safe(of),
-            *(f"{x:.5g}" for x in data["minimum_objective"].values[i]),
-            *(f"{x:.5g}" for x in data["minimum_theta"].values[i]),
-        )
-    screen.print(minima)
+    screen.print(_weights(data))
+    screen.print(_minima(data))
     print_knowledge(screen, data)
     for title, columns, rows, notes in prediction_tables(data):
         _print(screen, title)
@@ -299,6 +275,72 @@ def print_results(data: xr.Dataset, *, every: bool = False) -> None:
         f"{attrs['model_evaluations']} eigenproblems in all, "
         f"{attrs['front_evaluations']} of them for the points of the front",
     )
+
+
+def _models(data: xr.Dataset) -> Table:
+    """Return objectives, errors and parameters of all models."""
+    names = [safe(name) for name in data["parameter"].values]
+    groups = [safe(name) for name in data["group"].values]
+    points = table(
+        "models: * Pareto optimal among these, ! not converged",
+        ["model", "", *(f"J {g}" for g in groups), *(f"error {g}" for g in groups), *names],
+    )
+    for i, label in enumerate(data["label"].values):
+        marks = "*" * int(data["pareto"].values[i]) + "!" * int(not data["converged"].values[i])
+        points.add_row(
+            safe(label),
+            marks,
+            *(f"{x:.5g}" for x in data["objective"].values[i]),
+            *(f"{x:.4g}" for x in data["error"].values[i]),
+            *(f"{x:.5g}" for x in data["theta"].values[i]),
+        )
+    return points
+
+
+def _modes(data: xr.Dataset) -> Table:
+    """Return frequencies and MAC values of all models."""
+    modes = data["mode"].values
+    modal = table(
+        "frequencies in Hz and MAC",
+        ["model", *(f"f{r}" for r in modes), *(f"error f{r} %" for r in modes)]
+        + [f"MAC {r}" for r in modes],
+    )
+    measured = data["measured_frequency"].values
+    modal.add_row("measured", *map(_number, measured), *[""] * (2 * modes.size))
+    for i, label in enumerate(data["label"].values):
+        f = data["frequency"].values[i]
+        modal.add_row(
+            safe(label),
+            *map(_number, f),
+            *(f"{x:+.2f}" for x in 100 * (f / measured - 1)),
+            *(f"{x:.4f}" for x in data["mac"].values[i]),
+        )
+    return modal
+
+
+def _weights(data: xr.Dataset) -> Table:
+    """Return the weights of all models that have some."""
+    groups = [safe(name) for name in data["group"].values]
+    weights = table("weights", ["model", *groups])
+    for i in np.flatnonzero(~np.isnan(data["weight"].values).all(axis=1)).tolist():
+        weights.add_row(
+            safe(data["label"].values[i]), *(f"{x:.5g}" for x in data["weight"].values[i])
+        )
+    return weights
+
+
+def _minima(data: xr.Dataset) -> Table:
+    """Return the minima of each group and of the optimally weighted residuals."""
+    names = [safe(name) for name in data["parameter"].values]
+    groups = [safe(name) for name in data["group"].values]
+    minima = table("minima", ["of", *(f"J {g}" for g in groups), *names])
+    for i, of in enumerate(data["minimum_of"].values):
+        minima.add_row(
+            safe(of),
+            *(f"{x:.5g}" for x in data["minimum_objective"].values[i]),
+            *(f"{x:.5g}" for x in data["minimum_theta"].values[i]),
+        )
+    return minima
 
 
 def _errors(data: xr.Dataset) -> Table:
