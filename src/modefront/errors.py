@@ -1,4 +1,4 @@
-"""What can be wrong with an input, and how it is said."""
+"""Faults of inputs, and the errors that carry them."""
 
 from __future__ import annotations
 

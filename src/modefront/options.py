@@ -27,7 +27,7 @@ from modefront.toml import is_number as is_number
 
 @dataclass(frozen=True)
 class Requirement:
-    """What a value has to be.
+    """Requirement on the value of an option.
 
     Attributes
     ----------

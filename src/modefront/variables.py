@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import Literal
 
 Values = Literal["number", "count", "truth", "text"]
-"""What a variable holds."""
+"""Types of values of a variable."""
 
 
 @dataclass(frozen=True)

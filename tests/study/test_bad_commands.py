@@ -33,7 +33,10 @@ COMMANDS = [
     ),
     (["init", "{}/new", "--example", ""], "--example: expected one of hammer-test, three-"),
     (["init", "{}/chain.toml"], "chain.toml: folder: expected a folder that can be written to"),
-    (["init", "{}"], "modes.csv: file: expected no such file: nothing is overwritten, found one"),
+    (
+        ["init", "{}"],
+        "modes.csv: file: expected a new file, as nothing is overwritten, found an existing one",
+    ),
     (["run", "{}/chain.toml", "-o", "{}/modes.csv"], "modes.csv: folder: expected a folder that"),
     (["run", "{}/chain.toml", "-o", "{}/modes.csv/x"], "x: folder: expected a folder that can be"),
 ]

@@ -24,7 +24,7 @@ def test_each_example_is_written_whole_and_is_sound(name: str, tmp_path: Path) -
 
 def test_nothing_is_overwritten(tmp_path: Path) -> None:
     (tmp_path / "modes.csv").write_text("mine")
-    with pytest.raises(InputError, match="nothing is overwritten, found one"):
+    with pytest.raises(InputError, match="nothing is overwritten, found an existing one"):
         write_example("three-story-c0", tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["modes.csv"]
     assert (tmp_path / "modes.csv").read_text() == "mine"

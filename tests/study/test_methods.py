@@ -204,7 +204,9 @@ def test_scatter_next_to_the_end_of_a_piece_is_doubtful() -> None:
     assert [text for text, there in zip(doubts, near, strict=True) if there] == ["ends"] * 2
     assert set(doubts) == {"", "ends"}
     named = ", ".join(data["label"].values[near])
-    assert any(f"scatter is doubtful at {named}: a piece" in x for x in data["finding"].values)
+    assert any(
+        f"scatter may not be valid at {named}: a branch" in x for x in data["finding"].values
+    )
 
 
 @pytest.mark.slow

@@ -63,7 +63,7 @@ class Search(Protocol):
 @record
 @dataclass(frozen=True)
 class SnapshotTaken:
-    """What a snapshot has brought.
+    """Outcome of a snapshot.
 
     Attributes
     ----------
@@ -162,7 +162,7 @@ def certificate_values(
 
 @dataclass(frozen=True)
 class _Taken:
-    """What taking snapshots has led to.
+    """Outcome of all snapshots.
 
     Attributes
     ----------
@@ -181,7 +181,7 @@ class _Taken:
 def _take_some(
     model: ReducedModel,
     name: str,
-    at: Snap,
+    request: Snap,
     front: Front | None,
     work: Executor,
 ) -> _Taken:
@@ -189,35 +189,35 @@ def _take_some(
     error, added = np.inf, False
     for count in range(AHEAD):
         before = model.snapshots
-        (taken,) = work.run([Task(("snapshot", name, count + 1), _take, (model, at))])
+        (taken,) = work.run([Task(("snapshot", name, count + 1), _take, (model, request))])
         if taken is None:
             return _Taken(error, added, enough=False, full=False)
-        model.resume([*before, replace(at, modes=taken.modes)])
+        model.resume([*before, replace(request, modes=taken.modes)])
         error = taken.error if count == 0 else error
-        if taken.error < at.enough:
+        if taken.error < request.enough:
             return _Taken(error, added, enough=True, full=False)
         added = added or taken.added > 0
         full = taken.columns >= model.capacity
         if front is None or full or error > POOR or not taken.added:
             return _Taken(error, added, enough=False, full=full)
-        at = _farthest(model, front)
+        request = _farthest(model, front)
     return _Taken(error, added, enough=False, full=False)
 
 
-def _take(model: ReducedModel, at: Snap) -> SnapshotTaken | None:
+def _take(model: ReducedModel, request: Snap) -> SnapshotTaken | None:
     """Take a snapshot, which changes the basis of the model.
 
     Where none of its models can be solved, the basis learns that, so that it is not searched there
     again; None is returned where that fails too.
     """
-    before, modes = model.columns if model.snapshots else 0, at.modes
+    before, modes = model.columns if model.snapshots else 0, request.modes
     try:
-        error = model.take(at)
+        error = model.take(request)
     except ModelError:
         if not before:
             return None
         try:
-            modes, error = 0, model.take(replace(at, modes=0))
+            modes, error = 0, model.take(replace(request, modes=0))
         except ModelError:
             return None
     columns = model.columns
@@ -226,14 +226,14 @@ def _take(model: ReducedModel, at: Snap) -> SnapshotTaken | None:
 
 def _snap(solutions: Sequence[Solution], enough: float) -> Snap:
     """Return the snapshot of some models, of modes up to the last one that is paired."""
-    modes = max(int(_paired(one).max()) + 1 for one in solutions)
-    return Snap(np.array([one.at.theta for one in solutions]), modes, enough)
+    modes = max(int(_paired(solution).max()) + 1 for solution in solutions)
+    return Snap(np.array([solution.at.theta for solution in solutions]), modes, enough)
 
 
 def _farthest(model: ReducedModel, front: Front) -> Snap:
     """Return the snapshot of the models that are the farthest from all others."""
-    distinct = list({_key(one): one for one in _of_the_front(front)}.values())
-    ranked = sorted(distinct, key=lambda one: model.distance(one.at.theta), reverse=True)
+    distinct = list({_key(solution): solution for solution in _of_the_front(front)}.values())
+    ranked = sorted(distinct, key=lambda solution: model.distance(solution.at.theta), reverse=True)
     return _snap(ranked[:MODELS], AIM * model.tolerance)
 
 
@@ -253,11 +253,13 @@ def _with_errors(
     """Return the front with the estimated errors of all its models."""
     task = Task(("certificate", "front"), _certified, (problem, model, _distinct(front)))
     (kept,) = work.run([task])
-    errors = {_key(one): {name: one.at.quantities[name] for name in ERRORS} for one in kept}
+    errors = {
+        _key(solution): {name: solution.at.quantities[name] for name in ERRORS} for solution in kept
+    }
 
-    def known(one: Solution) -> Solution:
-        quantities = {**one.at.quantities, **errors[_key(one)]}
-        return replace(one, at=replace(one.at, quantities=quantities))
+    def known(solution: Solution) -> Solution:
+        quantities = {**solution.at.quantities, **errors[_key(solution)]}
+        return replace(solution, at=replace(solution.at, quantities=quantities))
 
     return replace(
         front,
@@ -285,21 +287,23 @@ def _certified(
     They are infinite where the full model may pair other modes: where one of those that are looked
     at is missing, or where better known modes would be paired differently.
     """
-    paired = [np.unique(_paired(one), return_inverse=True) for one in solutions]
-    asked = [(one.at.theta, wanted) for one, (wanted, _) in zip(solutions, paired, strict=True)]
-    certificates = model.certify(asked, _lowest(problem))
-    found = []
-    for one, certificate, (_, place) in zip(solutions, certificates, paired, strict=True):
+    paired = [np.unique(_paired(solution), return_inverse=True) for solution in solutions]
+    requests = [
+        (solution.at.theta, modes) for solution, (modes, _) in zip(solutions, paired, strict=True)
+    ]
+    certificates = model.certify(requests, _lowest(problem))
+    out = []
+    for solution, certificate, (_, place) in zip(solutions, certificates, paired, strict=True):
         errors = (certificate.eigenvalue[place], certificate.shape[place])
-        if certificate.known and not _pairs_alike(problem, model, one, certificate):
+        if certificate.known and not _pairs_alike(problem, model, solution, certificate):
             errors = (np.full(place.shape, np.inf), np.ones(place.shape))
-        quantities = {**one.at.quantities, **dict(zip(ERRORS, errors, strict=True))}
-        found.append(replace(one, at=replace(one.at, quantities=quantities)))
-    return found
+        quantities = {**solution.at.quantities, **dict(zip(ERRORS, errors, strict=True))}
+        out.append(replace(solution, at=replace(solution.at, quantities=quantities)))
+    return out
 
 
 def _pairs_alike(
-    problem: UpdatingProblem, model: ReducedModel, one: Solution, certificate: Certificate
+    problem: UpdatingProblem, model: ReducedModel, solution: Solution, certificate: Certificate
 ) -> bool:
     """Return whether modes that are known better are paired as those of the basis are.
 
@@ -307,7 +311,7 @@ def _pairs_alike(
     is known for sure.
     """
     count = _lowest(problem)
-    modes = model.modes(one.at.theta, count, derivatives=False)
+    modes = model.modes(solution.at.theta, count, derivatives=False)
     lam, phi = certificate.lam[:count], certificate.phi[:, :count]
     phi = phi * np.where((phi * modes.phi).sum(axis=0) < 0, -1.0, 1.0)
     beyond = 1 / FOUND - 1
@@ -318,7 +322,7 @@ def _pairs_alike(
     for values, shapes in candidates:
         frequency = np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi)
         pairs = match(problem.pairing, problem.data, frequency, shapes)
-        if not np.array_equal(pairs.index, _paired(one)):
+        if not np.array_equal(pairs.index, _paired(solution)):
             return False
     return True
 
@@ -337,18 +341,18 @@ def _of_the_front(front: Front) -> Iterator[Solution]:
 def _rivals(problem: UpdatingProblem, front: Front) -> Iterator[Solution]:
     """Return the minima that might be the best ones, for all that is known of their errors."""
 
-    def roots(one: Solution) -> tuple[Floats, Floats]:
-        margin = problem.margins(*(one.at.quantities[name] for name in ERRORS))
-        return np.maximum(np.sqrt(one.at.J) - margin, 0.0), np.sqrt(one.at.J) + margin
+    def roots(solution: Solution) -> tuple[Floats, Floats]:
+        margin = problem.margins(*(solution.at.quantities[name] for name in ERRORS))
+        return np.maximum(np.sqrt(solution.at.J) - margin, 0.0), np.sqrt(solution.at.J) + margin
 
     for i, edge in enumerate(front.edges):
         most = roots(edge.best)[1][i]
-        yield from (one for one in edge.minima if roots(one)[0][i] <= most)
+        yield from (solution for solution in edge.minima if roots(solution)[0][i] <= most)
     programme = LogSum(problem.properties)
-    for one in front.optimal[1:]:
-        least, most = roots(one)[0], roots(front.optimal[0])[1]
+    for solution in front.optimal[1:]:
+        least, most = roots(solution)[0], roots(front.optimal[0])[1]
         if not least.all() or programme.value(least**2) <= programme.value(most**2):
-            yield one
+            yield solution
 
 
 def _reported(front: Front) -> Iterator[Solution]:
@@ -360,18 +364,18 @@ def _reported(front: Front) -> Iterator[Solution]:
 
 def _distinct(front: Front) -> list[Solution]:
     """Return the reported models, each once."""
-    return list({_key(one): one for one in _reported(front)}.values())
+    return list({_key(solution): solution for solution in _reported(front)}.values())
 
 
-def _paired(one: Solution) -> Ints:
+def _paired(solution: Solution) -> Ints:
     """Return the modes that are paired with measured ones, counted from 0."""
-    return one.at.quantities["paired_mode"].astype(int) - 1
+    return solution.at.quantities["paired_mode"].astype(int) - 1
 
 
-def _key(one: Solution) -> bytes:
-    return one.at.theta.tobytes()
+def _key(solution: Solution) -> bytes:
+    return solution.at.theta.tobytes()
 
 
-def _error(one: Solution) -> float:
+def _error(solution: Solution) -> float:
     """Return the greatest error of an eigenvalue."""
-    return float(one.at.quantities[ERRORS[0]].max())
+    return float(solution.at.quantities[ERRORS[0]].max())

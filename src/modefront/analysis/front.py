@@ -1,4 +1,4 @@
-"""What follows from a front: its identifiable part, equivalent models, uncertainty."""
+"""Front analysis: the identifiable part of a front, equivalent models, uncertainty."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ from modefront.work.task import Executor, Task, seed_sequence
 
 @dataclass(frozen=True)
 class FrontAnalysis:
-    """What follows from a front.
+    """Identifiable part, equivalent models and uncertainty of a front.
 
     Attributes
     ----------
@@ -68,7 +68,7 @@ class FrontAnalysis:
 
 @dataclass(frozen=True)
 class AnalysisOptions:
-    """What is analysed, and how.
+    """Options of the front analysis.
 
     Attributes
     ----------
@@ -289,9 +289,9 @@ def _between(
 
     None where the ranges of its simplex follow from no programme.
     """
-    own = [text for text, end in known if text in ends and same(solution, end)]
-    if own:
-        return Role("end", (own[0],))
+    labels = [text for text, end in known if text in ends and same(solution, end)]
+    if labels:
+        return Role("end", (labels[0],))
     return None if worst is None else Role("boundary", ends, worst)
 
 

@@ -22,23 +22,26 @@ def with_neighbours(
     sizes: Floats,
 ) -> dict[str, Scatter]:
     """Return the scatter of points with the doubts that their neighbours raise."""
-    ends = [one.at.J for gap in front.gaps for one in gap.ends]
+    ends = [end.at.J for gap in front.gaps for end in gap.ends]
     out: dict[str, Scatter] = {}
     for point in in_order(points):
-        label, at = point.label, point.solution.at
+        label, evaluation = point.label, point.solution.at
         if label not in scatter:
             continue
         if point.role.kind == "end":
             out[label] = out[point.role.ends[0]]
             continue
-        own = scatter[label]
-        found = [
-            (Doubt.ENDS, point.role.kind == "boundary" and near_an_end(at.J, own.J, ends)),
-            (Doubt.RIVAL, _has_rival(front, point, own, a, sizes)),
+        linearised = scatter[label]
+        reasons = [
+            (
+                Doubt.ENDS,
+                point.role.kind == "boundary" and near_an_end(evaluation.J, linearised.J, ends),
+            ),
+            (Doubt.RIVAL, _has_rival(front, point, linearised, a, sizes)),
             (Doubt.UNSOLVED, not point.solution.converged),
         ]
-        doubts = (*own.doubts, *(doubt for doubt, there in found if there))
-        out[label] = replace(own, doubts=doubts)
+        doubts = (*linearised.doubts, *(doubt for doubt, holds in reasons if holds))
+        out[label] = replace(linearised, doubts=doubts)
     return out
 
 

@@ -1,4 +1,4 @@
-"""What is said of reduced bases: errors, and what the solutions have cost."""
+"""Output on reduced bases: errors of the models, and costs of the solutions."""
 
 from __future__ import annotations
 

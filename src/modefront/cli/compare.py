@@ -13,47 +13,50 @@ from modefront.cli.tables import console, safe, table
 from modefront.results.compare import Comparison, Spread
 
 
-def print_comparison(found: Comparison) -> None:
+def print_comparison(comparison: Comparison) -> None:
     """Print a comparison as tables."""
     screen = console()
     fronts = table(
         "fronts in the space of errors",
         ["results", "study", "method", "points", "length", "ratio"]
-        + [f"extent {safe(group)}" for group in found.groups]
+        + [f"extent {safe(group)}" for group in comparison.groups]
         + ["nearest", "optimal weights", "eigenproblems"],
     )
-    for one in found.fronts:
+    for summary in comparison.fronts:
         fronts.add_row(
-            safe(one.name),
-            safe(one.study),
-            one.method,
-            str(one.points),
-            *map(_number, (one.length, one.length_ratio, *one.extent)),
-            *map(_number, (one.distance, one.optimal_distance)),
-            str(one.eigenproblems),
+            safe(summary.name),
+            safe(summary.study),
+            summary.method,
+            str(summary.points),
+            *map(_number, (summary.length, summary.length_ratio, *summary.extent)),
+            *map(_number, (summary.distance, summary.optimal_distance)),
+            str(summary.eigenproblems),
         )
     screen.print(fronts)
     apart = table(
         "distance in the common parameters, over their bounds in the first",
         ["results", "and", "common", "least", "greatest", "optimal weights"],
     )
-    for pair in found.pairs:
+    for pair in comparison.pairs:
         numbers = map(_number, (pair.least, pair.greatest, pair.optimal))
         common = safe(", ".join(pair.common)) or "none"
         apart.add_row(safe(pair.first), safe(pair.second), common, *numbers)
     screen.print(apart)
     for title, rows in (
-        ("parameters over the front: least to greatest", [x.parameters for x in found.fronts]),
-        ("predictions over the front: least to greatest", [x.predictions for x in found.fronts]),
+        ("parameters over the front: least to greatest", [x.parameters for x in comparison.fronts]),
+        (
+            "predictions over the front: least to greatest",
+            [x.predictions for x in comparison.fronts],
+        ),
     ):
         names = list(dict.fromkeys(spread.name for row in rows for spread in row))
-        spreads = table(title, ["", *(safe(one.name) for one in found.fronts)])
+        spreads = table(title, ["", *(safe(summary.name) for summary in comparison.fronts)])
         for name in names:
             spreads.add_row(safe(name), *(_range(row, name) for row in rows))
         screen.print(spreads)
 
 
-def comparison_as_json(found: Comparison) -> str:
+def comparison_as_json(comparison: Comparison) -> str:
     """Return a comparison as JSON; what is not a number becomes null."""
 
     def plain(value: Any) -> Any:
@@ -63,11 +66,11 @@ def comparison_as_json(found: Comparison) -> str:
             return [plain(item) for item in value]
         return as_plain(value)
 
-    return json.dumps(plain(asdict(found)), indent=1)
+    return json.dumps(plain(asdict(comparison)), indent=1)
 
 
 def _range(row: tuple[Spread, ...], name: str) -> str:
-    chosen = [one for one in row if one.name == name]
+    chosen = [spread for spread in row if spread.name == name]
     return f"{chosen[0].least:.5g} to {chosen[0].greatest:.5g}" if chosen else ""
 
 

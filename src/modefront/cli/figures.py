@@ -1,4 +1,4 @@
-"""What is predicted along the front, as pictures: front points on the abscissa.
+"""Figures of predictions along the front: points of the front on the abscissa.
 
 One picture a quantity (frequencies and MAC have a panel a mode, peaks a panel a response, failure
 probabilities a line a level), after figures 5 to 7 of Christodoulou et al. (2008,
@@ -70,14 +70,14 @@ def write_figures(data: xr.Dataset, folder: Path) -> list[Path]:
         ),
         "mac": _Picture("", modes, "MAC", data["mac"].values, std=_posterior_std(data, "mac")),
     }
-    for name, at in _parts(data, "frf").items():
-        titles = [str(data["frf"].values[i]).removeprefix(f"{name}: ") for i in at]
-        title = f"{name} ({data['frf_load'].values[at[0]]})"
-        quantity = f"peak {data['frf_quantity'].values[at[0]]}"
+    for name, positions in _parts(data, "frf").items():
+        titles = [str(data["frf"].values[i]).removeprefix(f"{name}: ") for i in positions]
+        title = f"{name} ({data['frf_load'].values[positions[0]]})"
+        quantity = f"peak {data['frf_quantity'].values[positions[0]]}"
         std = _posterior_std(data, "frf_peak")
         pictures[f"frf {name}"] = _Picture(
-            *(title, titles, quantity, data["frf_peak"].values[:, at]),
-            std=None if std is None else std[at],
+            *(title, titles, quantity, data["frf_peak"].values[:, positions]),
+            std=None if std is None else std[positions],
         )
     written: list[Path] = []
     try:
@@ -87,9 +87,9 @@ def write_figures(data: xr.Dataset, folder: Path) -> list[Path]:
                 figure = Figure(figsize=picture.size, layout="constrained")
                 along.panels(figure, picture)
                 _save(figure, folder, name, written)
-            for name, at in _parts(data, "failure").items():
+            for name, positions in _parts(data, "failure").items():
                 figure = Figure(figsize=(4.8, 3.3), layout="constrained")
-                along.levels(figure, data, name, at)
+                along.levels(figure, data, name, positions)
                 _save(figure, folder, f"failure {name}", written)
     except OSError as error:
         expected = "a folder that can be written to"
@@ -164,10 +164,10 @@ class _Along:
             figure.suptitle(_plain(picture.title))
         self.finish(figure, list(grid), picture.columns)
 
-    def levels(self, figure: Figure, data: xr.Dataset, name: str, at: Sequence[int]) -> None:
+    def levels(self, figure: Figure, data: xr.Dataset, name: str, positions: Sequence[int]) -> None:
         """Draw the probabilities of failure of one prediction, a line a level."""
         axes = figure.subplots()
-        for k, i in enumerate(at):
+        for k, i in enumerate(positions):
             values = data["failure_probability"].values[:, i]
             label = f"b = {data['failure_level'].values[i]:g}"
             positive = np.where(values > 0, values, np.nan)
@@ -178,7 +178,7 @@ class _Along:
                 self.bar(axes, positive * factors, COLOURS[k % len(COLOURS)])
         axes.set_yscale("log")
         axes.set_ylabel("probability of failure")
-        title = f"{name} ({data['failure_load'].values[at[0]]})"
+        title = f"{name} ({data['failure_load'].values[positions[0]]})"
         axes.set_title(_plain(title), loc="left")
         self.finish(figure, [axes], 1)
 
@@ -236,8 +236,8 @@ def _parts(data: xr.Dataset, dimension: str) -> dict[str, list[int]]:
 
 def _posterior_std(data: xr.Dataset, name: str) -> Floats | None:
     """Return standard deviations of the posterior; None where there are none."""
-    found = data.get(f"posterior_{name}_std")
-    return None if found is None else np.asarray(found.values)
+    std = data.get(f"posterior_{name}_std")
+    return None if std is None else np.asarray(std.values)
 
 
 def _plain(text: object) -> str:

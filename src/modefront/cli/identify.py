@@ -38,25 +38,29 @@ def run_identify(
     band = band or test.band
     _check_band(path, test, band)
     screen, errors = console(), _error_console()
-    found = []
+    identified = []
     for part in test.sets:
         for text in part.assembled.warnings:
             errors.print(f"warning: {safe(text)}")
-        found.append(identify(part.assembled.data, band, test.modes))
-    names = [one.name for one in test.sets]
-    combined = combine(names, found) if any(one.modes for one in found) else None
-    written = [] if combined is None else _write(output, test, combined, found)
+        identified.append(identify(part.assembled.data, band, test.modes))
+    names = [identification.name for identification in test.sets]
+    combined = (
+        combine(names, identified)
+        if any(identification.modes for identification in identified)
+        else None
+    )
+    written = [] if combined is None else _write(output, test, combined, identified)
     if figures is not None:
         from modefront.cli.identify_figures import write_figures
 
-        written += write_figures(names, found, figures)
-    for name, one in zip(names, found, strict=True):
-        _print_rejected(screen, name, one)
-        for text in findings(one):
+        written += write_figures(names, identified, figures)
+    for name, identification in zip(names, identified, strict=True):
+        _print_rejected(screen, name, identification)
+        for text in findings(identification):
             errors.print(f"warning: set {safe(repr(name))}: {safe(text)}")
     if combined is not None:
-        _print_modes(screen, combined, found)
-        _print_residuals(screen, names, found)
+        _print_modes(screen, combined, identified)
+        _print_residuals(screen, names, identified)
     for file in written:
         screen.print(f"wrote {safe(file)}")
     if combined is None:
@@ -70,55 +74,56 @@ def _error_console() -> Any:
 
 
 def _check_band(path: Path, test: ModalTest, band: tuple[float, float] | None) -> None:
-    for one in test.sets:
-        f = one.assembled.data.frequency
+    for data_set in test.sets:
+        f = data_set.assembled.data.frequency
         low, high = band or (0.0, np.inf)
         count = int(np.count_nonzero((f >= low) & (f <= high) & (f > 0)))
         if count < LEAST_LINES:
-            expected = f"at least {LEAST_LINES} lines of set {one.name!r} within it"
+            expected = f"at least {LEAST_LINES} lines of set {data_set.name!r} within it"
             reach = f"{count}: the files reach from {f[0]:g} to {f[-1]:g} Hz"
             raise InputError(Fault(str(path), "band", expected, reach))
-        inside = one.assembled.data.within(low, high)
+        inside = data_set.assembled.data.within(low, high)
         if not np.any(np.abs(np.nan_to_num(inside.H)) > 0):
             expected = "functions that are not zero"
-            raise InputError(Fault(str(path), "band", expected, f"zeros in set {one.name!r}"))
+            raise InputError(Fault(str(path), "band", expected, f"zeros in set {data_set.name!r}"))
 
 
-def findings(one: Identification) -> list[str]:
+def findings(identification: Identification) -> list[str]:
     """Return what a user should know of one identification."""
     out = []
-    said = one.residuals
-    if not one.converged:
+    residuals = identification.residuals
+    if not identification.converged:
         out.append("the maximum of the likelihood was not reached within its tolerance")
-    if said.chi2 > 1.5:
+    if residuals.chi2 > 1.5:
         out.append(
-            f"the model leaves {said.chi2:.1f} times the variance that the data have: standard "
-            "deviations are widened accordingly; nonlinearity, leakage or missing modes"
+            f"the model leaves {residuals.chi2:.1f} times the variance that the data have: "
+            "standard deviations are widened accordingly; nonlinearity, leakage or missing modes"
         )
-    if said.widening > 1.5:
+    if residuals.widening > 1.5:
         out.append(
-            f"neighbouring lines are correlated: standard deviations are {said.widening**0.5:.1f} "
-            "times those of independent lines; windows, zero padding or drifting modes"
+            "neighbouring lines are correlated: standard deviations are "
+            f"{residuals.widening**0.5:.1f} times those of independent lines; windows, zero "
+            "padding or drifting modes"
         )
-    for (j, i), share in np.ndenumerate(said.share):
+    for (j, i), share in np.ndenumerate(residuals.share):
         if share > POOR_FIT:
-            pair = f"{one.data.references[j]} to {one.data.responses[i]}"
+            pair = f"{identification.data.references[j]} to {identification.data.responses[i]}"
             out.append(f"the function from {pair} is poorly fitted: residual {share:.0%}")
     return out
 
 
-def _print_modes(screen: Any, modes: CombinedModes, found: Sequence[Identification]) -> None:
+def _print_modes(screen: Any, modes: CombinedModes, identified: Sequence[Identification]) -> None:
     out = table(
         "modes",
         ["set", "mode", "frequency Hz", "std", "damping %", "std", "MPC", "real shape loses"],
     )
     for k, name in enumerate(modes.sets):
         for r in range(modes.frequency.shape[1]):
-            at = modes.index[k][r]
-            if at < 0:
+            number = modes.index[k][r]
+            if number < 0:
                 out.add_row(safe(name), str(r + 1), "not found", *[""] * 5)
                 continue
-            shape = found[k].modes[at].shape
+            shape = identified[k].modes[number].shape
             out.add_row(
                 safe(name),
                 str(r + 1),
@@ -138,37 +143,47 @@ def _print_modes(screen: Any, modes: CombinedModes, found: Sequence[Identificati
             )
 
 
-def _print_rejected(screen: Any, name: str, one: Identification) -> None:
-    if one.rejected:
+def _print_rejected(screen: Any, name: str, identification: Identification) -> None:
+    if identification.rejected:
         out = table(f"rejected, set {safe(name)}", ["why", "frequency Hz", "damping %"])
-        for pole in one.rejected:
+        for pole in identification.rejected:
             out.add_row(safe(pole.reason), f"{pole.frequency:.6g}", f"{100 * pole.damping:.3g}")
         screen.print(out)
 
 
-def _print_residuals(screen: Any, names: Sequence[str], found: Sequence[Identification]) -> None:
+def _print_residuals(
+    screen: Any, names: Sequence[str], identified: Sequence[Identification]
+) -> None:
     out = table(
         "residual of each function over its norm", ["set", "reference", "response", "residual"]
     )
-    for name, one in zip(names, found, strict=True):
-        for (j, i), share in np.ndenumerate(one.residuals.share):
+    for name, identification in zip(names, identified, strict=True):
+        for (j, i), share in np.ndenumerate(identification.residuals.share):
             shown = f"{share:.2%}" if np.isfinite(share) else "not measured"
             out.add_row(
-                safe(name), safe(one.data.references[j]), safe(one.data.responses[i]), shown
+                safe(name),
+                safe(identification.data.references[j]),
+                safe(identification.data.responses[i]),
+                shown,
             )
     screen.print(out)
 
 
 def _write(
-    output: Path, test: ModalTest, modes: CombinedModes, found: Sequence[Identification]
+    output: Path, test: ModalTest, modes: CombinedModes, identified: Sequence[Identification]
 ) -> list[Path]:
     """Write modal data, and beside it all else that was identified; return the paths."""
     report = output.with_name(output.stem + "-identification.json")
-    _write_text(report, json.dumps(as_report(test, modes.sets, found), indent=1, allow_nan=False))
+    _write_text(
+        report, json.dumps(as_report(test, modes.sets, identified), indent=1, allow_nan=False)
+    )
     if output.suffix.lower() == ".uff":
         listed = [
-            [(one.pole, _complex_at(one.shape.complex_shape, k, modes.sensors)) for one in k.modes]
-            for k in found
+            [
+                (mode.pole, _complex_at(mode.shape.complex_shape, k, modes.sensors))
+                for mode in k.modes
+            ]
+            for k in identified
         ]
         write_uff55(output, modes.sets, listed, modes.sensors)
         return [output, report]
@@ -186,8 +201,8 @@ def _write(
     return [output, report]
 
 
-def _complex_at(phi: Any, one: Identification, sensors: Sequence[str]) -> Any:
-    where = dict(zip(one.data.responses, phi, strict=True))
+def _complex_at(phi: Any, identification: Identification, sensors: Sequence[str]) -> Any:
+    where = dict(zip(identification.data.responses, phi, strict=True))
     return np.array([where.get(name, 0j) for name in sensors])
 
 
@@ -206,24 +221,29 @@ def _number(value: float) -> float | None:
 
 
 def as_report(
-    test: ModalTest, names: Sequence[str], found: Sequence[Identification]
+    test: ModalTest, names: Sequence[str], identified: Sequence[Identification]
 ) -> dict[str, Any]:
     """Return all that was identified as plain data; complex numbers are [real, imaginary]."""
     sets = []
-    for name, one in zip(names, found, strict=True):
+    for name, identification in zip(names, identified, strict=True):
         sets.append(
             {
                 "name": name,
-                "references": list(one.data.references),
-                "responses": list(one.data.responses),
-                "band": [float(one.data.frequency[0]), float(one.data.frequency[-1])],
-                "chi2": one.residuals.chi2,
-                "correlation_factor": one.residuals.widening,
-                "force_noise": [float(np.sqrt(b)) for b in one.residuals.force],
-                "residual": [[_number(float(x)) for x in row] for row in one.residuals.share],
-                "residual_terms": one.residual_terms,
-                "evaluations": one.evaluations,
-                "converged": one.converged,
+                "references": list(identification.data.references),
+                "responses": list(identification.data.responses),
+                "band": [
+                    float(identification.data.frequency[0]),
+                    float(identification.data.frequency[-1]),
+                ],
+                "chi2": identification.residuals.chi2,
+                "correlation_factor": identification.residuals.widening,
+                "force_noise": [float(np.sqrt(b)) for b in identification.residuals.force],
+                "residual": [
+                    [_number(float(x)) for x in row] for row in identification.residuals.share
+                ],
+                "residual_terms": identification.residual_terms,
+                "evaluations": identification.evaluations,
+                "converged": identification.converged,
                 "modes": [
                     {
                         "frequency": mode.frequency,
@@ -237,11 +257,11 @@ def as_report(
                         "loss": mode.shape.loss,
                         "participation": _pairs(mode.participation),
                     }
-                    for mode in one.modes
+                    for mode in identification.modes
                 ],
                 "rejected": [
                     {"frequency": x.frequency, "damping": x.damping, "reason": x.reason}
-                    for x in one.rejected
+                    for x in identification.rejected
                 ],
             }
         )

@@ -21,7 +21,7 @@ MOST_PANELS = 12
 
 
 def write_figures(
-    names: Sequence[str], found: Sequence[Identification], folder: Path
+    names: Sequence[str], identified: Sequence[Identification], folder: Path
 ) -> list[Path]:
     """Write three pictures for every data set and return their paths.
 
@@ -41,11 +41,11 @@ def write_figures(
     written = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
-        for name, one in zip(names, found, strict=True):
+        for name, identification in zip(names, identified, strict=True):
             for kind, draw in kinds:
                 with rc_context(dict(STYLE)):
                     figure = Figure(layout="constrained")
-                    draw(figure, one)
+                    draw(figure, identification)
                     safe_name = re.sub(r"[^\w-]+", "-", name)
                     path = folder / f"{safe_name}-{kind}.svg"
                     figure.savefig(path, metadata={"Date": None})
@@ -56,64 +56,74 @@ def write_figures(
     return written
 
 
-def _stabilisation(figure: Figure, one: Identification) -> None:
+def _stabilisation(figure: Figure, identification: Identification) -> None:
     """Draw the poles of all orders over the mean of the functions."""
     figure.set_size_inches(7.0, 4.0)
     axes = figure.add_subplot()
-    diagram = one.diagram
+    diagram = identification.diagram
     for stable, marker, colour, label in (
         (False, "x", "0.7", "unstable"),
         (True, "o", COLOURS[0], "stable"),
     ):
-        at = diagram.stable == stable
+        chosen = diagram.stable == stable
         axes.plot(
-            *(diagram.frequency[at], diagram.order[at], marker),
+            *(diagram.frequency[chosen], diagram.order[chosen], marker),
             color=colour,
             markersize=3,
             label=label,
         )
-    for k, mode in enumerate(one.modes):
+    for k, mode in enumerate(identification.modes):
         axes.axvline(
             mode.frequency, color=COLOURS[2], linewidth=0.8, label="" if k else "accepted mode"
         )
     axes.set(xlabel="frequency in Hz", ylabel="order", title="stabilisation diagram")
-    axes.set_xlim(one.data.frequency[0], one.data.frequency[-1])
+    axes.set_xlim(identification.data.frequency[0], identification.data.frequency[-1])
     behind = axes.twinx()
     with np.errstate(divide="ignore"):
-        level = 10 * np.log10(np.nanmean(np.abs(one.data.H) ** 2, axis=(0, 1)))
-    behind.plot(one.data.frequency, level, color="0.6", linewidth=0.6)
-    behind.set_ylabel(f"mean {one.data.quantity} in dB")
+        level = 10 * np.log10(np.nanmean(np.abs(identification.data.H) ** 2, axis=(0, 1)))
+    behind.plot(identification.data.frequency, level, color="0.6", linewidth=0.6)
+    behind.set_ylabel(f"mean {identification.data.quantity} in dB")
     axes.legend(loc="upper right")
 
 
-def _functions(figure: Figure, one: Identification) -> None:
+def _functions(figure: Figure, identification: Identification) -> None:
     """Draw synthesised over measured functions, those with the greatest residuals first."""
-    share = np.where(np.isfinite(one.residuals.share), one.residuals.share, -1.0)
-    listed = [at for at in np.argsort(-share.ravel()) if share.ravel()[at] >= 0][:MOST_PANELS]
+    share = np.where(
+        np.isfinite(identification.residuals.share), identification.residuals.share, -1.0
+    )
+    listed = [position for position in np.argsort(-share.ravel()) if share.ravel()[position] >= 0][
+        :MOST_PANELS
+    ]
     columns = min(3, max(len(listed), 1))
     rows = -(-max(len(listed), 1) // columns)
     figure.set_size_inches(3.0 * columns, 2.2 * rows)
-    for panel, at in enumerate(listed):
-        j, i = np.unravel_index(at, share.shape)
+    for panel, position in enumerate(listed):
+        j, i = np.unravel_index(position, share.shape)
         axes = figure.add_subplot(rows, columns, panel + 1)
-        f = one.data.frequency
-        axes.semilogy(f, np.abs(one.data.H[j, i]), color="0.6", linewidth=0.8, label="measured")
+        f = identification.data.frequency
         axes.semilogy(
-            f, np.abs(one.synthesised[j, i]), color=COLOURS[1], linewidth=0.8, label="synthesised"
+            f, np.abs(identification.data.H[j, i]), color="0.6", linewidth=0.8, label="measured"
         )
-        pair = f"{one.data.references[j]} to {one.data.responses[i]}"
+        axes.semilogy(
+            f,
+            np.abs(identification.synthesised[j, i]),
+            color=COLOURS[1],
+            linewidth=0.8,
+            label="synthesised",
+        )
+        pair = f"{identification.data.references[j]} to {identification.data.responses[i]}"
         axes.set_title(f"{pair}: residual {share[j, i]:.1%}")
         axes.set_xlabel("frequency in Hz")
         if not panel:
             axes.legend()
 
 
-def _auto_mac(figure: Figure, one: Identification) -> None:
+def _auto_mac(figure: Figure, identification: Identification) -> None:
     """Draw the MAC between all modes."""
     figure.set_size_inches(3.6, 3.2)
     axes = figure.add_subplot()
-    mac = auto_mac(np.array([mode.shape.complex_shape for mode in one.modes]))
-    ticks = [f"{mode.frequency:.4g}" for mode in one.modes]
+    mac = auto_mac(np.array([mode.shape.complex_shape for mode in identification.modes]))
+    ticks = [f"{mode.frequency:.4g}" for mode in identification.modes]
     image = axes.imshow(mac, vmin=0, vmax=1, cmap="Blues")
     axes.grid(False)
     axes.set_xticks(range(len(ticks)), ticks, rotation=90)

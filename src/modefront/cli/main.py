@@ -130,11 +130,11 @@ def compare(directories: tuple[Path, ...], form: str) -> None:
     from modefront.cli.compare import comparison_as_json, print_comparison
     from modefront.results.compare import compare as compare_results
 
-    found = compare_results(directories)
+    comparison = compare_results(directories)
     if form == "json":
-        click.echo(comparison_as_json(found))
+        click.echo(comparison_as_json(comparison))
     else:
-        print_comparison(found)
+        print_comparison(comparison)
 
 
 @cli.command()

@@ -10,7 +10,7 @@ import xarray as xr
 Row = tuple[str, ...]
 
 DRAWN = ("mean", "5 %", "95 %")
-"""What is shown of models drawn from the posterior."""
+"""Statistics of models drawn from the posterior that are shown."""
 
 
 def prediction_tables(data: xr.Dataset) -> Iterator[tuple[str, list[str], list[Row], list[str]]]:
@@ -38,41 +38,47 @@ def prediction_tables(data: xr.Dataset) -> Iterator[tuple[str, list[str], list[R
     ]
     title = "range over the Pareto-optimal models; spread is greatest over least"
     yield f"frequencies: {title}", ["", *columns], frequencies, posterior.explained
-    for name, at in _groups(data, "frf"):
+    for name, positions in _groups(data, "frf"):
         rows = []
-        for i in at:
+        for i in positions:
             response = _behind(data["frf"].values[i], name)
             rows.append(row([response, "peak"], "frf_peak", i, ".5g"))
             rows.append(row(["", "at Hz"], "frf_peak_frequency", i, ".5g"))
-        low, high = data["frf_band"].values[at[0]]
+        low, high = data["frf_band"].values[positions[0]]
         load, quantity, modes, damping = (
-            data[f"frf_{key}"].values[at[0]] for key in ("load", "quantity", "modes", "damping")
+            data[f"frf_{key}"].values[positions[0]]
+            for key in ("load", "quantity", "modes", "damping")
         )
-        said = (
+        heading = (
             f"{name}: {load}; {quantity}, greatest peak from {low:g} to {high:g} Hz, {modes} "
             f"modes, damping {damping}"
         )
-        yield said, ["response", "", *columns], rows, []
-    for name, at in _groups(data, "failure"):
+        yield heading, ["response", "", *columns], rows, []
+    for name, positions in _groups(data, "failure"):
         rows = []
-        for i in at:
+        for i in positions:
             level = f"{data['failure_level'].values[i]:g}"
             rows.append(row([level, "P"], "failure_probability", i, ".3e"))
             variation = data["failure_variation"].values[:, i]
             shown = (_number(x, ".2g") for x in variation[named])
             blank = [""] * len(posterior.columns)
             rows.append(("", "c.o.v.", "", _number(variation.max(), ".2g"), "", *blank, *shown))
-        yield _passage(data, name, at[0]), ["level", "", *columns], rows, _step_effect(data, at)
+        yield (
+            _passage(data, name, positions[0]),
+            ["level", "", *columns],
+            rows,
+            _step_effect(data, positions),
+        )
 
 
 class _Posterior:
-    """What the posterior says of predictions, as columns: its scatter, and models drawn from it."""
+    """Scatter of predictions by the posterior, and models drawn from it, as columns."""
 
     def __init__(self, data: xr.Dataset) -> None:
         self.data = data
         self.known = "posterior_frequency_std" in data
-        there = data["statistic"].values.tolist() if "statistic" in data.sizes else []
-        self.drawn = [there.index(x) for x in DRAWN if x in there]
+        statistics = data["statistic"].values.tolist() if "statistic" in data.sizes else []
+        self.drawn = [statistics.index(x) for x in DRAWN if x in statistics]
 
     @property
     def columns(self) -> list[str]:
@@ -81,7 +87,7 @@ class _Posterior:
 
     @property
     def explained(self) -> list[str]:
-        """What these columns are."""
+        """Headings of the columns."""
         out = []
         if self.known:
             out.append(
@@ -124,13 +130,13 @@ def _passage(data: xr.Dataset, name: str, i: int) -> str:
     )
 
 
-def _step_effect(data: xr.Dataset, at: Sequence[int]) -> list[str]:
-    label = data["failure_halved_at"].values[at[0]]
+def _step_effect(data: xr.Dataset, positions: Sequence[int]) -> list[str]:
+    label = data["failure_halved_at"].values[positions[0]]
     ratios = ", ".join(
         f"{_number(data['failure_halved'].values[i], '.3f')} ± "
         f"{_number(data['failure_halved_error'].values[i], '.3f')} "
         f"(level {data['failure_level'].values[i]:g})"
-        for i in at
+        for i in positions
     )
     return [f"half the time step multiplies P at {label} by {ratios}"]
 

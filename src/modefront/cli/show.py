@@ -53,14 +53,14 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         f"{len(problem.data.modes)} measured modes at {len(problem.data.sensors)} sensors "
         f"in {len(problem.data.sets)} data set{'s' * (len(problem.data.sets) > 1)}",
     )
-    at = problem.evaluate(problem.start)
+    evaluation = problem.evaluate(problem.start)
     modes = table("nominal model", ["mode", "measured Hz", "model Hz", "MAC", "model mode"])
     for row in zip(
         problem.data.modes,
         problem.data.mean_frequency,
-        at.quantities["frequency"],
-        at.quantities["mac"],
-        at.quantities["paired_mode"],
+        evaluation.quantities["frequency"],
+        evaluation.quantities["mac"],
+        evaluation.quantities["paired_mode"],
         strict=True,
     ):
         modes.add_row(
@@ -68,7 +68,7 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         )
     screen.print(modes)
     groups = table("groups", ["group", "a", "J nominal", "error nominal"])
-    for name, a, J in zip(problem.objectives, problem.properties, at.J, strict=True):
+    for name, a, J in zip(problem.objectives, problem.properties, evaluation.J, strict=True):
         groups.add_row(safe(name), f"{a:g}", f"{J:.5g}", f"{np.sqrt(J / a):.4g}")
     screen.print(groups)
     verdict = "agree with" if findings.sound else "DIFFER FROM"
@@ -76,9 +76,9 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         screen,
         f"derivatives {verdict} finite differences (relative {findings.derivative_error:.1e})",
     )
-    said = [*findings.determined[-1:], *(f"warning: {one}" for one in findings.warnings)]
-    said += findings.determined[:-1]
-    for line in digest(said, f"modefront check --all {study.file}", None if every else MOST):
+    sentences = [*findings.determined[-1:], *(f"warning: {text}" for text in findings.warnings)]
+    sentences += findings.determined[:-1]
+    for line in digest(sentences, f"modefront check --all {study.file}", None if every else MOST):
         _print(screen, line)
     if not findings.warnings:
         _print(screen, "no warnings")
@@ -171,7 +171,7 @@ def _spacing(data: xr.Dataset) -> list[str]:
         return []
     return [
         f"neighbours on the front are up to {data.attrs['largest_gap']:.3g} apart, though "
-        f"{requested:g} was asked for: no point was found between them"
+        f"{requested:g} is requested: no point between them was found"
     ]
 
 
@@ -192,8 +192,8 @@ def in_numbers(data: xr.Dataset) -> str:
     attrs = data.attrs
     text = (
         f"hypervolume {attrs['hypervolume']:.5f} up to 1.1, IGD+ {attrs['igd_plus']:.2e} to all "
-        f"that was found, largest gap {attrs['largest_gap']:.3f}, in units of the ranges over the "
-        "edges"
+        f"nondominated models, largest gap {attrs['largest_gap']:.3f}, in units of the ranges over "
+        "the edges"
     )
     missing = np.isnan(attrs["hypervolume"])
     return text + (" (hypervolume: pip install modefront[metrics])" if missing else "")
@@ -202,11 +202,11 @@ def in_numbers(data: xr.Dataset) -> str:
 def _iteration(data: xr.Dataset) -> str:
     of = data["minimum_of"].values
     theta = data["minimum_theta"].values
-    found = data["theta"].values[data["kind"].values == "optimal-weights"][0]
+    optimal = data["theta"].values[data["kind"].values == "optimal-weights"][0]
     span = np.diff(data["bounds"].values, axis=1)[:, 0]
     if "iterated-weights" not in of:
-        return "the iteration w = a / J ran into the singularity and confirms nothing"
-    away = np.abs((theta[of == "iterated-weights"][0] - found) / span).max()
+        return "the iteration w = a / J runs into the singularity and confirms nothing"
+    away = np.abs((theta[of == "iterated-weights"][0] - optimal) / span).max()
     if away < 1e-5:
         return "the iteration w = a / J arrives at the same optimally weighted model"
     return f"the iteration w = a / J arrives elsewhere, {away:.2g} of the ranges away"
@@ -236,10 +236,10 @@ def _poor_pairs(data: xr.Dataset) -> list[str]:
 def _at_bounds(data: xr.Dataset) -> str:
     theta, bounds = data["theta"].values, data["bounds"].values
     span = bounds[:, 1] - bounds[:, 0]
-    at = (np.abs(theta[:, :, None] - bounds) <= 1e-9 * span[:, None]).any(axis=2)
+    at_bound = (np.abs(theta[:, :, None] - bounds) <= 1e-9 * span[:, None]).any(axis=2)
     return "; ".join(
         f"{name} ({', '.join(data['label'].values[column])})"
-        for name, column in zip(data["parameter"].values, at.T, strict=True)
+        for name, column in zip(data["parameter"].values, at_bound.T, strict=True)
         if column.any()
     )
 

@@ -196,9 +196,9 @@ class _Run:
             tasks.append(Task(("weights", kind.value, name), explore, arguments, seed))
         minima = self.work.run(tasks)
         return [
-            Point(kind, found[0], name)
-            for (kind, name, _), found in zip(self.weights, minima, strict=True)
-            if found
+            Point(kind, solutions[0], name)
+            for (kind, name, _), solutions in zip(self.weights, minima, strict=True)
+            if solutions
         ]
 
     def _from_models(
@@ -302,9 +302,9 @@ class _Run:
             first = min(ahead, key=lambda k: order.value(archive.J[k]))
             arguments = (self.problem, i, sizes, archive.theta[first])
             (minima,) = work.run([Task(("edge", name, "archive"), _refined_again, arguments)])
-            found = ordered(self.problem, i, sizes, [*known.minima, *minima])
-            better = found and order.better(found.best.at.J, known.best.at.J)
-            out.append(found if found and better else known)
+            refined = ordered(self.problem, i, sizes, [*known.minima, *minima])
+            better = refined and order.better(refined.best.at.J, known.best.at.J)
+            out.append(refined if refined and better else known)
         return out
 
     def _weighted_from_archive(self, models: Sequence[Point], sizes: Floats) -> list[Point]:
@@ -321,9 +321,9 @@ class _Run:
             ):
                 key = ("weights", model.kind.value, model.name, "archive")
                 arguments = (self.problem, descent, archive.theta[first])
-                (found,) = self.work.run([Task(key, _descended, arguments)])
-                if descent.value(found.at.J) < descent.value(known.at.J):
-                    model = replace(model, solution=found)
+                (descended,) = self.work.run([Task(key, _descended, arguments)])
+                if descent.value(descended.at.J) < descent.value(known.at.J):
+                    model = replace(model, solution=descended)
             out.append(model)
         return out
 

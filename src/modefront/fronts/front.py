@@ -1,4 +1,4 @@
-"""All that the search for a Pareto front leads to."""
+"""A Pareto front with its edges, weighted models and gaps."""
 
 from __future__ import annotations
 

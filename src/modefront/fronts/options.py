@@ -1,4 +1,4 @@
-"""How a front is to be found."""
+"""Options of the Pareto front."""
 
 from __future__ import annotations
 
@@ -17,7 +17,7 @@ MOST = 10_000
 
 @dataclass(frozen=True)
 class Pareto:
-    """How the front is found.
+    """Method, resolution and refinement of the Pareto front.
 
     Raises InputError for values that are not possible, alone or together.
 
@@ -28,7 +28,7 @@ class Pareto:
     tolerance : share by which an edge may exceed the least value of its group
     population, evaluations : size of a generation and budget of an evolutionary method
     refined : distance of neighbours on the front, over the ranges of the objectives, above which
-        more points are put between them; None for no more points
+        points are added between them; None for no refinement
     """
 
     method: Annotated[str, one_of(*METHODS)] = "nbi"

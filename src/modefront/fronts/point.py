@@ -12,7 +12,7 @@ from modefront.work.codec import record
 
 @record
 class Kind(Enum):
-    """Why a model is reported."""
+    """Reason why a model is reported."""
 
     NOMINAL = "nominal"
     FRONT = "front"

@@ -1,1 +1,1 @@
-"""What the data determine of a model, and what they leave open."""
+"""Identifiability: combinations of parameters that data determine, and those that they do not."""

@@ -22,7 +22,7 @@ CRITICAL = 10.0
 """Collinearity index from which parameters count as not told apart."""
 
 _LARGEST = 1e8
-"""What is above it is rounding: columns that are parallel."""
+"""Greatest collinearity index; columns beyond it are parallel but for rounding."""
 
 
 def cosines(gram: Floats) -> Floats:
@@ -49,6 +49,6 @@ def index(gram: Floats, members: Sequence[int] | None = None) -> float:
 def pairs(gram: Floats) -> list[tuple[int, int, float]]:
     """Return the pairs of parameters with a critical index, most alike first."""
     p = len(gram)
-    found = [(i, j, index(gram, (i, j))) for i in range(p) for j in range(i)]
-    chosen = [(j, i, value) for i, j, value in found if value >= CRITICAL]
-    return sorted(chosen, key=lambda one: -one[2])
+    indices = [(i, j, index(gram, (i, j))) for i in range(p) for j in range(i)]
+    chosen = [(j, i, value) for i, j, value in indices if value >= CRITICAL]
+    return sorted(chosen, key=lambda pair: -pair[2])

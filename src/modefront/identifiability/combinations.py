@@ -1,4 +1,4 @@
-r"""Which combinations of parameters the data determine.
+r"""Combinations of parameters that the data determine, from the singular values of the Jacobian.
 
 The Jacobian of the weighted residuals with respect to changes of the parameters in their units
 :math:`s` (`modefront.identifiability.scale`),
@@ -6,9 +6,9 @@ The Jacobian of the weighted residuals with respect to changes of the parameters
 .. math:: G = \big[\sqrt{w_i}\, s_j\, \partial r_i / \partial \theta_j\big]_{ij} ,
 
 has singular values :math:`\sigma_k` and right singular vectors :math:`v_k`. A direction v with a
-small :math:`\sigma` hardly changes any residual: the data do not determine it. What is known of the
-second derivatives is :math:`H_i = 2\, \partial r_i^T \partial r_i`; so G also follows from them, up
-to a rotation of its rows that changes neither :math:`\sigma` nor v, to half of the digits.
+small :math:`\sigma` hardly changes any residual: the data do not determine it. The Gauss-Newton
+second derivatives are :math:`H_i = 2\, \partial r_i^T \partial r_i`. G follows from them as well,
+up to a rotation of its rows that changes neither :math:`\sigma` nor v, to half of the digits.
 
 A change of the residuals by 1e-9 of the measured values, for a whole unit of a parameter, is the
 rounding of derivatives: what is below it is no change (`rounding`). A column of G below it belongs
@@ -92,20 +92,22 @@ def combinations(
 
 def combinations_at(
     problem: UpdatingProblem,
-    at: Evaluation,
+    evaluation: Evaluation,
     group: int | None = None,
     weights: Floats | None = None,
     scale: Scale | None = None,
 ) -> list[Combination]:
     """Return the same from an evaluation with derivatives, without another one."""
-    w = np.ones(len(at.J)) if weights is None else weights
-    lam, V = np.linalg.eigh(gram(at, w, scale or scale_at(problem, at.theta), group))
+    w = np.ones(len(evaluation.J)) if weights is None else weights
+    lam, V = np.linalg.eigh(
+        gram(evaluation, w, scale or scale_at(problem, evaluation.theta), group)
+    )
     return decompose(np.sqrt(np.maximum(lam, 0.0))[:, None] * V.T, rounding(problem, group, w))
 
 
-def gram(at: Evaluation, weights: Floats, scale: Scale, group: int | None = None) -> Floats:
+def gram(evaluation: Evaluation, weights: Floats, scale: Scale, group: int | None = None) -> Floats:
     """Return G^T G, shape (parameters, parameters), of one group alone or of all with weights."""
-    H = at.H[group] if group is not None else np.tensordot(weights, at.H, axes=1)
+    H = evaluation.H[group] if group is not None else np.tensordot(weights, evaluation.H, axes=1)
     return np.asarray(H / 2 * np.outer(scale.unit, scale.unit))
 
 
@@ -121,14 +123,14 @@ def sizes(problem: UpdatingProblem) -> Floats:
     return problem.margins(np.full(modes, 2.0), np.ones(modes))
 
 
-def without_effect(problem: UpdatingProblem, at: Evaluation, scale: Scale) -> list[int]:
+def without_effect(problem: UpdatingProblem, evaluation: Evaluation, scale: Scale) -> list[int]:
     """Return the parameters with which no residual of any group changes, from 0."""
-    return np.flatnonzero(~_changed(problem, at, scale).any(axis=0)).tolist()
+    return np.flatnonzero(~_changed(problem, evaluation, scale).any(axis=0)).tolist()
 
 
-def _changed(problem: UpdatingProblem, at: Evaluation, scale: Scale) -> Bools:
+def _changed(problem: UpdatingProblem, evaluation: Evaluation, scale: Scale) -> Bools:
     """Return which groups change with which parameters, by more than rounding, (groups, p)."""
-    length = np.sqrt(np.einsum("ijj->ij", at.H) / 2) * scale.unit
+    length = np.sqrt(np.einsum("ijj->ij", evaluation.H) / 2) * scale.unit
     return np.asarray(length > ROUNDING * sizes(problem)[:, None])
 
 
@@ -138,15 +140,17 @@ def unchanged_groups(problem: UpdatingProblem) -> list[int]:
     Where nothing changes at the nominal parameters, other ones within the bounds are looked at:
     a derivative may vanish for symmetry.
     """
-    at = problem.evaluate(problem.start)
-    if not at.feasible:
+    evaluation = problem.evaluate(problem.start)
+    if not evaluation.feasible:
         return []
-    still = ~_changed(problem, at, scale_at(problem, at.theta)).any(axis=1)
-    u = np.random.default_rng(0).uniform(size=(ELSEWHERE if still.any() else 0, at.theta.size))
+    still = ~_changed(problem, evaluation, scale_at(problem, evaluation.theta)).any(axis=1)
+    u = np.random.default_rng(0).uniform(
+        size=(ELSEWHERE if still.any() else 0, evaluation.theta.size)
+    )
     for theta in problem.lower + u * (problem.upper - problem.lower):
         other = problem.evaluate(theta)
         if other.feasible:
-            moved = np.abs(np.sqrt(other.J) - np.sqrt(at.J)) > ROUNDING * sizes(problem)
+            moved = np.abs(np.sqrt(other.J) - np.sqrt(evaluation.J)) > ROUNDING * sizes(problem)
             still &= ~moved & ~_changed(problem, other, scale_at(problem, theta)).any(axis=1)
     return np.flatnonzero(still).tolist()
 

@@ -1,4 +1,4 @@
-"""What is done about parameters that the data do not determine."""
+"""Options of the analysis of identifiability."""
 
 from __future__ import annotations
 
@@ -13,16 +13,16 @@ STEP = number("a share of the ranges from 0.001 to 0.5", lambda x: 1e-3 <= x <= 
 
 @dataclass(frozen=True)
 class Identifiability:
-    """Which flat parts of the front and which equivalent models are sought.
+    """Limits of flat parts of the front and of manifolds of equivalent models.
 
     Raises InputError for values that are not possible.
 
     Attributes
     ----------
     flat : share by which an objective may exceed its least value in a flat part of the front; 0
-        looks for none
-    models : at most so many on each manifold of equivalent ones; 0 follows none
-    step : distance of neighbours among them, over the ranges of the parameters
+        for no search of flat parts
+    models : greatest number of equivalent models on each manifold; 0 for no manifolds
+    step : distance of neighbours on a manifold, over the ranges of the parameters
     """
 
     flat: Annotated[float, SHARE] = 0.01

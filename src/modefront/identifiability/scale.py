@@ -51,7 +51,7 @@ STEPS = 12
 """Steps of the power iteration, after which the greatest eigenvalue is known to a tenth."""
 
 WHOLE = 1e-6
-"""What is left of a matrix, over all of it, where a combination of parameters scales it."""
+"""Remainder of a matrix, over all of it, below which a combination of parameters scales it."""
 
 RANK = 1e-6
 """Singular value of the derivatives of K and M, over the greatest, below which they depend."""
@@ -79,7 +79,7 @@ class Scaling:
 
 @dataclass(frozen=True)
 class Scale:
-    """What changes of the parameters are compared with at one model.
+    """Units of changes of the parameters at one model.
 
     Attributes
     ----------
@@ -189,8 +189,8 @@ def _of_mass(mass: DenseAffine | SparseAffine, theta: Floats) -> Floats:
     diagonals = _diagonals(mass)  # (N, terms)
     M = diagonals @ mass.coefficients.values(theta)
     dM = np.abs(diagonals @ mass.coefficients.jacobian(theta))
-    there = np.abs(M) > 0
-    return np.asarray((dM[there] / np.abs(M[there])[:, None]).max(axis=0, initial=0.0))
+    has_mass = np.abs(M) > 0
+    return np.asarray((dM[has_mass] / np.abs(M[has_mass])[:, None]).max(axis=0, initial=0.0))
 
 
 def _diagonals(matrix: DenseAffine | SparseAffine) -> Floats:
@@ -212,13 +212,13 @@ def whole_scalings(model: MatrixModel, theta: Floats, unit: Floats) -> list[Scal
     """
     (RK, K), (RM, M) = (_rows(matrix, theta) for matrix in (model.stiffness, model.mass))
     both = np.vstack([RK, RM])
-    wanted = {
+    scaled = {
         "stiffness matrix": (K, 0 * M),
         "mass matrix": (0 * K, M),
         "stiffness matrix and the mass matrix": (K, M),
     }
     out = []
-    for of, parts in wanted.items():
+    for of, parts in scaled.items():
         b = np.concatenate(parts)
         y = theta + unit * np.linalg.lstsq(both * unit, b - both @ theta, rcond=RANK)[0]
         if np.linalg.norm(both @ y - b) <= WHOLE * np.linalg.norm(b):

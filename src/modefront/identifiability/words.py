@@ -1,4 +1,4 @@
-"""What data do not determine, in words."""
+"""Findings on identifiability as sentences."""
 
 from __future__ import annotations
 
@@ -45,7 +45,7 @@ def measured_thing(groups: Sequence[Group]) -> str:
 
 def determined(combinations: Sequence[Combination]) -> tuple[int, int]:
     """Return how many combinations are determined, and how many of those only weakly."""
-    shares = np.array([one.share for one in combinations])
+    shares = np.array([combination.share for combination in combinations])
     return int((shares > NONE).sum()), int(((shares > NONE) & (shares < WEAK)).sum())
 
 
@@ -69,12 +69,12 @@ def summary(
     text += " that have an effect" if idle else ""
     if weak:
         text += f", {weak} of them hardly (below {100 * WEAK:g} % of the best): "
-        hardly = [one for one in combinations if NONE < one.share < WEAK]
-        text += _listed([in_words(one, names) for one in hardly[::-1]])
+        hardly = [combination for combination in combinations if NONE < combination.share < WEAK]
+        text += _listed([in_words(combination, names) for combination in hardly[::-1]])
     if rank >= p:
         return text
-    said = _listed(free_in_words(combinations, names, scale, idle))
-    return f"{text}; {said}: no {thing} changes"
+    free = _listed(free_in_words(combinations, names, scale, idle))
+    return f"{text}; {free}: no {thing} changes"
 
 
 def free_in_words(
@@ -111,12 +111,12 @@ def no_effect_in_words(idle: Sequence[int], names: Sequence[str]) -> list[str]:
     """Return the sentence on parameters without effect, if there are any."""
     if not idle:
         return []
-    one = len(idle) == 1
+    single = len(idle) == 1
     named = enumeration([names[i] for i in idle]) if len(idle) <= NAMED else f"{len(idle)} of them"
     return [
-        f"{named} {'has' if one else 'have'} no effect: no residual changes with "
-        f"{'it' if one else 'any of them'}; keep {'it' if one else 'them'} at the nominal value"
-        f"{'' if one else 's'}, or measure what {'it changes' if one else 'they change'}"
+        f"{named} {'has' if single else 'have'} no effect: no residual changes with "
+        f"{'it' if single else 'any of them'}; keep {'it' if single else 'them'} at the nominal "
+        f"value{'' if single else 's'}, or measure what {'it changes' if single else 'they change'}"
     ]
 
 
@@ -128,23 +128,25 @@ def alike_in_words(gram: Floats, names: Sequence[str], idle: Sequence[int] = ())
     alike = {(i, j): value for i, j, value in pairs(gram) if not {i, j} & set(idle)}
     sets: list[list[int]] = []
     for pair in alike:
-        if not any(set(pair) <= set(one) for one in sets):
+        if not any(set(pair) <= set(parameters) for parameters in sets):
             sets.append(list(pair))
             for k in range(len(names)):
                 if all((min(i, k), max(i, k)) in alike for i in sets[-1]):
                     sets[-1].append(k)
     out = []
-    for one in sets:
-        own = {pair: value for pair, value in alike.items() if set(pair) <= set(one)}
-        if len(one) > TOGETHER:
-            worst = min(own.values())
-            named = [names[i] for i in sorted(one)]
-            said = enumeration(named) if len(one) <= NAMED else f"{len(one)} parameters"
-            out.append(
-                f"{said} all act nearly alike on the residuals (collinearity index {worst:.2g} of "
-                "two of them at least)"
+    for parameters in sets:
+        within = {pair: value for pair, value in alike.items() if set(pair) <= set(parameters)}
+        if len(parameters) > TOGETHER:
+            worst = min(within.values())
+            named = [names[i] for i in sorted(parameters)]
+            listed = (
+                enumeration(named) if len(parameters) <= NAMED else f"{len(parameters)} parameters"
             )
-            alike = {pair: value for pair, value in alike.items() if pair not in own}
+            out.append(
+                f"{listed} all act nearly alike on the residuals (collinearity index {worst:.2g} "
+                "of two of them at least)"
+            )
+            alike = {pair: value for pair, value in alike.items() if pair not in within}
     return out + [
         f"{names[i]} and {names[j]} act nearly alike on the residuals "
         f"(collinearity index {value:.2g})"
@@ -205,11 +207,11 @@ def _named(members: Sequence[int], ratio: Floats, names: Sequence[str]) -> str:
 
 def _meaning(v: Floats, scale: Scale) -> str:
     """Return what a direction means to the structure, where it scales a matrix as a whole."""
-    for one in scale.scalings:
-        whole = one.change / scale.unit
+    for scaling in scale.scalings:
+        whole = scaling.change / scale.unit
         along = v * (whole @ v) / (v @ v)
         if np.linalg.norm(whole - along) <= SAME * np.linalg.norm(whole):
-            return f", which scales the {one.of} as a whole"
+            return f", which scales the {scaling.of} as a whole"
     return ""
 
 

@@ -29,7 +29,7 @@ WINDOW = number("a ratio of frequencies above 1", lambda x: x > 1)
 
 @dataclass(frozen=True)
 class Pairing:
-    """How modes are paired.
+    """Rule by which measured modes and model modes are paired.
 
     Raises InputError for values that are not possible.
 
@@ -37,7 +37,7 @@ class Pairing:
     ----------
     method : by MAC, or by the order of the modes
     window : greatest ratio of frequencies of a pair, above 1; None is no limit
-    spare : how many more model modes than measured ones are looked at
+    spare : number of model modes that are candidates, beyond the number of measured ones
     """
 
     method: Literal["mac", "order"] = "mac"

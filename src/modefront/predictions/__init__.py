@@ -1,4 +1,4 @@
-"""What an updated model predicts: one kind of predictions a file, all of them named here."""
+"""Predictions of updated models: one kind a file, all of them named here."""
 
 from modefront.predictions.base import (
     Kind,

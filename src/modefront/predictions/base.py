@@ -1,4 +1,4 @@
-"""What a prediction is to a study: a record of options that a model is evaluated for.
+"""The interface of predictions: records of options for which models are evaluated.
 
 A kind of predictions is a frozen dataclass whose fields are the keys of its table in a study file
 (`modefront.options`), and that says itself how its values are reported. A new kind is a file beside
@@ -89,7 +89,7 @@ class Setting:
 
 @dataclass(frozen=True)
 class Kind:
-    """What all predictions of a kind have in common.
+    """Table, result variables and wording of all predictions of a kind.
 
     Attributes
     ----------
@@ -97,7 +97,7 @@ class Kind:
     dimension : of its result variables, one place a value of each prediction
     variables : of the results, one value a model and place; the first is missing where all are
     settings : options that the results repeat, one value a place
-    absent : what is said of models that can be solved, and have no value
+    absent : wording for models that can be solved and have no value
     undefined : why there may be no standard deviation, besides models that cannot be solved
     check : a comparison with finer numerics; None where there is none
     """
@@ -118,58 +118,58 @@ class Kind:
     @property
     def schema(self) -> Iterator[Variable]:
         """All variables that results have of predictions of this kind."""
-        own = (self.dimension,)
+        dimension = (self.dimension,)
         for x in self.variables:
-            yield Variable(x.name, ("point", *own), x.meaning, unit=x.unit)
+            yield Variable(x.name, ("point", *dimension), x.meaning, unit=x.unit)
         for x in self.ranged:
             over = f"of {x.name} over the Pareto-optimal models"
-            yield Variable(f"{x.name}_range", ("range", *own), over, unit=x.unit)
+            yield Variable(f"{x.name}_range", ("range", *dimension), over, unit=x.unit)
         for setting in self.settings:
-            dimensions = (*own, *setting.dimensions)
+            dimensions = (*dimension, *setting.dimensions)
             yield Variable(
                 setting.name, dimensions, setting.meaning, setting.values, unit=setting.unit
             )
         if self.check:
             for x in self.check.variables:
-                yield Variable(x.name, own, x.meaning, unit=x.unit)
-            yield Variable(self.check.label.name, own, self.check.label.meaning, "text")
+                yield Variable(x.name, dimension, x.meaning, unit=x.unit)
+            yield Variable(self.check.label.name, dimension, self.check.label.meaning, "text")
         for x in self.ranged:
             yield from self._posterior(x)
 
     def _posterior(self, variable: ResultVariable) -> Iterator[Variable]:
         """Yield the variables of the posterior of one of them."""
-        own, both = (self.dimension,), (self.dimension, f"{self.dimension}_other")
+        dimension, both = (self.dimension,), (self.dimension, f"{self.dimension}_other")
         name, unit, by = variable.name, variable.unit, "by the posterior, to first order"
         if variable.logarithmic:
             P, start = variable.symbol, f"posterior_{self.dimension}_log"
-            yield Variable(f"{start}_std", own, f"standard deviation of ln {P} {by}")
+            yield Variable(f"{start}_std", dimension, f"standard deviation of ln {P} {by}")
             yield Variable(f"{start}_covariance", both, f"covariance of ln {P} {by}")
             meaning = (
                 f"standard deviation of {name} that follows where ln {P} is Gaussian, of standard "
                 f"deviation s: {P} sqrt(e^(s^2) (e^(s^2) - 1)), {P} that of the reference"
             )
-            yield Variable(f"posterior_{name}_std", own, meaning)
+            yield Variable(f"posterior_{name}_std", dimension, meaning)
         else:
             meaning = f"standard deviation of {name} {by}"
-            yield Variable(f"posterior_{name}_std", own, meaning, unit=unit)
+            yield Variable(f"posterior_{name}_std", dimension, meaning, unit=unit)
             squared = f"{unit}2" if unit else ""
             meaning = f"covariance of {name} {by}"
             yield Variable(f"posterior_{name}_covariance", both, meaning, unit=squared)
         drawn = f"{name} of each model drawn from the posterior; NaN where there is none"
-        yield Variable(f"draw_{name}", ("draw", *own), drawn, unit=unit)
+        yield Variable(f"draw_{name}", ("draw", *dimension), drawn, unit=unit)
         over = f"{name} over the models drawn from the posterior"
         over += f"; its mean is {variable.mean}" if variable.mean else ""
-        yield Variable(f"posterior_{name}", ("statistic", *own), over, unit=unit)
+        yield Variable(f"posterior_{name}", ("statistic", *dimension), over, unit=unit)
 
 
 class Prediction(Protocol):
-    """Something that models are to predict."""
+    """A quantity or probability that models predict."""
 
     kind: ClassVar[Kind]
 
     @property
     def name(self) -> str:
-        """What the prediction is called."""
+        """Name of the prediction."""
 
     @property
     def places(self) -> tuple[str, ...]:

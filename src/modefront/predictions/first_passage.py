@@ -126,7 +126,7 @@ class Passage:
 
     Attributes
     ----------
-    name : what the prediction is called
+    name : name of the prediction
     response : a sensor or output, a list of them, or weighted sums of them by their names; failure
         is that any of these leaves [-b, b]
     density : spectral density of the white noise at every input, (unit of load)²/(rad/s)
@@ -136,11 +136,11 @@ class Passage:
     force : where forces act, each with noise of its own; this or ``base``
     base : direction in which the base accelerates
     step : time step in s; None for a twentieth of the shortest period
-    filter : what the noise passes, or None
+    filter : filter of the noise, such as that of a soil; None for white noise
     modulation : times in s and factors on the noise, linear between them; None for a constant 1
-    samples : how many are drawn
+    samples : number of samples for each model
     method : one of `modefront.reliability.METHODS`
-    modes : how many are superposed; None for as many as reach 1.5 times the default band's end
+    modes : number of modes superposed; None for as many as reach 1.5 times the default band's end
     damping : a ratio, a list of ratios, one a mode, or ``"measured"``
     """
 
@@ -227,7 +227,7 @@ class Passage:
 
     @property
     def loads(self) -> ModalLoadModel:
-        """What of a model enters the prediction."""
+        """Load case, outputs, modes and damping."""
         ports = ports_of(self.response, self.force, self.base)
         return ModalLoadModel(ports, self.modes, self.damping, static=False)
 

@@ -31,7 +31,7 @@ MEASURED = "measured"
 """Damping ratios of the measured modes."""
 
 BEYOND = 1.5
-"""What the modes reach where their number is not given, over the upper end of the band."""
+"""Frequency that the superposed modes reach unless their number is given, over that of the band."""
 
 ABOVE = 1.1
 """Upper end of the band that is taken where none is given, over the highest measured frequency."""
@@ -134,12 +134,12 @@ Damping = Annotated[
 
 @dataclass(frozen=True)
 class ModalLoadModel:
-    """What of a model enters a prediction.
+    """Load case, outputs, modes and damping of a prediction.
 
     Attributes
     ----------
     ports : where it is loaded, and its responses
-    modes : how many of the lowest modes are superposed; None where that is not known yet
+    modes : number of the lowest modes superposed; None where it is not known yet
     damping : ratio of all modes, or of each, or `MEASURED`
     static : whether the static response of the modes left out is added
     """
@@ -151,7 +151,7 @@ class ModalLoadModel:
 
     @property
     def load(self) -> str:
-        """What loads the structure, in words."""
+        """Load case in words."""
         if self.ports.base is not None:
             return f"base along {self.ports.base}"
         return "force at " + ", and at ".join(map(_in_words, self.ports.forces))

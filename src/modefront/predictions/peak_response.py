@@ -53,14 +53,14 @@ class PeakResponse:
 
     Attributes
     ----------
-    name : what the prediction is called
+    name : name of the prediction
     response : a sensor or output, a list of them, or weighted sums of them by their names
     force : where a force acts: a sensor or output, or weights of them; this or ``base``
     base : direction in which the base accelerates
-    quantity : what is set against the load
+    quantity : response over load, such as receptance
     band : lowest and highest frequency in Hz; None for up to 1.1 times the highest measured one
     static : whether the static response of the modes left out is added
-    modes : how many are superposed; None for as many as reach 1.5 times the end of the band
+    modes : number of modes superposed; None for as many as reach 1.5 times the end of the band
     damping : a ratio, a list of ratios, one a mode, or ``"measured"``
     """
 
@@ -104,7 +104,7 @@ class PeakResponse:
 
     @property
     def loads(self) -> ModalLoadModel:
-        """What of a model enters the prediction."""
+        """Load case, outputs, modes and damping."""
         forces = () if self.force is None else (self.force,)
         ports = ports_of(self.response, forces, self.base)
         return ModalLoadModel(ports, self.modes, self.damping, self.static)
@@ -180,9 +180,9 @@ class PeakResponse:
         low, high = (2 * np.pi * f for f in filled(self.band, "band"))
         out = np.full((2, len(self.response)), np.nan)
         for o in range(len(self.response)):
-            found = peaks(system, quantity, output=o, band=(low, high))
-            if found:
-                greatest = max(found, key=lambda peak: peak.amplitude)
+            local = peaks(system, quantity, output=o, band=(low, high))
+            if local:
+                greatest = max(local, key=lambda peak: peak.amplitude)
                 out[:, o] = greatest.amplitude, greatest.frequency
         return {"peak": out[0], "frequency": out[1]}
 

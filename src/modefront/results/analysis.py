@@ -223,8 +223,8 @@ def _stacked(
 
 def _spread(values: Floats) -> Floats:
     """Return the standard deviation over the first dimension of what is there; NaN below two."""
-    there = np.isfinite(values)
-    count = there.sum(axis=0)
-    mean = np.where(there, values, 0.0).sum(axis=0) / np.maximum(count, 1)
-    square = np.where(there, (values - mean) ** 2, 0.0).sum(axis=0)
+    known = np.isfinite(values)
+    count = known.sum(axis=0)
+    mean = np.where(known, values, 0.0).sum(axis=0) / np.maximum(count, 1)
+    square = np.where(known, (values - mean) ** 2, 0.0).sum(axis=0)
     return np.where(count > 1, np.sqrt(square / np.maximum(count - 1, 1)), np.nan)

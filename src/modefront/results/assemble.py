@@ -58,7 +58,10 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     solutions = [point.solution for point in points]
     a, J = problem.properties, _stack([x.at.J for x in solutions], n)
     equivalent = [
-        model.J for _, found in analysis.manifolds for each in found for model in each.models
+        model.J
+        for _, manifolds in analysis.manifolds
+        for each in manifolds
+        for model in each.models
     ]
     theta = _thetas(solutions, problem)
     out: Values = {
@@ -86,8 +89,8 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
 def _at_bound(problem: UpdatingProblem, theta: Floats) -> Ints:
     """Return -1 for parameters (points, p) at the lower bound, 1 at the upper one, else 0."""
     margin = AT_BOUND * (problem.upper - problem.lower)
-    at = np.where(theta >= problem.upper - margin, 1, 0)
-    return np.where(theta <= problem.lower + margin, -1, at)
+    side = np.where(theta >= problem.upper - margin, 1, 0)
+    return np.where(theta <= problem.lower + margin, -1, side)
 
 
 def _data(problem: UpdatingProblem, front: Front) -> Values:
@@ -152,9 +155,9 @@ def _pareto(front: Front, J: Floats, others: Floats) -> Bools:
     All evaluated models are known, minima and ends of branches too. An end that another branch
     dominates at the same level counts for the points next to it only.
     """
-    minima = [one.at.J for edge in front.edges for one in edge.minima]
-    minima += [one.at.J for gap in front.gaps for one in gap.ends]
-    minima += [one.at.J for one in front.optimal]
+    minima = [solution.at.J for edge in front.edges for solution in edge.minima]
+    minima += [solution.at.J for gap in front.gaps for solution in gap.ends]
+    minima += [solution.at.J for solution in front.optimal]
     n = J.shape[1]
     known = np.vstack([J, front.known.reshape(-1, n), _stack(minima, n), others])
     # Of a front that is a point, the ranges over models as good as each other are rounding.
@@ -190,7 +193,7 @@ def _stack(rows: Sequence[Floats], width: int) -> Floats:
 
 
 def _thetas(solutions: Sequence[Solution], problem: UpdatingProblem) -> Floats:
-    return _stack([one.at.theta for one in solutions], len(problem.model.parameters))
+    return _stack([solution.at.theta for solution in solutions], len(problem.model.parameters))
 
 
 def _shares(weights: Floats, scale: Floats | None) -> Floats:

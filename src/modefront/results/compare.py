@@ -75,7 +75,7 @@ class Summary:
 
 @dataclass(frozen=True)
 class Apart:
-    """How far two fronts lie apart in their common parameters, over the bounds of the first one.
+    """Distance of two fronts in their common parameters, over the bounds of the first one.
 
     Attributes
     ----------
@@ -190,8 +190,8 @@ def _optimally_weighted(data: xr.Dataset) -> xr.Dataset | None:
     return data.isel(point=int(best[0])) if best.size else None
 
 
-def _apart(one: tuple[str, xr.Dataset], other: tuple[str, xr.Dataset]) -> Apart:
-    (first, a), (second, b) = one, other
+def _apart(first_results: tuple[str, xr.Dataset], second_results: tuple[str, xr.Dataset]) -> Apart:
+    (first, a), (second, b) = first_results, second_results
     known = b["parameter"].values.tolist()
     common = [name for name in a["parameter"].values.tolist() if name in known]
     nan = float("nan")

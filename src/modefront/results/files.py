@@ -36,10 +36,10 @@ def read_dataset(folder: Path) -> xr.Dataset:
             data.load()
     except Exception as error:  # what is raised for a damaged file is not documented
         raise InputError(Fault(str(path), "file", "results in netCDF", str(error))) from None
-    found = data.attrs.get("format", 1 if "label" in data else None)
-    if found is not None and found != FORMAT:
+    version = data.attrs.get("format", 1 if "label" in data else None)
+    if version is not None and version != FORMAT:
         expected = f"results of format {FORMAT}"
-        text = f"format {found}, of another version of modefront: run the study again"
+        text = f"format {version}, of another version of modefront: run the study again"
         raise InputError(Fault(str(path), "attribute 'format'", expected, text))
     wrong = [Fault(str(path), *parts) for parts in faults(data)]
     if wrong:

@@ -113,18 +113,19 @@ def _unknown_ends(front: Front) -> list[Finding]:
     return [(Rank.WEIGHTS, text) for text in out]
 
 
-def _identifiability(problem: UpdatingProblem, at: Determination) -> Iterator[Finding]:
+def _identifiability(problem: UpdatingProblem, reference: Determination) -> Iterator[Finding]:
     """Yield what the data determine at the reference."""
-    names, groups, where = problem.model.parameters, problem.groups, at.point.label
-    for text in no_effect_in_words(at.idle, names):
+    names, groups, where = problem.model.parameters, problem.groups, reference.point.label
+    for text in no_effect_in_words(reference.idle, names):
         yield Rank.IDLE, f"at {where}: {text}"
-    for i, (name, combinations) in enumerate(at.combinations):
+    for i, (name, combinations) in enumerate(reference.combinations):
         whole = i == len(groups)
         thing = measured_thing(groups if whole else [groups[i]])
-        full = determined(combinations) == (len(names) - len(at.idle), 0)
+        full = determined(combinations) == (len(names) - len(reference.idle), 0)
         rank = Rank.DETERMINED if full else Rank.ALL_DATA if whole else Rank.OF_GROUP
-        yield rank, f"at {where}: {summary(name, thing, combinations, names, at.scale, at.idle)}"
-    for text in alike_in_words(at.effects, names, at.idle):
+        text = summary(name, thing, combinations, names, reference.scale, reference.idle)
+        yield rank, f"at {where}: {text}"
+    for text in alike_in_words(reference.effects, names, reference.idle):
         yield Rank.ALIKE, f"at {where}: {text}"
 
 
@@ -159,12 +160,14 @@ def _separate(analysis: FrontAnalysis) -> list[Finding]:
     """Return how many isolated models are equivalent."""
     out: list[Finding] = []
     for of, manifolds in analysis.manifolds:
-        isolated = sum(one.extent is Extent.ISOLATED for one in manifolds)
+        isolated = sum(manifold.extent is Extent.ISOLATED for manifold in manifolds)
         if isolated > 1:
             out.append((Rank.MANIFOLD, f"{isolated} separate models fit {of} equally well"))
-        left = sum(one.extent is Extent.SPENT and len(one.models) == 1 for one in manifolds)
+        left = sum(
+            manifold.extent is Extent.SPENT and len(manifold.models) == 1 for manifold in manifolds
+        )
         if left:
-            spent = sum(one.evaluations for one in manifolds)
+            spent = sum(manifold.evaluations for manifold in manifolds)
             out.append(
                 (
                     Rank.SPENT,
@@ -181,13 +184,13 @@ def _connected(problem: UpdatingProblem, analysis: FrontAnalysis) -> list[Findin
     known = followed(analysis.manifolds)
     shared: dict[int, list[str]] = {k: [of] for k, (of, _) in enumerate(known)}
     for of, manifolds in analysis.manifolds:
-        for one in manifolds:
-            if one.twin is not None and of not in shared[one.twin]:
-                shared[one.twin].append(of)
+        for manifold in manifolds:
+            if manifold.twin is not None and of not in shared[manifold.twin]:
+                shared[manifold.twin].append(of)
     alike: dict[tuple[str, int], list[Manifold]] = {}
-    for k, (_, one) in enumerate(known):
-        if len(one.models) > 1:
-            alike.setdefault((enumeration(shared[k]), one.dimension), []).append(one)
+    for k, (_, manifold) in enumerate(known):
+        if len(manifold.models) > 1:
+            alike.setdefault((enumeration(shared[k]), manifold.dimension), []).append(manifold)
     return [(Rank.MANIFOLD, _extent(problem, of, some)) for (of, _), some in alike.items()]
 
 
@@ -196,17 +199,17 @@ KINDS = {1: "curve", 2: "surface"}
 
 def _extent(problem: UpdatingProblem, of: str, manifolds: Sequence[Manifold]) -> str:
     """Return how far manifolds of one dimension go, of several the greatest."""
-    one = max(manifolds, key=lambda one: len(one.models))
-    kind = KINDS.get(one.dimension, "manifold")
-    spent = f"{one.evaluations} eigenproblem{'s' * (one.evaluations != 1)}"
-    found = f"{len(one.models)} of them, by {spent}, {one.extent.value}"
-    more = "" if one.dimension in KINDS else f" of dimension {one.dimension}"
-    far = _far(problem, np.array([at.theta for at in one.models]))
+    greatest = max(manifolds, key=lambda greatest: len(greatest.models))
+    kind = KINDS.get(greatest.dimension, "manifold")
+    spent = f"{greatest.evaluations} eigenproblem{'s' * (greatest.evaluations != 1)}"
+    count = f"{len(greatest.models)} of them, by {spent}, {greatest.extent.value}"
+    more = "" if greatest.dimension in KINDS else f" of dimension {greatest.dimension}"
+    far = _far(problem, np.array([model.theta for model in greatest.models]))
     if len(manifolds) == 1:
-        return f"a {kind}{more} of models fits {of} equally well ({found}): {far}"
+        return f"a {kind}{more} of models fits {of} equally well ({count}): {far}"
     return (
         f"{len(manifolds)} separate {kind}s{more} of models fit {of} equally well; "
-        f"on the greatest ({found}): {far}"
+        f"on the greatest ({count}): {far}"
     )
 
 
@@ -259,7 +262,10 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
         ]
         if doubtful:
             where = _places(doubtful, len(labels))
-            yield Rank.DOUBTFUL, f"the linearised scatter is doubtful at {where}: {doubt.value}"
+            yield (
+                Rank.DOUBTFUL,
+                f"the linearised scatter may not be valid at {where}: {doubt.value}",
+            )
 
 
 def _places(labels: Sequence[str], points: int) -> str:
@@ -280,7 +286,7 @@ def _held(problem: UpdatingProblem, analysis: FrontAnalysis) -> Iterator[Finding
     if analysis.posterior is None:
         return
     parameters = zip(problem.model.parameters, analysis.posterior.held, strict=True)
-    held = [name for name, at in parameters if at]
+    held = [name for name, is_held in parameters if is_held]
     if held:
         yield Rank.SCATTER, f"the posterior is given {enumeration(held)} at a bound"
 

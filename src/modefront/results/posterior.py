@@ -91,14 +91,14 @@ def with_posterior(
     coordinates: dict[str, object] = {}
     for kind, predictions in by_kind(runner.predictions):
         if models.differences is not None:
-            more, said = _to_first_order(data, runner, models.differences, predictions)
-            values |= more
-            messages += said
+            variables, remarks = _to_first_order(data, runner, models.differences, predictions)
+            values |= variables
+            messages += remarks
             coordinates[f"{kind.dimension}_other"] = data[kind.dimension].values
         if len(models.samples):
-            more, said = _of_samples(data, runner, models.samples, predictions)
-            values |= more
-            messages += said
+            variables, remarks = _of_samples(data, runner, models.samples, predictions)
+            values |= variables
+            messages += remarks
     if len(models.samples):
         values["draw_theta"] = models.samples
         coordinates["statistic"] = np.array(SUMMARY)

@@ -26,15 +26,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Origin:
-    """Where a study was read.
+    """Files from which a study was read.
 
     Attributes
     ----------
     file : the study file
     digest : hash of this file and of all files that it names
-    work : the same for what the front depends on: all that it says but for predictions and draws
-    problem : what was read; a study of another problem has another origin
-    remark : why what was asked for is not done
+    work : hash of the inputs of the front: all but predictions and draws
+    problem : the problem that was read; a study of another problem has another origin
+    remark : reason why a requested option is not in use
     """
 
     file: Path
@@ -46,7 +46,7 @@ class Origin:
 
 @dataclass(frozen=True)
 class Study:
-    """A problem, and how it is solved.
+    """A problem with the options of its solution.
 
     Raises InputError with all options that contradict the problem or one another.
 
@@ -54,13 +54,13 @@ class Study:
     ----------
     problem : model, data, groups and parameters
     name : a title
-    seed : of everything random
-    pareto : how the front is found
-    weighted : models wanted with given weights, besides equal and optimal ones
-    search : how global minima are sought
-    identifiability : what is done about what the data do not determine
-    uncertainty : what is done about errors of the data
-    predictions : what all models that are found are to predict
+    seed : of all random numbers
+    pareto : method and resolution of the front
+    weighted : given weights of models, besides equal and optimal weights
+    search : extent of the search for global minima
+    identifiability : limits of flat parts and of manifolds of equivalent models
+    uncertainty : source of the errors of the data, and samples
+    predictions : predictions of all models
     origin : where the study was read; None for one that was made in Python
     """
 
@@ -135,7 +135,7 @@ class Study:
 
     @property
     def remark(self) -> str:
-        """Why what was asked for is not done, or nothing."""
+        """Reason why a requested option is not in use; empty where all are."""
         return self.origin.remark if self.origin else ""
 
     def completed(self) -> Study:

@@ -66,17 +66,17 @@ def solve(
     problem
         The updating problem, see `updating_problem`.
     pareto
-        How the front is found; normal-boundary intersection unless given.
+        Method and resolution of the front; normal-boundary intersection unless given.
     weighted
         Weights for models besides those with equal and optimal weights.
     seed
         Seed of all random numbers; the same seed gives the same digits.
     search
-        How global minima are sought.
+        Extent of the search for global minima.
     identifiability
-        Which flat parts of the front and which equivalent models are sought.
+        Limits of flat parts of the front and of manifolds of equivalent models.
     uncertainty
-        How errors of the data are carried to models, front and predictions.
+        Source of the errors of the data, and samples of data and models.
     predictions
         Predictions of all models, such as `PeakResponse` and `Passage`.
     front

@@ -1,1 +1,1 @@
-"""How far measured errors scatter models and fronts, and what that says of predictions."""
+"""Uncertainty: the scatter of models, fronts and predictions by errors of the data."""

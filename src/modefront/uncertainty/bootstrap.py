@@ -32,7 +32,7 @@ def redraw(data: ModalData, source: Source, rng: np.random.Generator) -> ModalDa
             frequency=data.frequency + f_std * rng.standard_normal(f_std.shape),
             shape=data.shape + phi_std * rng.standard_normal(phi_std.shape),
         )
-    wanted = _measured(data)
+    measured = _measured(data)
     for _ in range(ATTEMPTS):
         drawn = rng.integers(len(data.sets), size=len(data.sets))
         again = replace(
@@ -44,7 +44,7 @@ def redraw(data: ModalData, source: Source, rng: np.random.Generator) -> ModalDa
             frequency_std=data.frequency_std[drawn],
             shape_std=data.shape_std[drawn],
         )
-        if (_measured(again) == wanted).all():
+        if (_measured(again) == measured).all():
             return again
     raise UnfinishedError(
         f"none of {ATTEMPTS} drawings of the data sets has everything in it that was measured: "

@@ -1,4 +1,4 @@
-"""What each kind of programme says of the changes of a solution.
+"""Conditions of each kind of programme on the changes of its solution.
 
 The equations are derived at the top of `modefront.uncertainty.scatter`.
 """
@@ -44,7 +44,7 @@ class Bounds:
 
 @dataclass(frozen=True)
 class Conditions:
-    r"""What a programme says of the changes: C dtheta + D dw - e dtau = f, e^T dw = h.
+    r"""Conditions of a programme on the changes: C dtheta + D dw - e dtau = f, e^T dw = h.
 
     Arrays are C (n, p), D (n,), a diagonal of ones and zeros, f (sources, n), and e (n, k), h
     (sources, k) with k either 0 or 1. D is 0 for equations. ``bounds`` are on the objectives,
@@ -77,10 +77,10 @@ def optimal_weights(point: SecondOrder, a: Floats, noise: Noise) -> Conditions:
 
 def level(point: SecondOrder, objective: int, dv: Floats, noise: Noise) -> Conditions:
     """Return the conditions of the least of the others at J_objective = v; dv is (sources,)."""
-    at = np.arange(point.at.J.size) == objective
+    is_held = np.arange(point.at.J.size) == objective
     f = np.zeros(noise.J.shape)
     f[:, objective] = dv - noise.J[:, objective]
-    return _open(at[:, None] * point.at.dJ, (~at).astype(float), f)
+    return _open(is_held[:, None] * point.at.dJ, (~is_held).astype(float), f)
 
 
 @dataclass(frozen=True)

@@ -37,7 +37,7 @@ NEGLIGIBLE = 1e-9
 
 @dataclass(frozen=True)
 class Stencil:
-    """Where predictions are to be evaluated, and what makes derivatives of them.
+    """Models for finite differences of predictions, with the coefficients of the differences.
 
     Attributes
     ----------
@@ -70,12 +70,12 @@ def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stenci
         if max(central, aside) < LEAST:
             return None
         if central >= aside:
-            at = np.array([central, -central])
+            steps = np.array([central, -central])
             factors[k] = np.array([0.0, 1.0, -1.0]) / (2 * central)
         else:
-            at = side * np.array([aside, 2 * aside])
+            steps = side * np.array([aside, 2 * aside])
             factors[k] = side * np.array([-3.0, 4.0, -1.0]) / (2 * aside)
-        points[k] = np.clip(theta + at[:, None] * way, lower, upper)
+        points[k] = np.clip(theta + steps[:, None] * way, lower, upper)
     return Stencil(points, factors)
 
 

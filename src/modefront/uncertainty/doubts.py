@@ -1,23 +1,23 @@
-r"""Where a linearised scatter may say nothing: a jump, or another active set, is near.
+r"""Validity of the linearised scatter: distances of a solution from other active sets and jumps.
 
-The linearisation of `modefront.uncertainty.scatter` holds as long as no active set changes and the
-solution goes on to be the minimum that it is. Each inequality that says so,
+The linearisation of `modefront.uncertainty.scatter` is valid as long as no active set changes and
+the solution remains the same minimum. Each condition of validity,
 
 ======================================  ===================================================
-what                                    has to be positive
+condition                               quantity that has to be positive
 ======================================  ===================================================
-a parameter within its bounds           its distance from the nearer one
-a parameter that a bound holds          the slope that presses it there
+a parameter within its bounds           its distance from the nearer bound
+a parameter at an active bound          the slope of the Lagrangian towards the bound
 an active bound of an objective         its weight, less the share :math:`\rho` of all
-another bound of an objective           its slack :math:`\tau - c_i`
-a minimum among others                  how much worse the others are
+an inactive bound of an objective       its slack :math:`\tau - c_i`
+a minimum among others                  the excess of the others
 ======================================  ===================================================
 
-is a number x with a linearised standard deviation of its own, and is doubtful where
-:math:`x \le \sigma_x`: by one standard deviation of the errors of the data it is otherwise. A point
-is as near to the end of a piece of the front where it is within its scatter in all objectives.
-Where second derivatives along all that the equations leave open are not positive, the point is no
-minimum but a fold or a saddle, and jumps.
+is a quantity x with a linearised standard deviation of its own. It is in doubt where
+:math:`x \le \sigma_x`, that is where one standard deviation of the errors of the data violates it.
+A point is near the end of a branch of the front where the end is within its scatter in all
+objectives. Where the second derivatives on the null space of the equations are not positive
+definite, the point is a fold or a saddle rather than a minimum.
 """
 
 from __future__ import annotations
@@ -31,14 +31,14 @@ from modefront._typing import Floats
 
 
 class Doubt(Enum):
-    """Why a linearisation may say nothing of how far a point scatters."""
+    """Reason why the linearised scatter of a point may not be valid."""
 
-    SADDLE = "second derivatives do not hold the model: the front folds or jumps there"
-    MEETS = "a parameter meets its bound within one standard deviation"
-    LEAVES = "a parameter comes off its bound within one standard deviation"
-    SWITCHES = "other groups decide where the point lies within one standard deviation"
-    ENDS = "a piece of the front ends within one standard deviation"
-    RIVAL = "another minimum is as good within one standard deviation"
+    SADDLE = "the second derivatives are not positive definite: the front folds or jumps there"
+    MEETS = "a parameter reaches its bound within one standard deviation"
+    LEAVES = "a parameter leaves its bound within one standard deviation"
+    SWITCHES = "other groups determine the point within one standard deviation"
+    ENDS = "a branch of the front ends within one standard deviation"
+    RIVAL = "another minimum becomes better within one standard deviation"
     UNSOLVED = "the solution has not converged"
 
 
@@ -50,7 +50,7 @@ def std(changes: Floats) -> Floats:
 def near_an_end(J: Floats, changes: Floats, ends: Iterable[Floats]) -> bool:
     """Return whether a point J (n,) that changes by (sources, n) is within its scatter of an end.
 
-    ``ends`` are objectives (n,) where the pieces of the front end.
+    ``ends`` are the objectives (n,) at the ends of the branches of the front.
 
     >>> J, changes = np.array([1.0, 2.0]), np.array([[0.2, 0.1]])
     >>> near_an_end(J, changes, [np.array([1.1, 1.95])])

@@ -67,8 +67,8 @@ def laplace(
     regular minimum: an objective vanishes, or the curvature is not positive in all directions that
     residuals determine.
     """
-    at = point.at
-    J = at.J + floor
+    evaluation = point.at
+    J = evaluation.J + floor
     if not (J > 0).all():
         return None
     w = a / J
@@ -76,7 +76,9 @@ def laplace(
     held = held_at_bounds(problem, point, w)
     Q, free = spaces(problem, point, w, held)
     B = span[:, None] * Q
-    second = np.tensordot(w, point.H, axes=1) - at.dJ.T @ ((a / J**2)[:, None] * at.dJ)
+    second = np.tensordot(w, point.H, axes=1) - evaluation.dJ.T @ (
+        (a / J**2)[:, None] * evaluation.dJ
+    )
     half = B.T @ second @ B / 2
     lam, V = np.linalg.eigh(half)
     if lam.size and lam[0] <= 0:

@@ -1,4 +1,4 @@
-r"""What errors of measurement do to the objectives and to their derivatives.
+r"""Effects of errors of measurement on the objectives and their derivatives.
 
 Errors of the data change :math:`J_i` and :math:`\partial J_i` at fixed parameters. To first order
 both are sums over independent sources m of standard deviation one,
@@ -34,7 +34,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.work.codec import record
 
 Source = Literal["std", "sets"]
-"""Where the uncertainty of the data is taken from."""
+"""Sources of the uncertainty of the data."""
 
 
 @record

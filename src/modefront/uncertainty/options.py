@@ -1,4 +1,4 @@
-"""What is known of the errors of the data, and what is done with it."""
+"""Options of the uncertainty of models and predictions."""
 
 from __future__ import annotations
 
@@ -15,12 +15,12 @@ NEEDED = {
     "std": "standard deviations above 0 in the data for 'std'",
     "sets": "a mode measured in two data sets for 'sets'",
 }
-"""What the data have to have for each source."""
+"""Requirements of each source on the data."""
 
 
 @dataclass(frozen=True)
 class Uncertainty:
-    """How errors of the data are carried to models and fronts.
+    """Source of the errors of the data, and samples of data and models.
 
     Raises InputError for values that are not possible, alone or together.
 
@@ -28,8 +28,8 @@ class Uncertainty:
     ----------
     source : standard deviations, the scatter of several data sets, neither, or, with ``"auto"``,
         the first of these that the data have
-    bootstrap : how often the data are drawn again and all points solved with them
-    draws : models drawn from the posterior that predictions are made with
+    bootstrap : number of bootstrap samples of the data, with each of which all points are solved
+    draws : number of models drawn from the posterior for predictions
     """
 
     source: Literal["auto", "std", "sets", "none"] = "auto"
@@ -42,7 +42,7 @@ class Uncertainty:
             raise wrong("bootstrap", "0 with source = 'none'", self.bootstrap)
 
     def faults(self, data: ModalData) -> Iterator[Fault]:
-        """Yield what is asked for that the data do not have."""
+        """Yield the requirements that the data do not meet."""
         known = available(data)
         if self.source in NEEDED and self.source not in known:
             yield Fault("", "source", NEEDED[self.source], "none")
@@ -53,7 +53,7 @@ class Uncertainty:
     def of(self, data: ModalData) -> Source | None:
         """Return the source that is used with these data, None where there is none.
 
-        Raises InputError where the data do not have what is asked for.
+        Raises InputError where the data do not meet its requirements.
         """
         refuse(self.faults(data))
         if self.source == "none":

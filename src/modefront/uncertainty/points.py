@@ -17,7 +17,7 @@ from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution, begin, solve
 
 Kind = Literal["edge", "minimum", "level", "weights", "optimal", "end", "boundary"]
-"""What a point solves; each kind depends on those before it alone."""
+"""Kinds of programmes of points; each kind depends only on those before it."""
 
 SMALL = 1e-4
 """Weight of the other objectives, over that of an edge's own, that keeps an edge regular.
@@ -29,7 +29,7 @@ a limit. At this weight its scatter differs from that of the limit by about as m
 
 @dataclass(frozen=True)
 class Role:
-    """What a point solves.
+    """Programme that a point solves.
 
     Attributes
     ----------
@@ -67,7 +67,7 @@ def edge_weights(objective: int, sizes: Floats) -> Floats:
 
 def in_order(points: Sequence[SolvedPoint]) -> list[SolvedPoint]:
     """Return the points, each after those that it depends on."""
-    return sorted(points, key=lambda one: get_args(Kind).index(one.role.kind))
+    return sorted(points, key=lambda point: get_args(Kind).index(point.role.kind))
 
 
 def solve_again(
@@ -104,8 +104,8 @@ def _again(
         best = solve(problem, weighted(edge_weights(role.objective, sizes)), start)
         if role.kind != "level" or not best.at.feasible:
             return best
-        own = np.arange(sizes.size) == role.objective
-        sizes = np.where(own, sizes, 1 / point.solution.weights)  # as it was solved with
+        is_own = np.arange(sizes.size) == role.objective
+        sizes = np.where(is_own, sizes, 1 / point.solution.weights)  # as it was solved with
         return near_best(problem, best, role.objective, role.tolerance, sizes, [start])
     else:
         ends = [solved[label] for label in role.ends]

@@ -26,7 +26,7 @@ import numpy as np
 from modefront._typing import Floats
 
 SUMMARY = ("mean", "standard deviation", "5 %", "50 %", "95 %")
-"""What a sample is summed up by: two moments and three quantiles."""
+"""Statistics of a sample: two moments and three quantiles."""
 
 BATCH = 1000
 """Draws that are made at a time."""
@@ -71,14 +71,14 @@ def draw(
     """
     lower, upper = bounds if bounds is not None else (-np.inf, np.inf)
     parts: list[Floats] = []
-    found = tried = 0
-    while found < count:
-        if tried >= TRIALS and found < SELDOM * tried:
-            raise TruncationError(f"{found} of {tried} draws are within the bounds")
+    accepted = tried = 0
+    while accepted < count:
+        if tried >= TRIALS and accepted < SELDOM * tried:
+            raise TruncationError(f"{accepted} of {tried} draws are within the bounds")
         drawn = theta + rng.standard_normal((BATCH, axes.shape[1])) @ axes.T
         within = drawn[((drawn >= lower) & (drawn <= upper)).all(axis=1)]
         parts.append(within)
-        found += len(within)
+        accepted += len(within)
         tried += BATCH
     return np.concatenate([*parts, np.empty((0, theta.size))])[:count]
 
@@ -97,7 +97,7 @@ def sampled(
     """
     lam, V = np.linalg.eigh(covariance)
     root = V * np.sqrt(np.maximum(lam, 0.0))
-    return np.array([predict(one) for one in draw(theta, root, rng, count, bounds)])
+    return np.array([predict(parameters) for parameters in draw(theta, root, rng, count, bounds)])
 
 
 def summary(values: Floats) -> Floats:

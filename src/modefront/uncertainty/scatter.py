@@ -1,4 +1,4 @@
-r"""How far errors of the data move the solution of a programme: the implicit function theorem.
+r"""Scatter of the solution of a programme by errors of the data: the implicit function theorem.
 
 A solution is where the conditions of Karush, Kuhn and Tucker hold. With the weights w of the
 objectives at it, all of its programmes have
@@ -7,13 +7,13 @@ objectives at it, all of its programmes have
 
 on the parameters that no bound holds. Errors of the data change :math:`J` by :math:`\delta J` and
 :math:`\partial J` by :math:`\delta \partial J` (`modefront.uncertainty.noise`). The solution
-follows, so that the conditions go on to hold (Fiacco 1983, *Introduction to Sensitivity and
+changes such that the conditions remain satisfied (Fiacco 1983, *Introduction to Sensitivity and
 Stability Analysis in Nonlinear Programming*, section 2.4):
 
 .. math:: W \delta\theta + \partial J^T \delta w = - \delta \partial J^T w, \qquad
     W = \sum_i w_i H_i ,
 
-together with what the programme says of w (`modefront.uncertainty.conditions`):
+together with the conditions of the programme on w (`modefront.uncertainty.conditions`):
 
 ==================  =====================================================================
 weights given       :math:`\delta w = 0`
@@ -37,11 +37,11 @@ themselves; :math:`\beta` is fixed. Of two groups all bounds are active, since t
 of more, those whose weight is more than that of the share :math:`\rho`
 (`modefront.solvers.attainment`).
 
-A parameter that is pressed against a bound stays there. Directions in which no residual changes are
-left out and named: nothing holds the model there.
+A parameter at an active bound is fixed. Directions in which no residual changes are left out and
+named, since no data determine them.
 
-All this holds as long as no active set changes and the solution goes on to be a minimum; what says
-that it may not is returned with it (`modefront.uncertainty.doubts`).
+The linearisation is valid as long as no active set changes and the solution remains a minimum.
+Reasons to doubt it are returned with it (`modefront.uncertainty.doubts`).
 """
 
 from __future__ import annotations
@@ -76,7 +76,7 @@ class Scatter:
     w : (sources, n) changes of the weights of the objectives
     held : (p,) parameters that a bound holds
     free : (p, d) directions that no data determine, orthonormal over the ranges
-    doubts : why it may not be so
+    doubts : reasons why the linearisation may not be valid
     """
 
     theta: Floats
@@ -94,11 +94,11 @@ class Scatter:
 
 def held_at_bounds(problem: Problem, point: SecondOrder, w: Floats) -> Bools:
     """Return which parameters the slope of w^T J presses against a bound."""
-    at, span = point.at, problem.upper - problem.lower
-    u = (at.theta - problem.lower) / span
-    parts = np.abs(w[:, None] * at.dJ) * span
-    slope = w @ at.dJ * span
-    curved = np.abs(np.tensordot(np.abs(w), at.H, axes=1) * np.outer(span, span)).max()
+    evaluation, span = point.at, problem.upper - problem.lower
+    u = (evaluation.theta - problem.lower) / span
+    parts = np.abs(w[:, None] * evaluation.dJ) * span
+    slope = w @ evaluation.dJ * span
+    curved = np.abs(np.tensordot(np.abs(w), evaluation.H, axes=1) * np.outer(span, span)).max()
     pressed = np.abs(slope) > PRESSED * (parts.sum(axis=0).max() + curved)
     near = 1e-9
     held: Bools = pressed & np.where(slope > 0, u <= near, u >= 1 - near)
@@ -110,9 +110,11 @@ def spaces(problem: Problem, point: SecondOrder, w: Floats, held: Bools) -> tupl
 
     Free is where no residual changes to first order and their squares do not to second order.
     """
-    at, span = point.at, problem.upper - problem.lower
-    top = np.abs(at.H).max(axis=(1, 2))
-    first = np.tensordot(1 / np.where(top > 0, top, 1.0), at.H, axes=1) * np.outer(span, span)
+    evaluation, span = point.at, problem.upper - problem.lower
+    top = np.abs(evaluation.H).max(axis=(1, 2))
+    first = np.tensordot(1 / np.where(top > 0, top, 1.0), evaluation.H, axes=1) * np.outer(
+        span, span
+    )
     second = np.tensordot(np.abs(w), point.H, axes=1) * np.outer(span, span)
     lam, V = np.linalg.eigh(first[np.ix_(~held, ~held)])
     basis = np.zeros((held.size, lam.size))
@@ -128,11 +130,11 @@ def scatter(
     problem: Problem, point: SecondOrder, w: Floats, conditions: Conditions, noise: Noise
 ) -> Scatter:
     """Return how a solution with weights w (n,) moves with the errors of the data."""
-    at, span = point.at, problem.upper - problem.lower
+    evaluation, span = point.at, problem.upper - problem.lower
     held = held_at_bounds(problem, point, w)
     Q, free = spaces(problem, point, w, held)
     B = span[:, None] * Q  # parameters for unit changes of what is determined
-    dJ = at.dJ @ B
+    dJ = evaluation.dJ @ B
     second = np.tensordot(w, point.H, axes=1)
     W = B.T @ second @ B
     c = conditions
@@ -148,15 +150,18 @@ def scatter(
     slope = np.einsum("mnp,n->mp", noise.dJ, w)
     x = _solve_scaled(system, np.hstack([-slope @ B, c.f, c.h]).T).T
     theta, dw, dtau = x[:, :q] @ B.T, x[:, q : q + n], x[:, q + n :]
-    J = noise.J + theta @ at.dJ.T
-    slope = (slope + theta @ second + dw @ at.dJ) * span
+    J = noise.J + theta @ evaluation.dJ.T
+    slope = (slope + theta @ second + dw @ evaluation.dJ) * span
     doubts = [
         (Doubt.SADDLE, not _is_minimum(W, c.C @ B, dJ, c)),
-        (Doubt.MEETS, _meets(problem, at.theta, theta, held)),
-        (Doubt.LEAVES, bool((np.abs(w @ at.dJ * span) <= std(slope))[held].any())),
-        (Doubt.SWITCHES, c.bounds is not None and c.bounds.switch(w, dw, theta @ at.dJ.T, dtau)),
+        (Doubt.MEETS, _meets(problem, evaluation.theta, theta, held)),
+        (Doubt.LEAVES, bool((np.abs(w @ evaluation.dJ * span) <= std(slope))[held].any())),
+        (
+            Doubt.SWITCHES,
+            c.bounds is not None and c.bounds.switch(w, dw, theta @ evaluation.dJ.T, dtau),
+        ),
     ]
-    why = tuple(doubt for doubt, there in doubts if there)
+    why = tuple(doubt for doubt, holds in doubts if holds)
     return Scatter(theta, J, dw, held, span[:, None] * free, why)
 
 

@@ -1,4 +1,4 @@
-"""What work costs: counted where an eigenproblem is solved, and nowhere else.
+"""Costs of tasks: counted where an eigenproblem is solved, and nowhere else.
 
 `spend` adds to every count that is open (`counted`) in the same thread or task, so the costs of a
 task are its own, whatever else is computed at the same time.

@@ -1,4 +1,4 @@
-"""How far a run is: tasks done, running, expected, and the time that is left.
+"""Progress of a run: tasks done, running, expected, and the time that is left.
 
 Every task belongs to a stage. The extent of a stage is an estimate until it ends; a stage has ended
 when a task of another one starts, and its extent then is the number of tasks that it had.

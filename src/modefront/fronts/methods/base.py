@@ -1,4 +1,4 @@
-"""What a method is that finds the points of a front."""
+"""The interface of methods that find the points of a front."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True)
 class Setting:
-    """What a method starts from.
+    """Problem, edges and options from which a method starts.
 
     Attributes
     ----------
@@ -36,7 +36,7 @@ class Setting:
     lattice : points of the simplex
     before : points of a front of nearly the same problem
     seed : of the run
-    search : how global minima are looked for
+    search : extent of the search for global minima
     archive : models evaluated so far
     work : carries out the tasks
     """

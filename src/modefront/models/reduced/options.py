@@ -35,7 +35,7 @@ GIB = number("GiB for a reduced basis, above 0", lambda x: x > 0)
 
 @dataclass(frozen=True)
 class Reduction:
-    """Whether a model is solved in a reduced basis, and how exactly.
+    """Tolerance and memory of a reduced basis.
 
     Raises InputError for values that are not possible.
 

@@ -30,10 +30,12 @@ def write_example(name: str, directory: Path) -> list[Path]:
     targets = [directory / source.name for source in sources]
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        there = [path for path in targets if path.exists() or path.is_symlink()]
-        if there:
-            expected = "no such file: nothing is overwritten"
-            raise InputError(Fault(str(path), "file", expected, "one") for path in there)
+        existing = [path for path in targets if path.exists() or path.is_symlink()]
+        if existing:
+            expected = "a new file, as nothing is overwritten"
+            raise InputError(
+                Fault(str(path), "file", expected, "an existing one") for path in existing
+            )
         for source, path in zip(sources, targets, strict=True):
             path.write_bytes(source.read_bytes())
     except OSError as error:

@@ -1,4 +1,4 @@
-"""What a kind of model is in a study file."""
+"""The interface of kinds of models in a study file."""
 
 from __future__ import annotations
 

@@ -45,15 +45,17 @@ def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy
         if name != BASE and name not in parameters:
             table.fault(name, f"'{BASE}' or a parameter", suggestion(name, [BASE, *parameters]))
             continue
-        found = _file(table, name)
-        if found is None:
+        file = _file(table, name)
+        if file is None:
             continue
         try:
-            out[name] = read_matrix(table.path(found[0]), found[1])
+            out[name] = read_matrix(table.path(file[0]), file[1])
         except InputError as error:
             table.faults += [
-                Fault(one.file, f"{table.place} {name}, {one.place}", one.expected, one.found)
-                for one in error.faults
+                Fault(
+                    fault.file, f"{table.place} {name}, {fault.place}", fault.expected, fault.found
+                )
+                for fault in error.faults
             ]
     return out
 

@@ -59,9 +59,9 @@ def _structure(table: Table, parameters: Sequence[str], mesh: Mesh) -> fem.Struc
         _groups(table, mesh, materials),
         [
             fem.Support(nodes, directions)
-            for one in table.tables("support", required=False)
-            for nodes, directions in [(_nodes(one, "nodes", mesh), _directions(one))]
-            if _closed(one) and nodes is not None
+            for support in table.tables("support", required=False)
+            for nodes, directions in [(_nodes(support, "nodes", mesh), _directions(support))]
+            if _closed(support) and nodes is not None
         ],
         _springs(table, mesh),
         _masses(table, mesh),
@@ -82,13 +82,13 @@ def _materials(model: Table) -> dict[str, fem.Material]:
     if table is not None and not table.values:
         table.fault("", "at least one material", "none")
     for name in table.values if table else ():
-        one = table.table(name, "a table E, nu, rho") if table else None
-        if one is None:
+        entry = table.table(name, "a table E, nu, rho") if table else None
+        if entry is None:
             continue
-        E = one.number("E", "Young's modulus above 0", lambda x: x > 0)
-        nu = one.number("nu", "Poisson's ratio between -1 and 0.5", lambda x: -1 < x < 0.5)
-        rho = one.number("rho", "a density of 0 or more", lambda x: x >= 0)
-        one.close()
+        E = entry.number("E", "Young's modulus above 0", lambda x: x > 0)
+        nu = entry.number("nu", "Poisson's ratio between -1 and 0.5", lambda x: -1 < x < 0.5)
+        rho = entry.number("rho", "a density of 0 or more", lambda x: x >= 0)
+        entry.close()
         if None not in (E, nu, rho):
             out[name] = fem.Material(E, nu, rho)
     return out
@@ -99,27 +99,27 @@ def _groups(
 ) -> list[fem.Beams | fem.Shells | fem.Solids]:
     """Return the blocks of all groups; one group may have cells of several types."""
     out: list[fem.Beams | fem.Shells | fem.Solids] = []
-    for one in model.tables("group", required=True):
-        name = one.text("name", "the name of a group of cells")
-        kind: Kind | None = one.choice("elements", get_args(Kind))
+    for group in model.tables("group", required=True):
+        name = group.text("name", "the name of a group of cells")
+        kind: Kind | None = group.choice("elements", get_args(Kind))
         names = tuple(materials)  # none where all are faulty, which is said there
-        label = one.choice("material", names) if names else one.text("material")
+        label = group.choice("material", names) if names else group.text("material")
         thickness = offset = section = orientation = None
         if kind == "shell":
-            thickness = one.number("thickness", "a thickness above 0", lambda x: x > 0)
-            offset = one.number("offset", "a distance", math.isfinite, default=0.0)
+            thickness = group.number("thickness", "a thickness above 0", lambda x: x > 0)
+            offset = group.number("offset", "a distance", math.isfinite, default=0.0)
         if kind == "beam":
-            section = _section(one)
-            orientation = one.numbers(
+            section = _section(group)
+            orientation = group.numbers(
                 "orientation", "a vector of 3 numbers", lambda x: len(x) == 3, default=None
             )
-        one.close()
+        group.close()
         if name is None or kind is None or label not in materials:
             continue
         try:
             blocks = mesh.cells_of(name, kind)
         except fem.FemError as error:
-            one.fault("name", "a group of the mesh", str(error))
+            group.fault("name", "a group of the mesh", str(error))
             continue
         for cells in blocks:
             if kind == "beam" and section is not None:
@@ -206,13 +206,13 @@ def _direction(table: Table, key: str, default: Any = ...) -> Any:
 
 def _springs(model: Table, mesh: Mesh) -> list[fem.Spring]:
     out = []
-    for one in model.tables("spring", required=False):
-        name = one.text("name", "the name of the springs")
-        nodes = _nodes(one, "nodes", mesh)
-        to = _nodes(one, "to", mesh, default=None)
-        stiffness = one.number("stiffness", "a stiffness above 0", lambda x: x > 0)
-        direction = _direction(one, "direction", default=None)
-        one.close()
+    for spring in model.tables("spring", required=False):
+        name = spring.text("name", "the name of the springs")
+        nodes = _nodes(spring, "nodes", mesh)
+        to = _nodes(spring, "to", mesh, default=None)
+        stiffness = spring.number("stiffness", "a stiffness above 0", lambda x: x > 0)
+        direction = _direction(spring, "direction", default=None)
+        spring.close()
         if name is not None and nodes is not None and stiffness is not None:
             out.append(fem.Spring(name, nodes, stiffness, direction, to))
     return out
@@ -220,20 +220,20 @@ def _springs(model: Table, mesh: Mesh) -> list[fem.Spring]:
 
 def _masses(model: Table, mesh: Mesh) -> list[fem.Mass]:
     out = []
-    for one in model.tables("mass", required=False):
-        name = one.text("name", "the name of the masses")
-        nodes = _nodes(one, "nodes", mesh)
-        mass = one.number("mass", "a mass of 0 or more", lambda x: x >= 0)
-        inertia = one.numbers(
+    for entry in model.tables("mass", required=False):
+        name = entry.text("name", "the name of the masses")
+        nodes = _nodes(entry, "nodes", mesh)
+        mass = entry.number("mass", "a mass of 0 or more", lambda x: x >= 0)
+        inertia = entry.numbers(
             "inertia",
             "3 moments of inertia of 0 or more",
             lambda x: len(x) == 3 and min(x) >= 0,
             default=[0.0, 0.0, 0.0],
         )
-        offset = one.numbers(
+        offset = entry.numbers(
             "offset", "a vector of 3 numbers", lambda x: len(x) == 3, default=[0.0, 0.0, 0.0]
         )
-        one.close()
+        entry.close()
         if name is not None and nodes is not None and mass is not None:
             out.append(fem.Mass(name, nodes, mass, inertia or (0, 0, 0), offset or (0, 0, 0)))
     return out
@@ -241,13 +241,13 @@ def _masses(model: Table, mesh: Mesh) -> list[fem.Mass]:
 
 def _links(model: Table, mesh: Mesh) -> list[fem.Link]:
     out = []
-    for one in model.tables("link", required=False):
-        master = _nodes(one, "master", mesh)
-        slaves = _nodes(one, "slaves", mesh)
-        directions = _directions(one)
-        one.close()
+    for link in model.tables("link", required=False):
+        master = _nodes(link, "master", mesh)
+        slaves = _nodes(link, "slaves", mesh)
+        directions = _directions(link)
+        link.close()
         if master is not None and len(master) != 1:
-            one.fault("master", "one node", f"{len(master)} nodes")
+            link.fault("master", "one node", f"{len(master)} nodes")
         elif master is not None and slaves is not None:
             out.append(fem.Link(master[0], [n for n in slaves if n != master[0]], directions))
     return out
@@ -274,18 +274,20 @@ def _outputs(model: Table) -> list[fem.Sensor]:
 def _places(table: Table) -> list[fem.Sensor]:
     out: list[fem.Sensor] = []
     for name in table.values:
-        one = table.table(name, "a table node or at, and direction")
-        if one is None:
+        place = table.table(name, "a table node or at, and direction")
+        if place is None:
             continue
-        node = one.integer("node", 0, 10**9, default=None)
-        at = one.numbers("at", "3 coordinates", lambda x: len(x) == 3, default=None)
-        direction = _direction(one, "direction")
-        tolerance = one.number("tolerance", "a distance above 0", lambda x: x > 0, default=None)
-        one.close()
-        if (node is None) == (at is None):
-            one.fault("", "either node or at", "both" if node is not None else "neither")
+        node = place.integer("node", 0, 10**9, default=None)
+        coordinates = place.numbers("at", "3 coordinates", lambda x: len(x) == 3, default=None)
+        direction = _direction(place, "direction")
+        tolerance = place.number("tolerance", "a distance above 0", lambda x: x > 0, default=None)
+        place.close()
+        if (node is None) == (coordinates is None):
+            place.fault("", "either node or at", "both" if node is not None else "neither")
         elif direction is not None:
-            out.append(fem.Sensor(name, node if at is None else at, direction, tolerance))
+            out.append(
+                fem.Sensor(name, node if coordinates is None else coordinates, direction, tolerance)
+            )
     return out
 
 
@@ -299,17 +301,17 @@ def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:
                 table.asked.append(name)
                 table.fault(name, "the name of a parameter", suggestion(name, parameters))
             continue
-        one = table.table(name, "a table { quantity = ..., of = [...] }")
-        if one is None:
+        scale = table.table(name, "a table { quantity = ..., of = [...] }")
+        if scale is None:
             continue
-        quantity: Quantity | None = one.choice("quantity", get_args(Quantity))
-        of = one.take(
+        quantity: Quantity | None = scale.choice("quantity", get_args(Quantity))
+        of = scale.take(
             "of",
             "a list of groups, springs or masses",
             lambda x: isinstance(x, list) and bool(x) and all(isinstance(y, str) for y in x),
             ...,
         )
-        one.close()
+        scale.close()
         if quantity is not None and of is not None:
             out.append(fem.Parameter(name, quantity, of))
     return out

@@ -1,4 +1,4 @@
-"""``[[weighted]]``: models wanted with given weights."""
+"""``[[weighted]]``: models with given weights."""
 
 from __future__ import annotations
 
