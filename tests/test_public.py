@@ -10,6 +10,7 @@ from typing import Any
 
 import numpy as np
 import pytest
+import xarray as xr
 
 import modefront as mf
 
@@ -101,3 +102,11 @@ def test_a_cantilever_made_in_python_has_its_frequency() -> None:
     first = 1.8751040687**2 * np.sqrt(EI / m) / (2 * np.pi)  # Bernoulli's beam, 1 m
     modes = model.modes(np.array([1.0]), 1)
     assert modes.frequency[0] == pytest.approx(first, rel=1e-3)
+
+
+def test_results_are_not_changed_in_place() -> None:
+    results = mf.Results(xr.Dataset({"theta": ("point", [1.0])}))
+    change: Any = results
+    with pytest.raises(TypeError, match=r"results are not changed: dataset.assign"):
+        change["theta"] = 2.0
+    assert results["theta"].values.tolist() == [1.0]

@@ -6,7 +6,7 @@ import html
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, Never
 
 import numpy as np
 import scipy.sparse
@@ -119,6 +119,10 @@ class Results:
     def __getitem__(self, name: str) -> xr.DataArray:
         """Return a variable; raises KeyError where there is none of this name."""
         return self.dataset[name]
+
+    def __setitem__(self, name: Never, value: Never) -> None:
+        """Raise TypeError: results are not changed."""
+        raise TypeError("results are not changed: dataset.assign(...) returns a changed dataset")
 
     def __contains__(self, name: object) -> bool:
         return name in self.dataset
