@@ -80,7 +80,7 @@ class Merit:
 def surplus(y: Floats, kappa: Floats, penalty: float) -> float:
     """Return the last term of the augmented Lagrangian, less kappa^T y: not negative.
 
-    >>> surplus(np.array([0.3, 0.1]), np.array([0.5, 0.5]), 10.0)
+    >>> round(surplus(np.array([0.3, 0.1]), np.array([0.5, 0.5]), 10.0), 12)
     0.075
     >>> surplus(np.array([0.3, 0.3]), np.array([0.5, 0.5]), 10.0)
     0.0
@@ -96,9 +96,10 @@ def projected(x: Floats) -> Floats:
 
     doi:10.1007/BF01580223
 
-    >>> projected(np.array([0.9, 0.3, -2.0])).tolist()
+    >>> projected(np.array([0.9, 0.3, -2.0])).round(12).tolist()
     [0.8, 0.2, 0.0]
     """
+    x = x - x.max()  # the point is the same, but a great number would swallow the 1
     falling = np.sort(x)[::-1]
     level = (np.cumsum(falling) - 1) / np.arange(1, x.size + 1)
     return np.maximum(x - level[np.flatnonzero(falling > level)[-1]], 0.0)
