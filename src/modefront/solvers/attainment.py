@@ -91,6 +91,10 @@ class Attainment:
         """Return whether no objective is below its floor."""
         return self.floor is None or bool((self.floor <= J).all())
 
+    def distance(self, beta: Floats, other: Floats) -> float:
+        """Return the distance of two points of the plane, in units of the ranges."""
+        return self.target.distance(beta, other)
+
     def place(self, _: int, J: Floats) -> Floats:
         """Return the coordinates (n,) of the point of the plane that is projected onto J."""
         return self.target.place(J)
