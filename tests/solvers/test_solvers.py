@@ -283,6 +283,9 @@ class TwoBasins:
     def goes_on(self, _: Floats) -> bool:
         return False
 
+    def distance(self, beta: Floats, other: Floats) -> float:
+        return float(np.abs(beta - other).max())
+
     def place(self, edge: int, _: Floats) -> Floats:
         return np.eye(2)[edge]
 

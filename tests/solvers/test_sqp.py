@@ -24,6 +24,11 @@ NONE = Multipliers(np.zeros(0), np.zeros(0))
 # ---- merit -----------------------------------------------------------------------------------
 
 
+def test_the_projection_on_the_simplex_is_defined_however_great_the_numbers() -> None:
+    assert projected(np.array([3e17, 1.0, 5.0])).tolist() == [1.0, 0.0, 0.0]
+    assert projected(np.array([-3e20, -3e20])).tolist() == [0.5, 0.5]
+
+
 @given(SEEDS, st.integers(1, 6))
 def test_the_projection_is_the_nearest_point_of_the_simplex(seed: int, m: int) -> None:
     rng = np.random.default_rng(seed)

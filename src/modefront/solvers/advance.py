@@ -98,6 +98,9 @@ class Programmes(Protocol):
     def scale(self) -> Floats:
         """Range of each objective over the edges, shape (n,)."""
 
+    def distance(self, beta: Floats, other: Floats, /) -> float:
+        """Return the distance of two points of the plane, in units of the ranges."""
+
     def place(self, edge: int, J: Floats, /) -> Floats:
         """Return the coordinates (n,) to which an edge with these objectives belongs."""
 
@@ -115,8 +118,15 @@ BETTER = 1e-7
 """Difference of two values below which the solutions are the same."""
 
 BEYOND = 300
-"""Points beyond the simplex that are tried at most; of three objectives, 10 times those within
+"""Points beyond the simplex that are tried at most; of three objectives, 5 times those within
 where these are more. With each further objective a point has more neighbours."""
+
+APART = 1.0
+"""Distance of points beyond the simplex in steps of the ranges, one a division, at least: where the
+simplex is narrow, the steps of its lattice across are much shorter than those along it."""
+
+DENSE = 60
+"""Points beyond the simplex from which on such distances are kept; fewer cost little."""
 
 ATTEMPTS = 3
 """Neighbours from which a point beyond the simplex is tried at most: where none of these leads to a
@@ -158,8 +168,10 @@ def advance(
     divisions, span = lattice.divisions, problem.upper - problem.lower
     branches = len(edges)
     fixed: set[Place] = set()
+    left_out: set[tuple[Place, Place]] = set()
+    beyond = 0
     few = lattice.counts.shape[1] <= 3
-    room = max(BEYOND, 10 * len(lattice.counts)) if few else BEYOND
+    room = max(BEYOND, 5 * len(lattice.counts)) if few else BEYOND
 
     def beta(place: Place) -> Floats:
         return np.array(place) / divisions
@@ -183,8 +195,14 @@ def advance(
             return False
         if min(place) < 0 and attempts[place] >= ATTEMPTS and not solved[place].converged:
             return False
+        if not solved[place].converged:
+            return True
         other = origin[place] != origin[source]
-        return not solved[place].converged or (solved[source].converged and other)
+        apart = len(place) == 2 or jumps(solved[place], solved[source])
+        return solved[source].converged and other and apart
+
+    def close(place: Place, other: Place) -> bool:
+        return programmes.distance(beta(place), beta(other)) * divisions < APART - SAME
 
     def jumps(solution: Solution, other: Solution) -> bool:
         return bool((np.abs(solution.at.theta - other.at.theta) > JUMP * span).any())
@@ -217,8 +235,16 @@ def advance(
         if not worth_trying(place, source):
             continue
         if place not in solved and min(place) < 0:
-            room -= 1
-            if room < 0:
+            if beyond >= DENSE and close(place, source):
+                # It is left out, and those behind it are reached from the same point.
+                if (place, source) not in left_out:
+                    left_out.add((place, source))
+                    queue.extend((near, source) for near in neighbours(place) if min(near) < 0)
+                continue
+            if beyond >= DENSE and any(close(place, other) for other in solved):
+                continue
+            beyond += 1
+            if beyond > room:
                 continue
         tried.add((place, source, renewed[source]))
         attempts[place] += 1

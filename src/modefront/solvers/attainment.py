@@ -15,7 +15,9 @@ doi:10.1007/978-3-642-48782-8_32): no solution is weakly optimal only.
 Every point of the front is the solution for some :math:`\beta` with :math:`\sum \beta_i = 1`, its
 own projection onto the plane of the simplex, but not all of these lie in the simplex. Therefore
 the lattice goes on beyond it: to the neighbours of every point that is the nearest one to the
-projection of its solution, and no farther, since there the front ends.
+projection of its solution, and no farther, since there the front ends. Where the simplex is narrow
+beside the front, points beyond it that lie closer together than a step of the ranges are left out
+(`modefront.solvers.advance.APART`).
 
 The weights are :math:`w_i = (\kappa_i + \rho) / (r_i\, scale_i)`, with multipliers
 :math:`\kappa_i \ge 0` of the bounds, of sum 1: which bounds are active is seen from them.
@@ -90,6 +92,10 @@ class Attainment:
     def goes_on(self, J: Floats) -> bool:
         """Return whether no objective is below its floor."""
         return self.floor is None or bool((self.floor <= J).all())
+
+    def distance(self, beta: Floats, other: Floats) -> float:
+        """Return the distance of two points of the plane, in units of the ranges."""
+        return self.target.distance(beta, other)
 
     def place(self, _: int, J: Floats) -> Floats:
         """Return the coordinates (n,) of the point of the plane that is projected onto J."""

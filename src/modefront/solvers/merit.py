@@ -96,9 +96,10 @@ def projected(x: Floats) -> Floats:
 
     doi:10.1007/BF01580223
 
-    >>> projected(np.array([0.9, 0.3, -2.0])).tolist()
+    >>> projected(np.array([0.9, 0.3, -2.0])).round(12).tolist()
     [0.8, 0.2, 0.0]
     """
+    x = x - x.max()  # the point is the same, but a great number would swallow the 1
     falling = np.sort(x)[::-1]
     level = (np.cumsum(falling) - 1) / np.arange(1, x.size + 1)
     return np.maximum(x - level[np.flatnonzero(falling > level)[-1]], 0.0)

@@ -53,6 +53,10 @@ class Projection:
         """Return False: of two objectives, the front ends at the edges."""
         return False
 
+    def distance(self, beta: Floats, other: Floats) -> float:
+        """Return the distance of two points of the plane, in units of the ranges."""
+        return self.target.distance(beta, other)
+
     def place(self, _: int, J: Floats) -> Floats:
         """Return the coordinates (n,) of the point that is projected onto J."""
         return self.target.place(J)

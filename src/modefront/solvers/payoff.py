@@ -52,6 +52,10 @@ class Payoff:
         gamma = np.linalg.solve(self.Phi, (J - self.utopia) / self.scale)
         return gamma - (gamma.sum() - 1) / gamma.size
 
+    def distance(self, beta: Floats, other: Floats) -> float:
+        """Return the greatest difference of two points of the plane, in units of the ranges."""
+        return float(np.abs(self.Phi @ (beta - other)).max())
+
     def subproblem(self, beta: Floats) -> Linear:
         """Return the programme of one point of the simplex."""
         return boundary(self.Phi @ beta, -self.Phi.sum(axis=1), self.utopia, self.scale)

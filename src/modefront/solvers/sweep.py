@@ -39,6 +39,10 @@ class WeightedSums:
         """Return False: there are no weights beyond the simplex."""
         return False
 
+    def distance(self, beta: Floats, other: Floats) -> float:
+        """Return the greatest difference of two points of the simplex."""
+        return float(np.abs(beta - other).max())
+
     def place(self, edge: int, _: Floats) -> Floats:
         """Return the corner of the simplex at which an edge is the solution."""
         return np.eye(self.scale.size)[edge]

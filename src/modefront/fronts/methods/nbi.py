@@ -12,6 +12,7 @@ from modefront._typing import Floats
 from modefront.fronts.methods.base import Along, Setting
 from modefront.solvers.advance import Simplex
 from modefront.solvers.basins import explore_between
+from modefront.solvers.border import without_slack
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import Payoff
@@ -68,6 +69,8 @@ class NormalBoundaryIntersection:
             setting.work,
             setting.archive,
         )
+        if len(setting.edges) > 2:
+            along = without_slack(problem, target, along, setting.work)
         front = _without_copies(lattice, solved, along, target)
         return _branches(setting, front) if len(setting.edges) == 2 else front
 

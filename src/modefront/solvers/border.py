@@ -1,0 +1,82 @@
+r"""The border of a front of three and more objectives, where some bounds hold nothing.
+
+There the achievement function of `modefront.solvers.attainment` leaves the objectives whose bounds
+are not active to their share :math:`\rho`. Where parameters outnumber the data, these objectives
+fall along flat valleys on which the greatest excess is the same, and a share so small does not lead
+to their end. So with the active bounds held, their sum is minimised for itself, a lexicographic
+optimum (Steuer & Choo 1983, doi:10.1007/BF02591870), and the point is solved again from there:
+
+.. math:: \min_\theta \sum_{i \notin A} y_i \quad\text{subject to}\quad y_i = y_i^*,\; i \in A .
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+import numpy as np
+
+from modefront._typing import Bools, Floats
+from modefront.solvers.attainment import SAME, Attainment, active_bounds
+from modefront.solvers.payoff import Payoff
+from modefront.solvers.problem import Problem
+from modefront.solvers.scalarisation import Linear
+from modefront.solvers.sqp import Options, Solution, begin, solve
+from modefront.work.task import IMMEDIATE, Executor, Task
+
+GAIN = 1e-5
+"""Fall of an objective, over itself, that is worth another model."""
+
+_FEW = Options(iterations=40)
+
+
+def without_slack(
+    problem: Problem, target: Payoff, points: Sequence[Solution], work: Executor = IMMEDIATE
+) -> list[Solution]:
+    """Return the points, those of the border with all other objectives as small as they can be."""
+    doubtful = [k for k, point in enumerate(points) if _free(target, point).any()]
+    tasks = [
+        Task(("front", "nbi", "border", k + 1), _tightened, (problem, target, points[k]))
+        for k in doubtful
+    ]
+    out = list(points)
+    for k, point in zip(doubtful, work.run(tasks), strict=True):
+        out[k] = point
+    return out
+
+
+def _free(target: Payoff, point: Solution) -> Bools:
+    """Return which objectives (n,) no bound holds; none of a point that solves no programme."""
+    if point.beta is None or not point.converged:
+        return np.zeros(target.scale.size, dtype=np.bool_)
+    active = active_bounds(point.weights * target.scale * target.Phi.sum(axis=1))
+    return ~active if active.any() else np.zeros_like(active)
+
+
+def _tightened(problem: Problem, target: Payoff, point: Solution) -> Solution:
+    """Return a point of the border with the objectives that no bound holds at their least."""
+    free, J = _free(target, point), point.at.J
+    held = np.eye(J.size)[~free] / target.scale
+    programme = Linear(np.where(free, 1 / target.scale, 0.0), held, held @ J)
+    end = solve(problem, programme, begin(problem.evaluate(point.at.theta)), _FEW)
+    evaluations = point.evaluations + end.evaluations + 1
+    if not _is_better(target, end.at.J, J):
+        return replace(point, evaluations=evaluations)
+    beta = target.place(J) if point.beta is None else point.beta
+    attainment = Attainment(target, np.zeros((0, J.size)))
+    again = solve(problem, attainment.subproblem(beta), begin(end.at))
+    evaluations += again.evaluations
+    best = again if again.converged and _is_better(target, again.at.J, J) else end
+    weights = again.weights if best is again else point.weights
+    status = point.status
+    return replace(best, weights=weights, status=status, evaluations=evaluations, beta=beta)
+
+
+def _is_better(target: Payoff, J: Floats, known: Floats) -> bool:
+    """Return whether objectives are nowhere greater than known ones and somewhere clearly less."""
+    if not np.isfinite(J).all():
+        return False
+    unit = np.maximum(np.abs(known), np.finfo(float).tiny)
+    loss, gain = ((J - known) / target.scale).max(), ((known - J) / unit).max()
+    worth = ((known - J) / target.scale).max() > SAME
+    return bool(loss <= SAME and gain > GAIN and worth)
