@@ -23,6 +23,7 @@ class Variable:
     section : heading of the table in the documentation
     required : whether every file of results has it
     since : first format that has it
+    together : name of variables of which a file has all or none; empty for a variable alone
     """
 
     name: str
@@ -33,6 +34,7 @@ class Variable:
     section: str = ""
     required: bool = False
     since: int = 1
+    together: str = ""
 
     @property
     def attributes(self) -> dict[str, str]:

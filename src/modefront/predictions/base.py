@@ -8,7 +8,7 @@ this one, and a line in `modefront.predictions`.
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Protocol, Self
 
 import numpy as np
@@ -118,6 +118,16 @@ class Kind:
     @property
     def schema(self) -> Iterator[Variable]:
         """All variables that results have of predictions of this kind."""
+        for variable in self._of_points():
+            yield replace(variable, together=f"{self.dimension} at points")
+        for ranged in self.ranged:
+            for variable in self._linearised(ranged):
+                yield replace(variable, together=f"{self.dimension} to first order")
+            for variable in self._drawn(ranged):
+                yield replace(variable, together=f"{self.dimension} of draws")
+
+    def _of_points(self) -> Iterator[Variable]:
+        """Yield the variables of the models of the results."""
         dimension = (self.dimension,)
         for x in self.variables:
             yield Variable(x.name, ("point", *dimension), x.meaning, unit=x.unit)
@@ -133,11 +143,9 @@ class Kind:
             for x in self.check.variables:
                 yield Variable(x.name, dimension, x.meaning, unit=x.unit)
             yield Variable(self.check.label.name, dimension, self.check.label.meaning, "text")
-        for x in self.ranged:
-            yield from self._posterior(x)
 
-    def _posterior(self, variable: ResultVariable) -> Iterator[Variable]:
-        """Yield the variables of the posterior of one of them."""
+    def _linearised(self, variable: ResultVariable) -> Iterator[Variable]:
+        """Yield the variables of the posterior of one of them, to first order."""
         dimension, both = (self.dimension,), (self.dimension, f"{self.dimension}_other")
         name, unit, by = variable.name, variable.unit, "by the posterior, to first order"
         if variable.logarithmic:
@@ -155,6 +163,10 @@ class Kind:
             squared = f"{unit}2" if unit else ""
             meaning = f"covariance of {name} {by}"
             yield Variable(f"posterior_{name}_covariance", both, meaning, unit=squared)
+
+    def _drawn(self, variable: ResultVariable) -> Iterator[Variable]:
+        """Yield the variables of models drawn from the posterior."""
+        dimension, name, unit = (self.dimension,), variable.name, variable.unit
         drawn = f"{name} of each model drawn from the posterior; NaN where there is none"
         yield Variable(f"draw_{name}", ("draw", *dimension), drawn, unit=unit)
         over = f"{name} over the models drawn from the posterior"

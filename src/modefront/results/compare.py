@@ -112,7 +112,7 @@ def compare(folders: Sequence[Path]) -> Comparison:
     found: list[tuple[str, xr.Dataset]] = []
     for folder in folders:
         try:
-            found.append((str(folder), read_dataset(folder)))
+            found.append((str(folder), read_dataset(folder, whole=False)))
         except InputError as error:
             faults.extend(error.faults)
     groups = [tuple(map(str, data["group"].values)) for _, data in found]

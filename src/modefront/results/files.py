@@ -8,7 +8,7 @@ from pathlib import Path
 import xarray as xr
 
 from modefront.errors import Fault, InputError
-from modefront.results.schema import FORMAT, faults
+from modefront.results.schema import FORMAT, faults, missing
 
 FILE = "results.nc"
 
@@ -22,11 +22,11 @@ def write(data: xr.Dataset, path: Path) -> None:
     temporary.replace(path)
 
 
-def read_dataset(folder: Path) -> xr.Dataset:
+def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
     """Return the results in a folder.
 
-    Raises InputError where there are none, where they are not those of modefront, and where they
-    are of another format.
+    A ``whole`` file has all variables that belong together. Raises InputError where there are none,
+    where they are not those of modefront, and where they are of another format.
     """
     path = folder / FILE
     if not path.is_file():
@@ -41,7 +41,8 @@ def read_dataset(folder: Path) -> xr.Dataset:
         expected = f"results of format {FORMAT}"
         text = f"format {version}, of another version of modefront: run the study again"
         raise InputError(Fault(str(path), "attribute 'format'", expected, text))
-    wrong = [Fault(str(path), *parts) for parts in faults(data)]
+    found = [*faults(data), *(missing(data) if whole else ())]
+    wrong = [Fault(str(path), *parts) for parts in found]
     if wrong:
         raise InputError(wrong)
     return data

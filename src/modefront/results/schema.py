@@ -374,7 +374,9 @@ def _errors() -> Iterator[Variable]:
 
 
 def _in(section: str, variables: Iterable[Variable]) -> Iterator[Variable]:
-    return (replace(variable, section=section) for variable in variables)
+    for variable in variables:
+        together = _SET_OF.get(variable.name, variable.together)
+        yield replace(variable, section=section, together=together)
 
 
 def _predictions() -> Iterator[Variable]:
@@ -392,6 +394,41 @@ def _predictions() -> Iterator[Variable]:
         "parameters of models drawn from the posterior, within the bounds",
     )
 
+
+TOGETHER: Mapping[str, tuple[str, ...]] = {
+    "branches": ("piece", "end_label", "end_theta", "end_objective", "end_converged"),
+    "lattice": ("lattice", "lattice_label"),
+    "errors of points": ("eigenvalue_error", "shape_error", "certified"),
+    "errors of minima": (
+        "minimum_eigenvalue_error",
+        "minimum_shape_error",
+        "minimum_certified",
+    ),
+    "scatter": (
+        "theta_std",
+        "theta_covariance",
+        "objective_std",
+        "objective_covariance",
+        "frequency_std",
+        "mac_std",
+        "scatter_doubt",
+    ),
+    "posterior": (
+        "posterior_std",
+        "posterior_covariance",
+        "posterior_frequency_std",
+        "posterior_mac_std",
+    ),
+    "bootstrap": (
+        "bootstrap_theta",
+        "bootstrap_objective",
+        "bootstrap_theta_std",
+        "bootstrap_objective_std",
+    ),
+}
+"""Variables of which a file has all or none, beside those of predictions."""
+
+_SET_OF = {name: together for together, names in TOGETHER.items() for name in names}
 
 VARIABLES: Mapping[str, Variable] = {
     variable.name: variable
@@ -502,3 +539,24 @@ def faults(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
             yield f"variable '{name}'", f"values of type {variable.values}", str(found.dtype)
     if not data.sizes.get("point") or not data.sizes.get("mode"):
         yield "dimensions 'point' and 'mode'", "at least one each", "none"
+
+
+def missing(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
+    """Yield variables and coordinates without which others of a dataset cannot be shown."""
+    sets: dict[str, list[str]] = {}
+    for name, variable in VARIABLES.items():
+        if variable.together:
+            sets.setdefault(variable.together, []).append(name)
+    for names in sets.values():
+        present = [name for name in names if name in data]
+        missing = [name for name in names if name not in data]
+        if present and missing:
+            yield f"variable '{missing[0]}'", f"it, as there is '{present[0]}'", "nothing"
+    kinds = [prediction.kind.dimension for prediction in KINDS]
+    for name in ("range", "statistic", *kinds):
+        if name in data.dims and name not in data.coords:
+            yield f"coordinate '{name}'", DIMENSIONS.get(name, "names of its places"), "nothing"
+    if any(name in data.dims for name in kinds):
+        for name in ("range", "frequency_range"):
+            if name not in data:
+                yield f"variable '{name}'", "it, as there are predictions", "nothing"

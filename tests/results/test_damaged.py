@@ -1,0 +1,82 @@
+"""Results that were damaged, or made by others, are refused in words."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+
+import modefront as mf
+from modefront.results.files import FILE, read_dataset, write
+from modefront.results.schema import ATTRIBUTES, FORMAT, TOGETHER, VARIABLES
+
+NAMES = ("k1", "k2")
+
+
+@pytest.fixture(scope="module")
+def whole() -> xr.Dataset:
+    model = mf.chain(NAMES, [1.0, 1.0], [100.0, 80.0], stiffness_parameters=NAMES)
+    modes = model.modes(np.array([1.1, 0.9]), 2)
+    data = mf.modal_data(
+        modes.frequency, modes.phi.T + 0.01, model.sensors, frequency_std=0.01 * modes.frequency
+    )
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    bounds = dict.fromkeys(NAMES, (0.5, 2.0))
+    problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(NAMES, 1.0))
+    return mf.solve(problem, points=3, search=mf.Search(starts=1, limit=1, evolutions=0)).dataset
+
+
+def refused(data: xr.Dataset, folder: Path, *says: str) -> None:
+    write(data, folder / FILE)
+    with pytest.raises(mf.InputError) as error:
+        read_dataset(folder)
+    for text in (str(folder / FILE), *says):
+        assert text in str(error.value)
+
+
+def test_every_variable_is_in_the_schema(whole: xr.Dataset, tmp_path: Path) -> None:
+    assert set(whole.data_vars) <= set(VARIABLES)
+    assert set(whole.attrs) <= set(ATTRIBUTES)
+    for name, values in whole.data_vars.items():
+        assert values.dims == VARIABLES[str(name)].dimensions
+        assert values.attrs == VARIABLES[str(name)].attributes
+    write(whole, tmp_path / FILE)
+    xr.testing.assert_identical(read_dataset(tmp_path), whole)
+
+
+@pytest.mark.parametrize("name", [x.name for x in VARIABLES.values() if x.required])
+def test_a_missing_variable(name: str, whole: xr.Dataset, tmp_path: Path) -> None:
+    refused(whole.drop_vars(name), tmp_path, f"variable '{name}': expected", "found nothing")
+
+
+@pytest.mark.parametrize("name", ["label", "theta", "converged", "measured_frequency"])
+def test_values_of_another_type_or_shape(name: str, whole: xr.Dataset, tmp_path: Path) -> None:
+    values = whole[name]
+    other: object = np.zeros(values.shape) if name == "label" else np.full(values.shape, "x")
+    changed = whole.assign({name: (values.dims, np.asarray(other))})
+    refused(changed, tmp_path, f"variable '{name}': expected values of type")
+    turned = whole.drop_vars(name).assign({name: (("other", *values.dims[1:]), values.values)})
+    refused(turned, tmp_path, f"variable '{name}': expected dimensions")
+
+
+@pytest.mark.parametrize("name", [x.name for x in ATTRIBUTES.values() if x.required])
+def test_a_missing_attribute(name: str, whole: xr.Dataset, tmp_path: Path) -> None:
+    other = whole.copy()
+    other.attrs = {key: value for key, value in whole.attrs.items() if key != name}
+    refused(other, tmp_path, f"'{name}': expected")
+
+
+def test_variables_that_belong_together(whole: xr.Dataset, tmp_path: Path) -> None:
+    present = [names for names in TOGETHER.values() if names[0] in whole]
+    assert len(present) >= 3
+    for names in present:
+        for name in names:
+            refused(whole.drop_vars(name), tmp_path, f"variable '{name}': expected it, as there is")
+
+
+def test_another_format_and_no_points(whole: xr.Dataset, tmp_path: Path) -> None:
+    later = whole.assign_attrs(format=FORMAT + 1)
+    refused(later, tmp_path, f"expected results of format {FORMAT}", "run the study again")
+    refused(whole.isel(point=slice(0)), tmp_path, "'point' and 'mode': expected at least one")
