@@ -2,8 +2,8 @@
 
 A search evaluates many models on its way. One of them may be better than what another search ends
 at; a point is Pareto optimal only where none of them dominates it. The archive stands between the
-solvers and a problem and keeps the models that no other one dominates. With each piece of work it
-stores those that the piece has added, so that a run that is continued knows the same models.
+solvers and a problem and keeps the models that no other one dominates. With the result of each task
+those that it has evaluated are stored, so that a run that is continued knows the same models.
 """
 
 from __future__ import annotations

@@ -6,7 +6,7 @@ spent, with no test of how far their points are from the front: none of them cou
 doi:10.1109/4235.996017.)
 
 With a seed, pymoo asks for the same models in the same order as long as it is told the same
-objectives. So a generation's evaluations are a piece of work, and a run that is continued is played
+objectives. So a generation's evaluations are a task, and a run that is continued is played
 again with those that are kept, without solving anything, up to where it stopped.
 """
 
