@@ -40,6 +40,15 @@ def test_equal_groups_are_equal_however_they_are_written() -> None:
     assert Group("s", shape="all").modes_of("frequency") == ()
 
 
+def test_kinds_may_be_given_by_position() -> None:
+    assert Group("f", "all") == Group("f", frequency="all")
+    assert Group("s", (), [2, 1]) == Group("s", shape=[2, 1])
+    with pytest.raises(ValueError, match="each of frequency, shape once at most"):
+        Group("f", "all", frequency="all")
+    with pytest.raises(ValueError, match="each of frequency, shape once at most"):
+        Group("f", "all", (), ())
+
+
 def test_kinds_have_names_of_their_own() -> None:
     names = [kind.name for kind in KINDS]
     assert len(set(names)) == len(names)

@@ -23,7 +23,8 @@ class Group:
     """An objective J_i: the sum of the squares of the residuals of its members.
 
     Each kind of residual (`modefront.residuals.kinds`) is a keyword that names its measured modes:
-    numbers, counted from 1, or ``"all"``. Raises ValueError where anything else is given.
+    numbers, counted from 1, or ``"all"``. Kinds may be given by position too, in the order of their
+    registration: frequencies, then shapes. Raises ValueError where anything else is given.
 
     Attributes
     ----------
@@ -40,8 +41,14 @@ class Group:
     scale: Scale
     chosen: tuple[tuple[str, tuple[int, ...] | Literal["all"]], ...]
 
-    def __init__(self, name: str, *, scale: Scale = "measured", **modes: ModeNumbers) -> None:
+    def __init__(
+        self, name: str, *by_position: ModeNumbers, scale: Scale = "measured", **modes: ModeNumbers
+    ) -> None:
         known = [kind.name for kind in KINDS]
+        if len(by_position) > len(known) or set(known[: len(by_position)]) & set(modes):
+            expected = f"each of {', '.join(known)} once at most"
+            raise ValueError(f"group '{name}': expected {expected}, found one more")
+        modes = dict(zip(known, by_position, strict=False)) | modes
         for kind in modes:
             if kind not in known:
                 expected = ", ".join(known)
