@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import pickle
 from collections.abc import Callable
 from dataclasses import replace
 
@@ -22,7 +23,7 @@ from modefront.models.reduced.basis import snapshot
 from modefront.models.reduced.model import ReducedModel, Snap
 from modefront.modes import derivatives as exact
 from modefront.modes.sparse import lowest
-from modefront.work.costs import Costs, uncounted
+from modefront.work.costs import Costs, counted, uncounted
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
 NAMES = ("k1", "k2", "k3")
@@ -538,3 +539,19 @@ def test_a_model_without_modes_ends_nothing() -> None:
     with pytest.raises(ModelError):
         model.modes(bad, 3)
     assert model.modes(good, 3).lam == pytest.approx(full.modes(good, 3).lam, rel=1e-8)
+
+
+def test_models_survive_pickle_without_their_factors(full: MatrixModel) -> None:
+    theta = np.array([0.8, 1.2, 1.5])
+    expected = full.modes(theta, COUNT)
+    again = pickle.loads(pickle.dumps(full)).modes(theta, COUNT)
+    assert again.lam.tolist() == expected.lam.tolist()
+    assert again.phi.tolist() == expected.phi.tolist()
+    model = reduced(full)
+    model.take(model.first)
+    model.take(Snap(theta, COUNT))
+    other = pickle.loads(pickle.dumps(model))
+    with counted() as costs:
+        found = other.modes(theta, COUNT)
+    assert costs.eigenproblems == 0, "snapshots were counted when they were taken"
+    assert found.lam.tolist() == model.modes(theta, COUNT).lam.tolist()

@@ -6,7 +6,7 @@ import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 import scipy.sparse
@@ -174,6 +174,10 @@ class MatrixModel:
     @cached_property
     def _dense_selection(self) -> Floats:
         return self.selection.toarray()
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state without the analysis of the pattern, which is made again when needed."""
+        return {name: value for name, value in vars(self).items() if name != "pencil"}
 
     @cached_property
     def pencil(self) -> Pencil:

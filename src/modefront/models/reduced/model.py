@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass
 from itertools import combinations
+from typing import Any
 
 import numpy as np
 
@@ -160,6 +161,10 @@ class ReducedModel:
     spare: int = 0
     _wanted: tuple[Snap, ...] = ()
     _state: _State | None = None
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state without basis and factor; snapshots are taken again when needed."""
+        return {**vars(self), "_state": None}
 
     @property
     def parameters(self) -> tuple[str, ...]:
