@@ -32,7 +32,7 @@ from modefront.errors import ModelError
 from modefront.linalg.affine import Monomials, sparse_affine
 from modefront.models.matrices import MatrixModel, affine_model
 from modefront.models.mesh import mesh_model
-from modefront.models.reduced.model import ReducedModel, Snap
+from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.modes import dense
 from modefront.work.costs import counted
 
@@ -239,7 +239,7 @@ def box(bounds: tuple[float, float], structures: int, count: int, seed: int) -> 
         with suppress(ModelError):
             model.take(model.first)
             if number % 3:
-                model.take(Snap(models(rng, lower, upper, 1)[0], MODES + SPARE))
+                model.take(SnapshotRequest(models(rng, lower, upper, 1)[0], MODES + SPARE))
         if not model.snapshots:
             continue
         thetas = models(rng, lower, upper, count)

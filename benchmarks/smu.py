@@ -16,7 +16,7 @@ from modefront._typing import Floats
 from modefront.analysis.certified import POOR
 from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.model import ReducedModel, Snap
+from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.pairing.match import modes_needed
 from modefront.residuals.base import Scale
 from modefront.solvers.scalarisation import weighted
@@ -127,6 +127,6 @@ def weighted_minimum(
         (certificate,) = model.certify([(found.at.theta, wanted)])
         if certificate.eigenvalue.max() <= model.tolerance:
             return found
-        model.take(Snap(found.at.theta, model.count))
+        model.take(SnapshotRequest(found.at.theta, model.count))
         poor = certificate.eigenvalue.max() > POOR
         found = begin(problem.evaluate(theta if poor else found.at.theta))

@@ -12,7 +12,7 @@ from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.fem.elements.beam import beam
 from modefront.fem.elements.brick import brick
-from modefront.fem.elements.kit import ElementMatrices
+from modefront.fem.elements.common import ElementMatrices
 from modefront.fem.elements.shapes import TETRAHEDRON_EDGES
 from modefront.fem.elements.shell import shell
 from modefront.fem.elements.tetrahedron import tetrahedron
@@ -119,7 +119,7 @@ ELEMENTS: dict[str, tuple[Floats, int, Callable[[Floats], ElementMatrices]]] = {
 }
 
 
-def total(parts: tuple[fem.elements.kit.Part, ...]) -> Floats:
+def total(parts: tuple[fem.elements.common.Part, ...]) -> Floats:
     """Sum of the parts of the first element."""
     return np.asarray(sum(part.matrices[0] for part in parts))
 

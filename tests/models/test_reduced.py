@@ -20,7 +20,7 @@ from modefront.models.matrices import MatrixModel, affine_model, matrices
 from modefront.models.mesh import mesh_model
 from modefront.models.reduced import completeness
 from modefront.models.reduced.basis import snapshot
-from modefront.models.reduced.model import ReducedModel, Snap
+from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.modes import derivatives as exact
 from modefront.modes.sparse import lowest
 from modefront.work.costs import Costs, counted, uncounted
@@ -91,7 +91,7 @@ def test_the_basis_is_orthonormal_in_energy_and_grows_without_change(full: Matri
     model = reduced(full)
     model.modes(np.ones(3), 8)
     before = model._ready().space.basis
-    model.take(Snap(np.array([0.6, 1.5, 2.0]), 10))
+    model.take(SnapshotRequest(np.array([0.6, 1.5, 2.0]), 10))
     basis = model._ready().space.basis
     n = before.columns
     assert basis.columns > n
@@ -108,7 +108,7 @@ def test_the_basis_is_orthonormal_in_energy_and_grows_without_change(full: Matri
 
 def test_a_snapshot_is_exact_with_its_derivatives(full: MatrixModel) -> None:
     model, theta = reduced(full), np.array([0.7, 1.4, 2.1])
-    model.take(Snap(theta, 10))
+    model.take(SnapshotRequest(theta, 10))
     found, expected = model.modes(theta, 8), full.modes(theta, 8)
     r = elastic(expected.lam)
     assert found.lam[r] == pytest.approx(expected.lam[r], rel=1e-9)
@@ -138,7 +138,7 @@ def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int)
     model = reduced(full)
     model.modes(np.ones(3), 8)
     for _ in range(snapshots - 1):
-        model.take(Snap(rng.uniform(0.5, 2.3, 3), 10))
+        model.take(SnapshotRequest(rng.uniform(0.5, 2.3, 3), 10))
     for theta in rng.uniform(0.5, 2.3, (3, 3)):
         exact_modes, found = lowest(full.pencil, theta, 8), model.modes(theta, 8)
         r = elastic(found.lam)
@@ -172,13 +172,13 @@ def test_costs_are_counted_once(monkeypatch: pytest.MonkeyPatch, costs: Costs) -
     for _ in range(3):
         model.modes(np.ones(3), 8)
     assert cost() == (1, 2, 6, 3), "one solution in full, and one at each bound with its factor"
-    model.take(Snap(np.array([0.5, 1.0, 2.0]), 10))
+    model.take(SnapshotRequest(np.array([0.5, 1.0, 2.0]), 10))
     assert cost() == (1, 3, 7, 3), "a factor tells that the basis misses none of ten modes"
-    model.take(Snap(np.array([0.95, 1.0, 1.05]), 6))
+    model.take(SnapshotRequest(np.array([0.95, 1.0, 1.05]), 6))
     assert cost() == (1, 3, 8, 3), "the first factor is enough where no mode can be missing"
     model.modes(np.ones(3), 11)
     assert cost() == (2, 5, 8, 3)
-    model.resume([Snap(np.ones(3), 10)])
+    model.resume([SnapshotRequest(np.ones(3), 10)])
     model.modes(np.ones(3), 8)
     assert cost() == (2, 5, 8, 4)
     model.restart()
@@ -200,7 +200,7 @@ def test_a_snapshot_of_several_models_is_exact_at_each(costs: Costs) -> None:
     model.modes(np.ones(3), 8)
     before = costs.corrected
     errors, off = truth(model, thetas), []
-    model.take(Snap(thetas, 6))
+    model.take(SnapshotRequest(thetas, 6))
     assert costs.corrected == before + 3
     assert costs.eigenproblems == 1
     for theta in thetas:
@@ -223,7 +223,7 @@ def test_a_snapshot_leaves_models_as_they_are_that_are_good_enough(costs: Costs)
     assert 1e-9 < errors[1] < 0.2 * errors[[0, 2]].min()
     middle = float(np.sqrt(errors[1] * errors[[0, 2]].min()))
     corrected, columns = costs.corrected, model.columns
-    found = model.take(Snap(thetas, 6, middle))
+    found = model.take(SnapshotRequest(thetas, 6, middle))
     assert 0.5 * errors.max() <= found <= errors.max() * (1 + 1e-6)
     assert costs.corrected == corrected + 2
     after = truth(model, thetas)
@@ -231,7 +231,7 @@ def test_a_snapshot_leaves_models_as_they_are_that_are_good_enough(costs: Costs)
     assert after[1] > 1e-10
     assert model.columns > columns
     columns = model.columns
-    assert 0.5 * after.max() <= model.take(Snap(thetas, 6, 2 * after[1])) < 2 * after[1]
+    assert 0.5 * after.max() <= model.take(SnapshotRequest(thetas, 6, 2 * after[1])) < 2 * after[1]
     assert (costs.corrected, model.columns) == (corrected + 2, columns)
 
 
@@ -243,7 +243,7 @@ def test_models_too_far_for_the_factor_are_solved_in_full_and_the_others_are_not
     model = ReducedModel(full, 10, np.ones(3), *bounds)
     model.modes(np.ones(3), 8)
     corrected = costs.corrected
-    model.take(Snap(np.array([[0.015, 2.0, 2.0], [0.9, 1.1, 1.0]]), 6))
+    model.take(SnapshotRequest(np.array([[0.015, 2.0, 2.0], [0.9, 1.1, 1.0]]), 6))
     assert costs.eigenproblems == 2
     assert costs.corrected == corrected + 1
     for theta in ([0.015, 2.0, 2.0], [0.9, 1.1, 1.0]):
@@ -261,7 +261,7 @@ def test_what_takes_too_many_steps_is_solved_in_full_where_it_must_be_exact(
     model.modes(np.ones(3), 8)
     assert costs.eigenproblems == 1, "modes at the bounds are kept as far as they came"
     assert model.columns > 12 + 3 * 10
-    model.take(Snap(corner, 8))
+    model.take(SnapshotRequest(corner, 8))
     assert costs.eigenproblems == 2
     assert model.modes(corner, 8).lam == pytest.approx(full.modes(corner, 8).lam, rel=1e-9)
 
@@ -271,8 +271,8 @@ def test_the_order_of_computing_snapshots_changes_no_digit(costs: Costs) -> None
     one, other = reduced(full), reduced(plate())
     with uncounted():
         for theta in thetas:
-            one.take(Snap(theta, 10))
-    other.resume([Snap(theta, 10) for theta in thetas])
+            one.take(SnapshotRequest(theta, 10))
+    other.resume([SnapshotRequest(theta, 10) for theta in thetas])
     at = np.array([0.9, 0.6, 1.4])
     assert one.modes(at, 8).lam.tolist() == other.modes(at, 8).lam.tolist()
     assert costs.eigenproblems == 0, "what was counted before is not counted again"
@@ -284,14 +284,14 @@ def test_the_basis_keeps_within_its_memory() -> None:
     assert model.capacity == 20
     model.modes(np.ones(3), 8)
     assert model.columns == 20
-    model.take(Snap(np.array([0.5, 1.0, 2.0]), 10))
+    model.take(SnapshotRequest(np.array([0.5, 1.0, 2.0]), 10))
     assert model.columns == 20
 
 
 def test_a_single_mode_is_a_basis_where_there_is_no_room_for_more() -> None:
     model = ReducedModel(plate(), 1, np.ones(3), LOWER, UPPER, memory=1e-9)
-    model.take(Snap(np.ones(3), 1))
-    model.take(Snap(np.array([0.9, 1.0, 1.1]), 1))
+    model.take(SnapshotRequest(np.ones(3), 1))
+    model.take(SnapshotRequest(np.array([0.9, 1.0, 1.1]), 1))
     assert model.columns == 1
     found, expected = model.modes(np.ones(3), 1), model.full.modes(np.ones(3), 1)
     assert found.lam == pytest.approx(expected.lam, rel=1e-9)
@@ -301,7 +301,7 @@ def test_a_snapshot_that_fails_leaves_the_model_as_it_was(costs: Costs) -> None:
     model = reduced(plate())
     before = model.modes(np.ones(3), 8).lam
     with pytest.raises(ModelError):
-        model.take(Snap(np.array([1.0, 1.0, -1.0]), 10))
+        model.take(SnapshotRequest(np.array([1.0, 1.0, -1.0]), 10))
     assert model.modes(np.ones(3), 8).lam.tolist() == before.tolist()
     assert costs.eigenproblems == 1
 
@@ -340,7 +340,7 @@ def test_a_mode_that_the_basis_misses_is_found_by_inertia(costs: Costs) -> None:
     assert costs.factorisations == 3
     (alone,) = model.certify([(theta, np.arange(3))])
     assert np.isinf(alone.eigenvalue).all()
-    model.take(Snap(theta, 10))
+    model.take(SnapshotRequest(theta, 10))
     (known,) = model.certify([(theta, np.arange(3))])
     assert known.eigenvalue.max() < 1e-8
 
@@ -369,7 +369,7 @@ def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
     pencil = full.pencil
     one = snapshot(pencil, np.ones(3), 10)
     model = reduced(full)
-    model.take(Snap(np.ones(3), 10))
+    model.take(SnapshotRequest(np.ones(3), 10))
     basis = model._ready().space.basis
     assert completeness.semidefinite(basis.K)
     for theta in rng.uniform(0.4, 2.5, (5, 3)):
@@ -503,7 +503,7 @@ def test_a_mode_that_enters_where_two_stiffnesses_drop_is_looked_for() -> None:
     assert there.tolist() == [1.0, 1e-3, 1e-3]
     expected = full.modes(there, 3, derivatives=False).lam
     assert model.modes(there, 3, derivatives=False).lam[0] > 2 * expected[0]
-    model.take(Snap(there, 3))
+    model.take(SnapshotRequest(there, 3))
     assert model.modes(there, 3, derivatives=False).lam == pytest.approx(expected, rel=1e-8)
     assert not model.lacking(3)
 
@@ -533,9 +533,9 @@ def test_a_model_without_modes_ends_nothing() -> None:
     here, there = model.certify([(good, np.arange(3)), (bad, np.arange(3))])
     assert np.isfinite(here.eigenvalue).all()
     assert np.isinf(there.eigenvalue).all()
-    model.take(Snap(np.array([good, bad]), 4))
+    model.take(SnapshotRequest(np.array([good, bad]), 4))
     assert model.modes(good, 3).lam == pytest.approx(full.modes(good, 3).lam, rel=1e-8)
-    model.take(Snap(bad, 0))
+    model.take(SnapshotRequest(bad, 0))
     with pytest.raises(ModelError):
         model.modes(bad, 3)
     assert model.modes(good, 3).lam == pytest.approx(full.modes(good, 3).lam, rel=1e-8)
@@ -549,7 +549,7 @@ def test_models_survive_pickle_without_their_factors(full: MatrixModel) -> None:
     assert again.phi.tolist() == expected.phi.tolist()
     model = reduced(full)
     model.take(model.first)
-    model.take(Snap(theta, COUNT))
+    model.take(SnapshotRequest(theta, COUNT))
     other = pickle.loads(pickle.dumps(model))
     with counted() as costs:
         found = other.modes(theta, COUNT)

@@ -5,7 +5,7 @@ import pytest
 from problems import Derivatives, Known, box, circles
 
 from modefront._typing import Floats
-from modefront.solvers.advance import simplex
+from modefront.solvers.continuation import simplex
 from modefront.solvers.edges import edge
 from modefront.solvers.explore import Search
 from modefront.solvers.flat import flat_points, identifiable_part

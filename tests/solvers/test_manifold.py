@@ -9,7 +9,7 @@ from problems import Derivatives, Known, box, many_minima
 
 from modefront._typing import Floats
 from modefront.solvers.explore import Descent, Search, explore
-from modefront.solvers.manifold import Extent, Manifold, equally_good, follow
+from modefront.solvers.manifold import Extent, Manifold, equivalent_models, follow
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.work.costs import Costs
@@ -83,7 +83,7 @@ def test_disjoint_curves_are_all_followed_and_none_twice() -> None:
     problem = of(two_circles, [-2, -2], [2, 2])
     minima = explore(problem, Descent(ONE), Search(starts=20), rng=np.random.default_rng(0))
     assert len(minima) > 2
-    found = equally_good(problem, ONE, [one.at for one in minima], h=0.03, limit=200)
+    found = equivalent_models(problem, ONE, [one.at for one in minima], h=0.03, limit=200)
     assert [one.extent for one in found] == [Extent.CLOSED] * 2
     sides = [np.sign(thetas(one.models)[:, 0]) for one in found]
     assert sorted(float(side.mean()) for side in sides) == [-1.0, 1.0]
@@ -118,7 +118,7 @@ def test_isolated_minima_are_counted() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
     programme = weighted(np.array([1.0, 0.0]))
     minima = explore(problem, Descent(programme), Search(), rng=np.random.default_rng(0))
-    found = equally_good(problem, programme, [one.at for one in minima])
+    found = equivalent_models(problem, programme, [one.at for one in minima])
     assert [one.extent for one in found] == [Extent.ISOLATED] * 4
     assert [one.dimension for one in found] == [0] * 4
 
@@ -338,7 +338,7 @@ def test_a_manifold_is_followed_once_from_wherever_its_minima_lie(costs: Costs) 
         if (theta >= 0).all() and (theta <= 1).all():
             minima.append(problem.evaluate(theta))
     before = costs.eigenproblems
-    (found,) = equally_good(problem, ONE, minima)
+    (found,) = equivalent_models(problem, ONE, minima)
     assert (found.dimension, found.minima) == (4, 20)
     assert found.evaluations == costs.eigenproblems - before
     assert found.evaluations == pytest.approx(97, rel=0.05)
@@ -359,13 +359,13 @@ def test_another_programme_shares_a_manifold_that_is_as_good_for_it() -> None:
     idle = np.array([False, False, True])
     known: list[Manifold] = []
     for weights in np.eye(3)[:2]:
-        known += equally_good(problem, weighted(weights), [at], known=known, idle=idle)
+        known += equivalent_models(problem, weighted(weights), [at], known=known, idle=idle)
     assert [one.twin for one in known] == [None, 0]
     assert known[1].models == known[0].models
     assert known[1].evaluations < 10 < known[0].evaluations
     assert thetas(known[0].models)[:, 2].tolist() == [0.5] * len(known[0].models)
     other = problem.evaluate(np.array([0.5, 0.5, 0.5]))
-    (last,) = equally_good(problem, weighted(np.eye(3)[2]), [other], known=known, idle=idle)
+    (last,) = equivalent_models(problem, weighted(np.eye(3)[2]), [other], known=known, idle=idle)
     assert last.twin is None
 
 
@@ -375,7 +375,7 @@ def test_minima_that_differ_in_idle_parameters_are_one() -> None:
 
     problem = of(valley, [0, 0], [1, 1])
     minima = [problem.evaluate(np.array([0.5, y])) for y in (0.1, 0.5, 0.9)]
-    (found,) = equally_good(problem, ONE, minima, idle=np.array([False, True]))
+    (found,) = equivalent_models(problem, ONE, minima, idle=np.array([False, True]))
     assert (found.extent, found.minima, len(found.models)) == (Extent.ISOLATED, 3, 1)
 
 
@@ -394,7 +394,7 @@ def test_no_more_evaluations_than_allowed(costs: Costs) -> None:
     theta = np.linalg.pinv(A) @ np.array([3.0, 0.25])
     start = problem.evaluate(theta)
     before = costs.eigenproblems
-    first, second = equally_good(
+    first, second = equivalent_models(
         problem, ONE, [start, problem.evaluate(0.1 * theta)], evaluations=21
     )
     assert costs.eigenproblems - before == 21 + 1

@@ -15,8 +15,8 @@ from modefront.fronts.driver import pareto_front
 from modefront.fronts.front import Front
 from modefront.fronts.options import Pareto
 from modefront.fronts.point import Kind, of_kind
-from modefront.solvers.advance import simplex
 from modefront.solvers.basins import explore_between, ranks
+from modefront.solvers.continuation import simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.evolutionary import evolve_front
 from modefront.solvers.explore import Descent, Search, explore

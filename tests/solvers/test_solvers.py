@@ -27,15 +27,15 @@ from problems import (
 )
 
 from modefront._typing import Floats
-from modefront.solvers.advance import advance, neighbours, simplex
 from modefront.solvers.attainment import Attainment
+from modefront.solvers.continuation import continuation, neighbours, simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.edges import edge, sample, typical_sizes
 from modefront.solvers.explore import Descent, Search, evolve, explore
+from modefront.solvers.gaps import branch_numbers, gaps
 from modefront.solvers.indicators import hypervolume, igd_plus, largest_gap
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import payoff
-from modefront.solvers.pieces import gaps, piece_numbers
 from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Problem
 from modefront.solvers.scalarisation import LogSum, level, weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
@@ -236,7 +236,7 @@ def test_a_disconnected_front_keeps_dominated_points_and_ends_its_pieces() -> No
     left, right = hidden[0], hidden[-1]
     assert gap.end.at.J[0] == pytest.approx(left, abs=1e-4)
     assert gap.start.at.J[0] == pytest.approx(right, abs=1e-4)
-    pieces = piece_numbers(J, optimal, [gap])
+    pieces = branch_numbers(J, optimal, [gap])
     assert set(pieces[optimal]) <= {0, 1, 2}
     assert ((pieces == 1) <= (J[:, 0] <= left + 1e-6)).all()
     assert ((pieces == 2) <= (J[:, 0] >= right - 1e-6)).all()
@@ -309,7 +309,7 @@ def at_theta(theta: float) -> Solution:
 def test_a_point_far_from_its_neighbour_is_solved_from_there_though_the_way_back_agrees() -> None:
     problem = box(circles, [0], [1])
     edges = [at_theta(0.0), at_theta(1.0)]
-    points = advance(problem, TwoBasins(np.ones(2)), edges, simplex(2, 3))
+    points = continuation(problem, TwoBasins(np.ones(2)), edges, simplex(2, 3))
     assert [one.at.theta[0] for one in points] == [0.0, 0.9, 0.9, 1.0]
 
 

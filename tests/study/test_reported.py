@@ -20,11 +20,11 @@ from modefront.fronts.options import Pareto
 from modefront.fronts.point import Kind, of_kind
 from modefront.identifiability.options import Identifiability
 from modefront.results.assemble import _lattice
-from modefront.solvers.advance import Simplex, simplex
+from modefront.solvers.continuation import Simplex, simplex
 from modefront.solvers.explore import Search
 from modefront.solvers.flat import Identifiable
+from modefront.solvers.gaps import Gap
 from modefront.solvers.payoff import Payoff
-from modefront.solvers.pieces import Gap
 from modefront.solvers.problem import Evaluation, ObjectiveDerivatives
 from modefront.solvers.sqp import Solution, Status, begin
 from modefront.study.examples import write_example

@@ -24,7 +24,7 @@ from modefront.errors import ModelError, UnfinishedError
 from modefront.fronts.front import Front
 from modefront.fronts.point import Point
 from modefront.models.reduced.certificate import FOUND, Certificate
-from modefront.models.reduced.model import ReducedModel, Snap
+from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.edges import Edge
@@ -95,7 +95,7 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
     if taken.added and not taken.full:
         (lacking,) = work.run([Task(("probe-basis",), _lacking, (problem, model))])
         if lacking:
-            request = Snap(np.array(lacking), _lowest(problem))
+            request = SnapshotRequest(np.array(lacking), _lowest(problem))
             _take_some(model, "probes", request, None, work)
     for number in range(1, ROUNDS + 1):
         if not taken.added:
@@ -181,7 +181,7 @@ class _Taken:
 def _take_some(
     model: ReducedModel,
     name: str,
-    request: Snap,
+    request: SnapshotRequest,
     front: Front | None,
     work: Executor,
 ) -> _Taken:
@@ -204,7 +204,7 @@ def _take_some(
     return _Taken(error, added, enough=False, full=False)
 
 
-def _take(model: ReducedModel, request: Snap) -> SnapshotTaken | None:
+def _take(model: ReducedModel, request: SnapshotRequest) -> SnapshotTaken | None:
     """Take a snapshot, which changes the basis of the model.
 
     Where none of its models can be solved, the basis learns that, so that it is not searched there
@@ -224,13 +224,13 @@ def _take(model: ReducedModel, request: Snap) -> SnapshotTaken | None:
     return SnapshotTaken(float(error), columns, columns - before, modes)
 
 
-def _snap(solutions: Sequence[Solution], enough: float) -> Snap:
+def _snap(solutions: Sequence[Solution], enough: float) -> SnapshotRequest:
     """Return the snapshot of some models, of modes up to the last one that is paired."""
     modes = max(int(_paired(solution).max()) + 1 for solution in solutions)
-    return Snap(np.array([solution.at.theta for solution in solutions]), modes, enough)
+    return SnapshotRequest(np.array([solution.at.theta for solution in solutions]), modes, enough)
 
 
-def _farthest(model: ReducedModel, front: Front) -> Snap:
+def _farthest(model: ReducedModel, front: Front) -> SnapshotRequest:
     """Return the snapshot of the models that are the farthest from all others."""
     distinct = list({_key(solution): solution for solution in _of_the_front(front)}.values())
     ranked = sorted(distinct, key=lambda solution: model.distance(solution.at.theta), reverse=True)

@@ -18,11 +18,11 @@ from modefront.identifiability.combinations import without_effect
 from modefront.identifiability.options import Identifiability
 from modefront.identifiability.scale import scale_at
 from modefront.residuals.problem import UpdatingProblem
-from modefront.solvers.advance import default_points
+from modefront.solvers.continuation import default_points
 from modefront.solvers.curvature import second_order
 from modefront.solvers.flat import Identifiable, identifiable_part, same
 from modefront.solvers.lexicographic import EXACT, TIE
-from modefront.solvers.manifold import Manifold, equally_good
+from modefront.solvers.manifold import Manifold, equivalent_models
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Evaluation
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
@@ -209,7 +209,7 @@ def _equivalent(
     for minimum in minima:
         scale = scale_at(problem, minimum.theta)
         idle &= np.isin(np.arange(p), without_effect(problem, minimum, scale))
-    return equally_good(
+    return equivalent_models(
         problem, programme, minima, h=options.step, limit=options.models, known=known, idle=idle
     )
 

@@ -9,9 +9,9 @@ from modefront._typing import Floats
 from modefront.fronts.front import Front
 from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution
-from modefront.uncertainty.doubts import Doubt, has_rival, near_an_end
 from modefront.uncertainty.points import SolvedPoint, edge_weights, in_order
 from modefront.uncertainty.scatter import Scatter
+from modefront.uncertainty.validity import LinearisationWarning, has_rival, near_an_end
 
 
 def with_neighbours(
@@ -34,11 +34,11 @@ def with_neighbours(
         linearised = scatter[label]
         reasons = [
             (
-                Doubt.ENDS,
+                LinearisationWarning.ENDS,
                 point.role.kind == "boundary" and near_an_end(evaluation.J, linearised.J, ends),
             ),
-            (Doubt.RIVAL, _has_rival(front, point, linearised, a, sizes)),
-            (Doubt.UNSOLVED, not point.solution.converged),
+            (LinearisationWarning.RIVAL, _has_rival(front, point, linearised, a, sizes)),
+            (LinearisationWarning.UNSOLVED, not point.solution.converged),
         ]
         doubts = (*linearised.doubts, *(doubt for doubt, holds in reasons if holds))
         out[label] = replace(linearised, doubts=doubts)

@@ -28,7 +28,7 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.fem.blocks import element_blocks, mass_blocks, spring_blocks
 from modefront.fem.check import check_names, check_parameters, check_points, node_list
 from modefront.fem.dofs import Dofs, LinkRows, direction_indices, link_rows, number_dofs
-from modefront.fem.elements.kit import Part
+from modefront.fem.elements.common import Part
 from modefront.fem.errors import FemError
 from modefront.fem.mechanism import check_mechanisms
 from modefront.fem.scatter import Block, Pattern, condense_links, scatter, scatter_plan

@@ -26,7 +26,7 @@ import numpy as np
 from scipy import sparse
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.fem.elements.kit import cross_matrix
+from modefront.fem.elements.common import cross_matrix
 from modefront.fem.errors import FemError
 
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")

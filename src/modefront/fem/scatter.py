@@ -27,7 +27,7 @@ import numpy as np
 from scipy import sparse
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.fem.elements.kit import ElementMatrices
+from modefront.fem.elements.common import ElementMatrices
 
 
 @dataclass(frozen=True)

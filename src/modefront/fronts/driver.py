@@ -14,8 +14,8 @@ from modefront.fronts.methods import METHODS
 from modefront.fronts.methods.base import Along, Setting
 from modefront.fronts.options import Pareto
 from modefront.fronts.point import Kind, Point, label, of_kind
-from modefront.solvers.advance import Simplex, default_points, simplex
 from modefront.solvers.archive import Archive, Archiving
+from modefront.solvers.continuation import Simplex, default_points, simplex
 from modefront.solvers.edges import (
     Edge,
     edge,

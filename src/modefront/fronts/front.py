@@ -10,8 +10,8 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.fronts.point import Point, reference
 from modefront.solvers.edges import Edge
+from modefront.solvers.gaps import Gap
 from modefront.solvers.payoff import Payoff
-from modefront.solvers.pieces import Gap
 from modefront.solvers.sqp import Solution
 
 

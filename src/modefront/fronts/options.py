@@ -9,7 +9,7 @@ from typing import Annotated, TypedDict
 from modefront.errors import Fault, refuse
 from modefront.fronts.methods import METHODS
 from modefront.options import check_fields, number, one_of, whole
-from modefront.solvers.advance import size
+from modefront.solvers.continuation import size
 
 MOST = 10_000
 """Points of a front at most."""

@@ -19,7 +19,7 @@ from modefront.results.analysis import Values, analysis_values, determinations
 from modefront.results.findings import findings
 from modefront.results.schema import FORMAT, described
 from modefront.solvers.dominance import nondominated, undominated
-from modefront.solvers.pieces import piece_numbers
+from modefront.solvers.gaps import branch_numbers
 from modefront.solvers.sqp import Solution
 
 AT_BOUND = 1e-9
@@ -133,7 +133,7 @@ def _branches(front: Front) -> Values:
     names = [name for i in range(len(front.gaps)) for name in (f"end-{i + 1}", f"start-{i + 2}")]
     nothing = np.full(2, np.nan)
     return {
-        "piece": piece_numbers(J, nondominated(J), front.gaps),
+        "piece": branch_numbers(J, nondominated(J), front.gaps),
         "end_label": names,
         "end_theta": _stack([np.full(p, np.nan) if x is None else x.at.theta for x in ends], p),
         "end_objective": _stack([nothing if x is None else x.at.J for x in ends], 2),

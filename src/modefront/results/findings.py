@@ -23,7 +23,7 @@ from modefront.identifiability.words import (
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Determination
 from modefront.solvers.manifold import Extent, Manifold
-from modefront.uncertainty.doubts import Doubt
+from modefront.uncertainty.validity import LinearisationWarning
 
 
 class Rank(IntEnum):
@@ -254,7 +254,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
     if missing:
         where = _places(missing, len(labels))
         yield Rank.DOUBTFUL, f"no scatter is known at {where}"
-    for doubt in Doubt:
+    for doubt in LinearisationWarning:
         doubtful = [
             name
             for name in labels

@@ -17,7 +17,7 @@ own projection onto the plane of the simplex, but not all of these lie in the si
 the lattice goes on beyond it: to the neighbours of every point that is the nearest one to the
 projection of its solution, and no farther, since there the front ends. Where the simplex is narrow
 beside the front, points beyond it that lie closer together than a step of the ranges are left out
-(`modefront.solvers.advance.APART`).
+(`modefront.solvers.continuation.APART`).
 
 The weights are :math:`w_i = (\kappa_i + \rho) / (r_i\, scale_i)`, with multipliers
 :math:`\kappa_i \ge 0` of the bounds, of sum 1: which bounds are active is seen from them.

@@ -40,9 +40,9 @@ from functools import partial
 import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.solvers.advance import BETTER, JUMP, Simplex, simplex
 from modefront.solvers.archive import Archive
 from modefront.solvers.attainment import Attainment
+from modefront.solvers.continuation import BETTER, JUMP, Simplex, simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.explore import NEAR, Search
 from modefront.solvers.nbi import Projection

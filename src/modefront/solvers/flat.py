@@ -20,7 +20,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.solvers.advance import simplex
+from modefront.solvers.continuation import simplex
 from modefront.solvers.edges import near_best
 from modefront.solvers.lexicographic import EXACT, TIE
 from modefront.solvers.nbi import nbi

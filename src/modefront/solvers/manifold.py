@@ -165,7 +165,7 @@ class _Meter:
         return problem.evaluate(theta, derivatives=derivatives)
 
 
-def equally_good(
+def equivalent_models(
     problem: Problem,
     programme: Scalarisation,
     minima: Sequence[Evaluation],
@@ -227,8 +227,8 @@ def equally_good(
 def follow(
     problem: Problem, programme: Scalarisation, start: Evaluation, *, h: float, limit: int
 ) -> Manifold:
-    """Return the manifold of minima through one of them; see `equally_good`."""
-    return equally_good(problem, programme, [start], h=h, limit=limit)[0]
+    """Return the manifold of minima through one of them; see `equivalent_models`."""
+    return equivalent_models(problem, programme, [start], h=h, limit=limit)[0]
 
 
 def _distance(manifold: Manifold, at: Evaluation, span: Floats) -> float:

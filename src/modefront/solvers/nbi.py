@@ -25,8 +25,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.advance import Simplex, advance
 from modefront.solvers.attainment import Attainment
+from modefront.solvers.continuation import Simplex, continuation
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
@@ -124,4 +124,4 @@ def nbi(
     others = [known[i] for i in np.flatnonzero(optimal) if i >= len(edges)]
     if len(edges) == 2:
         others = [one for one in others if target.place(one.at.J).min() >= 0]
-    return advance(problem, solved, [*edges, *others], lattice, work, before)
+    return continuation(problem, solved, [*edges, *others], lattice, work, before)

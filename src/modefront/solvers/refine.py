@@ -3,7 +3,7 @@ r"""More points of a front of two objectives where it is sparse, and each piece 
 Between neighbours a and b of one piece whose distance, in units of the ranges of the objectives,
 exceeds a wanted size, the subproblem of normal-boundary intersection half-way between their
 projections is solved from a, or else from b, and so on until no distance is greater. The ends of
-the pieces at a gap (`modefront.solvers.pieces`) count as neighbours: so each piece is followed to
+the pieces at a gap (`modefront.solvers.gaps`) count as neighbours: so each piece is followed to
 its end.
 """
 
@@ -15,9 +15,9 @@ from itertools import pairwise
 import numpy as np
 
 from modefront._typing import Bools, Floats
+from modefront.solvers.gaps import Gap, branch_numbers
 from modefront.solvers.nbi import Projection
 from modefront.solvers.payoff import Payoff
-from modefront.solvers.pieces import Gap, piece_numbers
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Task
@@ -60,7 +60,7 @@ def refine(
 def pieces(points: Sequence[Solution], optimal: Bools, gaps: Sequence[Gap]) -> list[list[Solution]]:
     """Return the optimal points of each piece of a front, with its ends at gaps."""
     J = np.array([one.at.J for one in points])
-    number = piece_numbers(J, optimal, gaps)
+    number = branch_numbers(J, optimal, gaps)
     out = []
     for k in range(len(gaps) + 1):
         start = gaps[k - 1].start if k else None

@@ -15,7 +15,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.advance import Simplex, advance
+from modefront.solvers.continuation import Simplex, continuation
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Solution, solve
@@ -74,4 +74,4 @@ def weight_sweep(
 
     Each is sought from its neighbours on all sides; the best one is kept.
     """
-    return advance(problem, WeightedSums(scale), edges, lattice, work)
+    return continuation(problem, WeightedSums(scale), edges, lattice, work)

@@ -12,8 +12,8 @@ import numpy as np
 from modefront._typing import Bools, Floats
 from modefront.solvers.attainment import SHARE, active_bounds
 from modefront.solvers.curvature import SecondOrder
-from modefront.uncertainty.doubts import std
 from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.validity import std
 
 
 @dataclass(frozen=True)

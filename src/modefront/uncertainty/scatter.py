@@ -41,7 +41,7 @@ A parameter at an active bound is fixed. Directions in which no residual changes
 named, since no data determine them.
 
 The linearisation is valid as long as no active set changes and the solution remains a minimum.
-Reasons to doubt it are returned with it (`modefront.uncertainty.doubts`).
+Reasons to doubt it are returned with it (`modefront.uncertainty.validity`).
 """
 
 from __future__ import annotations
@@ -55,8 +55,8 @@ from modefront._typing import Bools, Floats
 from modefront.solvers.curvature import ERROR, SecondOrder
 from modefront.solvers.problem import Problem
 from modefront.uncertainty.conditions import Conditions
-from modefront.uncertainty.doubts import Doubt, std
 from modefront.uncertainty.noise import Noise
+from modefront.uncertainty.validity import LinearisationWarning, std
 
 FLAT = 1e-12
 """Eigenvalue over the greatest one below which a direction changes no residual."""
@@ -84,7 +84,7 @@ class Scatter:
     w: Floats
     held: Bools
     free: Floats
-    doubts: tuple[Doubt, ...]
+    doubts: tuple[LinearisationWarning, ...]
 
     @property
     def covariance(self) -> Floats:
@@ -153,11 +153,14 @@ def scatter(
     J = noise.J + theta @ evaluation.dJ.T
     slope = (slope + theta @ second + dw @ evaluation.dJ) * span
     doubts = [
-        (Doubt.SADDLE, not _is_minimum(W, c.C @ B, dJ, c)),
-        (Doubt.MEETS, _meets(problem, evaluation.theta, theta, held)),
-        (Doubt.LEAVES, bool((np.abs(w @ evaluation.dJ * span) <= std(slope))[held].any())),
+        (LinearisationWarning.SADDLE, not _is_minimum(W, c.C @ B, dJ, c)),
+        (LinearisationWarning.MEETS, _meets(problem, evaluation.theta, theta, held)),
         (
-            Doubt.SWITCHES,
+            LinearisationWarning.LEAVES,
+            bool((np.abs(w @ evaluation.dJ * span) <= std(slope))[held].any()),
+        ),
+        (
+            LinearisationWarning.SWITCHES,
             c.bounds is not None and c.bounds.switch(w, dw, theta @ evaluation.dJ.T, dtau),
         ),
     ]

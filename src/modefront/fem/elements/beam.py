@@ -30,7 +30,7 @@ from __future__ import annotations
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.fem.elements.kit import ElementMatrices, Part, attachment, congruence
+from modefront.fem.elements.common import ElementMatrices, Part, attachment, congruence
 from modefront.fem.material import Material
 from modefront.fem.section import Section
 

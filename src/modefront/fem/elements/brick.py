@@ -20,7 +20,7 @@ from __future__ import annotations
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.fem.elements.kit import (
+from modefront.fem.elements.common import (
     ElementMatrices,
     Part,
     condense,

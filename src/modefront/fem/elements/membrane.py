@@ -31,7 +31,7 @@ from __future__ import annotations
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.fem.elements.kit import condense, plane_stress, symmetric
+from modefront.fem.elements.common import condense, plane_stress, symmetric
 from modefront.fem.elements.shapes import gauss_box, gradients, jacobian, square_4
 
 

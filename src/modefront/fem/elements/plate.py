@@ -34,7 +34,7 @@ from __future__ import annotations
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.fem.elements.kit import plane_stress, symmetric
+from modefront.fem.elements.common import plane_stress, symmetric
 from modefront.fem.elements.shapes import (
     SQUARE_EDGES,
     TRIANGLE_EDGES,

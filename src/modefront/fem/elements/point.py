@@ -11,7 +11,7 @@ from __future__ import annotations
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.fem.elements.kit import ElementMatrices, Part, cross_matrix, symmetric
+from modefront.fem.elements.common import ElementMatrices, Part, cross_matrix, symmetric
 
 
 def spring(axis: Floats, stiffness: float, ends: int) -> ElementMatrices:

@@ -30,7 +30,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.fem.elements import membrane, plate
-from modefront.fem.elements.kit import ElementMatrices, Part, attachment, congruence
+from modefront.fem.elements.common import ElementMatrices, Part, attachment, congruence
 from modefront.fem.material import Material
 
 IN_PLANE = (0, 1, 5)

@@ -9,11 +9,11 @@ from typing import TYPE_CHECKING, Literal, Protocol
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.solvers.advance import Simplex
 from modefront.solvers.archive import Archive
+from modefront.solvers.continuation import Simplex
 from modefront.solvers.explore import Search
+from modefront.solvers.gaps import Gap
 from modefront.solvers.payoff import Payoff
-from modefront.solvers.pieces import Gap
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
 from modefront.work.task import Executor

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from modefront.fronts.methods.base import Along, Setting
-from modefront.solvers.advance import Simplex
+from modefront.solvers.continuation import Simplex
 from modefront.solvers.evolutionary import available, evolve_front
 from modefront.work.task import seed_sequence
 

@@ -10,13 +10,13 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.fronts.methods.base import Along, Setting
-from modefront.solvers.advance import Simplex
 from modefront.solvers.basins import explore_between
 from modefront.solvers.border import without_slack
+from modefront.solvers.continuation import Simplex
 from modefront.solvers.dominance import nondominated
+from modefront.solvers.gaps import gaps
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import Payoff
-from modefront.solvers.pieces import gaps
 from modefront.solvers.refine import refine
 from modefront.solvers.sqp import Solution
 from modefront.work.task import Within, seed_sequence

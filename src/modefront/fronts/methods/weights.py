@@ -6,7 +6,7 @@ from dataclasses import dataclass
 from typing import TYPE_CHECKING, Literal
 
 from modefront.fronts.methods.base import Along, Setting
-from modefront.solvers.advance import Simplex
+from modefront.solvers.continuation import Simplex
 from modefront.solvers.sweep import weight_sweep
 
 if TYPE_CHECKING:

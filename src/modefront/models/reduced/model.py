@@ -70,7 +70,7 @@ MEMORY = 4.0
 
 
 @dataclass(frozen=True)
-class Snap:
+class SnapshotRequest:
     """Where a snapshot is to be taken, at one model or at several together.
 
     Derivatives are those of the model of which the basis knows the least.
@@ -92,7 +92,7 @@ class Snap:
         """The parameters of each model."""
         return list(np.atleast_2d(self.theta))
 
-    def same(self, other: Snap) -> bool:
+    def same(self, other: SnapshotRequest) -> bool:
         """Return whether it is the same snapshot."""
         alike = self.modes == other.modes and self.enough == other.enough
         return alike and np.array_equal(self.theta, other.theta)
@@ -111,7 +111,7 @@ class InertiaProof:
 class _TakenSnapshot:
     """A snapshot, what it took, and the error that it found."""
 
-    what: Snap
+    what: SnapshotRequest
     costs: Costs
     error: float
 
@@ -159,7 +159,7 @@ class ReducedModel:
     tolerance: float = TOLERANCE
     memory: float = MEMORY
     spare: int = 0
-    _wanted: tuple[Snap, ...] = ()
+    _wanted: tuple[SnapshotRequest, ...] = ()
     _state: _State | None = None
 
     def __getstate__(self) -> dict[str, Any]:
@@ -211,12 +211,12 @@ class ReducedModel:
         return self._ready().space.basis.columns
 
     @property
-    def first(self) -> Snap:
+    def first(self) -> SnapshotRequest:
         """The first snapshot, unless another one is taken before it."""
-        return Snap(self.nominal, self.count - self.spare)
+        return SnapshotRequest(self.nominal, self.count - self.spare)
 
     @property
-    def snapshots(self) -> tuple[Snap, ...]:
+    def snapshots(self) -> tuple[SnapshotRequest, ...]:
         """The snapshots in use."""
         return self._wanted
 
@@ -224,11 +224,11 @@ class ReducedModel:
         """Use no snapshots. Those at hand are not computed again, but count when taken again."""
         self._wanted = ()
 
-    def resume(self, snapshots: Sequence[Snap]) -> None:
+    def resume(self, snapshots: Sequence[SnapshotRequest]) -> None:
         """Use these snapshots, which were counted before; they are computed when needed."""
         self._wanted = tuple(snapshots)
 
-    def take(self, what: Snap) -> float:
+    def take(self, what: SnapshotRequest) -> float:
         """Add a snapshot and return the greatest relative error of an eigenvalue before it.
 
         The error is an estimate, and infinite where the model had to be solved in full. Raises
@@ -385,7 +385,7 @@ class ReducedModel:
                 self._state = self._sensed((*taken, last), space)
         return self._state
 
-    def _added(self, what: Snap) -> tuple[tuple[_TakenSnapshot, ...], _Space, float]:
+    def _added(self, what: SnapshotRequest) -> tuple[tuple[_TakenSnapshot, ...], _Space, float]:
         """Return the snapshots before another one, the space with it, and the error that it found.
 
         It is computed with the factor at hand, or with factors of its own. Models that have no
@@ -482,7 +482,7 @@ class ReducedModel:
             return snapshot(pencil, theta, min(count, self.size))
 
     def _corrected(
-        self, space: _Space, models: list[Floats], what: Snap
+        self, space: _Space, models: list[Floats], what: SnapshotRequest
     ) -> tuple[_Space, Floats, list[Floats]] | None:
         """Return the space with modes that need no factor of their own, and the models that do.
 
@@ -608,7 +608,7 @@ def _near(
     return found
 
 
-def _begins(wanted: Sequence[Snap], taken: Sequence[_TakenSnapshot]) -> bool:
+def _begins(wanted: Sequence[SnapshotRequest], taken: Sequence[_TakenSnapshot]) -> bool:
     """Return whether the snapshots wanted begin with those that were taken."""
     return len(taken) <= len(wanted) and all(
         one.what.same(other) for one, other in zip(taken, wanted, strict=False)

@@ -30,7 +30,7 @@ import numpy as np
 from modefront._typing import Floats
 
 
-class Doubt(Enum):
+class LinearisationWarning(Enum):
     """Reason why the linearised scatter of a point may not be valid."""
 
     SADDLE = "the second derivatives are not positive definite: the front folds or jumps there"

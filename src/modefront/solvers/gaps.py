@@ -161,7 +161,7 @@ def _ends(
     return [own, first_of((at_level(1, goal, one) for one in behind[:STARTS]), b, 0)]
 
 
-def piece_numbers(J: Floats, optimal: Bools, gaps: Sequence[Gap]) -> Ints:
+def branch_numbers(J: Floats, optimal: Bools, gaps: Sequence[Gap]) -> Ints:
     """Return the branch, from 1, that each row of J (points, 2) lies on; 0 for none.
 
     A point that no other point dominates lies on no branch if the start of a branch dominates it.

@@ -23,7 +23,7 @@ from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
 from modefront.work.task import IMMEDIATE, Executor, Key, Task
 
-Place = tuple[int, ...]
+LatticePoint = tuple[int, ...]
 """A point of the lattice: whole coordinates, one an objective, whose sum is that of its corners."""
 
 
@@ -73,7 +73,7 @@ def size(objectives: int, points: int) -> int:
     return comb(points + objectives - 2, objectives - 1)
 
 
-def neighbours(place: Place) -> list[Place]:
+def neighbours(place: LatticePoint) -> list[LatticePoint]:
     """Return the points of the lattice one step from one, within the simplex or beyond it."""
     n = len(place)
     return [
@@ -143,7 +143,7 @@ SAME = 1e-6
 """Distance of two points, over the ranges of the objectives, below which they are one."""
 
 
-def advance(
+def continuation(
     problem: Problem,
     programmes: Programmes,
     edges: Sequence[Solution],
@@ -158,25 +158,27 @@ def advance(
     Solutions may be dominated, and those that did not converge say so in their status; beyond the
     simplex only those are returned that converged and are not there yet.
     """
-    solved: dict[Place, Solution] = {}
-    origin: dict[Place, int] = {}
-    renewed: Counter[Place] = Counter()
-    attempts: Counter[Place] = Counter()
-    queue: deque[tuple[Place, Place]] = deque()
-    doubtful: deque[tuple[Place, Place]] = deque()  # from solutions that did not converge
-    tried: set[tuple[Place, Place, int]] = set()
+    solved: dict[LatticePoint, Solution] = {}
+    origin: dict[LatticePoint, int] = {}
+    renewed: Counter[LatticePoint] = Counter()
+    attempts: Counter[LatticePoint] = Counter()
+    queue: deque[tuple[LatticePoint, LatticePoint]] = deque()
+    doubtful: deque[tuple[LatticePoint, LatticePoint]] = (
+        deque()
+    )  # from solutions that did not converge
+    tried: set[tuple[LatticePoint, LatticePoint, int]] = set()
     divisions, span = lattice.divisions, problem.upper - problem.lower
     branches = len(edges)
-    fixed: set[Place] = set()
-    left_out: set[tuple[Place, Place]] = set()
+    fixed: set[LatticePoint] = set()
+    left_out: set[tuple[LatticePoint, LatticePoint]] = set()
     beyond = 0
     few = lattice.counts.shape[1] <= 3
     room = max(BEYOND, 5 * len(lattice.counts)) if few else BEYOND
 
-    def beta(place: Place) -> Floats:
+    def beta(place: LatticePoint) -> Floats:
         return np.array(place) / divisions
 
-    def settle(place: Place, solution: Solution, of: int) -> None:
+    def accept(place: LatticePoint, solution: Solution, of: int) -> None:
         solved[place], origin[place] = solution, of
         renewed[place] += 1
         J = solution.at.J
@@ -186,7 +188,7 @@ def advance(
         steps = queue if solution.converged else doubtful
         steps.extend((near, place) for near in neighbours(place) if here or min(near) >= 0)
 
-    def worth_trying(place: Place, source: Place) -> bool:
+    def worth_trying(place: LatticePoint, source: LatticePoint) -> bool:
         if place not in solved:
             return True
         if place in fixed or (place, source, renewed[source]) in tried:
@@ -201,13 +203,13 @@ def advance(
         apart = len(place) == 2 or jumps(solved[place], solved[source])
         return solved[source].converged and other and apart
 
-    def close(place: Place, other: Place) -> bool:
+    def close(place: LatticePoint, other: LatticePoint) -> bool:
         return programmes.distance(beta(place), beta(other)) * divisions < APART - SAME
 
     def jumps(solution: Solution, other: Solution) -> bool:
         return bool((np.abs(solution.at.theta - other.at.theta) > JUMP * span).any())
 
-    def better(place: Place, found: Solution, known: Solution) -> bool:
+    def better(place: LatticePoint, found: Solution, known: Solution) -> bool:
         if found.converged != known.converged:
             return found.converged
         value = partial(programmes.value, beta(place))
@@ -223,13 +225,13 @@ def advance(
             key: Key = ("front", programmes.label, place, "from-edge", i + 1)
             (found,) = work.run([Task(key, _solve, (problem, programmes, beta(place), edge))])
         if place not in solved or better(place, found, solved[place]):
-            settle(place, found, i)
+            accept(place, found, i)
     for one in before:
         if one.beta is None or (at := _nearest(divisions * one.beta, divisions)) in solved:
             continue
         key = ("front", programmes.label, at, "again")
         (found,) = work.run([Task(key, _from_before, (problem, programmes, beta(at), one))])
-        settle(at, found, -1)
+        accept(at, found, -1)
     while queue or doubtful:
         place, source = (queue or doubtful).popleft()
         if not worth_trying(place, source):
@@ -256,7 +258,7 @@ def advance(
         if known is None or better(place, found, known):
             far = jumps(found, solved[source])
             branches += far
-            settle(place, found, branches if far else origin[source])
+            accept(place, found, branches if far else origin[source])
         elif (
             found.converged and not better(place, known, found) and not jumps(known, solved[source])
         ):
@@ -290,7 +292,7 @@ def _from_before(
     return programmes.solve(problem, beta, start)
 
 
-def _nearest(coordinates: Floats, total: int) -> Place:
+def _nearest(coordinates: Floats, total: int) -> LatticePoint:
     """Return whole numbers with this sum close to coordinates that have it."""
     floor = np.floor(coordinates + SAME).astype(int)
     short = total - int(floor.sum())

@@ -25,10 +25,10 @@ from modefront.uncertainty.conditions import (
     given_weights,
     optimal_weights,
 )
-from modefront.uncertainty.doubts import Doubt
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.points import Role, SolvedPoint
 from modefront.uncertainty.scatter import Scatter, scatter
+from modefront.uncertainty.validity import LinearisationWarning
 
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
@@ -43,13 +43,13 @@ def point_at(problem: Known, theta: list[float]) -> SecondOrder:
     ("measured", "doubts"),
     [
         (0.70, ()),
-        (0.95, (Doubt.MEETS,)),
-        (1.05, (Doubt.LEAVES,)),
+        (0.95, (LinearisationWarning.MEETS,)),
+        (1.05, (LinearisationWarning.LEAVES,)),
         (1.30, ()),
     ],
 )
 def test_a_bound_within_the_scatter_of_a_measured_value(
-    measured: float, doubts: tuple[Doubt, ...]
+    measured: float, doubts: tuple[LinearisationWarning, ...]
 ) -> None:
     """J = (theta - y)**2, y with a standard deviation of 0.1, theta at most 1."""
 
@@ -65,9 +65,9 @@ def test_a_bound_within_the_scatter_of_a_measured_value(
     assert found.doubts == doubts
 
 
-@pytest.mark.parametrize(("d", "doubts"), [(0.9, ()), (1.1, (Doubt.SADDLE,))])
+@pytest.mark.parametrize(("d", "doubts"), [(0.9, ()), (1.1, (LinearisationWarning.SADDLE,))])
 def test_optimal_weights_hold_a_model_between_close_minima_only(
-    d: float, doubts: tuple[Doubt, ...]
+    d: float, doubts: tuple[LinearisationWarning, ...]
 ) -> None:
     """J = 1 + (theta -+ d)**2: ln J1 + ln J2 has a minimum at 0 for d < 1, else a maximum."""
 
@@ -123,7 +123,7 @@ def test_points_next_to_a_change_of_the_active_set_are_doubtful() -> None:
     line = [(1 - s) * inside + s * outside for s in steps]
     counts = []
     for std in (1e-6, 0.05, 0.15):
-        doubtful = [Doubt.SWITCHES in of_corners(beta, std).doubts for beta in line]
+        doubtful = [LinearisationWarning.SWITCHES in of_corners(beta, std).doubts for beta in line]
         assert not doubtful[0]
         assert not doubtful[-1]
         where = np.flatnonzero(doubtful)
@@ -137,12 +137,12 @@ def test_points_next_to_a_change_of_the_active_set_are_doubtful() -> None:
     ("std", "status", "doubts"),
     [
         (19.0, Status.CONVERGED, ()),
-        (21.0, Status.CONVERGED, (Doubt.RIVAL,)),
-        (1.0, Status.STALLED, (Doubt.UNSOLVED,)),
+        (21.0, Status.CONVERGED, (LinearisationWarning.RIVAL,)),
+        (1.0, Status.STALLED, (LinearisationWarning.UNSOLVED,)),
     ],
 )
 def test_another_model_that_fits_as_well_is_a_rival(
-    std: float, status: Status, doubts: tuple[Doubt, ...]
+    std: float, status: Status, doubts: tuple[LinearisationWarning, ...]
 ) -> None:
     """J1 vanishes at (1, -2) and (1, 2), J2 is 20 less at the first: errors of J2 decide."""
     problem = box(many_minima, [-4, -4], [4, 4])
