@@ -9,8 +9,8 @@ gets the best of them everywhere, at the price of a few more programmes.
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field, replace
 from functools import partial
 from itertools import combinations
 from math import comb
@@ -158,121 +158,189 @@ def continuation(
     Solutions may be dominated, and those that did not converge say so in their status; beyond the
     simplex only those are returned that converged and are not there yet.
     """
-    solved: dict[LatticePoint, Solution] = {}
-    origin: dict[LatticePoint, int] = {}
-    renewed: Counter[LatticePoint] = Counter()
-    attempts: Counter[LatticePoint] = Counter()
-    queue: deque[tuple[LatticePoint, LatticePoint]] = deque()
-    doubtful: deque[tuple[LatticePoint, LatticePoint]] = (
-        deque()
-    )  # from solutions that did not converge
-    tried: set[tuple[LatticePoint, LatticePoint, int]] = set()
-    divisions, span = lattice.divisions, problem.upper - problem.lower
-    branches = len(edges)
-    fixed: set[LatticePoint] = set()
-    left_out: set[tuple[LatticePoint, LatticePoint]] = set()
-    beyond = 0
-    few = lattice.counts.shape[1] <= 3
-    room = max(BEYOND, 5 * len(lattice.counts)) if few else BEYOND
-
-    def beta(place: LatticePoint) -> Floats:
-        return np.array(place) / divisions
-
-    def accept(place: LatticePoint, solution: Solution, of: int) -> None:
-        solved[place], origin[place] = solution, of
-        renewed[place] += 1
-        J = solution.at.J
-        here = programmes.goes_on(J) and place == _nearest(
-            divisions * programmes.place(of, J), divisions
-        )
-        steps = queue if solution.converged else doubtful
-        steps.extend((near, place) for near in neighbours(place) if here or min(near) >= 0)
-
-    def worth_trying(place: LatticePoint, source: LatticePoint) -> bool:
-        if place not in solved:
-            return True
-        if place in fixed or (place, source, renewed[source]) in tried:
-            return False
-        if not few and min(place) < 0:
-            return False
-        if min(place) < 0 and attempts[place] >= ATTEMPTS and not solved[place].converged:
-            return False
-        if not solved[place].converged:
-            return True
-        other = origin[place] != origin[source]
-        apart = len(place) == 2 or jumps(solved[place], solved[source])
-        return solved[source].converged and other and apart
-
-    def close(place: LatticePoint, other: LatticePoint) -> bool:
-        return programmes.distance(beta(place), beta(other)) * divisions < APART - SAME
-
-    def jumps(solution: Solution, other: Solution) -> bool:
-        return bool((np.abs(solution.at.theta - other.at.theta) > JUMP * span).any())
-
-    def better(place: LatticePoint, found: Solution, known: Solution) -> bool:
-        if found.converged != known.converged:
-            return found.converged
-        value = partial(programmes.value, beta(place))
-        return value(found.at.J) < value(known.at.J) - BETTER
-
+    run = _Continuation(problem, programmes, lattice, work, branches=len(edges))
     for i, edge in enumerate(edges):
-        coordinates = divisions * programmes.place(i, edge.at.J)
-        place = _nearest(coordinates, divisions)
-        found = edge
-        if np.abs(coordinates - place).max() <= SAME * divisions:
-            fixed.add(place)
+        run.from_edge(i, edge)
+    for solution in before:
+        run.from_before(solution)
+    run.spread()
+    return run.solutions()
+
+
+@dataclass
+class _Continuation:
+    """A continuation at work.
+
+    It has more than ten fields because each step reads and changes all of them.
+
+    Attributes
+    ----------
+    branches : number of branches met so far
+    beyond : points beyond the simplex that were tried
+    solved : best solution of each point of the lattice
+    origin : branch from which it was reached
+    renewed : how often it was accepted
+    attempts : neighbours from which it was tried
+    queue, doubtful : steps from a point that converged, or did not: where to, and from where
+    tried : steps that are done, with the number of the solution that they started from
+    fixed : points that an edge lies on
+    left_out : steps to points that lie too close
+    """
+
+    problem: Problem
+    programmes: Programmes
+    lattice: Simplex
+    work: Executor
+    branches: int
+    beyond: int = 0
+    solved: dict[LatticePoint, Solution] = field(default_factory=dict)
+    origin: dict[LatticePoint, int] = field(default_factory=dict)
+    renewed: Counter[LatticePoint] = field(default_factory=Counter)
+    attempts: Counter[LatticePoint] = field(default_factory=Counter)
+    queue: deque[tuple[LatticePoint, LatticePoint]] = field(default_factory=deque)
+    doubtful: deque[tuple[LatticePoint, LatticePoint]] = field(default_factory=deque)
+    tried: set[tuple[LatticePoint, LatticePoint, int]] = field(default_factory=set)
+    fixed: set[LatticePoint] = field(default_factory=set)
+    left_out: set[tuple[LatticePoint, LatticePoint]] = field(default_factory=set)
+
+    @property
+    def few(self) -> bool:
+        """Whether there are three objectives at most."""
+        return self.lattice.counts.shape[1] <= 3
+
+    @property
+    def room(self) -> int:
+        """Points beyond the simplex that are tried at most."""
+        return max(BEYOND, 5 * len(self.lattice.counts)) if self.few else BEYOND
+
+    def beta(self, point: LatticePoint) -> Floats:
+        """Return the coordinates (n,) of a point of the lattice."""
+        return np.array(point) / self.lattice.divisions
+
+    def from_edge(self, number: int, edge: Solution) -> None:
+        """Accept an edge at the point it lies on, or the solution of the point next to it."""
+        divisions = self.lattice.divisions
+        coordinates = divisions * self.programmes.place(number, edge.at.J)
+        point, solution = _nearest(coordinates, divisions), edge
+        if np.abs(coordinates - point).max() <= SAME * divisions:
+            self.fixed.add(point)
         else:
-            key: Key = ("front", programmes.label, place, "from-edge", i + 1)
-            (found,) = work.run([Task(key, _solve, (problem, programmes, beta(place), edge))])
-        if place not in solved or better(place, found, solved[place]):
-            accept(place, found, i)
-    for one in before:
-        if one.beta is None or (at := _nearest(divisions * one.beta, divisions)) in solved:
-            continue
-        key = ("front", programmes.label, at, "again")
-        (found,) = work.run([Task(key, _from_before, (problem, programmes, beta(at), one))])
-        accept(at, found, -1)
-    while queue or doubtful:
-        place, source = (queue or doubtful).popleft()
-        if not worth_trying(place, source):
-            continue
-        if place not in solved and min(place) < 0:
-            if beyond >= DENSE and close(place, source):
-                # It is left out, and those behind it are reached from the same point.
-                if (place, source) not in left_out:
-                    left_out.add((place, source))
-                    queue.extend((near, source) for near in neighbours(place) if min(near) < 0)
+            key = ("front", self.programmes.label, point, "from-edge", number + 1)
+            solution = self._solution(key, _solve, point, edge)
+        if point not in self.solved or self._better(point, solution, self.solved[point]):
+            self._accept(point, solution, number)
+
+    def from_before(self, solution: Solution) -> None:
+        """Solve a point from its solution of nearly the same problem."""
+        if solution.beta is None:
+            return
+        divisions = self.lattice.divisions
+        point = _nearest(divisions * solution.beta, divisions)
+        if point not in self.solved:
+            key = ("front", self.programmes.label, point, "again")
+            self._accept(point, self._solution(key, _from_before, point, solution), -1)
+
+    def spread(self) -> None:
+        """Solve every point from its neighbours until none is worth another attempt."""
+        while self.queue or self.doubtful:
+            point, source = (self.queue or self.doubtful).popleft()
+            if not self._worth_trying(point, source):
                 continue
-            if beyond >= DENSE and any(close(place, other) for other in solved):
+            if point not in self.solved and min(point) < 0 and not self._fits(point, source):
                 continue
-            beyond += 1
-            if beyond > room:
-                continue
-        tried.add((place, source, renewed[source]))
-        attempts[place] += 1
-        known = solved.get(place)
-        key = ("front", programmes.label, place, "from", source, renewed[source])
-        solve = _solve_again if known and known.converged else _solve
-        arguments = (problem, programmes, beta(place), solved[source])
-        (found,) = work.run([Task(key, solve, arguments)])
-        if known is None or better(place, found, known):
-            far = jumps(found, solved[source])
-            branches += far
-            accept(place, found, branches if far else origin[source])
+            self._step(point, source)
+
+    def solutions(self) -> list[Solution]:
+        """Return the solutions within the simplex, then those beyond that are none of these."""
+        within = [tuple(row) for row in self.lattice.counts.tolist()]
+        out = [self.solved[point] for point in within]
+        for point in sorted(set(self.solved) - set(within), reverse=True):
+            solution = self.solved[point]
+            J = np.array([x.at.J for x in out])
+            away = (np.abs(J - solution.at.J) / self.programmes.scale).max(axis=1)
+            if solution.converged and away.min() > SAME:
+                out.append(solution)
+        return out
+
+    def _step(self, point: LatticePoint, source: LatticePoint) -> None:
+        """Solve a point from a neighbour, and keep the better solution."""
+        start, known = self.solved[source], self.solved.get(point)
+        self.tried.add((point, source, self.renewed[source]))
+        self.attempts[point] += 1
+        key = ("front", self.programmes.label, point, "from", source, self.renewed[source])
+        again = known is not None and known.converged
+        solution = self._solution(key, _solve_again if again else _solve, point, start)
+        if known is None or self._better(point, solution, known):
+            far = self._jumps(solution, start)
+            self.branches += far
+            self._accept(point, solution, self.branches if far else self.origin[source])
         elif (
-            found.converged and not better(place, known, found) and not jumps(known, solved[source])
+            solution.converged
+            and not self._better(point, known, solution)
+            and not self._jumps(known, start)
         ):
             # The way back leads to what is known, unless one of the two lies in another basin.
-            tried.add((source, place, renewed[place]))
+            self.tried.add((source, point, self.renewed[point]))
 
-    within = [tuple(row) for row in lattice.counts.tolist()]
-    out = [solved[place] for place in within]
-    for place in sorted(set(solved) - set(within), reverse=True):
-        J = np.array([one.at.J for one in out])
-        away = (np.abs(J - solved[place].at.J) / programmes.scale).max(axis=1)
-        if solved[place].converged and away.min() > SAME:
-            out.append(solved[place])
-    return out
+    def _solution(
+        self, key: Key, solve: Callable[..., Solution], point: LatticePoint, start: Solution
+    ) -> Solution:
+        arguments = (self.problem, self.programmes, self.beta(point), start)
+        return self.work.run([Task(key, solve, arguments)])[0]
+
+    def _accept(self, point: LatticePoint, solution: Solution, branch: int) -> None:
+        """Keep a solution, and take note of the steps to its neighbours."""
+        self.solved[point], self.origin[point] = solution, branch
+        self.renewed[point] += 1
+        J, divisions = solution.at.J, self.lattice.divisions
+        own = _nearest(divisions * self.programmes.place(branch, J), divisions)
+        here = self.programmes.goes_on(J) and point == own
+        steps = self.queue if solution.converged else self.doubtful
+        steps.extend((near, point) for near in neighbours(point) if here or min(near) >= 0)
+
+    def _worth_trying(self, point: LatticePoint, source: LatticePoint) -> bool:
+        """Return whether a step may lead to another or a better solution."""
+        if point not in self.solved:
+            return True
+        if point in self.fixed or (point, source, self.renewed[source]) in self.tried:
+            return False
+        if not self.few and min(point) < 0:
+            return False
+        known, start = self.solved[point], self.solved[source]
+        if not known.converged:
+            return min(point) >= 0 or self.attempts[point] < ATTEMPTS
+        other = self.origin[point] != self.origin[source]
+        apart = len(point) == 2 or self._jumps(known, start)
+        return start.converged and other and apart
+
+    def _fits(self, point: LatticePoint, source: LatticePoint) -> bool:
+        """Return whether there is room for a point beyond the simplex, and it is not too close."""
+        if self.beyond >= DENSE and self._is_close(point, source):
+            # It is left out, and those behind it are reached from the same point.
+            if (point, source) not in self.left_out:
+                self.left_out.add((point, source))
+                self.queue.extend((near, source) for near in neighbours(point) if min(near) < 0)
+            return False
+        if self.beyond >= DENSE and any(self._is_close(point, other) for other in self.solved):
+            return False
+        self.beyond += 1
+        return self.beyond <= self.room
+
+    def _is_close(self, point: LatticePoint, other: LatticePoint) -> bool:
+        distance = self.programmes.distance(self.beta(point), self.beta(other))
+        return distance * self.lattice.divisions < APART - SAME
+
+    def _jumps(self, solution: Solution, other: Solution) -> bool:
+        """Return whether two solutions lie on different branches."""
+        span = self.problem.upper - self.problem.lower
+        return bool((np.abs(solution.at.theta - other.at.theta) > JUMP * span).any())
+
+    def _better(self, point: LatticePoint, solution: Solution, known: Solution) -> bool:
+        """Return whether a solution of a point is better than a known one."""
+        if solution.converged != known.converged:
+            return solution.converged
+        value = partial(self.programmes.value, self.beta(point))
+        return value(solution.at.J) < value(known.at.J) - BETTER
 
 
 def _solve(problem: Problem, programmes: Programmes, beta: Floats, start: Solution) -> Solution:
