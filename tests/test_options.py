@@ -121,8 +121,9 @@ def test_what_solve_is_given_is_checked_before_any_work(study: Path) -> None:
         with counted() as costs, pytest.raises(mf.InputError, match=says):
             mf.solve(problem, **wrong)
         assert costs.eigenproblems == 0
+    unknown: dict[str, Any] = {"nodes": 3}
     with pytest.raises(TypeError, match="nodes"):
-        mf.solve(problem, nodes=3)  # type: ignore[call-arg]
+        mf.solve(problem, **unknown)
 
 
 def test_one_group_cannot_be_refined_nor_can_a_simplex_have_too_many_points(study: Path) -> None:
@@ -155,8 +156,9 @@ def test_numbers_of_numpy_are_numbers() -> None:
     assert repr(mf.Pareto(tolerance=np.float64(0.5))) == repr(mf.Pareto(tolerance=0.5))
     assert mf.Parameter("k", np.float64(1), bounds) == mf.Parameter("k", 1, (0.2, 5))
     assert mf.Search(10 * points).limit == 70
+    fraction: Any = np.float64(7)
     with pytest.raises(mf.InputError, match="points: expected a whole number"):
-        mf.Pareto(points=np.float64(7))  # type: ignore[arg-type]
+        mf.Pareto(points=fraction)
 
 
 def test_a_search_lifts_its_usual_limit_and_may_start_nowhere() -> None:

@@ -92,7 +92,7 @@ def results(problem: mf.UpdatingProblem) -> xr.DataArray:
     mf.solve(problem, pareto="nbi")  # rejected
     mf.solve(problem, predictions=["peak"])  # rejected
     found["theta"] = found["objective"]  # rejected
-    found.optimal.theta  # rejected  # noqa: B018
+    dict(found.optimal.theta)  # rejected
     found.model(1.5)  # rejected
     found.table(3)  # rejected
     found.nominal.theta["k"] = 2.0  # rejected

@@ -208,6 +208,6 @@ def test_nothing_that_is_read_is_executed(tmp_path: Path) -> None:
     (path,) = tmp_path.iterdir()
     with np.load(path) as file:
         head = file["head"]
-    wrong = np.array([{"a": 1}], dtype=object)
-    np.savez(path, head=head, **{"0": wrong})  # type: ignore[arg-type]
+    named: dict[str, Any] = {"head": head, "0": np.array([{"a": 1}], dtype=object)}
+    np.savez(path, **named)
     assert store.read(task("one")) is None

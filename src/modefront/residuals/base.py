@@ -50,6 +50,19 @@ class Sensitivity:
     dJ: Floats
 
 
+@dataclass(frozen=True)
+class ModeErrors:
+    """Relative errors of the model modes that are paired with the measured ones.
+
+    Attributes
+    ----------
+    eigenvalue, shape : (measured modes,)
+    """
+
+    eigenvalue: Floats
+    shape: Floats
+
+
 class Member(Protocol):
     """A member of a group: residuals of a measured property, one data set after the other."""
 
@@ -71,11 +84,8 @@ class Member(Protocol):
     def dr(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the derivatives of the residuals, shape (rows, p)."""
 
-    def margin(self, eigenvalue: Floats, shape: Floats) -> float:
-        """Return the square of the greatest change of r by errors of the paired modes.
-
-        ``eigenvalue`` and ``shape`` (measured modes,) are relative errors.
-        """
+    def margin(self, errors: ModeErrors) -> float:
+        """Return the square of the greatest change of r by errors of the paired modes."""
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield what one standard deviation of measured values does to J, set after set.

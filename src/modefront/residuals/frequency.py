@@ -29,6 +29,7 @@ from modefront.pairing.match import Pairs
 from modefront.residuals.base import (
     NEGLIGIBLE,
     Member,
+    ModeErrors,
     Scale,
     Sensitivity,
     known_std,
@@ -79,10 +80,10 @@ class FrequencyResiduals:
         """Return the derivatives of the residuals, shape (rows, p)."""
         return self.weight[:, None] * modes.dfrequency[pairs.index[self.mode]]
 
-    def margin(self, eigenvalue: Floats, shape: Floats) -> float:  # noqa: ARG002
+    def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
         size = self.weight * self.measured
-        return float((eigenvalue[self.mode] / 2) ** 2 * (size @ size))
+        return float((errors.eigenvalue[self.mode] / 2) ** 2 * (size @ size))
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield what one standard deviation of each measured frequency does to J."""

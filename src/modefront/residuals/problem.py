@@ -22,7 +22,7 @@ from modefront.models.parameters import Parameter, in_order, parameters_of
 from modefront.models.reduced.options import Reduction
 from modefront.modes.result import Modes
 from modefront.pairing.match import Pairing, Pairs, match, mean_mac, modes_needed
-from modefront.residuals.base import Member
+from modefront.residuals.base import Member, ModeErrors
 from modefront.residuals.groups import Group
 from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
 
@@ -126,7 +126,8 @@ class UpdatingProblem:
 
         ``eigenvalue`` and ``shape`` (measured modes,) are relative errors of the paired modes.
         """
-        squares = [sum(member.margin(eigenvalue, shape) for member in row) for row in self.members]
+        errors = ModeErrors(eigenvalue, shape)
+        squares = [sum(member.margin(errors) for member in row) for row in self.members]
         return np.sqrt(np.array(squares))
 
 

@@ -38,6 +38,7 @@ from modefront.pairing.match import Pairs
 from modefront.residuals.base import (
     NEGLIGIBLE,
     Member,
+    ModeErrors,
     Scale,
     Sensitivity,
     known_std,
@@ -134,9 +135,11 @@ class ShapeResiduals:
             parts.append(chi[:, None] * dbeta + beta * dchi)
         return np.concatenate(parts)
 
-    def margin(self, eigenvalue: Floats, shape: Floats) -> float:  # noqa: ARG002
+    def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
-        return float(shape[self.mode] ** 2 * sum(part.psi @ part.psi for part in self.shapes))
+        return float(
+            errors.shape[self.mode] ** 2 * sum(part.psi @ part.psi for part in self.shapes)
+        )
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield what one standard deviation of each measured component does to J."""
