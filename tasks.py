@@ -21,7 +21,7 @@ ENVIRONMENT = ROOT / ".venv"
 REQUIREMENTS = ROOT / "requirements.txt"
 TASKS = {
     "demo": [["examples/three_story.py", "demo"]],
-    "test": [["-m", "pytest", "-q"]],
+    "test": [["-m", "pytest", "-q", "-n", "auto", "--dist", "worksteal"]],
     "lint": [
         ["-m", "ruff", "format", "--check", "."],
         ["-m", "ruff", "check", "."],
