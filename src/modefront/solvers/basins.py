@@ -524,10 +524,18 @@ def _others(
     points: Sequence[Solution],
     models: Models,
 ) -> list[Solution]:
-    """Return optimal models that lie apart from the points, the farthest first."""
+    """Return optimal models that lie apart from the points, the farthest first.
+
+    Models that are weakly optimal only are left out.
+    """
     spacing = SPACING / lattice.divisions
     optimal = nondominated(np.concatenate([models.J, [one.at.J for one in points]]))
     left = models[optimal[: len(models.J)]]
+    programmes = programmes_of(problem, target)
+    if isinstance(programmes, Attainment):
+        # Where the least objective holds the bound, no programme chooses among the models.
+        places = zip(target.place(left.J), left.J, strict=True)
+        left = left[~np.array([programmes.is_weak(beta, J) for beta, J in places], dtype=np.bool_)]
     y = left.J / target.scale
     away = np.full(len(y), np.inf)
     for point in points:
