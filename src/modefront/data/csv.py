@@ -32,7 +32,9 @@ STD = "_std"
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)
 """Python itself would read more as numbers: 1_000, nan, digits of any script."""
 
-FIELDS = re.compile(rf"(?:{NUMBER.pattern})?(?:\n(?:{NUMBER.pattern})?)*", re.IGNORECASE)
+FIELDS = re.compile(
+    rf"[ \t]*(?:{NUMBER.pattern})?[ \t]*(?:\n[ \t]*(?:{NUMBER.pattern})?[ \t]*)*", re.IGNORECASE
+)
 """Numbers and empty fields, one a line."""
 
 MODE = re.compile("[0-9]{1,9}")
@@ -84,7 +86,7 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
     """
     path, file = Path(path), str(path)
     with _reader(path) as rows:
-        header = next(rows, (1, []))[1]
+        header = [field.strip() for field in next(rows, (1, []))[1]]
         if not header:
             raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
         if len(header) > MOST_COLUMNS:
@@ -167,8 +169,7 @@ def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
         with path.open(newline="", encoding="utf-8-sig") as stream:
             reader = csv.reader(stream, strict=True, skipinitialspace=True)
             try:
-                rows = ((reader.line_num, [field.strip() for field in row]) for row in reader)
-                yield (each for each in rows if any(each[1]))
+                yield ((reader.line_num, row) for row in reader if any(map(str.strip, row)))
             except csv.Error as error:
                 place = f"line {reader.line_num}"
                 raise InputError(Fault(str(path), place, "CSV", reason(error))) from None
@@ -186,15 +187,19 @@ def _together(
         return None
     columns = dict(zip(header, zip(*(fields for _, fields in lines), strict=True), strict=True))
     names, modes = columns.pop("set"), columns.pop("mode")
-    if not all(name and name.isprintable() for name in set(names)):
+    sets = {text: text.strip() for text in set(names)}
+    if not all(name and name.isprintable() for name in sets.values()):
         return None
-    if not all(MODE.fullmatch(mode) and 1 <= int(mode) <= MOST_MODES for mode in set(modes)):
+    if not all(MODE.fullmatch(text.strip()) for text in set(modes)):
+        return None
+    numbers = {text: int(text) for text in set(modes)}
+    if not all(1 <= number <= MOST_MODES for number in numbers.values()):
         return None
     values: dict[str, Floats] = {}
     for name, texts in columns.items():
         if not FIELDS.fullmatch("\n".join(texts)):
             return None
-        values[name] = np.array([float(text) if text else math.nan for text in texts])
+        values[name] = _numbers(texts)
         known = values[name][~np.isnan(values[name])]
         if known.size and (_range(name, known.min()) or _range(name, known.max())):
             return None
@@ -204,9 +209,18 @@ def _together(
     possible = (greatest >= SHAPES[0]) & (greatest <= SHAPES[1])
     if not np.where(measured.any(axis=0), possible, ~np.isnan(values["frequency"])).all():
         return None
-    numbers = {mode: int(mode) for mode in set(modes)}
     lines_of = [number for number, _ in lines]
-    return _Rows(lines_of, names, [numbers[mode] for mode in modes], values)
+    return _Rows(
+        lines_of, [sets[text] for text in names], [numbers[text] for text in modes], values
+    )
+
+
+def _numbers(texts: Sequence[str]) -> Floats:
+    """Return numbers, NaN for empty fields."""
+    try:
+        return np.array(list(map(float, texts)))
+    except ValueError:
+        return np.array([float(text) if text.strip() else math.nan for text in texts])
 
 
 def _one_by_one(
@@ -222,7 +236,8 @@ def _one_by_one(
             expected = f"{len(header)} fields, as in the header"
             faults.append((number, None, expected, str(len(fields))))
             continue
-        key, values, found = _row(dict(zip(header, fields, strict=True)))
+        texts = [field.strip() for field in fields]
+        key, values, found = _row(dict(zip(header, texts, strict=True)))
         if key is not None:
             keys.append((number, *key))
             found = found or _empty_faults(values, sensors)
