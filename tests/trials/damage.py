@@ -23,15 +23,15 @@ def damages(data: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
             else:
                 dims = [f"other_{k}" for k in range(changed.ndim)]
                 yield f"{name} {what}", data.drop_vars([name]).assign({name: (dims, changed)})
-    for name in data.dims:
+    for name in map(str, data.dims):
         yield f"dimension {name} is empty", data.isel({name: slice(0)})
         yield f"dimension {name} has one", data.isel({name: slice(1)})
         yield f"dimension {name} lacks one", data.isel({name: slice(1, None)})
         twice = [*range(data.sizes[name]), *range(data.sizes[name])]
         yield f"dimension {name} has all twice", data.isel({name: twice})
-    for name, value in data.attrs.items():
-        rest = {key: other for key, other in data.attrs.items() if key != name}
-        yield f"attribute {name} is dropped", _with(data, rest)
+    for key, value in data.attrs.items():
+        rest = {name: other for name, other in data.attrs.items() if name != key}
+        yield f"attribute {key} is dropped", _with(data, rest)
         for other in ("", "text", "\x1b[31m", -1, 0.5, np.nan, 1e300, np.arange(3), 2**62):
             yield (
                 f"attribute {name} is {other!r}, not {value!r}",
