@@ -47,7 +47,7 @@ def file_size(path: Path, expected: str, most: int | None = None) -> int:
     """
     try:
         found = path.stat()
-    except FileNotFoundError:
+    except (FileNotFoundError, NotADirectoryError):
         raise _wrong(path, expected, "no such file") from None
     except (OSError, ValueError) as error:  # ValueError where the name holds a null
         raise _wrong(path, expected, reason(error)) from None
