@@ -19,11 +19,12 @@ from modefront.cli.tables import console, safe, table
 from modefront.results.selection import front_points, not_converged
 from modefront.study.check import Findings
 from modefront.study.definition import Study
+from modefront.text import clean
 from modefront.work.costs import Costs
 
 
 def _print(screen: Console, text: str) -> None:
-    screen.print(text, markup=False, soft_wrap=True)
+    screen.print(clean(text), markup=False, soft_wrap=True)
 
 
 MOST = 10
