@@ -12,7 +12,8 @@ import pytest
 import modefront
 
 LAYERS = (
-    ("_typing", "_version", "errors", "variables"),
+    ("_typing", "_version", "text"),
+    ("errors", "variables"),
     ("toml", "linalg", "response", "work"),
     ("options",),
     ("data", "fem", "modes", "reliability", "solvers"),
