@@ -333,7 +333,11 @@ def failing(error: BaseException) -> Callable[..., None]:
     ("error", "status", "says"),
     [
         (UnfinishedError("no minimum was found"), 1, "modefront: no minimum was found\n"),
-        (OSError(errno.ENOSPC, "No space left on device"), 1, "No space left on device"),
+        (
+            OSError(errno.ENOSPC, "No space left on device"),
+            1,
+            "no space left on the drive: free some",
+        ),
         (KeyboardInterrupt(), 130, "modefront: interrupted"),
         (ZeroDivisionError("oh"), 1, "an error of the program itself: ZeroDivisionError: oh"),
     ],

@@ -171,7 +171,7 @@ MATRIX_KEYS = [
     (FIRST, 'k1 = "K.npy"', "K.npy: [model] stiffness k1, file: expected a matrix, found no such"),
     (BASE, 'base = "no.mtx"', "no.mtx: [model] stiffness base, file: ... found no such file"),
     (BASE, 'base = "no.npz"', "no.npz: [model] stiffness base, file: ... found no such file"),
-    (BASE, 'base = "folder.mtx"', "folder.mtx: [model] stiffness base, file: ... Is a directory"),
+    (BASE, 'base = "folder.mtx"', "folder.mtx: [model] stiffness base, file: ... found a folder"),
     (
         f", {FIRST}",
         "",

@@ -21,6 +21,7 @@ from modefront.cli.tables import console, safe, table
 from modefront.results.selection import front_points
 from modefront.study.check import Findings
 from modefront.study.definition import Study
+from modefront.text import clean
 from modefront.work.costs import Costs
 
 FIRST = 8
@@ -28,7 +29,7 @@ FIRST = 8
 
 
 def _print(screen: Console, text: str) -> None:
-    screen.print(text, markup=False, soft_wrap=True)
+    screen.print(clean(text), markup=False, soft_wrap=True)
 
 
 def print_findings(study: Study, findings: Findings, *, every: bool = False) -> None:

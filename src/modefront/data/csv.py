@@ -17,7 +17,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, InputError, suggestion
+from modefront.errors import Fault, InputError, reason, suggestion
 
 KEYS = ("set", "mode")
 QUANTITIES = ("frequency", "damping")
@@ -131,13 +131,13 @@ def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
                 rows = [(reader.line_num, [field.strip() for field in row]) for row in reader]
             except csv.Error as error:
                 place = f"line {reader.line_num}"
-                raise InputError(Fault(str(path), place, "CSV", str(error))) from None
+                raise InputError(Fault(str(path), place, "CSV", reason(error))) from None
     except InputError:
         raise
     except FileNotFoundError:
         raise InputError(Fault(str(path), "file", "a file of modal data", "no such file")) from None
     except (OSError, ValueError) as error:
-        raise InputError(Fault(str(path), "file", "CSV in UTF-8", str(error))) from None
+        raise InputError(Fault(str(path), "file", "CSV in UTF-8", reason(error))) from None
     rows = [(number, row) for number, row in rows if any(row)]
     if not rows:
         raise InputError(Fault(str(path), "line 1", "a header of column names", "an empty file"))

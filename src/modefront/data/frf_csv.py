@@ -15,7 +15,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.channels import Channel
 from modefront.data.csv import NUMBER
-from modefront.errors import Fault, InputError, suggestion
+from modefront.errors import Fault, InputError, reason, suggestion
 
 FREQUENCY, REAL, IMAGINARY, COHERENCE = "frequency", "_re", "_im", "_coherence"
 
@@ -80,7 +80,7 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
     except FileNotFoundError:
         raise InputError(Fault(file, "file", what, "no such file")) from None
     except (OSError, ValueError, csv.Error) as error:
-        raise InputError(Fault(file, "file", "CSV in UTF-8", str(error))) from None
+        raise InputError(Fault(file, "file", "CSV in UTF-8", reason(error))) from None
     numbered = [(number, row) for number, row in enumerate(rows, start=2) if row.strip(" ,\t")]
     if not any(header):
         raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))

@@ -14,7 +14,7 @@ from modefront.data.channels import Assembled, Channel, assemble
 from modefront.data.frf_csv import read_frf_csv
 from modefront.data.responses import ORDERS
 from modefront.data.uff import read_uff
-from modefront.errors import Fault, InputError, suggestion
+from modefront.errors import Fault, InputError, reason, suggestion
 from modefront.toml import Table, is_name, repeated
 
 UFF_ENDINGS = (".uff", ".unv", ".uf", ".bunv", ".ufb")
@@ -113,7 +113,7 @@ def _parsed(path: Path) -> dict[str, object]:
     except FileNotFoundError:
         raise InputError(Fault(str(path), "file", "a test file", "no such file")) from None
     except (OSError, ValueError, RecursionError) as error:
-        raise InputError(Fault(str(path), "file", "TOML in UTF-8", str(error))) from None
+        raise InputError(Fault(str(path), "file", "TOML in UTF-8", reason(error))) from None
 
 
 def _test_table(root: Table) -> tuple[str, _Settings]:

@@ -22,7 +22,7 @@ from typing import Any
 import numpy as np
 
 from modefront.data.channels import Channel
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
 
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
@@ -60,7 +60,7 @@ def read_uff(path: Path) -> list[Channel]:
     except FileNotFoundError:
         raise InputError(Fault(file, "file", WHAT, "no such file")) from None
     except OSError as error:
-        raise InputError(Fault(file, "file", WHAT, str(error))) from None
+        raise InputError(Fault(file, "file", WHAT, reason(error))) from None
     found = blocks(content, file)
     functions = [one for one in found if one.number == 58]
     if not functions:
@@ -152,7 +152,7 @@ def _decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
                 values: Mapping[str, Any] = pyuff.UFF(str(copy)).read_sets(0)
             count, data = int(values["num_pts"]), np.asarray(values["data"])
         except Exception as error:  # pyuff raises bare Exceptions
-            raise InputError(Fault(file, place, "a dataset 58", str(error))) from None
+            raise InputError(Fault(file, place, "a dataset 58", reason(error))) from None
     if len(data) != count or len(np.atleast_1d(values["x"])) != count:
         raise InputError(Fault(file, place, f"{count} values, as its header says", str(len(data))))
     return values

@@ -8,7 +8,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Bools
-from modefront.errors import InputError
+from modefront.errors import InputError, reason
 from modefront.models.formats import FORMATS
 from modefront.models.formats.base import check_square, wrong
 
@@ -54,7 +54,7 @@ def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_a
     except FileNotFoundError:
         raise wrong(path, "a matrix", "no such file") from None
     except Exception as error:  # what the readers raise for a damaged file is not documented
-        raise wrong(path, "a readable matrix", str(error) or type(error).__name__) from None
+        raise wrong(path, "a readable matrix", reason(error)) from None
     check_square(path, matrix.shape)
     if matrix.dtype.kind not in "biuf":
         raise wrong(path, "real numbers", f"{matrix.dtype}")

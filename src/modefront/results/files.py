@@ -5,10 +5,12 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import numpy as np
 import xarray as xr
 
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
 from modefront.results.schema import FORMAT, faults, missing
+from modefront.text import clean
 
 FILE = "results.nc"
 
@@ -35,7 +37,7 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
         with xr.open_dataset(path, engine="h5netcdf") as data:
             data.load()
     except Exception as error:  # what is raised for a damaged file is not documented
-        raise InputError(Fault(str(path), "file", "results in netCDF", str(error))) from None
+        raise InputError(Fault(str(path), "file", "results in netCDF", reason(error))) from None
     version = data.attrs.get("format", 1 if "label" in data else None)
     if version is not None and version != FORMAT:
         expected = f"results of format {FORMAT}"
@@ -45,4 +47,19 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
     wrong = [Fault(str(path), *parts) for parts in found]
     if wrong:
         raise InputError(wrong)
-    return data
+    return _printable(data)
+
+
+def _printable(data: xr.Dataset) -> xr.Dataset:
+    """Return results in which no text holds orders to a terminal."""
+    changed: dict[str, xr.Variable] = {}
+    for name, variable in data.variables.items():
+        if variable.dtype.kind in "UOT":
+            texts = [clean(text) for text in variable.values.ravel().tolist()]
+            if texts != variable.values.ravel().tolist():
+                values = np.array(texts, dtype=object).reshape(variable.shape)
+                changed[str(name)] = xr.Variable(variable.dims, values, variable.attrs)
+    out = data.assign(changed)
+    attributes = data.attrs.items()
+    out.attrs = {k: clean(value) if isinstance(value, str) else value for k, value in attributes}
+    return out

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, InputError, ModelError
+from modefront.errors import Fault, InputError, ModelError, reason
 from modefront.fronts.options import Pareto
 from modefront.identifiability.options import Identifiability
 from modefront.models.matrices import MatrixModel
@@ -130,7 +130,7 @@ def _parse(path: Path) -> tuple[dict[str, Any], bytes]:
     except IsADirectoryError:
         raise InputError(Fault(str(path), "file", "a study file", "a folder")) from None
     except (OSError, ValueError, RecursionError) as error:
-        raise InputError(Fault(str(path), "file", "TOML in UTF-8", str(error))) from None
+        raise InputError(Fault(str(path), "file", "TOML in UTF-8", reason(error))) from None
 
 
 def _try_model(root: Table, problem: UpdatingProblem) -> None:

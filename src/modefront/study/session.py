@@ -19,7 +19,7 @@ from modefront.analysis.certified import (
 )
 from modefront.analysis.coverage import coverage
 from modefront.analysis.front import AnalysisOptions, analyse_front
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
 from modefront.fronts.driver import pareto_front
 from modefront.fronts.front import Front
 from modefront.fronts.given import Weighted
@@ -158,7 +158,7 @@ def run(
             _set_aside(tasks)
             _set_aside(folder / FILE)
     except OSError as error:
-        fault = Fault(str(folder), "folder", "a folder that can be written to", str(error))
+        fault = Fault(str(folder), "folder", "a folder that can be written to", reason(error))
         raise InputError(fault) from None
     data = _Session(study, Serial(Store(tasks), progress or Progress())).results()
     _keep_other(folder / FILE, study.digest)
