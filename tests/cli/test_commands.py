@@ -198,7 +198,7 @@ def test_show_prints_tables_and_json_without_nan(modefront_: Run, whole: Path) -
 def test_compare_prints_tables_and_json(modefront_: Run, whole: Path) -> None:
     status, out, err = modefront_("compare", whole, whole)
     assert (status, err) == (0, "")
-    for text in ("fronts in the space of errors", "frequency 2", "k1, k2", "optimal weights"):
+    for text in ("Studies side by side", "frequency 2", "k1, k2", "optimal-weights"):
         assert text in out
     status, out, err = modefront_("compare", whole, whole, "--format", "json")
     assert (status, err) == (0, "")
