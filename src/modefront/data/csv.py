@@ -1,8 +1,12 @@
 """Modal data in CSV: ``set, mode, frequency, damping``, then one column a sensor.
 
 One row is one mode of one data set; frequencies are in Hz and damping is the ratio to critical.
-An empty field is not measured. Standard deviations, where known, are in columns of the same name
-with ``_std`` behind it; that of damping is checked, and used by nothing so far.
+An empty field is not measured. The columns ``set`` and ``damping`` may be left out. Standard
+deviations, where known, are in columns of the same name with ``_std`` behind it; that of damping
+is checked, and used by nothing so far.
+
+Columns are separated by commas, semicolons or tabs, whichever the header has most of. Where they
+are not separated by commas, numbers may have decimal commas, as spreadsheets write them.
 """
 
 from __future__ import annotations
@@ -21,6 +25,14 @@ from modefront.errors import Fault, InputError, suggestion
 
 KEYS = ("set", "mode")
 QUANTITIES = ("frequency", "damping")
+OPTIONAL = ("set", "damping")
+"""Columns that may be left out: all rows are of one data set then, no damping is measured."""
+
+ONLY_SET = "1"
+"""Name of the data set of a file that names none."""
+
+SEPARATORS = ",;\t"
+
 STD = "_std"
 
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)
@@ -48,7 +60,9 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
     ----------
     path
         File with the columns ``set, mode, frequency, damping``, then one a sensor, and standard
-        deviations in columns of the same names with ``_std`` behind them; frequencies in Hz.
+        deviations in columns of the same names with ``_std`` behind them; frequencies in Hz. The
+        columns ``set`` and ``damping`` may be left out. Semicolons and tabs separate columns as
+        well as commas do, and decimal commas are read where commas separate none.
     sensors
         Names of the sensors, in the order of the shapes; those of the columns unless given.
 
@@ -58,7 +72,7 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
         With every row and column in which something is wrong.
     """
     path, file = Path(path), str(path)
-    header, lines = _table(path)
+    header, lines, decimal_comma = _table(path)
     if sensors is None:
         sensors = [
             name
@@ -78,11 +92,15 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
             faults.append(Fault(file, f"line {number}", wanted, str(len(fields))))
             continue
         texts = dict(zip(header, fields, strict=True))
-        key, values, found = _row(texts)
+        key, values, found = _row(texts, decimal_comma)
         faults += [_fault(file, number, *one) for one in found]
         if key is not None and key in rows:
             place = f"line {number}, columns 'set' and 'mode'"
-            faults.append(Fault(file, place, "each mode of a data set once", f"{key} again"))
+            expected = "each mode of a data set once"
+            if "set" not in header:
+                place = f"line {number}, column 'mode'"
+                expected = "each mode once, or a column 'set' that tells data sets apart"
+            faults.append(Fault(file, place, expected, f"{key} again"))
         elif key is not None:
             rows[key] = values
             if not found:
@@ -122,11 +140,16 @@ def _fault(file: str, line: int, column: str, expected: str, found: str) -> Faul
     return Fault(file, f"line {line}, column {column!r}", expected, found)
 
 
-def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Return the header and the numbered rows that are not blank."""
+def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]], bool]:
+    """Return the header, the numbered rows that are not blank, whether decimals have commas."""
     try:
         with path.open(newline="", encoding="utf-8-sig") as stream:
-            reader = csv.reader(stream, strict=True, skipinitialspace=True)
+            first = stream.readline()
+            while first and not first.strip(SEPARATORS + " \r\n"):
+                first = stream.readline()
+            separator = max(SEPARATORS, key=first.count)
+            stream.seek(0)
+            reader = csv.reader(stream, delimiter=separator, strict=True, skipinitialspace=True)
             try:
                 rows = [(reader.line_num, [field.strip() for field in row]) for row in reader]
             except csv.Error as error:
@@ -141,7 +164,7 @@ def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     rows = [(number, row) for number, row in rows if any(row)]
     if not rows:
         raise InputError(Fault(str(path), "line 1", "a header of column names", "an empty file"))
-    return rows[0][1], rows[1:]
+    return rows[0][1], rows[1:], separator != ","
 
 
 def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[str, str, str]]:
@@ -153,7 +176,11 @@ def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[
         for name in dict.fromkeys(header)
         if name not in known
     ]
-    faults += [(name, "this column", "no such column") for name in required if name not in header]
+    faults += [
+        (name, "this column", "no such column")
+        for name in required
+        if name not in header and name not in OPTIONAL
+    ]
     for name in dict.fromkeys(header):
         if header.count(name) > 1:
             faults.append((name, "each column once", f"{header.count(name)} of this name"))
@@ -161,12 +188,12 @@ def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[
 
 
 def _row(
-    texts: dict[str, str],
+    texts: dict[str, str], decimal_comma: bool
 ) -> tuple[tuple[str, int] | None, dict[str, float], list[tuple[str, str, str]]]:
     """Return the key (set, mode), the values and the faults of one row."""
     faults: list[tuple[str, str, str]] = []
     values: dict[str, float] = {}
-    name, mode = texts["set"], texts["mode"]
+    name, mode = texts.get("set", ONLY_SET), texts["mode"]
     if not name or not name.isprintable():
         faults.append(("set", "the name of a data set", repr(name)))
     if not re.fullmatch("[0-9]{1,9}", mode) or not 1 <= int(mode) <= MOST_MODES:
@@ -178,10 +205,11 @@ def _row(
         values[column] = math.nan
         if not text:
             continue
-        if not NUMBER.fullmatch(text):
+        plain = text.replace(",", ".") if decimal_comma and "." not in text else text
+        if not NUMBER.fullmatch(plain):
             faults.append((column, "a finite number or an empty field", repr(text)))
             continue
-        value = float(text)
+        value = float(plain)
         expected = _range(column, value)
         if expected:
             faults.append((column, expected, text))
@@ -197,7 +225,8 @@ def _range(column: str, value: float) -> str:
     if column == "frequency" and not least <= value <= most:
         return f"a frequency above 0 Hz, from {least:g} to {most:g}"
     if column == "damping" and not 0 <= value < 1:
-        return "a damping ratio from 0 to below 1"
+        percent = f" (if {value:g} % is meant: {value / 100:g})" if 1 <= value <= 100 else ""
+        return f"a damping ratio from 0 to below 1{percent}"
     if column.endswith(STD) and value < 0:
         return "a standard deviation of 0 or more"
     return ""
