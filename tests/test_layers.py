@@ -20,7 +20,7 @@ LAYERS = (
     ("models",),
     ("residuals",),
     ("identifiability", "predictions", "uncertainty"),
-    ("analysis",),
+    ("analysis", "diagnosis"),
     ("results",),
     ("study",),
     ("cli",),

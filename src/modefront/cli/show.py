@@ -17,8 +17,6 @@ from modefront.cli.predictions import prediction_tables
 from modefront.cli.show_knowledge import print_knowledge
 from modefront.cli.tables import console, safe, table
 from modefront.results.selection import front_points, not_converged
-from modefront.study.check import Findings
-from modefront.study.definition import Study
 from modefront.work.costs import Costs
 
 
@@ -40,48 +38,6 @@ def digest(findings: Sequence[str], where: str, most: int | None = MOST) -> list
     if rest <= 0:
         return list(findings)
     return [*findings[:most], f"and {rest} more finding{'s' * (rest > 1)}: {where}"]
-
-
-def print_findings(study: Study, findings: Findings, *, every: bool = False) -> None:
-    """Print what a check found, with the ten first findings or ``every`` one."""
-    screen = console()
-    problem = study.problem
-    _print(screen, f"{study.file}: {study.name}")
-    _print(
-        screen,
-        f"  {problem.model.size} degrees of freedom, {len(study.parameters)} parameters, "
-        f"{len(problem.data.modes)} measured modes at {len(problem.data.sensors)} sensors "
-        f"in {len(problem.data.sets)} data set{'s' * (len(problem.data.sets) > 1)}",
-    )
-    evaluation = problem.evaluate(problem.start)
-    modes = table("nominal model", ["mode", "measured Hz", "model Hz", "MAC", "model mode"])
-    for row in zip(
-        problem.data.modes,
-        problem.data.mean_frequency,
-        evaluation.quantities["frequency"],
-        evaluation.quantities["mac"],
-        evaluation.quantities["paired_mode"],
-        strict=True,
-    ):
-        modes.add_row(
-            str(row[0]), _number(row[1]), _number(row[2]), f"{row[3]:.4f}", f"{row[4]:.0f}"
-        )
-    screen.print(modes)
-    groups = table("groups", ["group", "a", "J nominal", "error nominal"])
-    for name, a, J in zip(problem.objectives, problem.properties, evaluation.J, strict=True):
-        groups.add_row(safe(name), f"{a:g}", f"{J:.5g}", f"{np.sqrt(J / a):.4g}")
-    screen.print(groups)
-    verdict = "agree with" if findings.sound else "DIFFER FROM"
-    _print(
-        screen,
-        f"derivatives {verdict} finite differences (relative {findings.derivative_error:.1e})",
-    )
-    sentences = [*findings.determined[-1:], *(f"warning: {text}" for text in findings.warnings)]
-    sentences += findings.determined[:-1]
-    for line in digest(sentences, f"modefront check --all {study.file}", None if every else MOST):
-        _print(screen, line)
-    if not findings.warnings:
-        _print(screen, "no warnings")
 
 
 def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:

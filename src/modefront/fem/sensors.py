@@ -7,6 +7,7 @@ product for all sensors, and one on a slave of a rigid link measures what its ma
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
@@ -19,15 +20,27 @@ from modefront.fem.errors import FemError
 from modefront.fem.structure import Sensor
 
 
-def selection_matrix(
-    X: Floats, sensors: Sequence[Sensor], used: Ints, dofs: Dofs
-) -> sparse.csr_array:
-    """L, CSR (sensors, free DOFs); coordinates are looked for among the nodes `used`.
+@dataclass(frozen=True)
+class SensorPlaces:
+    """Where sensors are and what they measure.
+
+    Attributes
+    ----------
+    node : (sensors,) nodes, from 0
+    direction : (sensors, 6) unit vectors in (u, r)
+    """
+
+    node: Ints
+    direction: Floats
+
+
+def sensor_places(X: Floats, sensors: Sequence[Sensor], used: Ints) -> SensorPlaces:
+    """Return nodes and directions of sensors; coordinates are looked for among the nodes `used`.
 
     Raises
     ------
     FemError
-        If a sensor hits no node, or measures what cannot move.
+        If a sensor hits no node, or its direction is none.
     """
     tree = KDTree(X[used])
     diagonal = float(np.linalg.norm(np.ptp(X[used], axis=0)))
@@ -37,19 +50,37 @@ def selection_matrix(
         place = f"sensor {sensor.name!r}"
         rows[n] = unit_vector(sensor.direction, place)
         nodes[n] = _node(X, sensor, place, used, tree, diagonal)
-    count, columns = len(sensors), 6 * nodes[:, None] + np.arange(6)
-    pick = sparse.csr_array(
-        (rows.ravel(), (np.repeat(np.arange(count), 6), columns.ravel())),
-        shape=(count, dofs.T.shape[0]),
-    )
-    pick.eliminate_zeros()
-    selection = (pick @ dofs.T).tocsr()
+    return SensorPlaces(nodes, rows)
+
+
+def selection_matrix(
+    sensors: Sequence[Sensor], places: SensorPlaces, dofs: Dofs
+) -> sparse.csr_array:
+    """Return L, CSR (sensors, free DOFs).
+
+    Raises
+    ------
+    FemError
+        If a sensor measures what cannot move.
+    """
+    selection = pick(places.node, places.direction, dofs.T)
     for n in np.flatnonzero(abs(selection).sum(1) == 0).tolist():
         raise FemError(
             f"sensor {sensors[n].name!r}: expected a direction that can move, but at node"
-            f" {nodes[n]} direction {sensors[n].direction!r} is held or has no stiffness"
+            f" {places.node[n]} direction {sensors[n].direction!r} is held or has no stiffness"
         )
     return selection
+
+
+def pick(nodes: Ints, directions: Floats, T: sparse.csr_array) -> sparse.csr_array:
+    """Return displacements of nodes along directions (rows, 6) from the free DOFs, CSR."""
+    count, columns = len(nodes), 6 * nodes[:, None] + np.arange(6)
+    chosen = sparse.csr_array(
+        (directions.ravel(), (np.repeat(np.arange(count), 6), columns.ravel())),
+        shape=(count, T.shape[0]),
+    )
+    chosen.eliminate_zeros()
+    return (chosen @ T).tocsr()
 
 
 def _node(X: Floats, sensor: Sensor, place: str, used: Ints, tree: KDTree, diagonal: float) -> int:

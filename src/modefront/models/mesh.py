@@ -12,6 +12,7 @@ from modefront._typing import Floats
 from modefront.errors import wrong
 from modefront.linalg.affine import Monomials, SparseAffine
 from modefront.models.matrices import MatrixModel, affine_model
+from modefront.models.nodes import SensorNodes
 
 
 def mesh_model(
@@ -65,7 +66,7 @@ def mesh_model(
         exponents[:, columns] = matrix.coefficients.exponents
         return replace(matrix, coefficients=Monomials(exponents))
 
-    return affine_model(
+    model = affine_model(
         parameters,
         [built.sensors[i] for i in sensors],
         built.selection[sensors],
@@ -74,6 +75,9 @@ def mesh_model(
         outputs={built.sensors[i]: built.selection[[i]].toarray()[0] for i in others},
         base={name: motion for name, motion in _motions(built.dofs).items() if motion.any()},
     )
+    node, direction = built.places.node[sensors], built.places.direction[sensors]
+    position = np.asarray(structure.nodes, float)[node]
+    return replace(model, nodes=SensorNodes(built.dofs.T, node, direction, position))
 
 
 def _motions(dofs: fem.Dofs) -> dict[str, Floats]:

@@ -8,6 +8,7 @@ from typing import Any, get_args
 
 from modefront import fem
 from modefront.data.csv import is_reserved
+from modefront.diagnosis.groups import unused_groups
 from modefront.errors import suggestion
 from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Quantity
@@ -43,6 +44,7 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
         table.asked += KEYS  # what they say cannot be judged without the mesh
         return None
     structure, outputs = _structure(table, parameters, mesh), _outputs(table)
+    table.notes += unused_groups(mesh, (g.name for g in structure.groups), _named_nodes(table))
     if len(table.faults) > before:
         return None
     try:
@@ -69,6 +71,21 @@ def _structure(table: Table, parameters: Sequence[str], mesh: Mesh) -> fem.Struc
         _sensors(table),
         _scales(table, parameters),
     )
+
+
+def _named_nodes(model: Table) -> set[str]:
+    """Return the groups and node sets that supports, springs, masses and links name."""
+    named: set[str] = set()
+    for kind in ("support", "spring", "mass", "link"):
+        for table in model.values.get(kind) or ():
+            for key in ("nodes", "to", "master", "slaves"):
+                value = table.get(key)
+                named.update(x for x in _listed(value) if isinstance(x, str))
+    return named
+
+
+def _listed(value: object) -> list[Any]:
+    return value if isinstance(value, list) else [value]
 
 
 def _closed(table: Table) -> bool:
