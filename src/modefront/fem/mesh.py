@@ -1,7 +1,8 @@
 """Meshes from files: nodes, cells by group name, sets of nodes.
 
 meshio (an optional extra) reads the file. Groups are Gmsh's physical groups (one without a name
-goes by its number) and the cell sets of other formats; a file without any is one group, `all`.
+goes by its number), the groups of MED (Salome, Code_Aster), of which a cell or node may have
+several, and the cell sets of other formats; a file without any is one group, `all`.
 """
 
 from __future__ import annotations
@@ -136,8 +137,20 @@ def read_mesh(path: str | Path) -> Mesh:
     return Mesh(
         np.pad(points, ((0, 0), (0, 3 - points.shape[1]))),
         tuple(CellBlock(*key, np.concatenate(cells)) for key, cells in blocks.items()),
-        {name: np.asarray(nodes, dtype=np.int64) for name, nodes in raw.point_sets.items()},
+        _node_sets(raw),
     )
+
+
+def _node_sets(raw: Any) -> dict[str, Ints]:
+    """Nodes by the name of their set, or of their MED group."""
+    out = {name: np.asarray(nodes, dtype=np.int64) for name, nodes in raw.point_sets.items()}
+    tags = np.asarray(raw.point_data.get("point_tags", []))
+    for family, names in getattr(raw, "point_tags", {}).items():
+        nodes = np.flatnonzero(tags == family)
+        for name in names:
+            known = out.get(name, np.zeros(0, dtype=np.int64))
+            out[name] = np.union1d(known, nodes)
+    return {name: nodes for name, nodes in out.items() if nodes.size}
 
 
 def _named_cells(raw: Any) -> Iterator[tuple[str, str, Ints]]:
@@ -149,12 +162,19 @@ def _named_cells(raw: Any) -> Iterator[tuple[str, str, Ints]]:
         for block, data, chosen in zip(raw.cells, cells, members, strict=True):
             if chosen is not None and len(chosen):
                 yield name, block.type, data[np.asarray(chosen, dtype=np.int64)]
+    families = getattr(raw, "cell_tags", {})
+    for block, data, of_block in zip(
+        raw.cells, cells, raw.cell_data.get("cell_tags", []), strict=False
+    ):
+        for family in np.unique(of_block).tolist():
+            for name in families.get(family, ()):
+                yield name, block.type, data[np.asarray(of_block) == family]
     names = {(int(tag), int(dim)): name for name, (tag, dim) in raw.field_data.items()}
     for block, data, block_tags in zip(raw.cells, cells, tags, strict=False):
         for tag in np.unique(block_tags):
             name = names.get((int(tag), block.dim), str(tag) if tag else "all")
             if name not in sets:
                 yield name, block.type, data[np.asarray(block_tags) == tag]
-    if not sets and not tags:
+    if not sets and not tags and not families:
         for block, data in zip(raw.cells, cells, strict=True):
             yield "all", block.type, data
