@@ -336,7 +336,7 @@ def outside(case: Case) -> UpdatingProblem | None:
     if model.size > 12 or not isinstance(model, MatrixModel):
         return None
     lam = model.full_modes(case.problem.start, model.size).lam
-    f[:, -1] *= case.rng.uniform(1.5, 5.0) * np.sqrt(lam[-1]) / (2 * np.pi) / f[:, -1].mean()
+    f[:, -1] *= case.rng.uniform(1.7, 5.0) * np.sqrt(lam[-1]) / (2 * np.pi) / f[:, -1].mean()
     return case.with_data(frequency=f)
 
 

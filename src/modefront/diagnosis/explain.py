@@ -92,14 +92,22 @@ def explained(comparison: Comparison, view: Measured, shifts: list[float]) -> Ex
     """
     found = [each for shift in shifts for each in _explanations(comparison, view, shift)]
     plain = min((each for each in found if each.is_plain), key=lambda each: each.cost)
-    better = [each for each in found if not each.is_plain and each.cost < plain.cost]
-    best: Explanation | None = None
-    for each in sorted(better, key=lambda each: each.cost)[:3]:
-        proved = _proved(comparison, view, each)
+    kinds: dict[str, Explanation] = {}
+    for each in sorted(found, key=lambda each: each.cost):
+        if not each.is_plain and each.cost < plain.cost:
+            kinds.setdefault(_kind(each), each)
+    for each in kinds.values():
+        proved = _proved(comparison, view, each, plain.cost)
         if proved is not None:
-            best = proved
-            break
-    return best or plain
+            return proved
+    return plain
+
+
+def _kind(explanation: Explanation) -> str:
+    """Return of what kind an explanation is; the best of each kind is tried."""
+    if explanation.relocation is None:
+        return "changes"
+    return explanation.relocation.counted or "direction"
 
 
 def _explanations(comparison: Comparison, view: Measured, shift: float) -> Iterator[Explanation]:
@@ -130,28 +138,37 @@ def _explanation(
     return Explanation(changes, relocation, view, phi, shift, total)
 
 
-def _proved(comparison: Comparison, view: Measured, best: Explanation) -> Explanation | None:
-    """Return the part of an explanation with which a fit is clearly better than without."""
+def _proved(
+    comparison: Comparison, view: Measured, best: Explanation, plain: float
+) -> Explanation | None:
+    """Return the part of an explanation with which a fit is clearly better than without.
+
+    A reduced basis knows the sensors of its model alone: the costs of pairing at the nominal model,
+    ``plain`` without the explanation, have to do there.
+    """
     count = int(view.has_shape.sum())
     last = comparison.updating(best.shift).fit(view)
     if best.relocation is not None:
         model = comparison.problem.model
         if not isinstance(model, MatrixModel):
-            return best
+            is_clear = best.cost < PROVED * plain and plain - best.cost > LEAST * count
+            return best if is_clear else None
         moved = replace(model, selection=best.relocation.selection)
         fit = comparison.updating(best.shift, moved).fit(view)
         return best if _is_better(fit, last, count) else None
-    kept: list[Change] = []
-    for change in best.changes:
-        changed = applied([*kept, change], view, range(view.psi.shape[0]))
-        fit = comparison.updating(best.shift).fit(changed)
-        if not _is_better(fit, last, count):
-            break
-        kept.append(change)
-        last = fit
+    everywhere, updating = range(view.psi.shape[0]), comparison.updating(best.shift)
+    kept, fit = list(best.changes), updating.fit(best.view)
+    while kept and not _is_better(fit, last, count):
+        kept.pop()
+        fit = updating.fit(applied(kept, view, everywhere))
+    for change in list(kept) if len(kept) > 1 else ():
+        rest = [each for each in kept if each is not change]
+        without = updating.fit(applied(rest, view, everywhere))
+        if not _is_better(fit, without, count):
+            kept, fit = rest, without
     if not kept:
         return None
-    changed = applied(kept, view, range(view.psi.shape[0]))
+    changed = applied(kept, view, everywhere)
     return _explanation(comparison, tuple(kept), None, changed, best.phi, best.shift)
 
 

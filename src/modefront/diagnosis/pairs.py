@@ -12,7 +12,7 @@ from modefront.diagnosis.measured import Measured
 FAR = float(np.log(2.0))
 """Logarithm of the ratio of the frequencies of a pair from which on they are far apart."""
 
-BEYOND = 1.3
+BEYOND = 1.5
 """Ratio of a measured frequency to the highest of the model from which on it is outside."""
 
 POOR, GOOD = 0.5, 0.8
