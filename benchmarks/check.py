@@ -248,17 +248,17 @@ def direction_of_all(case: Case) -> UpdatingProblem | None:
 
 def _redirected(case: Case, sensors: list[int]) -> UpdatingProblem | None:
     model = case.problem.model
-    if not isinstance(model, MatrixModel) or model.nodes is None:
+    if not isinstance(model, MatrixModel) or model.geometry is None:
         return None
-    nodes = model.nodes
-    axis = int(np.argmax(np.abs(nodes.direction[0])))
-    direction = nodes.direction.copy()
-    for other in case.rng.permutation([a for a in range(3) if a != axis]).tolist():
-        direction[sensors] = np.eye(6)[other] * direction[sensors].sum(axis=1, keepdims=True)
-        selection = nodes.selection(nodes.node, direction)
+    geometry = model.geometry
+    axis = int(np.argmax(np.abs(geometry.sensor_directions[0])))
+    directions = geometry.sensor_directions.copy()
+    for other in case.rng.permutation([a for a in geometry.axes if a != axis]).tolist():
+        directions[sensors] = np.eye(3)[other] * directions[sensors].sum(axis=1, keepdims=True)
+        selection = geometry.weights(geometry.sensor_nodes, directions)
         if abs(selection).sum(axis=1).all():
-            moved = replace(nodes, direction=direction)
-            return case.with_model(replace(model, selection=selection, nodes=moved))
+            moved = replace(geometry, sensor_directions=directions)
+            return case.with_model(replace(model, selection=selection, geometry=moved))
     return None
 
 
@@ -267,15 +267,16 @@ def counted_from_one(case: Case) -> UpdatingProblem | None:
     model = case.problem.model
     if not isinstance(model, MatrixModel):
         return None
-    if model.nodes is not None:
-        node = model.nodes.node + 1
-        if node.max() >= model.nodes.count:
+    geometry = model.geometry
+    if geometry is not None and len(geometry.axes) > 1:
+        nodes = geometry.sensor_nodes + 1
+        if nodes.max() >= len(geometry.nodes):
             return None
-        selection = model.nodes.selection(node, model.nodes.direction)
-        moved = replace(model.nodes, node=node)
+        selection = geometry.weights(nodes, geometry.sensor_directions)
         if not abs(selection).sum(axis=1).all() or _moves_alike(model, selection):
             return None
-        return case.with_model(replace(model, selection=selection, nodes=moved))
+        moved = replace(geometry, sensor_nodes=nodes)
+        return case.with_model(replace(model, selection=selection, geometry=moved))
     entries = model.selection.tocoo()
     if entries.col.max() + 1 >= model.size:
         return None

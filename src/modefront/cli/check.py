@@ -9,7 +9,8 @@ import numpy as np
 from rich.console import Console
 from rich.table import Table
 
-from modefront.cli.show import MOST, digest
+from modefront.cli.layout import Screen
+from modefront.cli.remarks import MOST, digest
 from modefront.cli.tables import safe, table
 from modefront.diagnosis.changes import comac
 from modefront.diagnosis.comparison import Comparison
@@ -31,11 +32,11 @@ ROWS = 12
 
 def print_findings(study: Study, findings: Findings, *, every: bool = False) -> None:
     """Print what a check found, with the ten first findings or ``every`` one."""
-    screen = Console(highlight=False, width=WIDTH)
-    problem = study.problem
-    _say(screen, f"{study.file}: {study.name}")
+    output = Screen(Console(highlight=False, width=WIDTH))
+    screen, problem = output.console, study.problem
+    _say(output, f"{study.file}: {study.name}")
     _say(
-        screen,
+        output,
         f"  {problem.model.size} degrees of freedom, {len(study.parameters)} parameters, "
         f"{len(problem.data.modes)} measured modes at {len(problem.data.sensors)} sensors "
         f"in {len(problem.data.sets)} data set{'s' * (len(problem.data.sets) > 1)}",
@@ -53,7 +54,7 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
     verdict = "agree with" if findings.sound else "DIFFER FROM"
     doubt = " at a model with these warnings" if findings.mistakes and not findings.sound else ""
     _say(
-        screen,
+        output,
         f"derivatives {verdict} finite differences{doubt} "
         f"(relative {findings.derivative_error:.1e})",
     )
@@ -64,23 +65,22 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         sentences += _advice(findings.sensitivities)
     sentences += findings.determined[:-1]
     for line in digest(sentences, f"modefront check --all {study.file}", None if every else MOST):
-        _say(screen, line)
+        _say(output, line)
     if not findings.warnings:
-        _say(screen, "no warnings")
+        _say(output, "no warnings")
 
 
-def _say(screen: Console, text: str) -> None:
+def _say(screen: Screen, text: str) -> None:
     """Print a sentence in lines of 80 columns, those after the first one indented."""
     lines = textwrap.wrap(
-        text,
+        screen.shown(text),
         WIDTH,
         subsequent_indent="    ",
         break_long_words=False,
         break_on_hyphens=False,
-        drop_whitespace=True,
     )
     for line in lines:
-        screen.print(line, markup=False, soft_wrap=True)
+        screen.console.print(line, markup=False, soft_wrap=True)
 
 
 def _short(name: object, longest: int = NAME) -> str:

@@ -24,7 +24,8 @@ from typing import Any
 import numpy as np
 
 from modefront.data.channels import Channel
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
+from modefront.inputs import read_text_bytes
 
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
@@ -37,6 +38,9 @@ AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
 
 DELIMITER = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 EXPONENT = re.compile(rb"(?<=[0-9.])[Dd](?=[+-]?[0-9])")
+
+LARGEST = 2 * 10**9
+"""Bytes of a universal file, at most."""
 
 WHAT = "a universal file with frequency response functions (dataset 58)"
 
@@ -57,7 +61,7 @@ def read_uff(path: Path) -> list[Channel]:
 
     Raises InputError where the file holds none, is cut off or cannot be decoded.
     """
-    file, content = str(path), content_of(path, WHAT)
+    file, content = str(path), read_text_bytes(path, WHAT, LARGEST)
     found = blocks(content, file)
     functions = [one for one in found if one.number == 58]
     if not functions:
@@ -83,16 +87,6 @@ def read_uff(path: Path) -> list[Channel]:
         )
         for one in channels
     ]
-
-
-def content_of(path: Path, what: str) -> bytes:
-    """Return the bytes of a file; raises InputError, which says ``what`` was expected."""
-    try:
-        return path.read_bytes()
-    except FileNotFoundError:
-        raise InputError(Fault(str(path), "file", what, "no such file")) from None
-    except OSError as error:
-        raise InputError(Fault(str(path), "file", what, str(error))) from None
 
 
 def blocks(content: bytes, file: str) -> list[Block]:
@@ -160,7 +154,7 @@ def decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
                 values: Mapping[str, Any] = pyuff.UFF(str(copy)).read_sets(0)
         except Exception as error:  # pyuff raises bare Exceptions
             expected = f"a dataset {block.number}"
-            raise InputError(Fault(file, place, expected, str(error))) from None
+            raise InputError(Fault(file, place, expected, reason(error))) from None
     return values
 
 
@@ -170,7 +164,7 @@ def _function(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
     try:
         count, data = int(values["num_pts"]), np.asarray(values["data"])
     except (KeyError, TypeError, ValueError) as error:
-        raise InputError(Fault(file, place, "a dataset 58", str(error))) from None
+        raise InputError(Fault(file, place, "a dataset 58", reason(error))) from None
     if len(data) != count or len(np.atleast_1d(values["x"])) != count:
         raise InputError(Fault(file, place, f"{count} values, as its header says", str(len(data))))
     return values

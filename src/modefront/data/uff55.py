@@ -22,8 +22,9 @@ import numpy as np
 
 from modefront._typing import Complexes, Floats, Ints
 from modefront.data.modal import ModalData
-from modefront.data.uff import AXES, Block, blocks, content_of, decode
-from modefront.errors import Fault, InputError, suggestion
+from modefront.data.uff import AXES, LARGEST, Block, blocks, decode
+from modefront.errors import Fault, InputError
+from modefront.inputs import read_text_bytes
 
 SUFFIXES = (".uff", ".unv", ".uf")
 """Ends of names of universal files."""
@@ -116,7 +117,7 @@ def read_uff55(path: Path) -> NodalModes:
 
     Raises InputError where the file holds none, is cut off or cannot be decoded.
     """
-    file, content = str(path), content_of(path, WHAT)
+    file, content = str(path), read_text_bytes(path, WHAT, LARGEST)
     found = blocks(content, file)
     shapes = [one for one in found if one.number == 55]
     if not shapes:
@@ -217,8 +218,3 @@ def _assembled(file: str, rows: Sequence[_Mode], positions: Mapping[int, Floats]
         values[:, ~(np.nan_to_num(values) != 0).any(axis=0)] = np.nan
     places = np.array([positions.get(int(node), np.full(3, np.nan)) for node in nodes])
     return NodalModes(file, sets, modes, nodes, places, frequency, damping, shape)
-
-
-def unknown_place(modes: NodalModes, name: str) -> str:
-    """Return what was found in place of a measured degree of freedom, for a message."""
-    return suggestion(name, modes.measured)

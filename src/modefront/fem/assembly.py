@@ -48,8 +48,8 @@ class StructureMatrices:
     parameters : names of the parameters, in the order of theta
     sensors : names of the sensors
     selection : (sensors, free degrees of freedom) displacement at each sensor
+    places : where the sensors are, and in which directions they measure
     dofs : numbering; ``dofs.T`` gives all displacements from the free ones
-    places : nodes and directions of the sensors
     """
 
     stiffness: SparseAffine
@@ -57,8 +57,8 @@ class StructureMatrices:
     parameters: tuple[str, ...]
     sensors: tuple[str, ...]
     selection: sparse.csr_array
-    dofs: Dofs
     places: SensorPlaces
+    dofs: Dofs
 
 
 def assemble(structure: Structure, *, floating: bool = False) -> StructureMatrices:

@@ -26,12 +26,14 @@ class SensorPlaces:
 
     Attributes
     ----------
-    node : (sensors,) nodes, from 0
-    direction : (sensors, 6) unit vectors in (u, r)
+    nodes
+        (sensors,) nodes.
+    directions
+        (sensors, 6) weights of x, y, z, rx, ry, rz.
     """
 
-    node: Ints
-    direction: Floats
+    nodes: Ints
+    directions: Floats
 
 
 def sensor_places(
@@ -65,10 +67,10 @@ def selection_matrix(
     FemError
         With all sensors that measure what cannot move.
     """
-    selection = pick(places.node, places.direction, dofs.T)
+    selection = pick(places.nodes, places.directions, dofs.T)
     still = [
         f"sensor {sensors[n].name!r}: expected a direction that can move, but at node"
-        f" {places.node[n]} direction {sensors[n].direction!r} is held or has no stiffness"
+        f" {places.nodes[n]} direction {sensors[n].direction!r} is held or has no stiffness"
         for n in np.flatnonzero(abs(selection).sum(1) == 0).tolist()
     ]
     if still:

@@ -15,8 +15,8 @@ from modefront.errors import InputError, suggestion
 from modefront.fem.check import unit_vector
 from modefront.fem.errors import FemError
 from modefront.models.base import Model
+from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
-from modefront.models.nodes import SensorNodes
 from modefront.toml import Table, describe
 
 NEAR = 0.01
@@ -68,7 +68,8 @@ def _of_nodes(
     if model is None:
         return None
     given = {} if places is None else places.values
-    nodes = model.nodes if isinstance(model, MatrixModel) else None
+    geometry = model.geometry if isinstance(model, MatrixModel) else None
+    in_space = geometry if geometry is not None and len(geometry.axes) > 1 else None
     found: dict[str, tuple[int, Floats]] = {}
     before = len(table.faults)
     for name in given:
@@ -78,7 +79,7 @@ def _of_nodes(
         if name in given and places is not None:
             place = _given(places, name, modes)
         else:
-            place = modes.place(name) or _by_coordinates(modes, nodes, s)
+            place = modes.place(name) or _by_coordinates(modes, in_space, s)
             if place is None:
                 expected = (
                     f"{name} = node and direction, one of {_listed(modes)}: the file does not say "
@@ -88,9 +89,9 @@ def _of_nodes(
         if place is None:
             continue
         found[name] = place
-        if nodes is not None and abs(nodes.direction[s] @ place[1]) < ASKEW:
-            own, measured = axis_name(nodes.direction[s]), axis_name(place[1])
-            table.notes.append(DataDirection(name, own, measured))
+        own = None if in_space is None else in_space.sensor_directions[s]
+        if own is not None and own.any() and abs(own @ place[1][:3]) < ASKEW:
+            table.notes.append(DataDirection(name, axis_name(own), axis_name(place[1])))
     if len(table.faults) > before:
         return None
     for name, (node, direction) in found.items():
@@ -136,15 +137,16 @@ def _is_any(value: object) -> bool:
 
 
 def _by_coordinates(
-    modes: NodalModes, nodes: SensorNodes | None, s: int
+    modes: NodalModes, geometry: Geometry | None, s: int
 ) -> tuple[int, Floats] | None:
     """Return the node of the test at the coordinates of a sensor, and the sensor's direction."""
-    if nodes is None or nodes.position is None or np.isnan(modes.position).any():
+    if geometry is None or np.isnan(modes.position).any():
         return None
-    distance = np.linalg.norm(modes.position - nodes.position[s], axis=1)
+    direction = np.concatenate([geometry.sensor_directions[s], np.zeros(3)])
+    distance = np.linalg.norm(modes.position - geometry.nodes[geometry.sensor_nodes[s]], axis=1)
     nearest = int(np.argmin(distance))
     size = float(np.linalg.norm(np.ptp(modes.position, axis=0)))
-    return (nearest, nodes.direction[s]) if distance[nearest] <= NEAR * size else None
+    return (nearest, direction) if direction.any() and distance[nearest] <= NEAR * size else None
 
 
 def _listed(modes: NodalModes) -> str:
