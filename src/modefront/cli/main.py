@@ -48,13 +48,17 @@ def init(directory: Path, example: str) -> None:
 @click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
 def check(study: Path, every: bool) -> None:
     """Say all that is wrong with STUDY, and prove its derivatives."""
-    from modefront.cli.show import print_findings
+    from modefront.cli.check import print_findings
     from modefront.study.check import check as check_study
     from modefront.study.file import load
 
     loaded = load(study)
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
+    if not findings.sound and findings.mistakes:
+        raise UnfinishedError(
+            "the derivatives cannot be proved before what is warned of first is put right"
+        )
     if not findings.sound:
         cause = findings.derivative_cause
         raise UnfinishedError(f"the derivatives differ from finite differences {cause}")
