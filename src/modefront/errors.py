@@ -31,6 +31,10 @@ class InputError(ValueError):
         self.faults = (faults,) if isinstance(faults, Fault) else tuple(faults)
         super().__init__("\n".join(map(str, self.faults)))
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[tuple[Fault, ...]]]:
+        """Return how the error is made again, in another process."""
+        return type(self), (self.faults,)
+
 
 def wrong(option: str, expected: str, found: object) -> InputError:
     """Return the error of a single option or argument that is wrong."""

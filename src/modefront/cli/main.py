@@ -73,7 +73,23 @@ def check(study: Path, every: bool) -> None:
     metavar="SIZE",
     help="More points where neighbours on the front are farther apart, in units of its ranges.",
 )
-def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) -> None:
+@click.option(
+    "--workers",
+    type=click.IntRange(1, 61),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="Processes that do the work; the digits do not depend on them.",
+)
+@click.option("--scheduler", metavar="tcp://HOST:PORT", help="Dask cluster that does the work.")
+def run(
+    study: Path,
+    directory: Path | None,
+    fresh: bool,
+    refine: float | None,
+    workers: int,
+    scheduler: str | None,
+) -> None:
     """Do the work of STUDY; continue where an interrupted run stopped."""
     from modefront.cli.certificates import uncertified
     from modefront.cli.progress import progress_bar
@@ -85,7 +101,14 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     loaded = _refined(load(study), refine)
     directory = directory or study.with_name(f"{study.stem}-results")
     with progress_bar(loaded.name) as progress:
-        data = run_study(loaded, directory, fresh=fresh, progress=progress).dataset
+        data = run_study(
+            loaded,
+            directory,
+            fresh=fresh,
+            progress=progress,
+            workers=workers,
+            scheduler=scheduler,
+        ).dataset
     print_summary(data, directory, progress.spent)
     failed = not_converged(data)
     if failed:
