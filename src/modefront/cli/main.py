@@ -7,7 +7,11 @@ at once.
 from __future__ import annotations
 
 import os
+import signal
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -203,10 +207,52 @@ def _refined(study: Study, size: float | None) -> Study:
         raise InputError(faults) from None
 
 
+@contextmanager
+def _signals() -> Iterator[None]:
+    """Let the end of a terminal or of a job interrupt as Ctrl-C does, once.
+
+    What is ignored, as in the background of a shell or under ``nohup``, stays ignored.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    names = ("SIGINT", "SIGTERM", "SIGHUP")
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    before = {x: signal.getsignal(x) for x in numbers if signal.getsignal(x) != signal.SIG_IGN}
+
+    def interrupt(_: int, __: object) -> None:
+        for number in before:
+            signal.signal(number, lambda *_: os._exit(INTERRUPTED))
+        raise KeyboardInterrupt
+
+    for number in before:
+        signal.signal(number, interrupt)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _abandon_output() -> None:
+    """Write nothing more to standard output, which takes no more, at the end of the program."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def main() -> None:
     """Run the command and leave with its exit status; no input produces a traceback."""
+    with _signals():
+        status = _status()
+    sys.exit(status)
+
+
+def _status() -> int:
+    """Run the command and return its exit status."""
     try:
         cli.main(standalone_mode=False)
+        if sys.stdout is not None:
+            sys.stdout.flush()
         status = OK
     except click.exceptions.Exit as exit_:
         status = exit_.exit_code
@@ -226,9 +272,10 @@ def main() -> None:
         click.echo("modefront: interrupted; what was done is kept, run again to continue", err=True)
         status = INTERRUPTED
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _abandon_output()
         status = UNDONE
     except OSError as error:  # such as a full disk
+        _abandon_output()
         click.echo(f"modefront: {error}; what was done is kept", err=True)
         status = UNDONE
     except Exception as error:
@@ -240,4 +287,4 @@ def main() -> None:
             err=True,
         )
         status = UNDONE
-    sys.exit(status)
+    return status

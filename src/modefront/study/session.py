@@ -165,6 +165,7 @@ def run(
     tasks = folder / FOLDER / f"{study.work[:12]}-{__version__}"
     try:
         tasks.mkdir(parents=True, exist_ok=True)
+        _remove_leftovers(folder / FILE, tasks)
         if fresh or not study.work:
             _set_aside(tasks)
             _set_aside(folder / FILE)
@@ -272,6 +273,12 @@ class _Session:
 def _nominal(problem: UpdatingProblem) -> Solution:
     """Return the model at the nominal parameters."""
     return given(problem.evaluate(problem.start))
+
+
+def _remove_leftovers(file: Path, tasks: Path) -> None:
+    """Remove files that a killed run has not written to the end."""
+    for path in (file.with_name(f"{file.name}.tmp"), *tasks.glob("*.tmp")):
+        path.unlink(missing_ok=True)
 
 
 def _set_aside(path: Path) -> None:

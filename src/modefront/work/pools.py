@@ -7,10 +7,12 @@ interrupts of the terminal to it.
 from __future__ import annotations
 
 import importlib
+import logging
 import multiprocessing
 import os
 import signal
 import threading
+import time
 from collections.abc import Iterator, Sequence
 from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -26,8 +28,11 @@ from threadpoolctl import threadpool_limits
 from modefront.errors import Fault, InputError, UnfinishedError
 from modefront.work.transfer import Message, Reply, work
 
-JOIN = 60.0
-"""Seconds in which a cluster has to answer, and one of its workers to join."""
+ANSWER, JOIN = 10.0, 60.0
+"""Seconds in which a scheduler has to answer, and one of its workers to join."""
+
+OFTEN = 10.0
+"""Seconds after which the workers of a cluster are counted again."""
 
 
 class Loss(Enum):
@@ -170,6 +175,8 @@ class Cluster:
     """
 
     address: str
+    _count: int = 1
+    _counted: float = -OFTEN
     _client: Any = field(init=False)
     _executor: Any = field(init=False)
 
@@ -181,7 +188,8 @@ class Cluster:
             expected = "the extra 'cluster': pip install modefront[cluster]"
             raise InputError(Fault("", place, expected, "no package 'distributed'")) from None
         try:
-            self._client = distributed.Client(self.address, timeout=JOIN, set_as_default=False)
+            logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors say what it logs
+            self._client = distributed.Client(self.address, timeout=ANSWER, set_as_default=False)
         except ValueError as error:
             expected = "an address like tcp://HOST:PORT"
             raise InputError(Fault("", place, expected, f"{self.address}: {error}")) from None
@@ -196,8 +204,12 @@ class Cluster:
 
     @property
     def count(self) -> int:
-        """Number of threads of all workers."""
-        return max(1, sum(self._client.nthreads().values()))
+        """Number of threads of all workers, as it was a few seconds ago."""
+        if time.monotonic() > self._counted + OFTEN:
+            self._counted = time.monotonic()
+            with suppress(Exception):  # what is lost shows when it is used
+                self._count = max(1, sum(self._client.nthreads().values()))
+        return self._count
 
     @property
     def ready(self) -> bool:

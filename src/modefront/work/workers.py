@@ -159,8 +159,11 @@ class Workers:
     def _here(
         self, call: _Call, ahead: Sequence[Task[Any]], begun: Callable[[int], None]
     ) -> Iterator[tuple[int, Done]]:
-        """Compute tasks in this process: a single one, tiny ones, and while the pool starts."""
-        while call.pending:
+        """Compute tasks in this process: a single one, tiny ones, and while the pool starts.
+
+        Where a process was lost, none is: it might have been the fault of a task.
+        """
+        while call.pending and not self._losses:
             next_ones = [*(call.tasks[k] for k in call.pending), *ahead]
             seconds = sum(self._seconds.get(_kind(task), SHORT) for task in next_ones)
             lone = len(next_ones) == 1 and not self._flying
