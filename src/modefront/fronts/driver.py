@@ -296,11 +296,12 @@ class _Run:
         archive = self.archive
         for i, (name, known) in enumerate(zip(self.problem.objectives, edges, strict=True)):
             order = Lexicographic(i, sizes)
-            ahead = [k for k, J in enumerate(archive.J) if order.clearly_better(J, known.best.at.J)]
+            J = archive.J
+            ahead = [k for k, row in enumerate(J) if order.clearly_better(row, known.best.at.J)]
             if not ahead:
                 out.append(known)
                 continue
-            first = min(ahead, key=lambda k: order.value(archive.J[k]))
+            first = min(ahead, key=lambda k: order.value(J[k]))
             arguments = (self.problem, i, sizes, archive.theta[first])
             (minima,) = work.run([Task(("edge", name, "archive"), _refined_again, arguments)])
             refined = ordered(self.problem, i, sizes, [*known.minima, *minima])
@@ -316,10 +317,9 @@ class _Run:
         for model in models:
             w = weights[model.kind, model.name]
             descent, known = _descent(w, sizes), model.solution
-            first = int((archive.J @ w).argmin())
-            if archive.J[first] @ w < known.at.J @ w and not descent.equal(
-                archive.J[first], known.at.J
-            ):
+            J = archive.J
+            first = int((J @ w).argmin())
+            if J[first] @ w < known.at.J @ w and not descent.equal(J[first], known.at.J):
                 key = ("weights", model.kind.value, model.name, "archive")
                 arguments = (self.problem, descent, archive.theta[first])
                 (descended,) = self.work.run([Task(key, _descended, arguments)])

@@ -93,8 +93,8 @@ class Attainment:
         """Return whether no objective is below its floor."""
         return self.floor is None or bool((self.floor <= J).all())
 
-    def distance(self, beta: Floats, other: Floats) -> float:
-        """Return the distance of two points of the plane, in units of the ranges."""
+    def distance(self, beta: Floats, other: Floats) -> Floats:
+        """Return the distances (...) of a point (n,) and others (..., n), over the ranges."""
         return self.target.distance(beta, other)
 
     def place(self, _: int, J: Floats) -> Floats:

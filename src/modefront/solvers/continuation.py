@@ -98,8 +98,8 @@ class Programmes(Protocol):
     def scale(self) -> Floats:
         """Range of each objective over the edges, shape (n,)."""
 
-    def distance(self, beta: Floats, other: Floats, /) -> float:
-        """Return the distance of two points of the plane, in units of the ranges."""
+    def distance(self, beta: Floats, other: Floats, /) -> Floats:
+        """Return the distances (...) of a point (n,) and others (..., n), over the ranges."""
 
     def place(self, edge: int, J: Floats, /) -> Floats:
         """Return the coordinates (n,) to which an edge with these objectives belongs."""
@@ -332,20 +332,21 @@ class _Continuation:
 
     def _fits(self, point: LatticePoint, source: LatticePoint) -> bool:
         """Return whether there is room for a point beyond the simplex, and it is not too close."""
-        if self.beyond >= DENSE and self._is_close(point, source):
+        if self.beyond >= DENSE and self._are_close(point, [source]):
             # It is left out, and those behind it are reached from the same point.
             if (point, source) not in self.left_out:
                 self.left_out.add((point, source))
                 self.queue.extend((near, source) for near in neighbours(point) if min(near) < 0)
             return False
-        if self.beyond >= DENSE and any(self._is_close(point, other) for other in self.solved):
+        if self.beyond >= DENSE and self._are_close(point, list(self.solved)):
             return False
         self.beyond += 1
         return self.beyond <= self.room
 
-    def _is_close(self, point: LatticePoint, other: LatticePoint) -> bool:
-        distance = self.programmes.distance(self.beta(point), self.beta(other))
-        return distance * self.lattice.divisions < APART - SAME
+    def _are_close(self, point: LatticePoint, others: list[LatticePoint]) -> bool:
+        """Return whether a point lies too close to any of some others."""
+        distances = self.programmes.distance(np.array(point), np.array(others))
+        return bool(distances.min() < APART - SAME)
 
     def _jumps(self, solution: Solution, other: Solution) -> bool:
         """Return whether two solutions lie on different branches."""

@@ -53,8 +53,8 @@ class Projection:
         """Return False: of two objectives, the front ends at the edges."""
         return False
 
-    def distance(self, beta: Floats, other: Floats) -> float:
-        """Return the distance of two points of the plane, in units of the ranges."""
+    def distance(self, beta: Floats, other: Floats) -> Floats:
+        """Return the distances (...) of a point (n,) and others (..., n), over the ranges."""
         return self.target.distance(beta, other)
 
     def place(self, _: int, J: Floats) -> Floats:
