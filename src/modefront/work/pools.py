@@ -116,8 +116,8 @@ class LocalPool:
     def restart(self) -> None:
         """Start the processes, or others in their place."""
         before = list(_Process.started)
-        self._executor = ProcessPoolExecutor(self.count, _Context(), _prepare, (self.warm,))
         with _interrupts_held():  # what is started now never sees any
+            self._executor = ProcessPoolExecutor(self.count, _Context(), _prepare, (self.warm,))
             # The executor starts a process a task, as long as none of them is idle.
             self._first, *_ = [self._executor.submit(_started) for _ in range(self.count)]
         self._processes = [x for x in _Process.started if x not in before]
@@ -155,11 +155,14 @@ def _end_with_parent() -> None:
 
 @contextmanager
 def _interrupts_held() -> Iterator[None]:
-    """Hold interrupts back until the context ends; processes started in it hold them for good."""
+    """Hold interrupts back until the context ends; processes started in it hold them for good.
+
+    Among these is the one in which `multiprocessing` keeps account of semaphores.
+    """
     if not hasattr(signal, "pthread_sigmask"):  # Windows, where the initializer ignores them
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
     try:
         yield
     finally:
