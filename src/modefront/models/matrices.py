@@ -193,6 +193,15 @@ class MatrixModel:
                 vars(out)["pencil"] = replace(known, K=stiffness, M=mass)
         return out
 
+    def sparse(self) -> MatrixModel:
+        """Return the same model with sparse matrices."""
+        if self.is_sparse:
+            return self
+        stiffness, mass = (
+            A.sparse() if isinstance(A, DenseAffine) else A for A in (self.stiffness, self.mass)
+        )
+        return replace(self, stiffness=stiffness, mass=mass)
+
     @cached_property
     def _dense_selection(self) -> Floats:
         return self.selection.toarray()
