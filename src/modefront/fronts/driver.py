@@ -37,6 +37,9 @@ from modefront.work.task import IMMEDIATE, Executor, Key, Task, Within, seed_seq
 MOVED = 0.1
 """Distance of two edges, over the ranges of the parameters, above which their fronts differ."""
 
+ALIKE = 1e-2
+"""Change of the edges of three and more objectives, over the ranges, that leaves the simplex."""
+
 AGAIN = 2
 """Searches of the front at most, each with edges that are better than those of the one before."""
 
@@ -259,6 +262,9 @@ class _Run:
             if all(x is other for x, other in zip(better, edges, strict=True)):
                 break
             edges = better
+            if self.n > 2 and _are_near(bests, [edge.best for edge in edges], target):
+                bests = self._reported(edges, models, sizes, Within(work, turn=("near", turn)))
+                break
         if self.options.tolerance == 0:
             bests = [edge.best for edge in edges]
         return edges, bests, spanned or target, along
@@ -372,6 +378,13 @@ class _Run:
             first = equal[0].solution if equal else bests[0]
         arguments = (self.problem, self.a, sizes, first)
         return self.work.run([Task(("iterated-weights",), iterate_weights, arguments)])[0]
+
+
+def _are_near(edges: Sequence[Solution], others: Sequence[Solution], target: Payoff) -> bool:
+    """Return whether a front between edges is that between others."""
+    pairs = zip(edges, others, strict=True)
+    moved = [np.abs(x.at.J - other.at.J) / target.scale for x, other in pairs]
+    return bool(np.max(moved) < ALIKE)
 
 
 def _descent(w: Floats, sizes: Floats) -> Descent:

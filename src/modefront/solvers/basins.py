@@ -467,13 +467,13 @@ def _from_branch(problem: Problem, target: Payoff, point: Solution, start: Solut
 
     It is not solved to the end where it ends behind the point.
     """
-    beta = place_of(target, point)
-    end = replace(solve(problem, target.subproblem(beta), start, _ROUGH), beta=beta)
+    beta, programmes = place_of(target, point), programmes_of(problem, target)
+    end = replace(solve(problem, programmes.subproblem(beta), start, _ROUGH), beta=beta)
     J = np.array([end.at.J, point.at.J])
     own, known = place_on_normals(target, beta[None], J)[:, 0]
     if end.converged or own > known + BEHIND:
         return end
-    again = programmes_of(problem, target).solve_again(problem, beta, end)
+    again = programmes.solve_again(problem, beta, end)
     return replace(again, evaluations=end.evaluations + again.evaluations)
 
 

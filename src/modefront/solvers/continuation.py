@@ -117,9 +117,12 @@ class Programmes(Protocol):
 BETTER = 1e-7
 """Difference of two values below which the solutions are the same."""
 
-BEYOND = 300
-"""Points beyond the simplex that are tried at most; of three objectives, 5 times those within
-where these are more. With each further objective a point has more neighbours."""
+BEYOND, SHARE = 300, 2
+"""Points beyond the simplex that are tried at most; of three objectives, where the lattice is not
+small, so many times those within. With each further objective a point has more neighbours."""
+
+SMALL = 30
+"""Points of a small lattice of three objectives, which the front beyond it may exceed by far."""
 
 APART = 1.0
 """Distance of points beyond the simplex in steps of the ranges, one a division, at least: where the
@@ -213,7 +216,8 @@ class _Continuation:
     @property
     def room(self) -> int:
         """Points beyond the simplex that are tried at most."""
-        return max(BEYOND, 5 * len(self.lattice.counts)) if self.few else BEYOND
+        within = len(self.lattice.counts)
+        return SHARE * within if self.few and within > SMALL else BEYOND
 
     def beta(self, point: LatticePoint) -> Floats:
         """Return the coordinates (n,) of a point of the lattice."""
