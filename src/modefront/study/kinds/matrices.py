@@ -1,4 +1,4 @@
-"""``kind = "matrices"``: K(theta) = base + sum_j theta_j K_j from files, and M(theta) likewise."""
+"""``kind = "matrices"``: K(theta) = base + sum_j c_j(theta) K_j from files, M(theta) likewise."""
 
 from __future__ import annotations
 
@@ -9,8 +9,11 @@ import scipy.sparse
 
 from modefront.errors import Fault, InputError, suggestion
 from modefront.models.base import Model
+from modefront.models.dofs import DofTable, read_dofs
 from modefront.models.files import read_matrix
-from modefront.models.matrices import BASE, matrices
+from modefront.models.matrices import matrices
+from modefront.models.terms import BASE, exponents_of, form_of
+from modefront.programs.mesh import ProgramMesh, read_mesh
 from modefront.study.kinds.base import ModelKind
 from modefront.study.kinds.sensors import read_base, read_outputs, read_sensors
 from modefront.toml import Table
@@ -22,9 +25,14 @@ def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     stiffness = _terms(table, "stiffness", parameters)
     mass = _terms(table, "mass", parameters)
     size = _common_size(table, {"stiffness": stiffness, "mass": mass})
-    sensors = read_sensors(table, size)
+    dofs = _dofs(table, size)
+    mesh = table.text("mesh", "the name of a file of nodes and elements", None)
+    if mesh is not None:
+        _read_mesh(table, mesh)
+    sensors = read_sensors(table, size, dofs=dofs)
     floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
-    outputs, base = read_outputs(table, size, sensors), read_base(table, size)
+    outputs = read_outputs(table, size, sensors, dofs)
+    base = read_base(table, size, dofs)
     if len(table.faults) > before or sensors is None:
         return None
     return matrices(
@@ -42,8 +50,8 @@ def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy
     if not table.values:
         table.fault("", "at least one matrix", "none")
     for name in table.values:
-        if name != BASE and name not in parameters:
-            table.fault(name, f"'{BASE}' or a parameter", suggestion(name, [BASE, *parameters]))
+        if exponents_of(name, parameters) is None:
+            table.fault(name, form_of(name), suggestion(name, [BASE, *parameters]))
             continue
         file = _file(table, name)
         if file is None:
@@ -58,6 +66,32 @@ def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy
                 for fault in error.faults
             ]
     return out
+
+
+def _dofs(table: Table, size: int | None) -> DofTable | None:
+    """Return the nodes and directions of the degrees of freedom, where a file names them."""
+    name = table.text("dofs", "the name of a table of degrees of freedom", None)
+    if name is None:
+        return None
+    path = table.path(name)
+    try:
+        dofs = read_dofs(path)
+    except InputError as error:
+        table.faults.extend(error.faults)
+        return None
+    if size is not None and dofs.size != size:
+        table.fault("dofs", f"{size} rows, one a degree of freedom", f"{dofs.size} in '{name}'")
+        return None
+    return dofs
+
+
+def _read_mesh(table: Table, name: str) -> ProgramMesh | None:
+    """Return nodes and elements for pictures, None where the file has faults."""
+    try:
+        return read_mesh(table.path(name))
+    except InputError as error:
+        table.faults.extend(error.faults)
+        return None
 
 
 def _file(table: Table, key: str) -> tuple[str, str | None] | None:
