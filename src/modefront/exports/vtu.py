@@ -69,7 +69,8 @@ def _array(name: str, values: npt.NDArray[Any], components: int) -> str:
     little = data.astype(data.dtype.newbyteorder("<"))
     content = np.uint64(little.nbytes).astype("<u8").tobytes() + little.tobytes()
     text = base64.b64encode(content).decode("ascii")
+    count = f'NumberOfComponents="{components}" ' if components > 1 else ""
     return (
         f'<DataArray type="{NAMES[data.dtype.name]}" Name={quoteattr(name)} '
-        f'NumberOfComponents="{components}" format="binary">{text}</DataArray>'
+        f'{count}format="binary">{text}</DataArray>'
     )

@@ -252,9 +252,9 @@ class Differences:
     ) -> InputError:
         """Return the error that says which parameter the matrices are not affine in."""
         moved = [name for name, x in zip(self.parameters, run.values, strict=True) if x != 1]
-        shares = {name: _share(E, terms, quantity, self.coefficients, name) for name in moved}
+        shares = {name: _share(E, terms, quantity, self.coefficients, [name]) for name in moved}
         guilty = [name for name, share in shares.items() if share >= COVERED] or moved
-        if len(moved) > 1 and max(shares.values()) < 0.5:
+        if _share(E, terms, quantity, self.coefficients, moved) < COVERED:
             entries = scipy.sparse.coo_array(E)
             k = int(np.argmax(np.abs(entries.data)))
             place = terms.dofs.label(int(entries.row[k]))
@@ -275,13 +275,14 @@ class Differences:
 
 
 def _share(
-    E: Matrix, terms: Terms, quantity: Quantity, coefficients: Monomials, name: str
+    E: Matrix, terms: Terms, quantity: Quantity, coefficients: Monomials, names: Sequence[str]
 ) -> float:
-    """Return the share of the squares of E within the entries of the terms of a parameter."""
-    column = coefficients.exponents[:, terms.parameters.index(name)]
+    """Return the share of the squares of E within the entries of the terms of parameters."""
+    columns = [terms.parameters.index(name) for name in names]
+    acting: Bools = np.asarray(coefficients.exponents[:, columns].any(axis=1))
     pattern = scipy.sparse.csr_array(E.shape)
-    for term, exponent in zip(terms.terms, column, strict=True):
-        if exponent and quantity in term.matrices:
+    for term, acts in zip(terms.terms, acting, strict=True):
+        if acts and quantity in term.matrices:
             pattern = pattern + abs(term.matrices[quantity]).sign()
     inside = E.multiply(pattern.sign()).tocsr()
     return float((inside.data**2).sum() / (E.data**2).sum())
