@@ -62,5 +62,5 @@ def test_a_model_with_functions_of_its_parameters_and_its_derivatives() -> None:
 
 def test_a_term_that_is_none_is_named() -> None:
     one = np.eye(2)
-    with pytest.raises(mf.InputError, match="a product of powers of parameters, found 'q.2'"):
+    with pytest.raises(mf.InputError, match=r"a product of powers of parameters, found 'q.2'"):
         mf.matrices(["k"], {"q^2": one}, {"base": one}, {"a": 0})

@@ -5,10 +5,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.models.dofs import DofTable
+from modefront.models.dofs import DofTable, motion_of_nodes
 from modefront.programs.mesh import ProgramMesh
 
 
@@ -30,13 +29,7 @@ class NodeMotion:
 
 def node_motion(dofs: DofTable, mesh: ProgramMesh | None, shapes: Floats) -> NodeMotion:
     """Return the motion of all nodes of a mesh (those of ``dofs`` without one) in shapes (N, m)."""
-    part = (dofs.node > 0) & (dofs.direction >= 1) & (dofs.direction <= 6)
-    number = np.unique(dofs.node[part]) if mesh is None else mesh.number
-    part &= np.isin(dofs.node, number)
-    chosen = np.flatnonzero(part)
-    row = 6 * np.searchsorted(number, dofs.node[chosen]) + dofs.direction[chosen] - 1
-    weights = scipy.sparse.csr_array(
-        (dofs.weight[chosen], (row, chosen)), shape=(6 * number.size, dofs.size)
-    )
-    values = np.asarray(weights @ shapes).T.reshape(-1, number.size, 6)
-    return NodeMotion(number, values, bool((dofs.direction[chosen] > 3).any()))
+    number = np.unique(dofs.node[dofs.node > 0]) if mesh is None else mesh.number
+    values = np.asarray(motion_of_nodes(dofs, number) @ shapes).T.reshape(-1, number.size, 6)
+    turns = (dofs.direction > 3) & np.isin(dofs.node, number)
+    return NodeMotion(number, values, bool(turns.any()))

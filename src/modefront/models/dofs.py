@@ -9,6 +9,7 @@ from functools import cached_property
 from pathlib import Path
 
 import numpy as np
+import scipy.sparse
 
 from modefront._typing import Floats, Ints
 from modefront.errors import Fault, InputError
@@ -105,6 +106,18 @@ class DofTable:
         near = nodes[np.argsort(np.abs(nodes - node), kind="stable")[:FEW]]
         more = ", …" if nodes.size > FEW else ""
         return ", ".join(map(str, np.sort(near).tolist())) + more
+
+
+def motion_of_nodes(dofs: DofTable, nodes: Ints) -> scipy.sparse.csr_array:
+    """Return the weights of the degrees of freedom in the motion of nodes, (6 nodes, N).
+
+    ``nodes`` are ascending numbers; rows are x, y, z, rx, ry, rz of one after the other.
+    """
+    part = (dofs.direction >= 1) & (dofs.direction <= 6) & np.isin(dofs.node, nodes)
+    chosen = np.flatnonzero(part)
+    row = 6 * np.searchsorted(nodes, dofs.node[chosen]) + dofs.direction[chosen] - 1
+    entries = (dofs.weight[chosen], (row, chosen))
+    return scipy.sparse.csr_array(entries, shape=(6 * nodes.size, dofs.size))
 
 
 def number_of(direction: str) -> int:

@@ -29,6 +29,7 @@ from modefront.programs.base import (
 )
 from modefront.programs.bulk import Bulk, read_bulk
 from modefront.programs.dmig import DmigMatrix, read_dmig
+from modefront.programs.mesh import ProgramMesh
 from modefront.programs.op4 import read_op4
 
 DECKS = (".dat", ".bdf", ".nas", ".inp")
@@ -158,7 +159,16 @@ def _labelled(
     if deck.turned:
         some = ", ".join(map(str, sorted(deck.turned)[:6]))
         notes.append(f"directions are those of the nodes' own systems at node {some}")
-    return Job(str(path), K, M, dofs, precision, mesh=deck.mesh, notes=tuple(notes))
+    mesh = _drawn(deck, notes)
+    return Job(str(path), K, M, dofs, precision, mesh=mesh, notes=tuple(notes))
+
+
+def _drawn(deck: Bulk, notes: list[str]) -> ProgramMesh | None:
+    """Return the mesh of a deck, if all of its coordinates are in the basic system."""
+    if np.isfinite(deck.mesh.coordinates).all():
+        return deck.mesh
+    notes.append("nodes in coordinate systems of their own (CP): coordinates are left out")
+    return None
 
 
 def _check_labels(path: Path, deck: Bulk, triangle: scipy.sparse.csr_array, dofs: DofTable) -> None:
@@ -204,15 +214,9 @@ def _from_dmig(path: Path, options: JobOptions) -> Job:
     K, M = (upper(path, len(table), _numbered(each, table), dofs) for each in pair)
     notes: list[str] = []
     deck = _deck(path, options, notes)
-    return Job(
-        str(path),
-        K,
-        M,
-        dofs,
-        max(each.precision for each in pair),
-        mesh=deck.mesh if deck else None,
-        notes=tuple(notes),
-    )
+    mesh = _drawn(deck, notes) if deck else None
+    precision = max(each.precision for each in pair)
+    return Job(str(path), K, M, dofs, precision, mesh=mesh, notes=tuple(notes))
 
 
 def _numbered(matrix: DmigMatrix, table: Ints) -> Entries:
