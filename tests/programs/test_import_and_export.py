@@ -9,18 +9,21 @@ import shutil
 import subprocess
 from pathlib import Path
 
+import click
 import numpy as np
 import pytest
 import scipy.io
 import scipy.optimize
 import scipy.sparse
 from click.testing import CliRunner, Result
-from program_files import labels, structure, write_opensees
+from program_files import dense, labels, structure, write_op4, write_opensees
 
 from modefront.cli.main import cli
 from modefront.errors import InputError
 from modefront.exports.motion import node_motion
 from modefront.models.dofs import read_dofs
+from modefront.programs import PROGRAMS
+from modefront.programs.base import JobOptions, whole
 from modefront.programs.mesh import read_mesh
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.examples import write_example
@@ -171,6 +174,12 @@ def test_options_that_are_wrong(tmp_path: Path, arguments: list[str], message: s
     said = result.output + (str(result.exception) if result.exception else "")
     assert message in said
     assert not (tmp_path / "o").exists()
+
+
+def test_the_command_names_all_programs() -> None:
+    (program, *_) = cli.commands["import"].params
+    assert isinstance(program.type, click.Choice)
+    assert list(program.type.choices) == list(PROGRAMS)
 
 
 def test_nothing_is_overwritten(small: Path) -> None:
@@ -379,11 +388,6 @@ def test_the_plate_of_nastran(tmp_path: Path) -> None:
 
 def _stiffer_spring(source: Path, target: Path) -> None:
     """Copy a file with the spring at node 25 z (row 114 of KAA) at three times its stiffness."""
-    from program_files import dense, write_op4
-
-    from modefront.programs import PROGRAMS
-    from modefront.programs.base import JobOptions
-
     job = PROGRAMS["nastran"].read(source, JobOptions())
     K = dense(job.stiffness)
     K[113, 113] += 2e5
@@ -412,9 +416,6 @@ def test_a_deck_that_does_not_fit_its_matrices(tmp_path: Path) -> None:
 
 @needs_data
 def test_the_solid_of_ansys() -> None:
-    from modefront.programs import PROGRAMS
-    from modefront.programs.base import JobOptions, whole
-
     job = PROGRAMS["ansys"].read(DATA / "ansys.full", JobOptions())
     assert (job.size, job.stiffness.nnz) == (900, 39023 - 63)
     M = whole(job.mass)

@@ -226,6 +226,23 @@ def test_matrix_input_of_abaqus(tmp_path: Path) -> None:
     refused("abaqus", tmp_path / "a", "one step.*a_STIF1.mtx, a_STIF2.mtx")
 
 
+@pytest.mark.parametrize("program", ["abaqus", "nastran"])
+def test_text_that_is_cut_off_at_the_end_of_a_line(tmp_path: Path, program: str) -> None:
+    order = np.argsort([node for node, _ in labels()], kind="stable")
+    names = [labels()[k] for k in order]
+    A, B = K[np.ix_(order, order)], M[np.ix_(order, order)]
+    if program == "abaqus":
+        write_abaqus(tmp_path / "a", A, B, names)
+        file = tmp_path / "a_STIF1.mtx"
+        file.write_text("".join(file.read_text().splitlines(keepends=True)[:-20]))
+    else:
+        A[:, 12:] = A[12:, :] = 0.0
+        write_dmig(tmp_path / "a.pch", {"KAA": A, "MAA": B}, names)
+    refused(
+        program, tmp_path / "a", r"stiffness at all .* found none at \d of them, the first node 40"
+    )
+
+
 def test_coordinate_format_of_abaqus(tmp_path: Path) -> None:
     for kind, A in (("STIF", K), ("MASS", M)):
         rows = [f"{i + 1} {j + 1} {A[i, j]:.15e}" for i, j in zip(*np.nonzero(A), strict=True)]

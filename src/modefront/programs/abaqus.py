@@ -24,6 +24,7 @@ from modefront.programs.base import (
     Program,
     existing,
     kept,
+    refuse_mass_alone,
     upper,
     wrong,
 )
@@ -170,6 +171,7 @@ def _job(
 ) -> Job:
     """Return the job without degrees of freedom that are held."""
     notes: list[str] = []
+    refuse_mass_alone(path, K, M, dofs)
     free = np.flatnonzero((K.diagonal() < HELD) & (K.diagonal() + M.diagonal() != 0) | _tied(K))
     if free.size < dofs.size:
         notes.append(f"{dofs.size - free.size} degrees of freedom that are held are left out")

@@ -174,6 +174,17 @@ def kept(job_matrix: scipy.sparse.csr_array, dofs: Ints) -> scipy.sparse.csr_arr
     return job_matrix[dofs][:, dofs].tocsr()
 
 
+def refuse_mass_alone(
+    path: Path, K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, dofs: DofTable
+) -> None:
+    """Refuse a text file whose stiffness ends before the mass does: it is cut off at a line."""
+    alone = np.flatnonzero((abs(K).sum(axis=0) + abs(K).sum(axis=1) == 0) & (M.diagonal() != 0))
+    if alone.size:
+        found = f"none at {alone.size} of them, the first {dofs.label(int(alone[0]))}"
+        expected = "stiffness at all degrees of freedom that have mass (is the file cut off?)"
+        raise wrong(path, expected, found)
+
+
 def wrong(path: Path, expected: str, found: str, place: str = "file") -> InputError:
     """Return the error of a file, or of a place in it."""
     return InputError(Fault(str(path), place, expected, found))

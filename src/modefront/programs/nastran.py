@@ -23,6 +23,7 @@ from modefront.programs.base import (
     Program,
     existing,
     kept,
+    refuse_mass_alone,
     upper,
     whole,
     wrong,
@@ -45,7 +46,10 @@ ADVICE = "OUTPUT4 KAA,MAA,,,//-1/21 writes an .op4 file, EXTSEOUT or PARAM,EXTOU
 
 
 def read(path: Path, options: JobOptions) -> Job:
-    """Return the matrices of a job, given by its .op4 or .pch file, or without suffix."""
+    """Return the matrices of a job, given by its .op4 or .pch file, or without suffix.
+
+    A file with another suffix that is no deck, such as that of a Fortran unit, is one of OUTPUT4.
+    """
     file = _file(path)
     if file.suffix.lower() == ".pch":
         return _from_dmig(file, options)
@@ -53,9 +57,10 @@ def read(path: Path, options: JobOptions) -> Job:
 
 
 def _file(path: Path) -> Path:
-    if path.suffix.lower() in MATRICES:
+    deck = path.suffix.lower() in DECKS
+    if path.suffix.lower() in MATRICES or (path.is_file() and not deck):
         return existing(path, "matrices of Nastran", ADVICE)
-    job = path.with_suffix("") if path.suffix.lower() in DECKS else path
+    job = path.with_suffix("") if deck else path
     for suffix in MATRICES:
         if job.with_name(job.name + suffix).is_file():
             return job.with_name(job.name + suffix)
@@ -212,6 +217,7 @@ def _from_dmig(path: Path, options: JobOptions) -> Job:
     table = np.unique(labels, axis=0)
     dofs = DofTable(table[:, 0], table[:, 1], np.ones(len(table)))
     K, M = (upper(path, len(table), _numbered(each, table), dofs) for each in pair)
+    refuse_mass_alone(path, K, M, dofs)
     notes: list[str] = []
     deck = _deck(path, options, notes)
     mesh = _drawn(deck, notes) if deck else None
