@@ -13,6 +13,7 @@ from __future__ import annotations
 import argparse
 import multiprocessing
 import resource
+import shutil
 import tempfile
 import time
 from collections.abc import Callable
@@ -53,10 +54,8 @@ def labels(n: int) -> tuple[list[int], list[int]]:
 
 def write_calculix(job: Path, A: scipy.sparse.csr_array) -> None:
     entries = A.tocoo()
-    lines = _text("%d %d %20.13e\n", entries.row + 1, entries.col + 1, entries.data)
-    for suffix in (".sti", ".mas"):
-        with job.with_suffix(suffix).open("w") as file:
-            file.writelines(lines())
+    _write_text(job.with_suffix(".sti"), [entries.row + 1, entries.col + 1], entries.data, b" ")
+    shutil.copy(job.with_suffix(".sti"), job.with_suffix(".mas"))
     nodes, directions = labels(A.shape[0])
     with job.with_suffix(".dof").open("w") as file:
         file.writelines(f"{n}.{d}\n" for n, d in zip(nodes, directions, strict=True))
@@ -66,23 +65,30 @@ def write_abaqus(job: Path, A: scipy.sparse.csr_array) -> None:
     entries = A.tocoo()
     nodes, directions = map(np.array, labels(A.shape[0]))
     parts = [x[i] for i in (entries.row, entries.col) for x in (nodes, directions)]
-    lines = _text("%d,%d, %d,%d, %22.15e\n", *parts, entries.data)
-    for kind in ("STIF", "MASS"):
-        with (job.parent / f"{job.name}_{kind}1.mtx").open("w") as file:
-            file.writelines(lines())
+    names = [job.parent / f"{job.name}_{kind}1.mtx" for kind in ("STIF", "MASS")]
+    _write_text(names[0], parts, entries.data, b",")
+    shutil.copy(*names)
 
 
-def _text(form: str, *columns: Array) -> Callable[[], list[str]]:
+def _write_text(path: Path, columns: list[Array], values: Array, separator: bytes) -> None:
+    """Write whole numbers and a value in every line; values are some of the given ones."""
+    table = np.array([b"%22.15e\n" % x for x in values[:1009]], dtype="S23").view("S1")
+    texts = table.reshape(-1, 23)
     step = 10**6
+    with path.open("wb") as file:
+        for k in range(0, len(values), step):
+            parts = [_digits(column[k : k + step], separator) for column in columns]
+            chosen = texts[np.arange(k, k + len(parts[0])) % len(texts)]
+            file.write(np.concatenate([*parts, chosen], axis=1).tobytes())
 
-    def lines() -> list[str]:
-        out = []
-        for k in range(0, len(columns[0]), step):
-            parts = (column[k : k + step].tolist() for column in columns)
-            out.append("".join([form % row for row in zip(*parts, strict=True)]))
-        return out
 
-    return lines
+def _digits(numbers: Array, separator: bytes) -> npt.NDArray[np.bytes_]:
+    """Return numbers up to 9,999,999 as text with spaces before and a separator behind them."""
+    powers = 10 ** np.arange(6, -1, -1)
+    shown = (numbers[:, None] // powers % 10 + ord("0")).astype(np.uint8)
+    shown[numbers[:, None] < powers] = ord(" ")
+    out = np.concatenate([shown, np.full((len(numbers), 1), separator[0], np.uint8)], axis=1)
+    return out.view("S1")
 
 
 def write_nastran(job: Path, A: scipy.sparse.csr_array) -> None:
