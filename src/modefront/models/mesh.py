@@ -10,6 +10,8 @@ import numpy as np
 from modefront import fem
 from modefront._typing import Floats
 from modefront.errors import wrong
+from modefront.fem.check import check_points
+from modefront.fem.limits import limits_of
 from modefront.linalg.affine import Monomials, SparseAffine
 from modefront.models.matrices import MatrixModel, affine_model
 
@@ -65,7 +67,7 @@ def mesh_model(
         exponents[:, columns] = matrix.coefficients.exponents
         return replace(matrix, coefficients=Monomials(exponents))
 
-    return affine_model(
+    model = affine_model(
         parameters,
         [built.sensors[i] for i in sensors],
         built.selection[sensors],
@@ -74,6 +76,7 @@ def mesh_model(
         outputs={built.sensors[i]: built.selection[[i]].toarray()[0] for i in others},
         base={name: motion for name, motion in _motions(built.dofs).items() if motion.any()},
     )
+    return replace(model, limits=limits_of(structure, check_points(structure.nodes)))
 
 
 def _motions(dofs: fem.Dofs) -> dict[str, Floats]:
