@@ -135,7 +135,7 @@ def test_names_may_hold_what_a_path_or_a_terminal_gives_a_meaning(
     assert command("check", study) == 0, capsys.readouterr().err
     assert "a/b [bold]" in capsys.readouterr().out
     assert command("run", study, "-o", folder / "output") == 0, capsys.readouterr().err
-    assert command("show", folder / "output") == 0, capsys.readouterr().err
+    assert command("show", folder / "output", "--all") == 0, capsys.readouterr().err
     out = capsys.readouterr().out
     assert "../k/1 [red]" in out
     assert "../[/]" in out

@@ -104,9 +104,19 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
 @click.option("--figures", is_flag=True, help="Draw predictions along the front, into DIRECTORY.")
-@click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
-def show(directory: Path, form: str, figures: bool, every: bool) -> None:
-    """Print the results in DIRECTORY."""
+@click.option("--points", "lists", flag_value="points", multiple=True, help="All models.")
+@click.option("--minima", "lists", flag_value="minima", multiple=True, help="All minima.")
+@click.option(
+    "--uncertainty", "lists", flag_value="uncertainty", multiple=True, help="All deviations."
+)
+@click.option(
+    "--predictions", "lists", flag_value="predictions", multiple=True, help="All predictions."
+)
+@click.option("--findings", "lists", flag_value="findings", multiple=True, help="All findings.")
+@click.option("--all", "every", is_flag=True, help="All of these lists.")
+def show(directory: Path, form: str, figures: bool, lists: tuple[str, ...], every: bool) -> None:
+    """Print the results in DIRECTORY: the main models and findings, or full lists of these."""
+    from modefront.cli.lists import LISTS
     from modefront.cli.show import as_json, print_results
     from modefront.results.files import read_dataset
 
@@ -120,7 +130,7 @@ def show(directory: Path, form: str, figures: bool, every: bool) -> None:
     if form == "json":
         print(as_json(data))
     else:
-        print_results(data, every=every)
+        print_results(data, tuple(LISTS) if every else lists)
 
 
 @cli.command()

@@ -18,6 +18,7 @@ from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse
 from modefront.linalg.factorisation import Factorisation, Symbolic
 from modefront.linalg.pencil import Pencil, pencil
 from modefront.linalg.products import gram
+from modefront.models.geometry import Geometry
 from modefront.models.ports import Pattern, Ports, Transfer
 from modefront.modes import dense, full, sparse
 from modefront.modes.result import Modes
@@ -60,6 +61,7 @@ class MatrixModel:
     base : motion (N,) of the degrees of freedom with the base, by the name of its direction
     floating : whether the stiffness matrix may be singular: rigid-body modes are wanted
     limits : what the elements cannot do of which the matrices are made
+    geometry : where the degrees of freedom are in space; None where that is not known
     """
 
     parameters: tuple[str, ...]
@@ -71,6 +73,7 @@ class MatrixModel:
     base: Mapping[str, Floats] = field(default_factory=dict)
     floating: bool = True
     limits: Limits = field(default_factory=Limits)
+    geometry: Geometry | None = None
 
     @property
     def size(self) -> int:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import scipy.sparse
 
 from modefront import fem
 from modefront._typing import Floats
@@ -13,6 +14,7 @@ from modefront.errors import wrong
 from modefront.fem.check import check_points
 from modefront.fem.limits import limits_of
 from modefront.linalg.affine import Monomials, SparseAffine
+from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import MatrixModel, affine_model
 
 
@@ -76,7 +78,30 @@ def mesh_model(
         outputs={built.sensors[i]: built.selection[[i]].toarray()[0] for i in others},
         base={name: motion for name, motion in _motions(built.dofs).items() if motion.any()},
     )
-    return replace(model, limits=limits_of(structure, check_points(structure.nodes)))
+    limits = limits_of(structure, check_points(structure.nodes))
+    return replace(model, limits=limits, geometry=_geometry(structure, built))
+
+
+CELL_TYPES = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
+"""Types of cells, as meshio calls them, by their nodes."""
+
+
+def _geometry(structure: fem.Structure, built: fem.StructureMatrices) -> Geometry:
+    """Return nodes and cells of a structure, and how its free degrees of freedom move them."""
+    nodes = np.asarray(structure.nodes, dtype=float)
+    cells = [np.atleast_2d(np.asarray(group.cells)) for group in structure.groups]
+    translations = 6 * np.arange(len(nodes))[:, None] + np.arange(3)
+    count = len(structure.sensors)
+    return Geometry(
+        nodes,
+        tuple(
+            Cells(group.name, CELL_TYPES[each.shape[1]], each)
+            for group, each in zip(structure.groups, cells, strict=True)
+        ),
+        scipy.sparse.csr_array(built.dofs.T[translations.ravel()]),
+        built.places.nodes[:count],
+        built.places.directions[:count, :3],
+    )
 
 
 def _motions(dofs: fem.Dofs) -> dict[str, Floats]:
