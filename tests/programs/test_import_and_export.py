@@ -107,9 +107,25 @@ def test_an_imported_study_needs_data_and_sensors_only(small: Path) -> None:
     assert estimate(study.problem) == pytest.approx([1.2, 0.8], rel=1e-6)
 
 
+def test_a_list_of_directions_makes_a_sensor_each(small: Path) -> None:
+    file, data = small / "study.toml", small / "modes.csv"
+    text = file.read_text()
+    single = load(file).problem.model.sensors
+    file.write_text(text.replace('a = { node = 12, direction = "z" }', LISTED))
+    header, *rows = data.read_text().splitlines()
+    header = ",".join("pz" if name == "a" else name for name in header.split(","))
+    data.write_text("\n".join([f"{header},py", *(f"{row}," for row in rows)]))
+    found = load(file).problem.model
+    assert set(found.sensors) == {*single, "pz", "py"} - {"a"}
+
+
+LISTED = 'p = { node = 12, direction = ["z", "-y"] }'
+
+
 @pytest.mark.parametrize(
     ("place", "message"),
     [
+        ('{ node = 12, direction = ["z", "-z"] }', "a list of different ones"),
         ('{ node = 13, direction = "z" }', "a node with degrees of freedom, 3, 5, 7, 12, 40"),
         ('{ node = 12, direction = "rx" }', "node 12 can move .x, y, z., found rx, which is held"),
         ('{ node = 12, direction = "up" }', "one of x, y, z, rx, ry, rz, with or without"),

@@ -71,9 +71,11 @@ def _read(
             table.fault(repr(name), "a name that a column of the data can have", repr(name))
             continue
         if isinstance(value, dict) and {"node", "direction"} & value.keys():
-            spec = _by_node(table, name, dofs)
-            if spec is not None:
-                out[name] = spec
+            for sensor, spec in _by_node(table, name, dofs).items():
+                if is_right(sensor):
+                    out[sensor] = spec
+                else:
+                    table.fault(name, "a name that a column of the data can have", repr(sensor))
             continue
         pairs = [[value, 1.0]] if _is_dof(value) else value
         if not _is_weighted(pairs):
@@ -92,26 +94,44 @@ def _read(
     return out
 
 
-def _by_node(table: Table, name: str, dofs: DofTable | None) -> SensorSpec | None:
-    """Return the degrees of freedom of a place given by node and direction."""
+def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, SensorSpec]:
+    """Return the degrees of freedom of a place given by node and direction.
+
+    A list of directions makes as many places: NAMEx, NAMEy and so on.
+    """
     if dofs is None:
         expected = 'a degree of freedom; nodes and directions need dofs = "dofs.csv"'
         table.fault(name, expected, describe(table.values[name]))
-        return None
+        return {}
     place = table.table(name)
     if place is None:
-        return None
+        return {}
     node = place.integer("node", 1, 2**62)
-    expected = f"one of {', '.join(DIRECTIONS)}, with or without a minus sign, or a vector"
-    direction = place.take("direction", expected, is_direction, ...)
+    expected = f"one of {', '.join(DIRECTIONS)}, with or without a minus sign, a list of different "
+    expected += "ones, or a vector"
+    value = place.take("direction", expected, lambda x: is_direction(x) or _are_directions(x), ...)
     place.close()
-    if node is None or direction is None:
-        return None
-    try:
-        return dofs.sensor(node, direction)
-    except LookupError as error:
-        place.fault("", *error.args)
-        return None
+    if node is None or value is None:
+        return {}
+    several = value if _are_directions(value) else ()
+    named = {name + one.removeprefix("-"): one for one in several} or {name: value}
+    out: dict[str, SensorSpec] = {}
+    for sensor, direction in named.items():
+        try:
+            out[sensor] = dofs.sensor(node, direction)
+        except LookupError as error:
+            place.fault("", *error.args)
+    return out
+
+
+def _are_directions(value: object) -> bool:
+    """Return whether a value is a list of different directions by name."""
+    return (
+        isinstance(value, list)
+        and bool(value)
+        and all(isinstance(one, str) and is_direction(one) for one in value)
+        and len({one.removeprefix("-") for one in value}) == len(value)
+    )
 
 
 def _selects(pairs: Iterable[Any]) -> bool:
