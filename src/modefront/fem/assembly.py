@@ -32,7 +32,7 @@ from modefront.fem.elements.common import Part
 from modefront.fem.errors import FemError
 from modefront.fem.mechanism import check_mechanisms
 from modefront.fem.scatter import Block, Pattern, condense_links, scatter, scatter_plan
-from modefront.fem.sensors import selection_matrix
+from modefront.fem.sensors import SensorPlaces, selection_matrix, sensor_places
 from modefront.fem.structure import Parameter, Structure
 from modefront.linalg.affine import Monomials, SparseAffine
 
@@ -48,6 +48,7 @@ class StructureMatrices:
     parameters : names of the parameters, in the order of theta
     sensors : names of the sensors
     selection : (sensors, free degrees of freedom) displacement at each sensor
+    places : where the sensors are, and in which directions they measure
     dofs : numbering; ``dofs.T`` gives all displacements from the free ones
     """
 
@@ -56,6 +57,7 @@ class StructureMatrices:
     parameters: tuple[str, ...]
     sensors: tuple[str, ...]
     selection: sparse.csr_array
+    places: SensorPlaces
     dofs: Dofs
 
 
@@ -106,12 +108,14 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
         T = dofs.T[np.flatnonzero(dofs.kept.ravel() >= 0)]
         pattern, data = condense_links(pattern, np.concatenate([K, M]), T, dofs.slave)
         K, M = data[: len(K)], data[len(K) :]
+    places = sensor_places(X, structure.sensors, np.flatnonzero(exists.any(1)))
     return StructureMatrices(
         stiffness=_affine(pattern, K, K_exponents),
         mass=_affine(pattern, M, M_exponents),
         parameters=tuple(p.name for p in structure.parameters),
         sensors=tuple(s.name for s in structure.sensors),
-        selection=selection_matrix(X, structure.sensors, np.flatnonzero(exists.any(1)), dofs),
+        selection=selection_matrix(structure.sensors, places, dofs),
+        places=places,
         dofs=dofs,
     )
 

@@ -7,6 +7,7 @@ product for all sensors, and one on a slave of a rigid link measures what its ma
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import dataclass
 
 import numpy as np
 from scipy import sparse
@@ -19,15 +20,29 @@ from modefront.fem.errors import FemError
 from modefront.fem.structure import Sensor
 
 
-def selection_matrix(
-    X: Floats, sensors: Sequence[Sensor], used: Ints, dofs: Dofs
-) -> sparse.csr_array:
-    """L, CSR (sensors, free DOFs); coordinates are looked for among the nodes `used`.
+@dataclass(frozen=True)
+class SensorPlaces:
+    """Where sensors are and what they measure.
+
+    Attributes
+    ----------
+    nodes
+        (sensors,) nodes.
+    directions
+        (sensors, 6) weights of x, y, z, rx, ry, rz.
+    """
+
+    nodes: Ints
+    directions: Floats
+
+
+def sensor_places(X: Floats, sensors: Sequence[Sensor], used: Ints) -> SensorPlaces:
+    """Return nodes and directions of sensors; coordinates are looked for among the nodes `used`.
 
     Raises
     ------
     FemError
-        If a sensor hits no node, or measures what cannot move.
+        If a sensor hits no node.
     """
     tree = KDTree(X[used])
     diagonal = float(np.linalg.norm(np.ptp(X[used], axis=0)))
@@ -37,9 +52,23 @@ def selection_matrix(
         place = f"sensor {sensor.name!r}"
         rows[n] = unit_vector(sensor.direction, place)
         nodes[n] = _node(X, sensor, place, used, tree, diagonal)
+    return SensorPlaces(nodes, rows)
+
+
+def selection_matrix(
+    sensors: Sequence[Sensor], places: SensorPlaces, dofs: Dofs
+) -> sparse.csr_array:
+    """Return L, CSR (sensors, free DOFs).
+
+    Raises
+    ------
+    FemError
+        If a sensor measures what cannot move.
+    """
+    nodes = places.nodes
     count, columns = len(sensors), 6 * nodes[:, None] + np.arange(6)
     pick = sparse.csr_array(
-        (rows.ravel(), (np.repeat(np.arange(count), 6), columns.ravel())),
+        (places.directions.ravel(), (np.repeat(np.arange(count), 6), columns.ravel())),
         shape=(count, dofs.T.shape[0]),
     )
     pick.eliminate_zeros()

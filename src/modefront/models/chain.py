@@ -8,11 +8,13 @@ parameter, :math:`k_i = \theta_j k_{0i}`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, wrong
+from modefront.models.geometry import chain_geometry
 from modefront.models.matrices import BASE, MatrixModel, SensorSpec, matrices
 
 BASE_DIRECTION = "x"
@@ -86,7 +88,8 @@ def chain(
     if sensors is None:
         sensors = {f"floor{i + 1}": i for i in range(n)}
     base = {BASE_DIRECTION: [(i, 1.0) for i in range(n)]}
-    return matrices(parameters, K, M, sensors, outputs=outputs, base=base)
+    model = matrices(parameters, K, M, sensors, outputs=outputs, base=base)
+    return replace(model, geometry=chain_geometry(n, model.selection))
 
 
 def _spring(n: int, i: int) -> Floats:

@@ -17,6 +17,7 @@ from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse
 from modefront.linalg.factorisation import Factorisation, Symbolic
 from modefront.linalg.pencil import Pencil, pencil
 from modefront.linalg.products import gram
+from modefront.models.geometry import Geometry
 from modefront.models.ports import Pattern, Ports, Transfer
 from modefront.modes import dense, full, sparse
 from modefront.modes.result import Modes
@@ -58,6 +59,7 @@ class MatrixModel:
     outputs : weights (N,) of the degrees of freedom at places that are no sensors, by name
     base : motion (N,) of the degrees of freedom with the base, by the name of its direction
     floating : whether the stiffness matrix may be singular: rigid-body modes are wanted
+    geometry : where the degrees of freedom are in space; None where that is not known
     """
 
     parameters: tuple[str, ...]
@@ -68,6 +70,7 @@ class MatrixModel:
     outputs: Mapping[str, Floats] = field(default_factory=dict)
     base: Mapping[str, Floats] = field(default_factory=dict)
     floating: bool = True
+    geometry: Geometry | None = None
 
     @property
     def size(self) -> int:
