@@ -22,6 +22,7 @@ LAYERS = (
     ("identifiability", "predictions", "uncertainty"),
     ("analysis",),
     ("results",),
+    ("report",),
     ("study",),
     ("cli",),
     ("__init__", "__main__"),
