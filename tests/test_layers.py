@@ -12,7 +12,9 @@ import pytest
 import modefront
 
 LAYERS = (
-    ("_typing", "_version", "errors", "variables"),
+    ("_typing", "_version", "text"),
+    ("errors", "variables"),
+    ("inputs", "hdf5", "isolated"),
     ("toml", "linalg", "response", "work"),
     ("options",),
     ("data", "fem", "modes", "reliability", "solvers"),

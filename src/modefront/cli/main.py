@@ -15,7 +15,9 @@ from typing import TYPE_CHECKING
 import click
 
 from modefront._version import __version__
-from modefront.errors import InputError, UnfinishedError
+from modefront.cli.terminal import complain, prepare, say, usage
+from modefront.errors import InputError, UnfinishedError, reason
+from modefront.text import one_line
 
 if TYPE_CHECKING:
     from modefront.study.definition import Study
@@ -37,8 +39,8 @@ def init(directory: Path, example: str) -> None:
     from modefront.study.examples import write_example
 
     for path in write_example(example, directory):
-        click.echo(f"wrote {path}")
-    click.echo(f"next: modefront run {directory / 'study.toml'}")
+        say(f"wrote {path}")
+    say(f"next: modefront run {directory / 'study.toml'}")
 
 
 @cli.command()
@@ -54,7 +56,8 @@ def check(study: Path, every: bool) -> None:
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
     if not findings.sound:
-        raise UnfinishedError("the derivatives differ from finite differences")
+        cause = findings.derivative_cause
+        raise UnfinishedError(f"the derivatives differ from finite differences {cause}")
 
 
 @cli.command()
@@ -101,9 +104,19 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
 @click.option("--figures", is_flag=True, help="Draw predictions along the front, into DIRECTORY.")
-@click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
-def show(directory: Path, form: str, figures: bool, every: bool) -> None:
-    """Print the results in DIRECTORY."""
+@click.option("--points", "lists", flag_value="points", multiple=True, help="All models.")
+@click.option("--minima", "lists", flag_value="minima", multiple=True, help="All minima.")
+@click.option(
+    "--uncertainty", "lists", flag_value="uncertainty", multiple=True, help="All deviations."
+)
+@click.option(
+    "--predictions", "lists", flag_value="predictions", multiple=True, help="All predictions."
+)
+@click.option("--findings", "lists", flag_value="findings", multiple=True, help="All findings.")
+@click.option("--all", "every", is_flag=True, help="All of these lists.")
+def show(directory: Path, form: str, figures: bool, lists: tuple[str, ...], every: bool) -> None:
+    """Print the results in DIRECTORY: the main models and findings, or full lists of these."""
+    from modefront.cli.lists import LISTS
     from modefront.cli.show import as_json, print_results
     from modefront.results.files import read_dataset
 
@@ -112,12 +125,12 @@ def show(directory: Path, form: str, figures: bool, every: bool) -> None:
         from modefront.cli.figures import write_figures
 
         for path in write_figures(data, directory / "figures"):
-            click.echo(f"wrote {path}")
+            say(f"wrote {path}")
         return
     if form == "json":
-        click.echo(as_json(data))
+        print(as_json(data))
     else:
-        print_results(data, every=every)
+        print_results(data, tuple(LISTS) if every else lists)
 
 
 @cli.command()
@@ -132,7 +145,7 @@ def compare(directories: tuple[Path, ...], form: str) -> None:
 
     comparison = compare_results(directories)
     if form == "json":
-        click.echo(comparison_as_json(comparison))
+        print(comparison_as_json(comparison))
     else:
         print_comparison(comparison)
 
@@ -197,39 +210,39 @@ def _refined(study: Study, size: float | None) -> Study:
 
 def main() -> None:
     """Run the command and leave with its exit status; no input produces a traceback."""
+    prepare()
     try:
         cli.main(standalone_mode=False)
         status = OK
     except click.exceptions.Exit as exit_:
         status = exit_.exit_code
-    except click.UsageError as error:
-        error.show()
-        status = WRONG_INPUT
     except click.ClickException as error:
-        error.show()
+        complain(usage(error))
         status = WRONG_INPUT
     except InputError as error:
-        click.echo(str(error), err=True)
+        complain(str(error))
         status = WRONG_INPUT
     except UnfinishedError as error:
-        click.echo(f"modefront: {error}", err=True)
+        complain(f"modefront: {error}")
         status = UNDONE
     except (KeyboardInterrupt, click.Abort):
-        click.echo("modefront: interrupted; what was done is kept, run again to continue", err=True)
+        complain("modefront: interrupted; what was done is kept, run again to continue")
         status = INTERRUPTED
     except BrokenPipeError:
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         status = UNDONE
-    except OSError as error:  # such as a full disk
-        click.echo(f"modefront: {error}; what was done is kept", err=True)
+    except (OSError, MemoryError) as error:  # such as a full disk
+        where = getattr(error, "filename", None)
+        place = f"{where}: " if where else ""
+        complain(f"modefront: {place}{reason(error)}; what was done is kept")
         status = UNDONE
     except Exception as error:
         if os.environ.get("MODEFRONT_TRACEBACK"):
             raise
-        click.echo(
-            f"modefront: an error of the program itself: {type(error).__name__}: {error}\n"
-            "please report it, with the output of the same command under MODEFRONT_TRACEBACK=1",
-            err=True,
+        complain(
+            f"modefront: an error of the program itself: {type(error).__name__}: "
+            f"{one_line(error, 1000)}\n"
+            "please report it, with the output of the same command under MODEFRONT_TRACEBACK=1"
         )
         status = UNDONE
     sys.exit(status)

@@ -22,7 +22,8 @@ from typing import Any
 import numpy as np
 
 from modefront.data.channels import Channel
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
+from modefront.inputs import read_text_bytes
 
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
@@ -34,6 +35,9 @@ AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
 
 DELIMITER = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 EXPONENT = re.compile(rb"(?<=[0-9.])[Dd](?=[+-]?[0-9])")
+
+LARGEST = 2 * 10**9
+"""Bytes of a universal file, at most."""
 
 WHAT = "a universal file with frequency response functions (dataset 58)"
 
@@ -55,12 +59,7 @@ def read_uff(path: Path) -> list[Channel]:
     Raises InputError where the file holds none, is cut off or cannot be decoded.
     """
     file = str(path)
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        raise InputError(Fault(file, "file", WHAT, "no such file")) from None
-    except OSError as error:
-        raise InputError(Fault(file, "file", WHAT, str(error))) from None
+    content = read_text_bytes(path, WHAT, LARGEST)
     found = blocks(content, file)
     functions = [one for one in found if one.number == 58]
     if not functions:
@@ -152,7 +151,7 @@ def _decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
                 values: Mapping[str, Any] = pyuff.UFF(str(copy)).read_sets(0)
             count, data = int(values["num_pts"]), np.asarray(values["data"])
         except Exception as error:  # pyuff raises bare Exceptions
-            raise InputError(Fault(file, place, "a dataset 58", str(error))) from None
+            raise InputError(Fault(file, place, "a dataset 58", reason(error))) from None
     if len(data) != count or len(np.atleast_1d(values["x"])) != count:
         raise InputError(Fault(file, place, f"{count} values, as its header says", str(len(data))))
     return values
