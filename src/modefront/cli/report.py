@@ -5,8 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import click
-
+from modefront.cli.terminal import say
 from modefront.errors import Fault, InputError
 from modefront.report.page import write_page
 from modefront.results.compare import read_together
@@ -23,4 +22,4 @@ def run_report(directories: Sequence[Path], output: Path | None) -> None:
     if path.suffix.lower() not in SUFFIXES:
         raise InputError(Fault(str(path), "-o", "a file that ends in .html", f"'{path.name}'"))
     write_page(read_together(directories), path)
-    click.echo(f"wrote {path} ({path.stat().st_size / 1e6:.2f} MB): open it in a browser")
+    say(f"wrote {path} ({path.stat().st_size / 1e6:.2f} MB): open it in a browser")

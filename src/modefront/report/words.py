@@ -29,8 +29,8 @@ class Topic:
 
 
 def texts(values: Any) -> list[str]:
-    """Return texts, whatever type a file has them in."""
-    return [x.decode(errors="replace") if isinstance(x, bytes) else str(x) for x in values.tolist()]
+    """Return the texts of an array."""
+    return [str(x) for x in values.tolist()]
 
 
 def topics(data: xr.Dataset) -> list[Topic]:
