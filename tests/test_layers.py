@@ -22,7 +22,7 @@ LAYERS = (
     ("models",),
     ("residuals",),
     ("identifiability", "predictions", "uncertainty"),
-    ("analysis",),
+    ("analysis", "diagnosis"),
     ("results",),
     ("report",),
     ("study",),

@@ -22,12 +22,16 @@ from modefront.models.ports import Pattern, Ports, Transfer
 from modefront.modes import dense, full, sparse
 from modefront.modes.result import Modes
 from modefront.work.costs import Costs, spend
+from modefront.work.transfer import shared
 
 BASE = "base"
 """Name of the term that does not depend on the parameters."""
 
 DENSE = 180
 """Degrees of freedom up to which dense matrices are faster."""
+
+FACTOR = 40
+"""Entries of the two factors of an eigensolution and of what belongs to it, over N^(4/3)."""
 
 SensorSpec = int | Sequence[tuple[int, float]]
 """A sensor: a degree of freedom, counted from 0, or weighted degrees of freedom."""
@@ -46,6 +50,7 @@ class _Counted:
         return self.symbolic.factor(values)
 
 
+@shared
 @dataclass(frozen=True, eq=False)
 class MatrixModel:
     """A model with affine stiffness and mass matrices, both dense or both sparse.
@@ -81,6 +86,23 @@ class MatrixModel:
     def is_sparse(self) -> bool:
         """Whether the matrices are sparse; those of small models are dense."""
         return isinstance(self.stiffness, SparseAffine) and isinstance(self.mass, SparseAffine)
+
+    @property
+    def version(self) -> int:
+        """Zero: the model does not change."""
+        return 0
+
+    @property
+    def parts(self) -> tuple[()]:
+        """Nothing within the model is sent to other processes on its own."""
+        return ()
+
+    @property
+    def footprint(self) -> float:
+        """Bytes that an eigensolution takes, estimated; factors of solids fill in the most."""
+        if not self.is_sparse:
+            return 8.0 * 8 * self.size**2
+        return 8.0 * FACTOR * self.size ** (4 / 3)
 
     @property
     def unused(self) -> tuple[str, ...]:
@@ -173,6 +195,15 @@ class MatrixModel:
                 # The analysis costs more than a factorisation, and is that of the pattern alone.
                 vars(out)["pencil"] = replace(known, K=stiffness, M=mass)
         return out
+
+    def sparse(self) -> MatrixModel:
+        """Return the same model with sparse matrices."""
+        if self.is_sparse:
+            return self
+        stiffness, mass = (
+            A.sparse() if isinstance(A, DenseAffine) else A for A in (self.stiffness, self.mass)
+        )
+        return replace(self, stiffness=stiffness, mass=mass)
 
     @cached_property
     def _dense_selection(self) -> Floats:
