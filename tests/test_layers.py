@@ -25,7 +25,7 @@ LAYERS = (
     ("identifiability", "predictions", "uncertainty"),
     ("analysis", "diagnosis"),
     ("results",),
-    ("exports",),
+    ("report", "exports"),
     ("study",),
     ("cli",),
     ("__init__", "__main__"),
