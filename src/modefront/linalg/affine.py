@@ -182,6 +182,14 @@ class SparseAffine:
         out[:, _expand(self.indptr), self.indices] = self.terms.toarray().T
         return DenseAffine(out, self.coefficients)
 
+    def derivative(self, theta: Floats, i: int) -> scipy.sparse.csr_array:
+        """Return dA/dtheta_i, N x N, without the entries that are zero."""
+        values = self.terms @ self.coefficients.jacobian(theta)[:, i]
+        kept = np.flatnonzero(values)
+        rows = np.searchsorted(self.indptr, kept, side="right") - 1
+        entries = values[kept], (rows, self.indices[kept])
+        return scipy.sparse.csr_array(entries, shape=(self.size, self.size))
+
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
         out = np.zeros((*vectors.shape, self.coefficients.exponents.shape[1]))

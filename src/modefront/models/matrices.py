@@ -13,6 +13,7 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, suggestion, wrong
+from modefront.fem.limits import Limits
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Factorisation, Symbolic
 from modefront.linalg.pencil import Pencil, pencil
@@ -62,6 +63,7 @@ class MatrixModel:
     outputs : weights (N,) of the degrees of freedom at places that are no sensors, by name
     base : motion (N,) of the degrees of freedom with the base, by the name of its direction
     floating : whether the stiffness matrix may be singular: rigid-body modes are wanted
+    limits : what the elements cannot do of which the matrices are made
     geometry : where the degrees of freedom are in space; None where that is not known
     """
 
@@ -73,6 +75,7 @@ class MatrixModel:
     outputs: Mapping[str, Floats] = field(default_factory=dict)
     base: Mapping[str, Floats] = field(default_factory=dict)
     floating: bool = True
+    limits: Limits = field(default_factory=Limits)
     geometry: Geometry | None = None
 
     @property

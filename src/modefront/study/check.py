@@ -32,11 +32,19 @@ from modefront.identifiability.words import (
     no_effect_in_words,
     summary,
 )
+from modefront.inputs import available_memory
+from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.problem import Evaluation
 from modefront.study.definition import Study
 from modefront.study.derivatives import AGREEMENT, cause_of, compared
+
+MANY = 100
+"""Parameters from which on a run is said to take long."""
+
+KEPT = 500
+"""Models that a search keeps with their second derivatives, some."""
 
 
 @dataclass(frozen=True)
@@ -95,6 +103,8 @@ def check(study: Study) -> Findings:
         *_coincident(problem, nominal),
         *_at_bounds(problem),
         *_infeasible_bounds(problem),
+        *_of_elements(problem),
+        *_many(problem),
     ]
     agreement = compared(problem)
     cause = "" if agreement.error <= AGREEMENT else cause_of(problem, agreement)
@@ -116,6 +126,49 @@ def _coincident(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:
         for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True)
         if coincident
     ]
+
+
+def memory_of(problem: UpdatingProblem) -> float:
+    """Return the bytes that second derivatives of the models take that a search keeps."""
+    p = len(problem.model.parameters)
+    return 8.0 * KEPT * len(problem.groups) * p**2
+
+
+def refuse_too_many(problem: UpdatingProblem, file: str) -> None:
+    """Raise InputError where models with so many parameters do not fit into the memory."""
+    need, there = memory_of(problem), available_memory()
+    if need > there:
+        p = len(problem.model.parameters)
+        expected = (
+            f"as many parameters as fit into the {there / 1e9:.3g} GB of memory that are free"
+        )
+        found = (
+            f"{p}, for which each model keeps {len(problem.groups)} matrices of {p} x {p}, and a "
+            f"search some {KEPT} models, {need / 1e9:.3g} GB: let one parameter scale several "
+            "parts, or keep those at their nominal values that the data do not determine"
+        )
+        raise InputError(Fault(file, "[[parameter]]", expected, found))
+
+
+def _many(problem: UpdatingProblem) -> list[str]:
+    """Warn of so many parameters that a run takes long."""
+    p = len(problem.model.parameters)
+    if p <= MANY:
+        return []
+    return [
+        f"{p} parameters are many: a run takes some {memory_of(problem) / 1e9:.2g} GB and long, as "
+        "every step solves for all of them; let one parameter scale several parts, or keep those "
+        "at their nominal values that the data do not determine"
+    ]
+
+
+def _of_elements(problem: UpdatingProblem) -> list[str]:
+    """Warn of elements that are too thick, skew, distorted or curved for the measured modes."""
+    model = problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
+    if not isinstance(model, MatrixModel):
+        return []
+    measured = problem.data.mean_frequency
+    return model.limits.warnings(float(measured[np.isfinite(measured)].max(initial=0.0)))
 
 
 def _at_bounds(problem: UpdatingProblem) -> list[str]:
