@@ -20,7 +20,7 @@ c         coefficients, between -1 and 1
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -42,9 +42,18 @@ TOLERANCE = 1e-3
 
 AXES = ("x", "y", "z")
 
-HEXAHEDRON = ((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
-TETRAHEDRON = ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3))
-"""Corners of the faces of solids, in the order of VTK."""
+FACES: Mapping[str, tuple[tuple[int, ...], ...]] = {
+    "triangle": ((0, 1, 2),),
+    "quad": ((0, 1, 2, 3),),
+    "tetra": ((0, 2, 1), (0, 1, 3), (1, 2, 3), (2, 0, 3)),
+    "wedge": ((0, 2, 1), (3, 4, 5), (0, 1, 4, 3), (1, 2, 5, 4), (2, 0, 3, 5)),
+    "pyramid": ((0, 3, 2, 1), (0, 1, 4), (1, 2, 4), (2, 3, 4), (3, 0, 4)),
+    "hexahedron": (
+        *((0, 3, 2, 1), (4, 5, 6, 7), (0, 1, 5, 4)),
+        *((1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7)),
+    ),
+}
+"""Corners of the faces of cells, in the order of VTK; nodes between corners follow them there."""
 
 
 @record
@@ -87,13 +96,17 @@ class Drawing:
 def drawing(geometry: Geometry) -> Drawing:
     """Return lines and faces of the cells of a geometry, and the nodes that these have."""
     lines: list[Ints] = [np.empty((0, 2), dtype=np.int64)]
-    faces: list[Ints] = [np.empty((0, 4), dtype=np.int64)]
+    shells: list[Ints] = [np.empty((0, 4), dtype=np.int64)]
+    solids: list[Ints] = [np.empty((0, 4), dtype=np.int64)]
     for cells in geometry.cells:
-        if cells.type == "line":
-            lines.append(cells.nodes)
+        if cells.type.startswith("line"):
+            lines.append(cells.nodes[:, :2])
+        elif cells.type.startswith(("triangle", "quad")):
+            shells.append(_faces(cells))
         else:
-            faces.append(_faces(cells))
-    all_lines, all_faces = np.vstack(lines), _surface(np.vstack(faces))
+            solids.append(_faces(cells))
+    all_lines = np.vstack(lines)
+    all_faces = np.vstack([*shells, _surface(np.vstack(solids))])
     # Sensors are drawn as well, at nodes between cells too.
     used = [all_lines.ravel(), all_faces[all_faces >= 0], geometry.sensor_nodes]
     nodes = np.unique(np.concatenate(used)).astype(np.int64)
@@ -105,24 +118,15 @@ def drawing(geometry: Geometry) -> Drawing:
 def _faces(cells: Cells) -> Ints:
     """Return the faces of cells of one type, (faces, 4), -1 for no fourth corner."""
     nodes = np.asarray(cells.nodes, dtype=np.int64)
-    corners: Sequence[Sequence[int]]
-    match cells.type:
-        case "triangle":
-            corners = ((0, 1, 2),)
-        case "quad":
-            corners = ((0, 1, 2, 3),)
-        case "tetra10":
-            corners = TETRAHEDRON
-        case "hexahedron":
-            corners = HEXAHEDRON
-        case _:
-            return np.empty((0, 4), dtype=np.int64)
+    corners = FACES.get(cells.type.rstrip("0123456789"), ())
+    if not corners:
+        return np.empty((0, 4), dtype=np.int64)
     rows = [nodes[:, list(face)] for face in corners]
     return np.vstack([np.pad(x, ((0, 0), (0, 4 - x.shape[1])), constant_values=-1) for x in rows])
 
 
 def _surface(faces: Ints) -> Ints:
-    """Return the faces that no other one has the nodes of: those within a solid are shared."""
+    """Return the faces of solids that no other one has the nodes of: those within are shared."""
     if not len(faces):
         return faces
     _, first, count = np.unique(
