@@ -22,6 +22,7 @@ LAYERS = (
     ("residuals",),
     ("identifiability", "predictions", "uncertainty"),
     ("analysis",),
+    ("plots",),
     ("results",),
     ("study",),
     ("cli",),

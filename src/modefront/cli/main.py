@@ -102,7 +102,15 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
 @click.option(
     "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
-@click.option("--figures", is_flag=True, help="Draw predictions along the front, into DIRECTORY.")
+@click.option("--figures", is_flag=True, help="Draw all pictures into DIRECTORY/figures.")
+@click.option(
+    "--figure-format",
+    "picture",
+    type=click.Choice(["svg", "png", "pdf"]),
+    default="svg",
+    show_default=True,
+    help="Format of the pictures.",
+)
 @click.option("--points", "lists", flag_value="points", multiple=True, help="All models.")
 @click.option("--minima", "lists", flag_value="minima", multiple=True, help="All minima.")
 @click.option(
@@ -113,7 +121,14 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
 )
 @click.option("--findings", "lists", flag_value="findings", multiple=True, help="All findings.")
 @click.option("--all", "every", is_flag=True, help="All of these lists.")
-def show(directory: Path, form: str, figures: bool, lists: tuple[str, ...], every: bool) -> None:
+def show(
+    directory: Path,
+    form: str,
+    figures: bool,
+    picture: str,
+    lists: tuple[str, ...],
+    every: bool,
+) -> None:
     """Print the results in DIRECTORY: the main models and findings, or full lists of these."""
     from modefront.cli.lists import LISTS
     from modefront.cli.show import as_json, print_results
@@ -121,9 +136,9 @@ def show(directory: Path, form: str, figures: bool, lists: tuple[str, ...], ever
 
     data = read_dataset(directory)
     if figures:
-        from modefront.cli.figures import write_figures
+        from modefront.plots import write_figures
 
-        for path in write_figures(data, directory / "figures"):
+        for path in write_figures(data, directory / "figures", picture):
             say(f"wrote {path}")
         return
     if form == "json":
