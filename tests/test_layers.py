@@ -14,6 +14,7 @@ import modefront
 LAYERS = (
     ("_typing", "_version", "text"),
     ("errors", "variables"),
+    ("inputs", "hdf5", "isolated"),
     ("toml", "linalg", "response", "work"),
     ("options",),
     ("data", "fem", "modes", "reliability", "solvers"),

@@ -9,9 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from modefront.errors import Fault, suggestion
+from modefront.text import NAME, clean
 
 LARGEST = 1e100
 """Greatest number that a file may hold."""
+
+SUGGESTED = 20
+"""Unknown keys of a table for which a known one is sought."""
 
 SHORT = 6
 """Longest list that a message shows item by item."""
@@ -156,9 +160,10 @@ class Table:
 
     def close(self) -> None:
         """Note every key that nobody has asked for."""
-        for key in self.values:
-            if key not in self.asked:
-                self.fault("", "a known key", suggestion(key, self.asked))
+        known = set(self.asked)
+        for number, key in enumerate(key for key in self.values if key not in known):
+            found = suggestion(key, self.asked) if number < SUGGESTED else repr(clean(key, NAME))
+            self.fault("", "a known key", found)
 
 
 def is_number(value: object) -> bool:

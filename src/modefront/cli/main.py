@@ -56,7 +56,8 @@ def check(study: Path, every: bool) -> None:
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
     if not findings.sound:
-        raise UnfinishedError("the derivatives differ from finite differences")
+        cause = findings.derivative_cause
+        raise UnfinishedError(f"the derivatives differ from finite differences {cause}")
 
 
 @cli.command()

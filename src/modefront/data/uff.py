@@ -23,6 +23,7 @@ import numpy as np
 
 from modefront.data.channels import Channel
 from modefront.errors import Fault, InputError, reason
+from modefront.inputs import read_text_bytes
 
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
@@ -34,6 +35,9 @@ AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
 
 DELIMITER = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 EXPONENT = re.compile(rb"(?<=[0-9.])[Dd](?=[+-]?[0-9])")
+
+LARGEST = 2 * 10**9
+"""Bytes of a universal file, at most."""
 
 WHAT = "a universal file with frequency response functions (dataset 58)"
 
@@ -55,12 +59,7 @@ def read_uff(path: Path) -> list[Channel]:
     Raises InputError where the file holds none, is cut off or cannot be decoded.
     """
     file = str(path)
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        raise InputError(Fault(file, "file", WHAT, "no such file")) from None
-    except OSError as error:
-        raise InputError(Fault(file, "file", WHAT, reason(error))) from None
+    content = read_text_bytes(path, WHAT, LARGEST)
     found = blocks(content, file)
     functions = [one for one in found if one.number == 58]
     if not functions:

@@ -98,8 +98,8 @@ class Programmes(Protocol):
     def scale(self) -> Floats:
         """Range of each objective over the edges, shape (n,)."""
 
-    def distance(self, beta: Floats, other: Floats, /) -> float:
-        """Return the distance of two points of the plane, in units of the ranges."""
+    def distance(self, beta: Floats, other: Floats, /) -> Floats:
+        """Return the distances (...) of a point (n,) and others (..., n), over the ranges."""
 
     def place(self, edge: int, J: Floats, /) -> Floats:
         """Return the coordinates (n,) to which an edge with these objectives belongs."""
@@ -117,9 +117,12 @@ class Programmes(Protocol):
 BETTER = 1e-7
 """Difference of two values below which the solutions are the same."""
 
-BEYOND = 300
-"""Points beyond the simplex that are tried at most; of three objectives, 5 times those within
-where these are more. With each further objective a point has more neighbours."""
+BEYOND, SHARE = 300, 2
+"""Points beyond the simplex that are tried at most; of three objectives, where the lattice is not
+small, so many times those within. With each further objective a point has more neighbours."""
+
+SMALL = 30
+"""Points of a small lattice of three objectives, which the front beyond it may exceed by far."""
 
 APART = 1.0
 """Distance of points beyond the simplex in steps of the ranges, one a division, at least: where the
@@ -211,7 +214,8 @@ class _Continuation:
     @property
     def room(self) -> int:
         """Points beyond the simplex that are tried at most."""
-        return max(BEYOND, 5 * len(self.lattice.counts)) if self.few else BEYOND
+        within = len(self.lattice.counts)
+        return SHARE * within if self.few and within > SMALL else BEYOND
 
     def beta(self, point: LatticePoint) -> Floats:
         """Return the coordinates (n,) of a point of the lattice."""
@@ -315,20 +319,21 @@ class _Continuation:
 
     def _fits(self, point: LatticePoint, source: LatticePoint) -> bool:
         """Return whether there is room for a point beyond the simplex, and it is not too close."""
-        if self.beyond >= DENSE and self._is_close(point, source):
+        if self.beyond >= DENSE and self._are_close(point, [source]):
             # It is left out, and those behind it are reached from the same point.
             if (point, source) not in self.left_out:
                 self.left_out.add((point, source))
                 self.queue.extend((near, source) for near in neighbours(point) if min(near) < 0)
             return False
-        if self.beyond >= DENSE and any(self._is_close(point, other) for other in self.solved):
+        if self.beyond >= DENSE and self._are_close(point, list(self.solved)):
             return False
         self.beyond += 1
         return self.beyond <= self.room
 
-    def _is_close(self, point: LatticePoint, other: LatticePoint) -> bool:
-        distance = self.programmes.distance(self.beta(point), self.beta(other))
-        return distance * self.lattice.divisions < APART - SAME
+    def _are_close(self, point: LatticePoint, others: list[LatticePoint]) -> bool:
+        """Return whether a point lies too close to any of some others."""
+        distances = self.programmes.distance(np.array(point), np.array(others))
+        return bool(distances.min() < APART - SAME)
 
     def _jumps(self, solution: Solution, other: Solution) -> bool:
         """Return whether two solutions lie on different branches."""

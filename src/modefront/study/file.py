@@ -16,6 +16,7 @@ from modefront.data.modal import ModalData
 from modefront.errors import Fault, InputError, ModelError, reason
 from modefront.fronts.options import Pareto
 from modefront.identifiability.options import Identifiability
+from modefront.inputs import read_text_bytes
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
 from modefront.pairing.match import Pairing
@@ -32,6 +33,9 @@ from modefront.study.tables.predict import complete, read_predictions
 from modefront.study.tables.weighted import read_weights
 from modefront.toml import Table
 from modefront.uncertainty.options import Uncertainty
+
+LARGEST = 64 * 10**6
+"""Bytes of a study file, at most."""
 
 
 def load(path: Path | str) -> Study:
@@ -122,14 +126,10 @@ def _place(root: Table, place: str) -> Table:
 
 
 def _parse(path: Path) -> tuple[dict[str, Any], bytes]:
+    content = read_text_bytes(path, "a study file", LARGEST)
     try:
-        content = path.read_bytes()
         return tomllib.loads(content.decode("utf-8-sig")), content
-    except FileNotFoundError:
-        raise InputError(Fault(str(path), "file", "a study file", "no such file")) from None
-    except IsADirectoryError:
-        raise InputError(Fault(str(path), "file", "a study file", "a folder")) from None
-    except (OSError, ValueError, RecursionError) as error:
+    except (ValueError, RecursionError) as error:
         raise InputError(Fault(str(path), "file", "TOML in UTF-8", reason(error))) from None
 
 
@@ -160,5 +160,6 @@ def _digest(content: bytes, files: Sequence[Path]) -> str:
     """Return a hash of what the study file says and of all files that were read for it."""
     total = hashlib.sha256(content)
     for path in files:
-        total.update(hashlib.sha256(path.read_bytes()).digest())
+        with path.open("rb") as stream:
+            total.update(hashlib.file_digest(stream, "sha256").digest())
     return total.hexdigest()

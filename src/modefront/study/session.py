@@ -36,6 +36,7 @@ from modefront.study.check import refuse_unchanged_groups
 from modefront.study.definition import Study
 from modefront.uncertainty.noise import noise_floor
 from modefront.uncertainty.options import Uncertainty
+from modefront.work.lock import locked
 from modefront.work.progress import Progress
 from modefront.work.serial import Serial
 from modefront.work.store import FOLDER, Store
@@ -152,18 +153,27 @@ def run(
         study = replace(study, pareto=replace(study.pareto, refined=refined))
     study = study.completed()
     tasks = folder / FOLDER / f"{study.work[:12]}-{__version__}"
+    _prepare(folder)
+    with locked(folder):
+        _prepare(tasks, (tasks, folder / FILE) if fresh or not study.work else ())
+        data = _Session(study, Serial(Store(tasks), progress or Progress())).results()
+        _keep_other(folder / FILE, study.digest)
+        write(data, folder / FILE)
+    return Results(data, study.problem)
+
+
+def _prepare(folder: Path, aside: Sequence[Path] = ()) -> None:
+    """Make a folder where there is none, after some files are set aside.
+
+    Raises InputError where the folder cannot be written to.
+    """
     try:
-        tasks.mkdir(parents=True, exist_ok=True)
-        if fresh or not study.work:
-            _set_aside(tasks)
-            _set_aside(folder / FILE)
+        for path in aside:
+            _set_aside(path)
+        folder.mkdir(parents=True, exist_ok=True)
     except OSError as error:
         fault = Fault(str(folder), "folder", "a folder that can be written to", reason(error))
         raise InputError(fault) from None
-    data = _Session(study, Serial(Store(tasks), progress or Progress())).results()
-    _keep_other(folder / FILE, study.digest)
-    write(data, folder / FILE)
-    return Results(data, study.problem)
 
 
 @dataclass(frozen=True)

@@ -41,8 +41,11 @@ class Store:
 
     def read(self, task: Task[Any]) -> tuple[Any, Costs] | None:
         """Return the result of a task and what it cost; None where no whole one is kept."""
+        path = self._path(task)
+        if not path.is_file():  # a pipe in its place would be waited for
+            return None
         try:
-            with self._path(task).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
                 arrays = {key: file[key] for key in file.files}
             head = json.loads(arrays.pop("head").tobytes())
             if head["key"] != _identity(task):
