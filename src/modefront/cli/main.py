@@ -48,13 +48,15 @@ def init(directory: Path, example: str) -> None:
 @click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
 def check(study: Path, every: bool) -> None:
     """Say all that is wrong with STUDY, and prove its derivatives."""
-    from modefront.cli.show import print_findings
+    from modefront.cli.show import print_findings, say_estimate
     from modefront.study.check import check as check_study
+    from modefront.study.estimate import estimate
     from modefront.study.file import load
 
     loaded = load(study)
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
+    say_estimate(estimate(loaded, predictions=False))
     if not findings.sound:
         cause = findings.derivative_cause
         raise UnfinishedError(f"the derivatives differ from finite differences {cause}")
@@ -80,14 +82,18 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     """Do the work of STUDY; continue where an interrupted run stopped."""
     from modefront.cli.certificates import uncertified
     from modefront.cli.progress import progress_bar
-    from modefront.cli.show import print_summary
+    from modefront.cli.show import print_summary, say_estimate
     from modefront.results.selection import not_converged
+    from modefront.study.estimate import SHORT, estimate
     from modefront.study.file import load
     from modefront.study.session import run as run_study
 
     loaded = _refined(load(study), refine)
     directory = directory or study.with_name(f"{study.stem}-results")
-    with progress_bar(loaded.name) as progress:
+    expected = estimate(loaded)
+    if expected is not None and expected.seconds > SHORT:
+        say_estimate(expected, err=True)
+    with progress_bar(loaded.name, expected.seconds if expected else None) as progress:
         data = run_study(loaded, directory, fresh=fresh, progress=progress).dataset
     print_summary(data, directory, progress.spent)
     failed = not_converged(data)

@@ -21,6 +21,7 @@ from modefront.cli.tables import console, safe, table
 from modefront.results.selection import front_points
 from modefront.study.check import Findings
 from modefront.study.definition import Study
+from modefront.study.estimate import Estimate
 from modefront.text import clean
 from modefront.work.costs import Costs
 
@@ -72,6 +73,16 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         _print(screen, line)
     if not findings.warnings:
         _print(screen, "no warnings")
+
+
+def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:
+    """Print how long a run will probably take, and what would make it shorter."""
+    if expected is None:
+        return
+    screen = Screen(Console(highlight=False, stderr=err))
+    screen.say(expected.text)
+    if expected.advice:
+        screen.say(f"shorter with: {'; '.join(expected.advice)}")
 
 
 def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:

@@ -31,6 +31,7 @@ from modefront.options import check_fields, number, plain, whole
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Scalarisation
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
+from modefront.work.steps import note
 
 DISTINCT = 1e-3
 """Distance of two minima, over the ranges of the parameters, above which they are two."""
@@ -166,6 +167,7 @@ def explore(
     rugged, hopeless = True, False
     for tried, theta in enumerate(latin_hypercube(problem, rng, search.limit)):
         N, w = tried + len(starts), _different(work.minima, local)
+        note(f"search {tried + 1} of at most {search.limit}")
         few_left = tried >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2)
         if few_left or (tried >= ENOUGH and work.agreed()):
             rugged = False
@@ -296,6 +298,7 @@ def evolve(
     while (
         not strategy.stop() and np.max(strategy.sigma * strategy.sm.variances**0.5) > search.spread
     ):
+        note(f"generation {strategy.countiter + 1} of at most {search.generations}")
         asked = strategy.ask()
         values = []
         for u in asked:
