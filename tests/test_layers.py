@@ -25,6 +25,7 @@ LAYERS = (
     ("analysis",),
     ("plots",),
     ("results",),
+    ("report",),
     ("study",),
     ("cli",),
     ("__init__", "__main__"),

@@ -172,6 +172,21 @@ def compare(directories: tuple[Path, ...], form: str) -> None:
 
 
 @cli.command()
+@click.argument("directories", nargs=-1, required=True, type=click.Path(path_type=Path))
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="HTML file  [default: report.html in the first DIRECTORY]",
+)
+def report(directories: tuple[Path, ...], output: Path | None) -> None:
+    """Write the results in DIRECTORIES as one HTML file to look at."""
+    from modefront.cli.report import run_report
+
+    run_report(directories, output)
+
+
+@cli.command()
 @click.argument("test", type=click.Path(path_type=Path))
 @click.option(
     "-o",

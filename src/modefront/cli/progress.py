@@ -41,6 +41,7 @@ TITLES: Mapping[str, str] = {
     "second-derivatives": "uncertainty",
     "bootstrap": "bootstrap",
     "nominal": "nominal model",
+    "shapes": "mode shapes",
     "snapshot": "snapshots",
     "probe-basis": "completeness of the basis",
     "certificate": "certificates",

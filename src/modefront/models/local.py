@@ -1,12 +1,31 @@
-"""The matrices of a model of any kind, near one theta."""
+"""The matrices and the mode shapes of a model of any kind, near one theta."""
 
 from __future__ import annotations
+
+from dataclasses import dataclass
 
 from modefront._typing import Floats
 from modefront.models.base import Model
 from modefront.models.function import FunctionModel
+from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
+
+
+@dataclass(frozen=True)
+class Shapes:
+    """The lowest modes of a model, without derivatives.
+
+    Attributes
+    ----------
+    lam : (modes,) eigenvalues omega**2 in (rad/s)**2
+    phi : (sensors, modes) mode shapes at the sensors; the sign is arbitrary
+    Phi : (N, modes) mode shapes at all degrees of freedom; None for a model without matrices
+    """
+
+    lam: Floats
+    phi: Floats
+    Phi: Floats | None
 
 
 def matrices_at(model: Model, theta: Floats) -> MatrixModel | None:
@@ -18,3 +37,25 @@ def matrices_at(model: Model, theta: Floats) -> MatrixModel | None:
     if isinstance(full, FunctionModel):
         return full.at(theta)
     return full if isinstance(full, MatrixModel) else None
+
+
+def geometry_of(model: Model) -> Geometry | None:
+    """Return where the degrees of freedom of a model are; None where that is not known."""
+    full = model.full if isinstance(model, ReducedModel) else model
+    return full.geometry if isinstance(full, MatrixModel) else None
+
+
+def shapes_at(model: Model, theta: Floats, count: int) -> Shapes:
+    """Return the ``count`` lowest modes at ``theta``, those of a reduced model in its basis.
+
+    Raises ModelError where the model has no such modes.
+    """
+    if isinstance(model, ReducedModel):
+        found = model.full_modes(theta, count)
+        return Shapes(found.lam, model.full.selection @ found.Phi, found.Phi)
+    matrices = model.at(theta, derivatives=False) if isinstance(model, FunctionModel) else model
+    if isinstance(matrices, MatrixModel):
+        found = matrices.full_modes(theta, count)
+        return Shapes(found.lam, matrices.selection @ found.Phi, found.Phi)
+    modes = model.modes(theta, count, derivatives=False)
+    return Shapes(modes.lam, modes.phi, None)

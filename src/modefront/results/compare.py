@@ -122,11 +122,24 @@ def compare(folders: Sequence[Path]) -> Comparison:
 
     Raises InputError where there are none, or where their groups are not the same.
     """
+    found = read_together(folders, whole=False)
+    groups = tuple(map(str, found[0][1]["group"].values))
+    fronts = [_summary(name, data, _length(found[0][1])) for name, data in found]
+    pairs = [_apart(one, other) for one, other in combinations(found, 2)]
+    return Comparison(groups, tuple(fronts), tuple(pairs))
+
+
+def read_together(folders: Sequence[Path], *, whole: bool = True) -> list[tuple[str, xr.Dataset]]:
+    """Return the results in folders, each with the name of its folder.
+
+    A ``whole`` file has all variables that belong together. Raises InputError where there are none,
+    or where their groups are not the same.
+    """
     faults: list[Fault] = []
     found: list[tuple[str, xr.Dataset]] = []
     for folder in folders:
         try:
-            found.append((str(folder), read_dataset(folder, whole=False)))
+            found.append((str(folder), read_dataset(folder, whole=whole)))
         except InputError as error:
             faults.extend(error.faults)
     groups = [tuple(map(str, data["group"].values)) for _, data in found]
@@ -136,9 +149,7 @@ def compare(folders: Sequence[Path]) -> Comparison:
             faults.append(Fault(name, "groups", expected, ", ".join(other)))
     if faults:
         raise InputError(faults)
-    fronts = [_summary(name, data, _length(found[0][1])) for name, data in found]
-    pairs = [_apart(one, other) for one, other in combinations(found, 2)]
-    return Comparison(groups[0], tuple(fronts), tuple(pairs))
+    return found
 
 
 def _optimal(data: xr.Dataset) -> xr.Dataset:

@@ -43,6 +43,7 @@ REDUCED = "Reduced models"
 OPEN = "What the data do not determine"
 ERRORS = "Errors of the data"
 PREDICTIONS = "Predictions"
+SHAPES = "Modes"
 
 DIMENSIONS: Mapping[str, str] = {
     "point": "models, in the order of `label`",
@@ -62,6 +63,16 @@ DIMENSIONS: Mapping[str, str] = {
     "range": "`minimum`, `maximum`, `spread` over the Pareto-optimal models; the spread is the "
     "ratio of greatest to least",
     "draw": "models drawn from the posterior",
+    "set": "data sets, by name",
+    "sensor": "sensors, by name",
+    "model_mode": "modes of the model, from the lowest",
+    "drawn_node": "nodes that are drawn: those of lines and faces",
+    "axis": "`x`, `y`, `z`",
+    "line": "lines of the model: beams, and springs of a chain",
+    "line_end": "the two ends of a line",
+    "face": "faces of the model: shells, and the surface of solids",
+    "corner": "the corners of a face",
+    "basis": "columns of the common basis of all mode shapes",
     "statistic": "`mean`, `standard deviation`, `5 %`, `50 %`, `95 %`",
 }
 """Dimensions of the variables."""
@@ -373,6 +384,83 @@ def _errors() -> Iterator[Variable]:
     )
 
 
+def _shapes() -> Iterator[Variable]:
+    yield Variable(
+        "set_frequency",
+        ("set", "mode"),
+        "measured frequency of each data set; NaN where it was not measured",
+        unit="Hz",
+        since=2,
+    )
+    yield Variable(
+        "set_frequency_std",
+        ("set", "mode"),
+        "its standard deviation; NaN where none is given",
+        unit="Hz",
+        since=2,
+    )
+    yield Variable(
+        "measured_shape",
+        ("set", "mode", "sensor"),
+        "measured mode shape, in the scale of the data; NaN where it was not measured",
+        since=2,
+    )
+    yield Variable(
+        "model_frequency",
+        ("point", "model_mode"),
+        "frequency of the model mode",
+        unit="Hz",
+        since=2,
+    )
+    yield Variable(
+        "mac_matrix",
+        ("point", "mode", "model_mode"),
+        "MAC of the measured mode with the model mode, mean over the data sets",
+        unit="1",
+        since=2,
+    )
+    yield Variable(
+        "shape",
+        ("point", "mode", "sensor"),
+        "shape of the paired model mode at the sensors, with the sign of the measured one; its "
+        "greatest displacement at a node, or at a sensor where there is no geometry, is 1",
+        since=2,
+    )
+    yield Variable("node", ("drawn_node", "axis"), "coordinates of the nodes", since=2)
+    yield Variable(
+        "line_nodes", ("line", "line_end"), "nodes of each line, counted from 0", "count", since=2
+    )
+    yield Variable(
+        "face_nodes",
+        ("face", "corner"),
+        "nodes round each face, counted from 0; the fourth one of a triangle is -1",
+        "count",
+        since=2,
+    )
+    yield Variable(
+        "sensor_node", ("sensor",), "node of each sensor, counted from 0", "count", since=2
+    )
+    yield Variable(
+        "sensor_direction",
+        ("sensor", "axis"),
+        "unit vector that the sensor measures; zero for a rotation",
+        unit="1",
+        since=2,
+    )
+    yield Variable(
+        "shape_basis",
+        ("basis", "drawn_node", "axis"),
+        "displacements of the nodes of which all mode shapes are sums, to 0.1 % of their length",
+        since=2,
+    )
+    yield Variable(
+        "shape_coefficient",
+        ("point", "mode", "basis"),
+        "how much of each the paired model mode has, in the scale of `shape`",
+        since=2,
+    )
+
+
 def _in(section: str, variables: Iterable[Variable]) -> Iterator[Variable]:
     for variable in variables:
         together = _SET_OF.get(variable.name, variable.together)
@@ -419,6 +507,23 @@ TOGETHER: Mapping[str, tuple[str, ...]] = {
         "posterior_frequency_std",
         "posterior_mac_std",
     ),
+    "modes of points": (
+        "set_frequency",
+        "set_frequency_std",
+        "measured_shape",
+        "model_frequency",
+        "mac_matrix",
+        "shape",
+    ),
+    "geometry": (
+        "node",
+        "line_nodes",
+        "face_nodes",
+        "sensor_node",
+        "sensor_direction",
+        "shape_basis",
+        "shape_coefficient",
+    ),
     "bootstrap": (
         "bootstrap_theta",
         "bootstrap_objective",
@@ -441,6 +546,7 @@ VARIABLES: Mapping[str, Variable] = {
         (OPEN, _open()),
         (ERRORS, _errors()),
         (PREDICTIONS, _predictions()),
+        (SHAPES, _shapes()),
     )
     for variable in _in(section, variables)
 }
@@ -468,6 +574,12 @@ ATTRIBUTES: Mapping[str, Attribute] = {
         Attribute("model_evaluations", "eigenproblems solved", required=True),
         Attribute("full_eigensolutions", "those solved in full"),
         Attribute("reduced_solutions", "those solved in a reduced basis"),
+        Attribute(
+            "shape_eigensolutions",
+            "those for mode shapes at all nodes, besides `model_evaluations`",
+            since=2,
+        ),
+        Attribute("geometry", "chain or mesh: what the nodes are of", "text", since=2),
         Attribute("front_evaluations", "those for points of the front", required=True),
         Attribute("nbi_evaluations", "likewise; 0 for other methods"),
         Attribute("prediction_eigensolutions", "those for predictions, which are always full"),
@@ -558,7 +670,7 @@ def missing(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
         if present and missing:
             yield f"variable '{missing[0]}'", f"it, as there is '{present[0]}'", "nothing"
     kinds = [prediction.kind.dimension for prediction in KINDS]
-    for name in ("range", "statistic", *kinds):
+    for name in ("range", "statistic", "set", "sensor", *kinds):
         if name in data.dims and name not in data.coords:
             yield f"coordinate '{name}'", DIMENSIONS.get(name, "names of its places"), "nothing"
     if any(name in data.dims for name in kinds):

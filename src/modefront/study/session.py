@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import partial
@@ -220,13 +221,24 @@ class _Session:
         (nominal,) = work.run([Task(("nominal",), _nominal, (problem,))])
         extra = [*analysis.points, Point(Kind.NOMINAL, nominal)]
         analysis = replace(analysis, points=certified_points(problem, extra, work))
-        data = dataset(problem, front, analysis)
+        data = self._with_shapes(dataset(problem, front, analysis))
         runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file)
         models = posterior_models(data, runner, analysis.posterior, study.uncertainty.draws)
         work.expect(extent(study.predictions, data.sizes["point"] + models.count))
         data = with_posterior(with_predictions(data, runner), runner, models)
         data.attrs |= self._attributes(front)
         return data
+
+    def _with_shapes(self, data: xr.Dataset) -> xr.Dataset:
+        """Return results with the mode shapes of all points."""
+        from modefront.results.mode_shapes import mode_shapes, with_mode_shapes
+
+        problem = self.study.problem
+        theta, paired = data["theta"].values, data["paired_mode"].values
+        # A refined front has further points: what is kept is that of the points before.
+        mark = hashlib.sha256(theta.tobytes() + paired.tobytes()).hexdigest()[:16]
+        (shapes,) = self.work.run([Task(("shapes", mark), mode_shapes, (problem, theta, paired))])
+        return with_mode_shapes(data, problem, shapes)
 
     def _noise_floor(self) -> Floats | None:
         """Return the objectives that errors of the data explain; None where one is not known."""
@@ -239,9 +251,10 @@ class _Session:
 
     def _attributes(self, front: Front) -> dict[str, str | int | float]:
         """Return version, seed, costs, and the coverage of the front."""
-        total = self.work.total()
+        total = self.work.total(lambda stage: stage != "shapes")
         along = self.work.total(lambda stage: stage == "front")
         predictions = self.work.total(lambda stage: stage == "predict")
+        shapes = self.work.total(lambda stage: stage == "shapes")
         refined = self.study.pareto.refined
         out: dict[str, str | int | float] = {
             "study": self.study.name,
@@ -255,6 +268,7 @@ class _Session:
             "nbi_evaluations": along.model_evaluations if front.method == "nbi" else 0,
             "full_eigensolutions": total.eigenproblems,
             "prediction_eigensolutions": predictions.eigenproblems,
+            "shape_eigensolutions": shapes.model_evaluations,
             "corrected_eigensolutions": total.corrected,
             "factorisations": total.factorisations,
             "reduced_solutions": total.reduced,

@@ -34,6 +34,7 @@ from modefront.models.reduced.corrections import (
 )
 from modefront.models.reduced.instability import unstable
 from modefront.modes import dense
+from modefront.modes.full import FullModes
 from modefront.modes.result import Modes
 from modefront.modes.spectrum import Shifted
 from modefront.work.costs import Costs, counted, spend, uncounted
@@ -254,6 +255,24 @@ class ReducedModel:
         modes = dense.modes(K, M, state.sensed, theta, count, derivatives)
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return modes
+
+    def full_modes(self, theta: Floats, count: int) -> FullModes:
+        """Return the ``count`` lowest modes at all degrees of freedom, by the basis.
+
+        Raises ModelError where the model has no such modes.
+        """
+        if count > self.count:
+            return self.full.full_modes(theta, count)
+        basis = self._ready().space.basis
+        started = time.perf_counter()
+        found = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        if found.lam.size < count:
+            raise ModelError(
+                f"{count} modes asked for, but only {found.lam.size} have a finite frequency"
+            )
+        Phi = basis.combine(np.ascontiguousarray(found.Phi[:, :count]))
+        spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
+        return FullModes(found.lam[:count], Phi, None)
 
     def distance(self, theta: Floats) -> float:
         """Return how far the nearest snapshot is, over the ranges of the parameters."""

@@ -1,0 +1,34 @@
+// Numbers as text.
+
+const MINUS = "−";
+
+/** Returns a number with so many significant digits; a dash where there is none. */
+export function number(x: number | null | undefined, digits = 4): string {
+  if (x === null || x === undefined || Number.isNaN(x)) return "–";
+  if (!Number.isFinite(x)) return x > 0 ? "∞" : `${MINUS}∞`;
+  if (x === 0) return "0";
+  const size = Math.abs(x);
+  const text =
+    size >= 1e6 || size < 1e-4
+      ? x.toExponential(digits - 1).replace("e+", "e")
+      : x.toPrecision(digits).includes("e")
+        ? String(Math.round(x))
+        : x.toPrecision(digits);
+  return text.replace(/-/g, MINUS);
+}
+
+/** Returns a number with so many digits behind the point. */
+export function fixed(x: number | null | undefined, digits: number, signed = false): string {
+  if (x === null || x === undefined || !Number.isFinite(x)) return number(x);
+  const text = x.toFixed(digits);
+  return (signed && x > 0 ? `+${text}` : text).replace("-", MINUS);
+}
+
+/** Returns a short text for a tick. */
+export function tick(x: number): string {
+  const size = Math.abs(x);
+  if (x !== 0 && (size >= 1e5 || size < 1e-3)) {
+    return x.toExponential().replace("e+", "e").replace(/-/g, MINUS);
+  }
+  return String(Number(x.toPrecision(6))).replace("-", MINUS);
+}

@@ -1,0 +1,222 @@
+// The page: a bar to walk along the front, and views that follow.
+
+import { read, type Report } from "./data";
+import { h, section } from "./dom";
+import { number } from "./format";
+import { isOfPart } from "./marks";
+import { State } from "./state";
+import { themeButton } from "./theme";
+import { Aspiration, aspirationView } from "./views/aspiration";
+import { frequenciesView } from "./views/frequencies";
+import { frontView } from "./views/front";
+import { macView } from "./views/mac";
+import { parametersView } from "./views/parameters";
+import { predictionsView } from "./views/predictions";
+import { shapeView } from "./views/shape";
+import { tablesView } from "./views/tables";
+import { tooltip } from "./views/tip";
+
+function page(report: Report): void {
+  const state = new State(report);
+  const aspiration = new Aspiration(state);
+  const { node, tip } = tooltip();
+  const bar = walker(state);
+  const views = h("div", { class: "views" });
+  const build = (): void => {
+    aspiration.reset();
+    state.clearBrushes();
+    const left = [frontView(state, aspiration, tip), aspirationView(state, aspiration)];
+    const right = [shapeView(state)];
+    const below = [parametersView(state, tip), frequenciesView(state, tip), macView(state, tip)];
+    const predictions = predictionsView(state, tip);
+    if (predictions) predictions.classList.add("wide");
+    const tables = tablesView(state);
+    tables.classList.add("wide");
+    views.replaceChildren(
+      h("div", { class: "column" }, ...left, below[0]),
+      h("div", { class: "column" }, ...right, ...below.slice(1)),
+      ...(predictions ? [predictions] : []),
+      tables,
+    );
+  };
+  const words = h("div", { class: "words" });
+  const say = (): void => words.replaceChildren(summary(state));
+  state.onStudy(build);
+  state.onStudy(say);
+  say();
+  build();
+  document.body.replaceChildren(
+    h(
+      "header",
+      {},
+      h(
+        "div",
+        { class: "title" },
+        h("p", { class: "kicker" }, "modefront · Pareto-optimal models"),
+        h("h1", {}, report.title),
+      ),
+      themeButton(),
+    ),
+    h("main", {}, words, bar, views, colophon(state)),
+    node,
+  );
+  keys(state);
+  state.tell();
+}
+
+/** Makes the bar with the slider, the label of the chosen model and models beside the front. */
+function walker(state: State): HTMLElement {
+  const slider = h("input", { type: "range", id: "model", name: "model", min: 1, step: 1 });
+  const status = h("strong", { role: "status", id: "chosen" });
+  const facts = h("span", { class: "facts" });
+  const back = h("button", { type: "button", "aria-label": "previous model" }, "‹");
+  const forth = h("button", { type: "button", "aria-label": "next model" }, "›");
+  const chips = h("div", { class: "chips", role: "group", "aria-label": "models beside the front" });
+  const brushed = h("button", { type: "button", class: "brushed", hidden: true });
+  brushed.addEventListener("click", () => state.clearBrushes());
+  const studies = h("select", { id: "study", "aria-label": "study" });
+  const chosen = (): number => Number(slider.value) - 1;
+  slider.addEventListener("input", () => state.walk(chosen()));
+  slider.addEventListener("keydown", (event) => {
+    // Where a model beside the front is chosen, keys lead back to the front.
+    const to: Record<string, number> = { Home: 0, End: state.current.order.length - 1 };
+    if (event.key in to) {
+      event.preventDefault();
+      state.walk(to[event.key]);
+    }
+  });
+  back.addEventListener("click", () => state.walk(state.step - 1));
+  forth.addEventListener("click", () => state.walk(state.step + 1));
+  studies.addEventListener("change", () => {
+    const front = Number(studies.value);
+    const order = state.report.fronts[front].order;
+    state.choose(order[Math.min(state.step, order.length - 1)] ?? 0, front);
+  });
+  const build = (): void => {
+    const front = state.current;
+    slider.max = String(front.order.length);
+    studies.value = String(state.front);
+    const beside = front.label
+      .map((_, i) => i)
+      .filter((i) => !front.order.includes(i) && !isOfPart(front.kind[i]));
+    chips.replaceChildren(
+      ...beside.map((i) => {
+        const chip = h("button", { type: "button", "data-point": i }, front.label[i]);
+        chip.addEventListener("click", () => state.choose(i));
+        return chip;
+      }),
+    );
+  };
+  const update = (): void => {
+    const front = state.current;
+    const i = state.point;
+    slider.value = String(state.step + 1);
+    slider.setAttribute("aria-valuetext", front.label[front.order[state.step] ?? i]);
+    if (status.textContent !== front.label[i]) status.textContent = front.label[i];
+    const marks = [
+      front.pareto[i] ? "Pareto optimal" : "dominated by another model",
+      front.converged[i] ? "" : "not converged",
+    ].filter(Boolean);
+    facts.textContent =
+      front.groups.map((name, g) => `e of ${name} ${number(front.error[i][g], 3)}`).join(" · ") +
+      ` · ${marks.join(", ")}`;
+    for (const chip of chips.querySelectorAll("button")) {
+      chip.setAttribute("aria-pressed", String(Number(chip.dataset.point) === i));
+    }
+    brushed.hidden = !state.isBrushed;
+    if (state.isBrushed) {
+      const inside = front.order.filter((k) => state.within(front, k)).length;
+      brushed.textContent = `${inside} of ${front.order.length} selected – clear`;
+    }
+  };
+  state.report.fronts.forEach((front, f) => studies.append(h("option", { value: f }, front.name)));
+  state.onStudy(build);
+  state.always(update);
+  build();
+  return h(
+    "div",
+    { class: "walker", role: "group", "aria-label": "choice of the model" },
+    state.report.fronts.length > 1 ? h("label", { for: "study", class: "study" }, "study ", studies) : null,
+    h("div", { class: "walk" }, back, h("label", { for: "model" }, "model"), slider, forth, status),
+    facts,
+    chips,
+    brushed,
+  );
+}
+
+/** Arrow keys walk along the front wherever they mean nothing else; Escape clears selections. */
+function keys(state: State): void {
+  document.addEventListener("keydown", (event) => {
+    if (event.defaultPrevented || event.altKey || event.ctrlKey || event.metaKey) return;
+    if (event.key === "Escape") state.clearBrushes();
+    const target = event.target as Element | null;
+    if (target?.closest("input, select, textarea, .stage, .scroll")) return;
+    if (event.key === "ArrowRight") state.walk(state.step + 1);
+    else if (event.key === "ArrowLeft") state.walk(state.step - 1);
+    else return;
+    event.preventDefault();
+  });
+}
+
+function summary(state: State): HTMLElement {
+  const front = state.current;
+  const several = state.report.fronts.length > 1;
+  const view = section("summary", several ? front.study || front.name : "In words");
+  for (const { heading, sentences } of front.words) {
+    const [first, ...rest] = sentences;
+    if (first === undefined) continue;
+    const isList = sentences.length > 1 || heading !== "";
+    const MOST = 4;
+    const list = (some: string[]): HTMLElement => h("ul", {}, ...some.map((text) => h("li", {}, text)));
+    view.append(
+      h(
+        "div",
+        { class: "topic" },
+        heading ? h("h3", {}, heading) : null,
+        isList ? list([first, ...rest].slice(0, MOST)) : h("p", {}, first),
+        sentences.length > MOST
+          ? h(
+              "details",
+              {},
+              h("summary", {}, `${sentences.length - MOST} more`),
+              list(sentences.slice(MOST)),
+            )
+          : null,
+      ),
+    );
+  }
+  return view;
+}
+
+function colophon(state: State): HTMLElement {
+  const { cite, version, fronts } = state.report;
+  return section(
+    "how to cite",
+    "How to cite",
+    ...cite.map((text) => h("p", {}, text)),
+    h(
+      "dl",
+      {},
+      ...fronts.flatMap((front) => [
+        h("dt", {}, front.name),
+        h(
+          "dd",
+          {},
+          "hash of all inputs ",
+          h("code", {}, front.inputs || "none: the study was made in Python"),
+          `; results by modefront ${front.version}`,
+        ),
+      ]),
+    ),
+    h("p", { class: "note" }, `This page was made by modefront ${version}. It holds all its data and loads nothing.`),
+  );
+}
+
+const data = document.getElementById("data");
+read(data?.textContent ?? "")
+  .then(page)
+  .catch((error: unknown) => {
+    document.body.append(
+      h("p", { role: "alert" }, `This page needs a browser of 2023 or later: ${String(error)}`),
+    );
+  });

@@ -1,0 +1,55 @@
+// Parameters of all models, a row each.
+
+import { h, section, sized } from "../dom";
+import { number } from "../format";
+import type { State } from "../state";
+import { strips, type Strip } from "./strips";
+import type { Tip } from "./tip";
+
+/** Makes the view. */
+export function parametersView(state: State, tip: Tip): HTMLElement {
+  const front = state.current;
+  const plot = h("div", { class: "plot" });
+  let update = (): void => {};
+  const rows = front.parameters.map((name, j): Strip => {
+    const std = (i: number): number | null =>
+      (i === front.reference ? front.posterior?.theta[j] : null) ?? front.thetaStd?.[i]?.[j] ?? null;
+    return {
+      name,
+      value: (i) => front.theta[i][j],
+      std,
+      text: (i) => {
+        const value = number(front.theta[i][j], 4);
+        const scatter = std(i);
+        if (scatter === null) return value;
+        return Number.isFinite(scatter) ? `${value} ± ${number(scatter, 2)}` : `${value}, open`;
+      },
+    };
+  });
+  const hasStd = front.thetaStd !== null || front.posterior !== null;
+  sized(plot, (width) => {
+    state.forget("parameter");
+    const chart = strips(state, rows, {
+      width,
+      key: "parameter",
+      label: "values of the parameters of all models, a row a parameter",
+      tip,
+    });
+    update = chart.update;
+    plot.replaceChildren(chart.svg);
+  });
+  state.onChange(() => update());
+  return section(
+    "parameters",
+    "Parameters",
+    h(
+      "p",
+      { class: "lede" },
+      "Short lines are points of the front, the dot is the chosen model",
+      hasStd
+        ? ", ± its standard deviation by errors of the data; “open” is what no data determine."
+        : ". Nothing is known of the errors of the data, so there are no standard deviations.",
+    ),
+    plot,
+  );
+}

@@ -1,0 +1,83 @@
+"""The page of a report: one file that holds its script, its style and its data.
+
+A content-security policy allows the script and the style of the page by their hashes and nothing
+else: no request leaves the page, and what results say is text to it.
+"""
+
+from __future__ import annotations
+
+import base64
+import hashlib
+import html
+import os
+from collections.abc import Sequence
+from importlib.resources import files
+from pathlib import Path
+
+import xarray as xr
+
+from modefront.errors import Fault, InputError
+from modefront.report.payload import payload
+
+PAGE = """\
+<!doctype html>
+<html lang="en">
+<head>
+<meta charset="utf-8">
+<meta http-equiv="Content-Security-Policy" content="{policy}">
+<meta name="viewport" content="width=device-width, initial-scale=1">
+<meta name="generator" content="modefront">
+<title>{title}</title>
+<style>{style}</style>
+</head>
+<body>
+<noscript><p>This report is drawn by a script: please allow scripts for this file.</p></noscript>
+<script type="text/plain" id="data">{data}</script>
+<script>{script}</script>
+</body>
+</html>
+"""
+
+
+def page(results: Sequence[tuple[str, xr.Dataset]]) -> str:
+    """Return the page of results, given with the names of their folders.
+
+    Raises InputError with what is wrong with them.
+    """
+    title, data = payload(results)
+    folder = files("modefront.report")
+    script = (folder / "report.js").read_text(encoding="utf-8")
+    style = (folder / "style.css").read_text(encoding="utf-8")
+    policy = (
+        f"default-src 'none'; script-src '{_digest(script)}'; style-src '{_digest(style)}'; "
+        "base-uri 'none'; form-action 'none'"
+    )
+    shown = "".join(c if c.isprintable() else " " for c in title)
+    return PAGE.format(
+        policy=policy, title=html.escape(shown), style=style, data=data, script=script
+    )
+
+
+def write_page(results: Sequence[tuple[str, xr.Dataset]], path: Path) -> None:
+    """Write the page of results whole or not at all.
+
+    Raises InputError with what is wrong with them, and where the file cannot be written.
+    """
+    text = page(results)
+    temporary = path.with_name(f"{path.name}.tmp")
+    try:
+        with temporary.open("w", encoding="utf-8", newline="\n") as stream:
+            stream.write(text)
+            stream.flush()
+            os.fsync(stream.fileno())
+        temporary.replace(path)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        expected = "a file that can be written"
+        raise InputError(Fault(str(path), "-o", expected, str(error))) from None
+
+
+def _digest(text: str) -> str:
+    """Return what a content-security policy calls a text."""
+    digest = hashlib.sha256(text.encode()).digest()
+    return f"sha256-{base64.b64encode(digest).decode('ascii')}"

@@ -1,0 +1,305 @@
+"""The data of a report: JSON and arrays, compressed, as the page's script reads them.
+
+The whole is gzip of four bytes that hold the length of the JSON, the JSON, and the arrays behind
+each other, all little-endian. Coordinates and columns of the basis of mode shapes are 16-bit
+integers with a common unit: columns that matter less have smaller integers, which compress well.
+"""
+
+from __future__ import annotations
+
+import base64
+import gzip
+import json
+from collections.abc import Iterator, Mapping, Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import xarray as xr
+
+from modefront._typing import Floats
+from modefront._version import __version__
+from modefront.errors import Fault, InputError
+from modefront.predictions import KINDS, ResultVariable
+from modefront.report.words import texts, topics
+from modefront.results.files import FILE
+from modefront.results.selection import front_points
+
+INFINITE = 10**400
+"""An integer that JavaScript reads as Infinity, for which JSON has no word."""
+
+LARGEST = 32767
+"""Of a 16-bit integer."""
+
+CITE = (
+    "The modefront developers, modefront {version}: structural model updating with all "
+    "Pareto-optimal models. Software, BSD-3-Clause.",
+    "K. Christodoulou, E. Ntotsios, C. Papadimitriou and P. Panetsos, Structural model updating "
+    "and prediction variability using Pareto optimal models, Computer Methods in Applied Mechanics "
+    "and Engineering 198 (2008) 138–149, doi:10.1016/j.cma.2008.04.010.",
+)
+"""What to cite, the program and the paper whose methods it implements."""
+
+
+def payload(results: Sequence[tuple[str, xr.Dataset]]) -> tuple[str, str]:
+    """Return the title of a report, and its data in base64.
+
+    ``results`` are datasets with the names of their folders. Raises InputError with what is wrong
+    with them.
+    """
+    faults = [
+        Fault(str(Path(name) / FILE), *parts) for name, data in results for parts in wrong(data)
+    ]
+    if faults:
+        raise InputError(faults)
+    arrays = _Arrays()
+    names = _names([name for name, _ in results])
+    with np.errstate(all="ignore"):  # what is no number is shown as unknown
+        fronts = [
+            _front(name, data, arrays) for name, (_, data) in zip(names, results, strict=True)
+        ]
+    studies = [front["study"] or front["name"] for front in fronts]
+    title = studies[0] if len(studies) == 1 else f"{len(studies)} studies compared"
+    report = {
+        "title": title,
+        "version": __version__,
+        "cite": [text.format(version=__version__) for text in CITE],
+        "fronts": fronts,
+    }
+    text = json.dumps(report, separators=(",", ":"), allow_nan=False).encode()
+    content = len(text).to_bytes(4, "little") + text + arrays.content
+    packed = gzip.compress(content, 9, mtime=0)
+    return title, base64.b64encode(packed).decode("ascii")
+
+
+def wrong(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
+    """Yield place, expected and found of values that cannot be drawn."""
+    labels = texts(data["label"].values)
+    if str(data.attrs["reference"]) not in labels:
+        yield "attribute 'reference'", "the label of a point", repr(str(data.attrs["reference"]))
+    if not np.isfinite(data["theta"].values).all():
+        yield "variable 'theta'", "numbers", "NaN or infinity"
+    if not np.isfinite(data.attrs["model_evaluations"]):
+        yield "attribute 'model_evaluations'", "a number", str(data.attrs["model_evaluations"])
+    if data["mode"].dtype.kind not in "iu":
+        yield "coordinate 'mode'", "whole numbers", f"values of type {data['mode'].dtype}"
+    sizes = {"bound": 2, "range": 3, "line_end": 2, "corner": 4, "axis": 3}
+    for name, size in sizes.items():
+        if data.sizes.get(name, size) != size:
+            yield f"dimension '{name}'", str(size), str(data.sizes[name])
+            return
+    if "node" not in data:
+        return
+    count = data.sizes["drawn_node"]
+    least = {"line_nodes": 0, "face_nodes": -1, "sensor_node": 0}
+    for name, low in least.items():
+        values = data[name].values
+        if values.size and not (low <= values.min() and values.max() < count):
+            yield f"variable '{name}'", f"nodes from {low} to {count - 1}", "others"
+    if data["face_nodes"].values[:, :3].min(initial=0) < 0:
+        yield "variable 'face_nodes'", "three corners at least", "-1"
+    for name in ("node", "shape_basis", "sensor_direction"):
+        if not np.isfinite(data[name].values).all():
+            yield f"variable '{name}'", "numbers", "NaN or infinity"
+
+
+class _Arrays:
+    """The binary part: arrays behind each other, each at a multiple of four bytes."""
+
+    def __init__(self) -> None:
+        self._parts: list[bytes] = []
+        self._size = 0
+
+    @property
+    def content(self) -> bytes:
+        """All arrays."""
+        return b"".join(self._parts)
+
+    def whole(self, values: Floats) -> dict[str, Any]:
+        """Add numbers as 16-bit integers of a common unit, and return where they are."""
+        values = np.asarray(values, dtype=float)
+        unit = float(np.abs(values).max(initial=0.0)) / LARGEST or 1.0
+        return self._add("int16", np.rint(values / unit).astype("<i2")) | {"scale": unit}
+
+    def numbers(self, values: Any) -> dict[str, Any]:
+        """Add integers, and return where they are."""
+        return self._add("int32", np.asarray(values).astype("<i4"))
+
+    def _add(self, kind: str, values: np.ndarray[Any, Any]) -> dict[str, Any]:
+        content = values.tobytes()
+        out = {"at": self._size, "type": kind, "shape": list(values.shape)}
+        content += bytes(-len(content) % 4)
+        self._parts.append(content)
+        self._size += len(content)
+        return out
+
+
+def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
+    """Return all that the page shows of one study."""
+    labels, kinds = texts(data["label"].values), texts(data["kind"].values)
+    front = front_points(data).tolist()
+    posterior = {
+        "theta": "posterior_std",
+        "frequency": "posterior_frequency_std",
+        "mac": "posterior_mac_std",
+    }
+    return {
+        "name": name,
+        "study": str(data.attrs.get("study", "")),
+        "inputs": str(data.attrs.get("inputs", "")),
+        "version": str(data.attrs["version"]),
+        "method": str(data.attrs["method"]),
+        "reference": labels.index(str(data.attrs["reference"])),
+        "nominal": kinds.index("nominal") if "nominal" in kinds else None,
+        "groups": _texts(data, "group"),
+        "parameters": _texts(data, "parameter"),
+        "modes": [int(mode) for mode in data["mode"].values],
+        "sensors": _texts(data, "sensor"),
+        "sets": _texts(data, "set"),
+        "label": labels,
+        "kind": kinds,
+        "pareto": data["pareto"].values.astype(bool).tolist(),
+        "converged": data["converged"].values.astype(bool).tolist(),
+        "piece": _branch(data),
+        "order": front or [i for i, kind in enumerate(kinds) if kind != "nominal"] or [0],
+        **{name: plain(data[name].values) for name in POINTS},
+        **{key: _optional(data, name) for key, name in OPTIONAL.items()},
+        "posterior": (
+            {key: plain(data[name].values) for key, name in posterior.items()}
+            if all(name in data for name in posterior.values())
+            else None
+        ),
+        "bounds": plain(data["bounds"].values),
+        "measured": plain(data["measured_frequency"].values),
+        "measuredStd": plain(_measured_std(data)),
+        "ends": _optional(data, "end_objective") or [],
+        "geometry": _geometry(data, arrays),
+        "predictions": list(_predictions(data)),
+        "words": [
+            {"heading": topic.heading, "sentences": list(topic.sentences)} for topic in topics(data)
+        ],
+    }
+
+
+POINTS = ("theta", "objective", "error", "frequency", "mac")
+"""Variables that every point has."""
+
+OPTIONAL: Mapping[str, str] = {
+    "thetaStd": "theta_std",
+    "frequencyStd": "frequency_std",
+    "macStd": "mac_std",
+    "macMatrix": "mac_matrix",
+    "modelFrequency": "model_frequency",
+    "shape": "shape",
+    "measuredShape": "measured_shape",
+}
+"""Further variables, by their names on the page."""
+
+
+def _names(folders: Sequence[str]) -> list[str]:
+    """Return the names of folders, whole paths where these are the same."""
+    short = [Path(folder).resolve().name for folder in folders]
+    return short if len(set(short)) == len(short) else list(folders)
+
+
+def _texts(data: xr.Dataset, name: str) -> list[str]:
+    return texts(data[name].values) if name in data.coords else []
+
+
+def _optional(data: xr.Dataset, name: str) -> Any:
+    return plain(data[name].values) if name in data else None
+
+
+def _branch(data: xr.Dataset) -> list[int]:
+    if "piece" in data:
+        return [int(x) for x in np.nan_to_num(data["piece"].values)]
+    return [1] * data.sizes["point"]
+
+
+def _measured_std(data: xr.Dataset) -> Floats:
+    """Return the standard deviation of the mean of each measured frequency; NaN where unknown."""
+    modes = data.sizes["mode"]
+    if "set_frequency" not in data:
+        return np.full(modes, np.nan)
+    f, std = data["set_frequency"].values, data["set_frequency_std"].values
+    out = np.full(modes, np.nan)
+    for r in range(modes):
+        known = np.isfinite(f[:, r])
+        count = int(known.sum())
+        given = std[known, r]
+        if count and np.isfinite(given).all():
+            out[r] = np.sqrt((given**2).sum()) / count
+        elif count > 1:
+            out[r] = f[known, r].std(ddof=1) / np.sqrt(count)
+    return out
+
+
+def _geometry(data: xr.Dataset, arrays: _Arrays) -> dict[str, Any] | None:
+    if "node" not in data:
+        return None
+    nodes = data["node"].values
+    return {
+        "kind": "chain" if data.attrs.get("geometry") == "chain" else "mesh",
+        "nodes": arrays.whole(nodes - (nodes.min(axis=0) if len(nodes) else 0.0)),
+        "lines": arrays.numbers(data["line_nodes"].values),
+        "faces": arrays.numbers(data["face_nodes"].values),
+        "sensorNode": [int(x) for x in data["sensor_node"].values],
+        "sensorDirection": plain(data["sensor_direction"].values),
+        "basis": arrays.whole(data["shape_basis"].values),
+        "columns": data.sizes["basis"],
+        "coefficient": plain(data["shape_coefficient"].values.astype(np.float32)),
+    }
+
+
+def _predictions(data: xr.Dataset) -> Iterator[dict[str, Any]]:
+    """Yield every quantity that all models predict, one a place."""
+    for kind in (each.kind for each in KINDS):
+        if kind.dimension not in data.sizes:
+            continue
+        places = texts(data[kind.dimension].values)
+        for k, place in enumerate(places):
+            for variable in kind.ranged:
+                yield _prediction(data, kind.dimension, variable, k, place)
+
+
+def _prediction(
+    data: xr.Dataset, dimension: str, variable: ResultVariable, k: int, place: str
+) -> dict[str, Any]:
+    name = variable.name
+    start = f"posterior_{dimension}_log" if variable.logarithmic else f"posterior_{name}"
+    std = data.get(f"{start}_std")
+    drawn = data.get(f"posterior_{name}")
+    load = data.get(f"{dimension}_load")
+    ends = None
+    if drawn is not None:
+        statistic = texts(data["statistic"].values)
+        if "5 %" in statistic and "95 %" in statistic:
+            ends = drawn.values[[statistic.index("5 %"), statistic.index("95 %")], k]
+    return {
+        "title": str(data[f"{dimension}_name"].values[k]) if f"{dimension}_name" in data else "",
+        "place": place,
+        "quantity": variable.key,
+        "unit": variable.unit,
+        "log": variable.logarithmic,
+        "values": plain(data[name].values[:, k]),
+        "range": plain(data[f"{name}_range"].values[:, k]),
+        "std": None if std is None else plain(std.values[k]),
+        "drawn": None if ends is None else plain(ends),
+        "note": f"Load: {load.values[k]}." if load is not None else "",
+    }
+
+
+def plain(values: Any) -> Any:
+    """Return numbers as JSON has them: null for NaN, an integer beyond all numbers for infinity."""
+    array = np.asarray(values)
+    if array.ndim:
+        return [plain(part) for part in array]
+    value = array.item()
+    if isinstance(value, float):
+        if np.isnan(value):
+            return None
+        if np.isinf(value):
+            return INFINITE if value > 0 else -INFINITE
+        if array.dtype == np.float32:
+            return float(f"{value:.7g}")
+    return value

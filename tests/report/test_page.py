@@ -1,0 +1,299 @@
+"""The file of a report: one page that allows nothing from outside, and its data."""
+
+from __future__ import annotations
+
+import base64
+import contextlib
+import hashlib
+import re
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import xarray as xr
+from pages import HOSTILE, ROOT, chain, content, hostile, mesh, plate, three_groups
+
+import modefront as mf
+from modefront.cli.main import main
+from modefront.models.local import geometry_of
+from modefront.report.page import page
+from modefront.report.payload import payload
+from modefront.report.words import topics
+from modefront.results.files import FILE, write
+from modefront.results.mode_shapes import drawing, mode_shapes
+from modefront.results.schema import faults, missing
+from modefront.results.selection import front_points
+
+MEGABYTE = 1e6
+
+
+def test_the_policy_allows_the_script_and_the_style_of_the_page_and_nothing_else() -> None:
+    text = page([("results", chain())])
+    (policy,) = re.findall(r'http-equiv="Content-Security-Policy" content="([^"]*)"', text)
+    assert policy.startswith("default-src 'none'; ")
+    for tag in ("script", "style"):
+        (inner,) = re.findall(rf"<{tag}>(.*?)</{tag}>", text, re.DOTALL)
+        digest = base64.b64encode(hashlib.sha256(inner.encode()).digest()).decode()
+        assert f"{tag}-src 'sha256-{digest}'" in policy
+    assert "unsafe" not in policy
+    body = text[: text.index("<style>")] + text[text.index("<body>") : text.index('id="data"')]
+    assert not re.search(r"\b(src|href)=", body)
+
+
+def test_the_script_names_no_place_outside() -> None:
+    bundle = (ROOT / "src" / "modefront" / "report" / "report.js").read_text(encoding="utf-8")
+    hosts = set(re.findall(r"https?://([\w.-]+)", bundle))
+    assert hosts == {"www.w3.org"}, "names of namespaces alone"
+    assert "</script" not in bundle
+    lock = (ROOT / "report" / "package-lock.json").read_text(encoding="utf-8")
+    assert '"resolved"' not in lock
+
+
+def test_the_page_of_the_three_story_example_is_small() -> None:
+    assert len(page([("results", chain())]).encode()) < 1.5 * MEGABYTE
+
+
+def test_the_page_holds_what_the_results_hold() -> None:
+    data = chain()
+    report, _ = content(page([("some/folder", data)]))
+    (front,) = report["fronts"]
+    assert report["title"] == "three storeys"
+    assert (front["name"], front["inputs"]) == ("folder", "0123abcd")
+    assert front["label"] == data["label"].values.tolist()
+    assert front["order"] == front_points(data).tolist()
+    np.testing.assert_array_equal(np.array(front["theta"]), data["theta"].values)
+    assert front["label"][front["reference"]] == data.attrs["reference"]
+    (prediction, at) = front["predictions"]
+    assert prediction["values"] == data["frf_peak"].values[:, 0].tolist()
+    assert (prediction["place"], at["unit"]) == ("hammer: floor1", "Hz")
+    assert front["measuredStd"] == pytest.approx(
+        (0.01 * data["measured_frequency"].values).tolist()
+    )
+
+
+def test_what_is_not_known_is_null_and_what_is_infinite_is_infinite() -> None:
+    data = chain()
+    theta = data["theta_std"].values.copy()
+    theta[0, :2] = np.inf, np.nan
+    report, _ = content(page([("x", data.assign(theta_std=(data["theta_std"].dims, theta)))]))
+    first = report["fronts"][0]["thetaStd"][0]
+    assert first[0] > 1e300  # JavaScript reads it as Infinity
+    assert first[1] is None
+
+
+def test_names_with_markup_stay_text() -> None:
+    text = page([("x", hostile())])
+    assert HOSTILE not in text
+    assert "<title>&lt;/title&gt;" in text
+    report, _ = content(text)
+    assert report["fronts"][0]["label"][0] == HOSTILE
+
+
+def shapes_of(report: dict[str, Any], arrays: bytes, point: int, mode: int) -> np.ndarray[Any, Any]:
+    """Return the displacements that the page draws, as its script unpacks them."""
+    geometry = report["fronts"][0]["geometry"]
+    stored = geometry["basis"]
+    count = int(np.prod(stored["shape"]))
+    basis = np.frombuffer(arrays, "<i2", count, stored["at"]).reshape(stored["shape"])
+    coefficient = np.array(geometry["coefficient"][point][mode])
+    out: np.ndarray[Any, Any] = np.tensordot(coefficient, basis * stored["scale"], 1)
+    return out
+
+
+@pytest.mark.parametrize("results", [chain, mesh])
+def test_drawn_shapes_are_those_at_the_sensors(results: Callable[[], xr.Dataset]) -> None:
+    data = results()
+    report, arrays = content(page([("x", data)]))
+    nodes, directions = data["sensor_node"].values, data["sensor_direction"].values
+    for point in range(data.sizes["point"]):
+        for mode in range(data.sizes["mode"]):
+            u = shapes_of(report, arrays, point, mode)
+            assert np.sqrt((u**2).sum(axis=1)).max() == pytest.approx(1.0, abs=5e-3)
+            seen = (u[nodes] * directions).sum(axis=1)
+            np.testing.assert_allclose(seen, data["shape"].values[point, mode], atol=5e-3)
+
+
+def test_shapes_have_the_mac_of_the_results() -> None:
+    for data in (chain(), mesh(), three_groups()):
+        paired = data["paired_mode"].values.astype(int) - 1
+        of_pairs = np.take_along_axis(data["mac_matrix"].values, paired[:, :, None], axis=2)
+        np.testing.assert_allclose(of_pairs[:, :, 0], data["mac"].values, atol=1e-9)
+        of_model = np.take_along_axis(data["model_frequency"].values, paired, axis=1)
+        np.testing.assert_allclose(of_model, data["frequency"].values, rtol=1e-8)
+
+
+def test_a_common_basis_keeps_shapes_of_many_models_small() -> None:
+    """A plate of 3,000 degrees of freedom at 40 models: a few columns hold all shapes."""
+    model = mf.mesh_model(plate(22), ("El", "Er"))
+    modes = model.modes(np.array([1.0, 1.0]), 3)
+    data = mf.modal_data(modes.frequency, modes.phi.T, model.sensors)
+    groups = [mf.Group("frequencies", frequency="all")]
+    bounds = dict.fromkeys(("El", "Er"), (0.5, 2.0))
+    problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(bounds, 1.0))
+    t = np.linspace(0, 1, 12)
+    thetas = np.column_stack([0.8 + 0.4 * t, 1.2 - 0.4 * t])
+    found = mode_shapes(problem, thetas, np.tile([1.0, 2.0, 3.0], (len(t), 1)))
+    assert found.basis is not None
+    assert found.coefficient is not None
+    assert len(found.basis) <= 12
+    geometry = geometry_of(model)
+    assert geometry is not None
+    Phi = model.full_modes(thetas[5], 3).Phi
+    u = geometry.displacement(Phi)[:, drawing(geometry).nodes]
+    u /= np.sqrt((u**2).sum(axis=2)).max(axis=1)[:, None, None]
+    drawn = np.tensordot(found.coefficient[5], found.basis, 1)
+    drawn *= np.sign((drawn * u).sum(axis=(1, 2)))[:, None, None]
+    np.testing.assert_allclose(drawn, u, atol=5e-3)
+
+
+def test_only_the_surface_of_solids_is_drawn() -> None:
+    x = np.arange(4.0)
+    nodes = np.array([(a, b, c) for c in x for b in x for a in x])
+
+    def node(i: int, j: int, k: int) -> int:
+        return i + 4 * j + 16 * k
+
+    ring = ((0, 0), (1, 0), (1, 1), (0, 1))
+    cells = [
+        [node(i + a, j + b, k + c) for c in (0, 1) for a, b in ring]
+        for k in range(3)
+        for j in range(3)
+        for i in range(3)
+    ]
+    structure = mf.fem.Structure(
+        nodes,
+        [mf.fem.Solids("block", cells, mf.fem.Material(1.0, 0.3, 1.0))],
+        supports=[mf.fem.Support(np.flatnonzero(nodes[:, 2] == 0), ("x", "y", "z"))],
+        sensors=[mf.fem.Sensor("top", (3.0, 3.0, 3.0), "x")],
+    )
+    geometry = geometry_of(mf.mesh_model(structure, ()))
+    assert geometry is not None
+    drawn = drawing(geometry)
+    assert len(drawn.faces) == 6 * 9
+    assert len(drawn.nodes) == 4**3 - 2**3
+
+
+def test_words_say_what_was_found_and_what_is_open() -> None:
+    said = {topic.heading: " ".join(topic.sentences) for topic in topics(chain())}
+    assert "3 measured modes in 2 groups" in said["What was studied"]
+    assert "normal-boundary intersection" in said["What was studied"]
+    assert "The nominal model misses measured frequencies" in said["How well the best models do"]
+    assert "k1 from" in said["What the data leave open"]
+    assert "by a factor of" in said["What the data leave open"]
+    assert "converged" in said["What to beware of"]
+
+
+def test_what_did_not_converge_is_named() -> None:
+    data = chain()
+    converged = data["converged"].values.copy()
+    converged[2] = False
+    spoiled = data.assign(converged=("point", converged))
+    said = [text for topic in topics(spoiled) for text in topic.sentences]
+    assert f"Not converged, kept and marked: {data['label'].values[2]}." in said
+
+
+def command(*arguments: object, monkeypatch: pytest.MonkeyPatch) -> int:
+    monkeypatch.setattr("sys.argv", ["modefront", "report", *map(str, arguments)])
+    with pytest.raises(SystemExit) as status:
+        main()
+    return int(str(status.value.code))
+
+
+@pytest.fixture
+def folder(tmp_path: Path) -> Path:
+    (tmp_path / "results").mkdir()
+    write(chain(), tmp_path / "results" / FILE)
+    return tmp_path
+
+
+def test_the_command_writes_one_file(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert command(folder / "results", "-o", folder / "a.html", monkeypatch=monkeypatch) == 0
+    assert f"wrote {folder / 'a.html'}" in capsys.readouterr().out
+    assert (folder / "a.html").read_text(encoding="utf-8") == page([("results", chain())])
+    assert command(folder / "results", monkeypatch=monkeypatch) == 0
+    assert sorted(path.name for path in folder.iterdir()) == ["a.html", "results"]
+    assert (folder / "results" / "report.html").is_file()
+
+
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda data: data.drop_vars("mac"), "variable 'mac'"),
+        (lambda data: data.assign_attrs(reference="none"), "attribute 'reference'"),
+        (lambda data: data.assign(theta=data["theta"] * np.nan), "variable 'theta'"),
+        (lambda data: data.assign(line_nodes=data["line_nodes"] + 99), "variable 'line_nodes'"),
+        (lambda data: data.drop_vars("shape_basis"), "variable 'shape_basis'"),
+        (lambda data: data.isel(axis=slice(2)), "dimension 'axis'"),
+        (lambda data: data.drop_vars("sensor"), "coordinate 'sensor'"),
+    ],
+)
+def test_results_that_were_damaged_are_refused(
+    change: Callable[[xr.Dataset], xr.Dataset],
+    says: str,
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    write(change(chain()), folder / "results" / FILE)
+    assert command(folder / "results", "-o", folder / "a.html", monkeypatch=monkeypatch) == 2
+    assert f"{folder / 'results' / FILE}: {says}: expected" in capsys.readouterr().err
+    assert not (folder / "a.html").exists()
+
+
+def test_other_groups_and_other_files_are_refused(
+    folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    (folder / "other").mkdir()
+    write(three_groups(), folder / "other" / FILE)
+    out = folder / "a.html"
+    both = (folder / "results", folder / "other")
+    assert command(*both, "-o", out, monkeypatch=monkeypatch) == 2
+    assert "groups: expected those of" in capsys.readouterr().err
+    assert command(folder / "none", "-o", out, monkeypatch=monkeypatch) == 2
+    assert command(folder / "results", "-o", folder / "a.pdf", monkeypatch=monkeypatch) == 2
+    assert "a file that ends in .html" in capsys.readouterr().err
+    nowhere = folder / "none" / "a.html"
+    assert command(folder / "results", "-o", nowhere, monkeypatch=monkeypatch) == 2
+    assert not list(folder.glob("*.html*"))
+
+
+def test_results_of_a_study_without_modes_of_points_are_shown() -> None:
+    """Such as those of an earlier version of this format."""
+    data = chain().drop_dims(["set", "sensor", "model_mode", "drawn_node", "basis", "axis"])
+    report, _ = content(page([("x", data)]))
+    assert report["fronts"][0]["shape"] is None
+    assert report["fronts"][0]["geometry"] is None
+
+
+def test_no_values_of_a_file_lead_to_another_error() -> None:
+    """Every variable is taken away, emptied and made infinite: refused in words, or drawn."""
+    data = chain()
+
+    def tried(changed: xr.Dataset) -> None:
+        if list(faults(changed)) or list(missing(changed)):
+            return  # refused when it is read
+        with contextlib.suppress(mf.InputError):
+            payload([("x", changed)])
+
+    for name, variable in data.variables.items():
+        values = variable.values
+        if name not in data.dims:
+            tried(data.drop_vars(str(name)))
+        if values.dtype.kind == "f":
+            for bad in (np.nan, np.inf, -1e300, 0.0):
+                tried(data.assign({name: (variable.dims, np.full(values.shape, bad))}))
+        elif values.dtype.kind in "iu":
+            for whole in (-7, 10**9):
+                tried(data.assign({name: (variable.dims, np.full(values.shape, whole))}))
+        elif values.dtype.kind == "U":
+            tried(data.assign({name: (variable.dims, np.full(values.shape, b"\xff", dtype="S1"))}))
+    for dimension in data.dims:
+        tried(data.isel({dimension: slice(0)}))
+        tried(data.isel({dimension: slice(1)}))
+    for name in data.attrs:
+        tried(data.assign_attrs({name: np.nan}))
+        tried(data.assign_attrs({name: "\udcff"}))
