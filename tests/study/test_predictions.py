@@ -375,7 +375,7 @@ def test_show_prints_and_draws_predictions(
 def test_models_are_drawn_without_a_front_too(results: xr.Dataset, tmp_path: Path) -> None:
     single = results.isel(point=results["kind"].values != "front")
     paths = write_figures(single, tmp_path)
-    assert len(paths) == 13
+    assert len(paths) == 14
     assert all(path.read_bytes().endswith(b"</svg>\n") for path in paths)
     plain = results.drop_dims(["frf", "failure", "range"])
     names = [path.name for path in write_figures(plain, tmp_path / "plain")]

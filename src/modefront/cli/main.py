@@ -179,11 +179,19 @@ def compare(directories: tuple[Path, ...], form: str) -> None:
     type=click.Path(path_type=Path),
     help="HTML file  [default: report.html in the first DIRECTORY]",
 )
-def report(directories: tuple[Path, ...], output: Path | None) -> None:
+@click.option(
+    "--figures",
+    type=click.Path(path_type=Path),
+    help="Write figures 2 to 7 of the paper into this folder, in place of the HTML file.",
+)
+def report(directories: tuple[Path, ...], output: Path | None, figures: Path | None) -> None:
     """Write the results in DIRECTORIES as one HTML file to look at."""
-    from modefront.cli.report import run_report
+    from modefront.cli.report import run_paper_figures, run_report
 
-    run_report(directories, output)
+    if figures is not None:
+        run_paper_figures(directories, figures)
+    else:
+        run_report(directories, output)
 
 
 @cli.command()

@@ -5,7 +5,7 @@ matplotlib, an extra, is imported when a picture is drawn.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
@@ -149,6 +149,12 @@ def write_figures(data: xr.Dataset, folder: Path, form: str = "svg") -> list[Pat
     Raises InputError where matplotlib is missing or the folder cannot be written to.
     """
     return write_pictures(pictures(data), folder, form)
+
+
+def paper_figures(studies: Sequence[tuple[str, xr.Dataset]], folder: Path) -> list[Path]:
+    """Write figures 2 to 7 of the paper for named results; see `modefront.plots.paper`."""
+    with _drawing():
+        return import_module("modefront.plots.paper").write_paper_figures(studies, folder)
 
 
 def write_pictures(

@@ -41,28 +41,30 @@ Studies = Sequence[tuple[str, xr.Dataset]]
 MARKERS = "os^Dv"
 """Marks of the studies, beside their colours."""
 
+EQUAL, OPTIMAL = "P", "*"
+"""Marks of the models with equal and with optimal weights."""
+
 
 def write_paper_figures(studies: Studies, folder: Path, form: str = "svg") -> list[Path]:
     """Write figures 2 to 7 of some studies into a folder and return their paths.
 
-    Figures 6 and 7 need predictions and are left out without them. Raises InputError for results
-    that are not those of two groups and the same parameters, without matplotlib, and where the
-    folder cannot be written to.
+    Figures 6 and 7 need predictions and are left out without them. Parameters go by their names in
+    the first study. Raises InputError for results that are not those of two groups and as many
+    parameters, without matplotlib, and where the folder cannot be written to.
     """
     refuse(_faults(studies))
     return write_pictures(figures(studies), folder, form)
 
 
 def _faults(studies: Studies) -> Iterator[Fault]:
-    first = studies[0][1]["parameter"].values.tolist()
+    count = studies[0][1].sizes["parameter"]
     for name, data in studies:
         if data.sizes["group"] != 2 or not front_of(data).size:
             found = f"{data.sizes['group']} groups, {front_of(data).size} points"
             yield Fault(name, "--figures", "a front of two groups", found)
-        if data["parameter"].values.tolist() != first:
-            found = ", ".join(map(str, data["parameter"].values))
-            expected = f"the parameters of the first study, {', '.join(map(str, first))}"
-            yield Fault(name, "--figures", expected, found)
+        if data.sizes["parameter"] != count:
+            expected = f"as many parameters as in the first study, {count}"
+            yield Fault(name, "--figures", expected, str(data.sizes["parameter"]))
 
 
 def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
@@ -102,6 +104,8 @@ def fronts(studies: Studies) -> Picture:
                 )
     first, second = (plain(group) for group in studies[0][1]["group"].values)
     axes.set(xlabel=f"error of {first}, $e_1$", ylabel=f"error of {second}, $e_2$")
+    for sign, size, name in ((EQUAL, 8, "equal weights"), (OPTIMAL, 12, "optimal weights")):
+        axes.plot([], [], sign, color="0.7", mec="k", mew=0.6, ms=size, ls="", label=name)
     _legend(figure, axes, studies)
     return figure
 
@@ -206,7 +210,7 @@ def _points(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str) -> 
     best, others = front[pareto[front]], front[~pareto[front]]
     axes.plot(*values[best].T, marker, color=colour, ms=4, ls="", label=plain(name))
     axes.plot(*values[others].T, marker, mfc="w", mec=colour, ms=4, ls="")
-    for kind, sign, size in (("equal-weights", "P", 8), ("optimal-weights", "*", 12)):
+    for kind, sign, size in (("equal-weights", EQUAL, 8), ("optimal-weights", OPTIMAL, 12)):
         at = data["kind"].values == kind
         axes.plot(*values[at].T, sign, color=colour, mec="k", mew=0.6, ms=size, ls="")
 
@@ -224,4 +228,4 @@ def _along(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str) -> N
 
 def _legend(figure: Picture, axes: Axes, studies: Studies) -> None:
     handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=min(len(studies), 4))
+    figure.legend(handles, labels, loc="outside lower center", ncols=min(len(studies) + 2, 4))
