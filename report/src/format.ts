@@ -21,6 +21,7 @@ export function number(x: number | null | undefined, digits = 4): string {
 export function fixed(x: number | null | undefined, digits: number, signed = false): string {
   if (x === null || x === undefined || !Number.isFinite(x)) return number(x);
   const text = x.toFixed(digits);
+  if (Number(text) === 0) return text.replace("-", "");
   return (signed && x > 0 ? `+${text}` : text).replace("-", MINUS);
 }
 

@@ -166,7 +166,7 @@ function summary(state: State): HTMLElement {
     const [first, ...rest] = sentences;
     if (first === undefined) continue;
     const isList = sentences.length > 1 || heading !== "";
-    const MOST = 4;
+    const MOST = 3;
     const list = (some: string[]): HTMLElement => h("ul", {}, ...some.map((text) => h("li", {}, text)));
     view.append(
       h(

@@ -347,18 +347,9 @@ def test_show_prints_and_draws_predictions(
         assert text in out
     assert command("show", tmp_path / "results", "--figures") == 0
     out = capsys.readouterr().out
-    names = [
-        "front",
-        "parameters",
-        "frequencies",
-        "mac",
-        "predictions",
-        "frf-pushed",
-        "frf-shaken",
-        "frf-as-if-shaken",
-        "frf-ridden",
-    ]
-    names += ["frf-between", "failure-drifts", "uncertainty", "minima"]
+    names = ["front", "parameters", "frequencies", "mac", "modes", "predictions"]
+    names += ["frf-pushed", "frf-shaken", "frf-as-if-shaken", "frf-ridden", "frf-between"]
+    names += ["failure-drifts", "uncertainty", "minima"]
     paths = [tmp_path / "results" / "figures" / f"{name}.svg" for name in names]
     assert out.splitlines() == [f"wrote {path}" for path in paths]
     drawn = [path.read_bytes() for path in paths]

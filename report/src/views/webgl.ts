@@ -18,6 +18,9 @@ import type { Camera } from "./camera";
 import type { Renderer, Panel } from "./renderer";
 import type { Solid } from "./solid";
 
+const DENSE = 4000;
+/** Lines from which a mesh is fine. */
+
 interface Drawn {
   scene: Scene;
   positions: BufferAttribute;
@@ -32,6 +35,8 @@ export function webgl(canvas: HTMLCanvasElement, solid: Solid, panels: number): 
   renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
   renderer.setScissorTest(true);
   const drawn = Array.from({ length: panels }, () => scene(solid));
+  // Lines of a fine mesh would hide its faces.
+  const isDense = solid.lines.length / 2 > DENSE;
   const camera = new OrthographicCamera();
   camera.up.set(0, 0, 1);
 
@@ -49,7 +54,7 @@ export function webgl(canvas: HTMLCanvasElement, solid: Solid, panels: number): 
         colours.needsUpdate = true;
         mesh.visible = panel.solid;
         lines.material.color.set(panel.ink);
-        lines.material.opacity = panel.solid ? 0.55 : 0.8;
+        lines.material.opacity = (panel.solid ? 0.55 : 0.8) * (isDense ? 0.2 : 1);
         renderer.setViewport(k * width, 0, width, height);
         renderer.setScissor(k * width, 0, width, height);
         renderer.render(all, camera);

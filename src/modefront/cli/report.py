@@ -5,8 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 from pathlib import Path
 
-import click
-
 from modefront.cli.terminal import say
 from modefront.errors import Fault, InputError
 from modefront.plots import paper_figures
@@ -25,7 +23,7 @@ def run_report(directories: Sequence[Path], output: Path | None) -> None:
     if path.suffix.lower() not in SUFFIXES:
         raise InputError(Fault(str(path), "-o", "a file that ends in .html", f"'{path.name}'"))
     write_page(read_together(directories), path)
-    click.echo(f"wrote {path} ({path.stat().st_size / 1e6:.2f} MB): open it in a browser")
+    say(f"wrote {path} ({path.stat().st_size / 1e6:.2f} MB): open it in a browser")
 
 
 def run_paper_figures(directories: Sequence[Path], folder: Path) -> None:

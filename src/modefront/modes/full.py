@@ -71,8 +71,8 @@ def sparse_modes(pencil: Pencil, theta: Floats, count: int, loads: Floats) -> Fu
     below = spectrum.factors[0]
     regular = below.sigma == 0 and lam[0] > 0
     static = None
-    if regular:  # a factor does not solve for no columns at all
-        static = below.factor.solve(np.ascontiguousarray(loads)) if loads.shape[1] else loads
+    if regular:  # the factors take one right-hand side at least
+        static = below.factor.solve(np.ascontiguousarray(loads)) if loads.size else loads
     return FullModes(lam[:count], spectrum.Phi[:, :count], static)
 
 

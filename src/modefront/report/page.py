@@ -11,12 +11,13 @@ import hashlib
 import html
 import os
 from collections.abc import Sequence
+from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 
 import xarray as xr
 
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
 from modefront.report.payload import payload
 
 PAGE = """\
@@ -40,10 +41,7 @@ PAGE = """\
 
 
 def page(results: Sequence[tuple[str, xr.Dataset]]) -> str:
-    """Return the page of results, given with the names of their folders.
-
-    Raises InputError with what is wrong with them.
-    """
+    """Return the page of sound results, given with the names of their folders."""
     title, data = payload(results)
     folder = files("modefront.report")
     script = (folder / "report.js").read_text(encoding="utf-8")
@@ -61,7 +59,7 @@ def page(results: Sequence[tuple[str, xr.Dataset]]) -> str:
 def write_page(results: Sequence[tuple[str, xr.Dataset]], path: Path) -> None:
     """Write the page of results whole or not at all.
 
-    Raises InputError with what is wrong with them, and where the file cannot be written.
+    Raises InputError where the file cannot be written.
     """
     text = page(results)
     temporary = path.with_name(f"{path.name}.tmp")
@@ -72,9 +70,10 @@ def write_page(results: Sequence[tuple[str, xr.Dataset]], path: Path) -> None:
             os.fsync(stream.fileno())
         temporary.replace(path)
     except OSError as error:
-        temporary.unlink(missing_ok=True)
+        with suppress(OSError):
+            temporary.unlink(missing_ok=True)
         expected = "a file that can be written"
-        raise InputError(Fault(str(path), "-o", expected, str(error))) from None
+        raise InputError(Fault(str(path), "-o", expected, reason(error))) from None
 
 
 def _digest(text: str) -> str:

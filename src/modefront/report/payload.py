@@ -19,10 +19,8 @@ import xarray as xr
 
 from modefront._typing import Floats
 from modefront._version import __version__
-from modefront.errors import Fault, InputError
 from modefront.predictions import KINDS, ResultVariable
 from modefront.report.words import texts, topics
-from modefront.results.files import FILE
 from modefront.results.selection import front_points
 
 INFINITE = 10**400
@@ -44,14 +42,9 @@ CITE = (
 def payload(results: Sequence[tuple[str, xr.Dataset]]) -> tuple[str, str]:
     """Return the title of a report, and its data in base64.
 
-    ``results`` are datasets with the names of their folders. Raises InputError with what is wrong
-    with them.
+    ``results`` are sound datasets, as `modefront.results.files.read_dataset` returns them, with the
+    names of their folders.
     """
-    faults = [
-        Fault(str(Path(name) / FILE), *parts) for name, data in results for parts in wrong(data)
-    ]
-    if faults:
-        raise InputError(faults)
     arrays = _Arrays()
     names = _names([name for name, _ in results])
     with np.errstate(all="ignore"):  # what is no number is shown as unknown
@@ -70,37 +63,6 @@ def payload(results: Sequence[tuple[str, xr.Dataset]]) -> tuple[str, str]:
     content = len(text).to_bytes(4, "little") + text + arrays.content
     packed = gzip.compress(content, 9, mtime=0)
     return title, base64.b64encode(packed).decode("ascii")
-
-
-def wrong(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
-    """Yield place, expected and found of values that cannot be drawn."""
-    labels = texts(data["label"].values)
-    if str(data.attrs["reference"]) not in labels:
-        yield "attribute 'reference'", "the label of a point", repr(str(data.attrs["reference"]))
-    if not np.isfinite(data["theta"].values).all():
-        yield "variable 'theta'", "numbers", "NaN or infinity"
-    if not np.isfinite(data.attrs["model_evaluations"]):
-        yield "attribute 'model_evaluations'", "a number", str(data.attrs["model_evaluations"])
-    if data["mode"].dtype.kind not in "iu":
-        yield "coordinate 'mode'", "whole numbers", f"values of type {data['mode'].dtype}"
-    sizes = {"bound": 2, "range": 3, "line_end": 2, "corner": 4, "axis": 3}
-    for name, size in sizes.items():
-        if data.sizes.get(name, size) != size:
-            yield f"dimension '{name}'", str(size), str(data.sizes[name])
-            return
-    if "node" not in data:
-        return
-    count = data.sizes["drawn_node"]
-    least = {"line_nodes": 0, "face_nodes": -1, "sensor_node": 0}
-    for name, low in least.items():
-        values = data[name].values
-        if values.size and not (low <= values.min() and values.max() < count):
-            yield f"variable '{name}'", f"nodes from {low} to {count - 1}", "others"
-    if data["face_nodes"].values[:, :3].min(initial=0) < 0:
-        yield "variable 'face_nodes'", "three corners at least", "-1"
-    for name in ("node", "shape_basis", "sensor_direction"):
-        if not np.isfinite(data[name].values).all():
-            yield f"variable '{name}'", "numbers", "NaN or infinity"
 
 
 class _Arrays:
@@ -212,7 +174,7 @@ def _optional(data: xr.Dataset, name: str) -> Any:
 
 def _branch(data: xr.Dataset) -> list[int]:
     if "piece" in data:
-        return [int(x) for x in np.nan_to_num(data["piece"].values)]
+        return [int(x) for x in data["piece"].values]
     return [1] * data.sizes["point"]
 
 

@@ -29,8 +29,8 @@ class Topic:
 
 
 def texts(values: Any) -> list[str]:
-    """Return texts, whatever type a file has them in."""
-    return [x.decode(errors="replace") if isinstance(x, bytes) else str(x) for x in values.tolist()]
+    """Return the texts of an array."""
+    return [str(x) for x in values.tolist()]
 
 
 def topics(data: xr.Dataset) -> list[Topic]:
@@ -91,7 +91,7 @@ def _quality(data: xr.Dataset) -> Iterator[str]:
     for name, i in chosen:
         parts = []
         if np.isfinite(worst[i]):
-            parts.append(f"misses measured frequencies by up to {worst[i]:.2g} %")
+            parts.append(f"misses measured frequencies by up to {_percent(worst[i])} %")
         if np.isfinite(mac[i]):
             parts.append(f"has a least MAC of {_mac(mac[i])}")
         if parts:
@@ -100,7 +100,9 @@ def _quality(data: xr.Dataset) -> Iterator[str]:
         parts = []
         if np.isfinite(worst[front]).any():
             low, high = np.nanmin(worst[front]), np.nanmax(worst[front])
-            parts.append(f"the worst frequency error goes from {low:.2g} to {high:.2g} %")
+            parts.append(
+                f"the worst frequency error goes from {_percent(low)} to {_percent(high)} %"
+            )
         if np.isfinite(mac[front]).any():
             low, high = np.nanmin(mac[front]), np.nanmax(mac[front])
             parts.append(f"the least MAC from {_mac(low)} to {_mac(high)}")
@@ -205,6 +207,15 @@ def _most(values: Floats) -> Floats:
     known = np.isfinite(values)
     most = np.where(known, values, -np.inf).max(axis=1)
     return np.where(known.any(axis=1), most, np.nan)
+
+
+def _percent(value: float) -> str:
+    """Return an error in %, as far as anyone wants to know it.
+
+    >>> _percent(2.3e-9), _percent(8.14)
+    ('0.00', '8.1')
+    """
+    return f"{value:.2g}" if value >= 0.01 else "0.00"
 
 
 def _mac(value: float) -> str:

@@ -19,13 +19,14 @@ FINITE = (
     *("theta", "objective", "error", "frequency", "bounds", "properties"),
     *("minimum_theta", "minimum_objective", "lattice", "equal_theta", "equal_objective"),
     *("combination_direction", "combination_share"),
+    *("node", "shape_basis", "sensor_direction"),
 )
 """Variables of numbers that are known wherever there are any."""
 
 UNIQUE = ("label", "parameter", "group", "mode")
 """Variables and coordinates whose values do not repeat."""
 
-SIZES = {"bound": 2, "range": 3, "statistic": 5}
+SIZES = {"bound": 2, "range": 3, "statistic": 5, "line_end": 2, "corner": 4, "axis": 3}
 """Sizes of dimensions that are always the same."""
 
 LARGEST = 1e9
@@ -42,6 +43,7 @@ def unsound(data: xr.Dataset) -> Iterator[Fault]:
     yield from _sizes(data)
     yield from _texts(data)
     yield from _numbers(data)
+    yield from _geometry(data)
     yield from _attributes(data)
 
 
@@ -108,6 +110,20 @@ def _numbers(data: xr.Dataset) -> Iterator[Fault]:
         yield "variable 'measured_frequency'", "frequencies above 0", str(measured.min())
 
 
+def _geometry(data: xr.Dataset) -> Iterator[Fault]:
+    """Yield what lines, faces and sensors name that is no node."""
+    count = data.sizes.get("drawn_node", 0)
+    for name, least in (("line_nodes", 0), ("face_nodes", -1), ("sensor_node", 0)):
+        if name in data:
+            values = data[name].values
+            wrong = ~((values >= least) & (values < count))
+            if wrong.any():
+                expected = f"nodes from {least} to {count - 1}"
+                yield f"variable '{name}'", expected, _first(values, wrong)
+    if "face_nodes" in data and (data["face_nodes"].values[:, :3] < 0).any():
+        yield "variable 'face_nodes'", "three corners at least", "-1 among the first three"
+
+
 def _attributes(data: xr.Dataset) -> Iterator[Fault]:
     for name, attribute in ATTRIBUTES.items():
         if name not in data.attrs or attribute.values == "text":
@@ -129,7 +145,7 @@ COUNTS = frozenset(
     (
         *("seed", "front_is_a_point", "model_evaluations", "front_evaluations", "nbi_evaluations"),
         *("full_eigensolutions", "reduced_solutions", "prediction_eigensolutions"),
-        *("corrected_eigensolutions", "factorisations", "format"),
+        *("corrected_eigensolutions", "factorisations", "shape_eigensolutions", "format"),
     )
 )
 """Attributes that count something."""

@@ -18,7 +18,6 @@ import numpy as np
 
 from modefront.errors import InputError, ModelError
 from modefront.models.reduced.model import ReducedModel
-from modefront.models.reduced.options import PAYS
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.continuation import default_points, size
 from modefront.study.definition import Study
@@ -32,6 +31,10 @@ SHARE = 0.25
 
 REDUCED = 0.05
 """Share of a solution in full that one in a reduced basis takes, for models that have one."""
+
+
+LARGE = 2000
+"""Degrees of freedom from which a reduced basis is worth a try."""
 
 
 @dataclass(frozen=True)
@@ -91,7 +94,7 @@ def estimate(study: Study, *, predictions: bool = True) -> Estimate | None:
     evaluations = round(seconds / each) if each else 0
     long = [part for part in parts if part.seconds > SHARE * seconds and part.advice]
     advice = [part.advice for part in sorted(long, key=lambda part: -part.seconds)]
-    if study.problem.model.size >= PAYS and not isinstance(study.problem.model, ReducedModel):
+    if study.problem.model.size >= LARGE and not isinstance(study.problem.model, ReducedModel):
         advice.insert(0, 'a reduced basis ([model] reduction = "auto")')
     if seconds > SHORT:
         advice.append("--workers N with as many as there are cores")
