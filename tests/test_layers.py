@@ -24,6 +24,7 @@ LAYERS = (
     ("residuals",),
     ("identifiability", "predictions", "uncertainty"),
     ("analysis", "diagnosis"),
+    ("plots",),
     ("results",),
     ("report", "exports"),
     ("study",),

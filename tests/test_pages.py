@@ -62,6 +62,13 @@ def blocks(page: Path) -> list[tuple[str, str]]:
     return re.findall(pattern, text, re.DOTALL)
 
 
+def test_the_page_of_pictures_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    for code, _ in blocks(DOCS / "plots.md"):
+        exec(compile(code, "docs/plots.md", "exec"), {})
+    assert {path.name for path in tmp_path.iterdir()} == {"front.png", "modes.pdf", "modes.vtu"}
+
+
 def test_the_page_of_python_runs_and_prints_what_it_says(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

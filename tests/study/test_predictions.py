@@ -14,11 +14,11 @@ from two_masses import FRF, MASSES, PASSAGE, QUICK, ZETA, direct, matrices, run,
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.cli import figures
 from modefront.cli.main import main
 from modefront.errors import InputError, ModelError, UnfinishedError
 from modefront.models.matrices import MatrixModel
 from modefront.models.ports import Transfer
+from modefront.plots import write_figures
 from modefront.predictions import Passage, PeakResponse
 from modefront.reliability.gaussian import gaussian_response
 from modefront.results.files import read_dataset
@@ -347,14 +347,15 @@ def test_show_prints_and_draws_predictions(
         assert text in out
     assert command("show", tmp_path / "results", "--figures") == 0
     out = capsys.readouterr().out
-    names = ["frequencies", "mac", "frf-pushed", "frf-shaken", "frf-as-if-shaken", "frf-ridden"]
-    names += ["frf-between", "failure-drifts"]
+    names = ["front", "parameters", "frequencies", "mac", "modes", "predictions"]
+    names += ["frf-pushed", "frf-shaken", "frf-as-if-shaken", "frf-ridden", "frf-between"]
+    names += ["failure-drifts", "uncertainty", "minima"]
     paths = [tmp_path / "results" / "figures" / f"{name}.svg" for name in names]
     assert out.splitlines() == [f"wrote {path}" for path in paths]
     drawn = [path.read_bytes() for path in paths]
     assert all(b"</svg>" in content for content in drawn)
     assert [
-        p.read_bytes() for p in figures.write_figures(read_dataset(tmp_path / "results"), tmp_path)
+        p.read_bytes() for p in write_figures(read_dataset(tmp_path / "results"), tmp_path)
     ] == drawn
 
     monkeypatch.setitem(sys.modules, "matplotlib", None)
@@ -364,12 +365,13 @@ def test_show_prints_and_draws_predictions(
 
 def test_models_are_drawn_without_a_front_too(results: xr.Dataset, tmp_path: Path) -> None:
     single = results.isel(point=results["kind"].values != "front")
-    paths = figures.write_figures(single, tmp_path)
-    assert len(paths) == 8
+    paths = write_figures(single, tmp_path)
+    assert len(paths) == 14
     assert all(path.read_bytes().endswith(b"</svg>\n") for path in paths)
     plain = results.drop_dims(["frf", "failure", "range"])
-    names = [path.name for path in figures.write_figures(plain, tmp_path / "plain")]
-    assert names == ["frequencies.svg", "mac.svg"]
+    names = [path.name for path in write_figures(plain, tmp_path / "plain")]
+    assert names[:4] == ["front.svg", "parameters.svg", "frequencies.svg", "mac.svg"]
+    assert not [name for name in names if name.startswith(("frf", "failure", "predictions"))]
     (tmp_path / "file").write_text("")
     with pytest.raises(InputError, match="a folder that can be written to"):
-        figures.write_figures(plain, tmp_path / "file")
+        write_figures(plain, tmp_path / "file")

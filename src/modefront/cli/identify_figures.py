@@ -8,10 +8,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from modefront.cli.figures import COLOURS, STYLE, plain
 from modefront.errors import Fault, InputError, reason
 from modefront.identification.identify import Identification
 from modefront.identification.shapes import auto_mac
+from modefront.plots.style import COLOURS, STYLE, plain
 from modefront.text import file_name
 
 if TYPE_CHECKING:

@@ -94,7 +94,7 @@ class Screen:
 
     def _line(self, text: str, style: str) -> None:
         # Text that has no spans is printed as it is; rich would wrap a line of its own accord.
-        self.console.print(Text(text.rstrip(), style=style), soft_wrap=True)
+        self.console.print(Text(self.shown(text.rstrip()), style=style), soft_wrap=True)
 
 
 @dataclass(frozen=True)
@@ -112,17 +112,18 @@ class _Grid:
         block: list[int] = []
         for j, needed in widths.items():
             if block and sum(widths[i] + GAP for i in block) + needed > room:
-                yield self._block([*keys, *(widths[i] for i in block)], block)
+                yield self._block([*keys, *(widths[i] for i in block)], block, width)
                 block = []
             block.append(j)
-        yield self._block([*keys, *(widths[i] for i in block)], block)
+        yield self._block([*keys, *(widths[i] for i in block)], block, width)
 
     def _width(self, j: int) -> int:
         """Return the width of a column: that of its cells and of the words of its title."""
         cells = [cell_len(row[j]) for row in self.rows if len(row) > 1]
         return max([*cells, *map(cell_len, _parts(self.columns[j])), 1])
 
-    def _block(self, widths: list[int], chosen: list[int]) -> list[tuple[str, str]]:
+    def _block(self, widths: list[int], chosen: list[int], whole: int) -> list[tuple[str, str]]:
+        """Return the lines of the chosen columns, with their styles."""
         order = [*range(self.keys), *chosen]
         titles = [_titled(self.columns[j], width) for j, width in zip(order, widths, strict=True)]
         depth = max(map(len, titles))
@@ -132,7 +133,7 @@ class _Grid:
         out.append((self._joined(["─" * width for width in widths], widths), "dim"))
         for row in self.rows:
             if len(row) == 1:
-                out.append((row[0], "italic"))
+                out += [(line, "italic") for line in _broken(row[0], whole)]
                 continue
             cells = [_broken(row[j], width) for j, width in zip(order, widths, strict=True)]
             depth = max(map(len, cells))

@@ -53,12 +53,15 @@ def init(directory: Path, example: str) -> None:
 def check(study: Path, every: bool) -> None:
     """Say all that is wrong with STUDY, and prove its derivatives."""
     from modefront.cli.check import print_findings
+    from modefront.cli.show import say_estimate
     from modefront.study.check import check as check_study
+    from modefront.study.estimate import estimate
     from modefront.study.file import load
 
     loaded = load(study)
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
+    say_estimate(estimate(loaded, predictions=False))
     if not findings.sound and findings.mistakes:
         raise UnfinishedError(
             "the derivatives cannot be proved before what is warned of first is put right"
@@ -104,14 +107,19 @@ def run(
     """Do the work of STUDY; continue where an interrupted run stopped."""
     from modefront.cli.certificates import uncertified
     from modefront.cli.progress import progress_bar
-    from modefront.cli.show import print_summary
+    from modefront.cli.show import print_summary, say_estimate
     from modefront.results.selection import not_converged
+    from modefront.study.estimate import SHORT, estimate
     from modefront.study.file import load
     from modefront.study.session import run as run_study
 
     loaded = _refined(load(study), refine)
     directory = directory or study.with_name(f"{study.stem}-results")
-    with progress_bar(loaded.name) as progress:
+    expected = estimate(loaded)
+    if expected is not None and expected.seconds > SHORT:
+        say_estimate(expected, err=True)
+    seconds = expected.seconds / workers if expected else None
+    with progress_bar(loaded.name, seconds) as progress:
         data = run_study(
             loaded,
             directory,
@@ -134,7 +142,15 @@ def run(
 @click.option(
     "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
-@click.option("--figures", is_flag=True, help="Draw predictions along the front, into DIRECTORY.")
+@click.option("--figures", is_flag=True, help="Draw all pictures into DIRECTORY/figures.")
+@click.option(
+    "--figure-format",
+    "picture",
+    type=click.Choice(["svg", "png", "pdf"]),
+    default="svg",
+    show_default=True,
+    help="Format of the pictures.",
+)
 @click.option("--points", "lists", flag_value="points", multiple=True, help="All models.")
 @click.option("--minima", "lists", flag_value="minima", multiple=True, help="All minima.")
 @click.option(
@@ -145,7 +161,14 @@ def run(
 )
 @click.option("--findings", "lists", flag_value="findings", multiple=True, help="All findings.")
 @click.option("--all", "every", is_flag=True, help="All of these lists.")
-def show(directory: Path, form: str, figures: bool, lists: tuple[str, ...], every: bool) -> None:
+def show(
+    directory: Path,
+    form: str,
+    figures: bool,
+    picture: str,
+    lists: tuple[str, ...],
+    every: bool,
+) -> None:
     """Print the results in DIRECTORY: the main models and findings, or full lists of these."""
     from modefront.cli.lists import LISTS
     from modefront.cli.show import as_json, print_results
@@ -153,9 +176,9 @@ def show(directory: Path, form: str, figures: bool, lists: tuple[str, ...], ever
 
     data = read_dataset(directory)
     if figures:
-        from modefront.cli.figures import write_figures
+        from modefront.plots import write_figures
 
-        for path in write_figures(data, directory / "figures"):
+        for path in write_figures(data, directory / "figures", picture):
             say(f"wrote {path}")
         return
     if form == "json":
@@ -189,11 +212,19 @@ def compare(directories: tuple[Path, ...], form: str) -> None:
     type=click.Path(path_type=Path),
     help="HTML file  [default: report.html in the first DIRECTORY]",
 )
-def report(directories: tuple[Path, ...], output: Path | None) -> None:
+@click.option(
+    "--figures",
+    type=click.Path(path_type=Path),
+    help="Write figures 2 to 7 of the paper into this folder, in place of the HTML file.",
+)
+def report(directories: tuple[Path, ...], output: Path | None, figures: Path | None) -> None:
     """Write the results in DIRECTORIES as one HTML file to look at."""
-    from modefront.cli.report import run_report
+    from modefront.cli.report import run_paper_figures, run_report
 
-    run_report(directories, output)
+    if figures is not None:
+        run_paper_figures(directories, figures)
+    else:
+        run_report(directories, output)
 
 
 @cli.command()

@@ -1,19 +1,29 @@
-"""Progress of a run on standard error: a bar in a terminal, one line a stage in a log."""
+"""Progress of a run on standard error: two lines in a terminal, one line a stage in a log.
+
+The first line has the study, a bar, the tasks done and expected, and the time; the second one says
+in words what goes on, inside long tasks too, and how long it will probably take.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+import time
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import dataclass, field
 
-from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
-from rich.progress import Progress as Bar
+from rich.console import Console, ConsoleOptions, RenderResult
+from rich.live import Live
+from rich.progress_bar import ProgressBar
+from rich.table import Table
+from rich.text import Text
 
 from modefront.text import NAME, clean
+from modefront.work.costs import Costs, counted
 from modefront.work.progress import Progress, State
+from modefront.work.steps import listening
 
 TITLES: Mapping[str, str] = {
-    "check-groups": "groups",
+    "check-groups": "check of the groups",
     "sample": "random models",
     "known": "known models",
     "edge": "edges",
@@ -42,30 +52,107 @@ TITLES: Mapping[str, str] = {
 WIDTH = 24
 """Characters of a study's name in the bar, so that all fits into 80 columns."""
 
+LEAST = 8
+"""Characters of the bar; a terminal that has not so many is shown none."""
+
+PER_SECOND = 4
+"""How often the lines are drawn: clock and counts go on while a task takes long."""
+
 
 @contextmanager
-def progress_bar(title: str) -> Iterator[Progress]:
-    """Show how many tasks are done, of how many, the stage at work and the time that is left."""
+def progress_bar(title: str, seconds: float | None = None) -> Iterator[Progress]:
+    """Show how many tasks are done, of how many, what goes on and the time that is left.
+
+    ``seconds`` is an estimate of the whole, for as long as no task has ended.
+    """
     screen = Console(stderr=True)
     if not screen.is_terminal:
         yield Progress(_Log(screen, title))
         return
-    columns = (
-        TextColumn("{task.description}", markup=False),
-        BarColumn(bar_width=None),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TextColumn("{task.fields[stage]}", markup=False),
-    )
-    short = clean(title, WIDTH)
-    with Bar(*columns, console=screen) as bar:
-        task = bar.add_task(short, stage="", total=None)
+    with counted() as costs:
+        lines = _Lines(clean(title, WIDTH), costs, seconds)
+        progress = Progress(lines.take)
+        with Live(lines, console=screen, refresh_per_second=PER_SECOND), listening(lines.hear):
+            yield progress
+            lines.end()
 
-        def report(state: State) -> None:
-            bar.update(task, total=state.expected, completed=state.done, stage=_stage(state))
 
-        yield Progress(report)
-        bar.update(task, total=bar.tasks[0].completed, stage="done")
+@dataclass
+class _Lines:
+    """What is drawn, with the time at which it is drawn.
+
+    Attributes
+    ----------
+    title : of the study
+    costs : counts the models that are solved
+    seconds : estimate of the whole; None for none
+    clock : returns seconds
+    """
+
+    title: str
+    costs: Costs
+    seconds: float | None = None
+    clock: Callable[[], float] = time.monotonic
+    state: State | None = None
+    step: str = ""
+    taken: float = 0.0
+    began: float = field(default_factory=time.monotonic)
+    is_done: bool = False
+
+    def take(self, state: State) -> None:
+        """Take note of the state of the run."""
+        if self.state is None or state.stage != self.state.stage or state.done != self.state.done:
+            self.step = ""
+        self.state, self.taken = state, self.clock()
+
+    def hear(self, text: str) -> None:
+        """Take note of what the task at work does."""
+        self.step = text
+
+    def end(self) -> None:
+        """Take note that the run is done."""
+        self.is_done = True
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
+        done, expected = (self.state.done, self.state.expected) if self.state else (0, 0)
+        expected = done if self.is_done else max(expected, 1)
+        count = f"{done}/{expected} tasks  {_clock(self.clock() - self.began)}"
+        if options.max_width < len(self.title) + len(count) + LEAST:
+            yield Text(f"{self.title}  {count}", overflow="fold")
+            yield Text(self.words, overflow="fold")
+            return
+        grid = Table.grid(padding=(0, 1), expand=True)
+        grid.add_column(no_wrap=True)
+        grid.add_column(ratio=1)
+        grid.add_column(no_wrap=True)
+        bar = ProgressBar(total=max(expected, 1), completed=done)
+        grid.add_row(Text(self.title), bar, Text(count))
+        yield grid
+        yield Text(self.words, overflow="fold")
+
+    @property
+    def words(self) -> str:
+        """What goes on, and the time that is left."""
+        if self.is_done:
+            return f"done, {self.costs.model_evaluations} models solved"
+        if self.state is None or not self.state.stage:
+            return "starting"
+        parts = [TITLES.get(self.state.stage, self.state.stage)]
+        if self.step:
+            parts.append(self.step)
+        if self.costs.model_evaluations:
+            parts.append(f"{self.costs.model_evaluations} models solved")
+        left = self._left()
+        if left is not None and left >= 1:
+            parts.append(f"about {_left_in_words(left)} left")
+        return ", ".join(parts)
+
+    def _left(self) -> float | None:
+        """Return the seconds that are left, which go down while a task takes long."""
+        now = self.clock()
+        if self.state is not None and self.state.left is not None:
+            return self.state.left - (now - self.taken)
+        return None if self.seconds is None else self.seconds - (now - self.began)
 
 
 class _Log:
@@ -77,14 +164,25 @@ class _Log:
     def __call__(self, state: State) -> None:
         if state.stage and state.stage != self.stage:
             self.stage = state.stage
-            text = f"{self.title}: {state.done}/{state.expected} {_stage(state)}"
+            words = TITLES.get(state.stage, state.stage)
+            if state.left is not None and state.left >= 1:
+                words += f", about {_left_in_words(state.left)} left"
+            text = f"{self.title}: {state.done}/{state.expected} {words}"
             self.screen.print(text, markup=False, highlight=False, soft_wrap=True)
 
 
-def _stage(state: State) -> str:
-    """Return the stage in words, and the time that is left."""
-    title = TITLES.get(state.stage, state.stage)
-    if state.left is None or state.left < 1:
-        return title
-    minutes, seconds = divmod(round(state.left), 60)
-    return f"{title}, {f'{minutes} min' if minutes else f'{seconds} s'} left"
+def _clock(seconds: float) -> str:
+    minutes, rest = divmod(int(seconds), 60)
+    hours, minutes = divmod(minutes, 60)
+    return f"{hours}:{minutes:02d}:{rest:02d}"
+
+
+def _left_in_words(seconds: float) -> str:
+    """Return a time that is left.
+
+    >>> _left_in_words(42.0), _left_in_words(400.0), _left_in_words(9000.0)
+    ('42 s', '7 min', '2.5 h')
+    """
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

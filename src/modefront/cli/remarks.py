@@ -114,9 +114,14 @@ def _quality(data: xr.Dataset) -> Iterator[str]:
     of_best = 100 * np.abs(data["frequency"].values[rows] / data["measured_frequency"].values - 1)
     yield (
         f"all {int(chosen.sum())} Pareto-optimal models have frequencies within "
-        f"{_most(error):.2g} % of the measured ones and MAC values of {_least(mac):.3f} or more; "
-        f"{best} has {_most(of_best):.2g} % and {_least(data['mac'].values[rows]):.3f}"
+        f"{_percent(_most(error))} % of the measured ones and MAC values of {_least(mac):.3f} or "
+        f"more; "
+        f"{best} has {_percent(_most(of_best))} % and {_least(data['mac'].values[rows]):.3f}"
     )
+
+
+def _percent(value: float) -> str:
+    return "0.01" if value < 0.01 else f"{value:.2g}"
 
 
 def _most(values: Floats) -> float:

@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
+from rich.console import Console
 
 from modefront.cli.certificates import cost_lines
 from modefront.cli.layout import Screen
@@ -17,10 +18,21 @@ from modefront.cli.overview import print_first_models, print_first_predictions
 from modefront.cli.predictions import first_predictions
 from modefront.cli.remarks import headlines, remarks
 from modefront.results.selection import front_points
+from modefront.study.estimate import Estimate
 from modefront.work.costs import Costs
 
 FIRST = 8
 """Predictions on the first screen."""
+
+
+def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:
+    """Print how long a run will probably take, and what would make it shorter."""
+    if expected is None:
+        return
+    screen = Screen(Console(highlight=False, stderr=err))
+    screen.say(expected.text)
+    if expected.advice:
+        screen.say(f"shorter with: {'; '.join(expected.advice)}")
 
 
 def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:

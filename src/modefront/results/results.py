@@ -17,6 +17,7 @@ from modefront.errors import ModelError
 from modefront.fronts.point import Kind
 from modefront.models.local import matrices_at
 from modefront.models.matrices import MatrixModel
+from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
 from modefront.results.selection import front_points
@@ -145,6 +146,11 @@ class Results:
     def attrs(self) -> dict[Any, Any]:
         """Attributes of the dataset."""
         return self.dataset.attrs
+
+    @property
+    def plot(self) -> Plots:
+        """Pictures: ``plot.front()``, ``plot.parameters()`` and so on, see `Plots`."""
+        return Plots(self.dataset)
 
     @property
     def front(self) -> xr.Dataset:

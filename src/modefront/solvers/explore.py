@@ -31,6 +31,7 @@ from modefront.options import check_fields, number, plain, whole
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Scalarisation
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
+from modefront.work.steps import note
 from modefront.work.task import IMMEDIATE, Executor, Task, Within
 
 DISTINCT = 1e-3
@@ -170,6 +171,7 @@ def explore(
     rugged, hopeless = True, False
     for tried, (theta, ahead) in enumerate(latin_hypercube(problem, rng, search.limit)):
         N, w = tried + len(starts), _different(run.minima, local)
+        note(f"search {tried + 1} of at most {search.limit}")
         few_left = tried >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2)
         if few_left or (tried >= ENOUGH and run.agreed()):
             rugged = False
@@ -349,6 +351,7 @@ def evolve(
     while (
         not strategy.stop() and np.max(strategy.sigma * strategy.sm.variances**0.5) > search.spread
     ):
+        note(f"generation {strategy.countiter + 1} of at most {search.generations}")
         asked = strategy.ask()
         candidates = [problem.lower + span * np.clip(u, 0, 1) for u in asked]
         tasks = [

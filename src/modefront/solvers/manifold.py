@@ -62,6 +62,7 @@ from modefront.solvers.tangents import (
     steps_to_bounds,
 )
 from modefront.work.codec import record
+from modefront.work.steps import note
 
 NEAR = 0.7
 """Distance over the length of a step, below which a point counts as one that is known: below 1, as
@@ -162,6 +163,7 @@ class _Meter:
             raise _SpentError
         self.left -= 1
         self.spent += 1
+        note(f"model {self.spent} of at most {self.left + self.spent}")
         return problem.evaluate(theta, derivatives=derivatives)
 
 

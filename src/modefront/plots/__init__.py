@@ -1,0 +1,178 @@
+"""Pictures of results, one a module: all of them are registered in `PLOTS`.
+
+matplotlib, an extra, is imported when a picture is drawn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from importlib import import_module
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import xarray as xr
+
+from modefront.errors import Fault, InputError, reason
+from modefront.plots.style import STYLE
+from modefront.text import file_name
+
+if TYPE_CHECKING:
+    from modefront.plots.canvas import Picture
+
+PLOTS = (
+    "front",
+    "parameters",
+    "frequencies",
+    "mac",
+    "modes",
+    "predictions",
+    "uncertainty",
+    "minima",
+)
+"""Modules of this package that draw a picture, ``draw(data)``, in the order of the files."""
+
+FORMATS = ("svg", "png", "pdf")
+"""Formats of files."""
+
+
+@contextmanager
+def _drawing() -> Iterator[None]:
+    """Draw in the style of all pictures; raises InputError without matplotlib."""
+    try:
+        from matplotlib import rc_context
+    except ImportError:
+        expected = "matplotlib, which `pip install modefront[figures]` brings"
+        raise InputError(Fault("", "figures", expected, "no such package")) from None
+    with rc_context(dict(STYLE)):
+        yield
+
+
+@dataclass(frozen=True)
+class Plots:
+    """Pictures of results; each method returns a figure of matplotlib, with ``savefig``.
+
+    All raise InputError without matplotlib, and where the results do not hold what is drawn.
+
+    Attributes
+    ----------
+    data : the results
+    """
+
+    data: xr.Dataset
+
+    def front(self, *, log: bool = False) -> Picture:
+        """Return the front in the space of errors; axes are logarithmic if ``log``."""
+        return self._draw("front", log=log)
+
+    def parameters(self) -> Picture:
+        """Return the parameters of all models, with standard deviations where they are known."""
+        return self._draw("parameters")
+
+    def frequencies(self) -> Picture:
+        """Return the frequencies of all models beside the measured ones."""
+        return self._draw("frequencies")
+
+    def mac(self) -> Picture:
+        """Return the MAC values of all models."""
+        return self._draw("mac")
+
+    def modes(self, point: str | int | None = None) -> Picture:
+        """Return the mode shapes of a model, the measured ones over them.
+
+        ``point`` is a label or a position from 0, the reference unless given. Raises KeyError for
+        an unknown label.
+        """
+        return self._draw("modes", point=point)
+
+    def predictions(self) -> Picture:
+        """Return the ranges of all predictions over the Pareto-optimal models."""
+        return self._draw("predictions")
+
+    def uncertainty(self) -> Picture:
+        """Return how far errors of the data scatter parameters and front."""
+        return self._draw("uncertainty")
+
+    def minima(self) -> Picture:
+        """Return all minima, and the models that fit equally well."""
+        return self._draw("minima")
+
+    def _draw(self, name: str, **options: Any) -> Picture:
+        with _drawing():
+            missing = MISSING.get(name, _nothing)(self.data)
+            if missing:
+                raise InputError(Fault("", f"plot of {name}", *missing))
+            return import_module(f"modefront.plots.{name}").draw(self.data, **options)
+
+
+def _nothing(_: xr.Dataset) -> None:
+    return None
+
+
+def _no_predictions(data: xr.Dataset) -> tuple[str, str] | None:
+    return None if "range" in data.sizes else ("results with predictions", "none")
+
+
+def _no_uncertainty(data: xr.Dataset) -> tuple[str, str] | None:
+    if "theta_std" in data or "posterior_std" in data:
+        return None
+    return "results with errors of the data or a posterior", "none"
+
+
+def _no_shapes(data: xr.Dataset) -> tuple[str, str] | None:
+    return None if "shape" in data else ("results with mode shapes", "none: run the study again")
+
+
+MISSING: Mapping[str, Callable[[xr.Dataset], tuple[str, str] | None]] = {
+    "predictions": _no_predictions,
+    "uncertainty": _no_uncertainty,
+    "modes": _no_shapes,
+}
+"""Functions that return what is expected and found where results lack what a picture shows."""
+
+
+def pictures(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
+    """Yield name and figure of everything that the results hold, each prediction by itself."""
+    plots = Plots(data)
+    for name in PLOTS:
+        if MISSING.get(name, _nothing)(data) is None:
+            yield name, getattr(plots, name)()
+        if name == "predictions" and "range" in data.sizes:
+            with _drawing():
+                yield from import_module("modefront.plots.predictions").pages(data)
+
+
+def write_figures(data: xr.Dataset, folder: Path, form: str = "svg") -> list[Path]:
+    """Write all pictures into a folder and return their paths.
+
+    Raises InputError where matplotlib is missing or the folder cannot be written to.
+    """
+    return write_pictures(pictures(data), folder, form)
+
+
+def paper_figures(studies: Sequence[tuple[str, xr.Dataset]], folder: Path) -> list[Path]:
+    """Write figures 2 to 7 of the paper for named results; see `modefront.plots.paper`."""
+    with _drawing():
+        return import_module("modefront.plots.paper").write_paper_figures(studies, folder)
+
+
+def write_pictures(
+    named: Iterator[tuple[str, Picture]], folder: Path, form: str = "svg"
+) -> list[Path]:
+    """Write named figures into a folder; raises what `write_figures` raises."""
+    written: list[Path] = []
+    metadata = {"svg": {"Date": None}, "pdf": {"CreationDate": None}}.get(form)
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with _drawing():
+            for name, figure in named:
+                path = folder / f"{file_name(name, [each.stem for each in written])}.{form}"
+                temporary = path.with_name(f"{path.name}.tmp")
+                figure.savefig(temporary, format=form, metadata=metadata, dpi=150)
+                temporary.replace(path)
+                written.append(path)
+    except OSError as error:
+        expected = "a folder that can be written to"
+        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
+    return written

@@ -1,0 +1,121 @@
+"""Values along a front of two objectives: points of the front on the abscissa.
+
+A panel a quantity, after figures 5 to 7 of Christodoulou et al. (2008,
+doi:10.1016/j.cma.2008.04.010). Other models stand beside the front; the reference has a bar of one
+standard deviation of its posterior to either side. Points are joined along branches only.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from matplotlib.lines import Line2D
+
+from modefront._typing import Floats
+from modefront.fronts.point import Kind
+from modefront.plots.canvas import Picture
+from modefront.plots.models import front_of, is_path, reference_of
+from modefront.plots.style import COLOURS, plain, short
+
+
+@dataclass(frozen=True)
+class Bar:
+    """Range (lower, upper) that is drawn at each of some points, NaN where there is none."""
+
+    lower: Floats
+    upper: Floats
+
+
+class Along:
+    """The abscissa: front points by number, then the other models."""
+
+    def __init__(self, data: xr.Dataset) -> None:
+        self.data = data
+        kinds = data["kind"].values
+        self.front = front_of(data)
+        edge = Kind.EDGE.value if self.front.size else ""
+        self.others = np.flatnonzero((kinds != Kind.FRONT.value) & (kinds != edge))
+        self.best = reference_of(data)
+        self.pareto = np.asarray(data["pareto"].values, dtype=np.bool_)
+        step = max(1.6, 0.08 * self.front.size)
+        self.beside = self.front.size + step * (1 + np.arange(self.others.size))
+        self.x = np.full(len(kinds), np.nan)
+        self.x[self.front] = np.arange(1, self.front.size + 1)
+        self.x[self.others] = self.beside
+
+    def draw(self, axes: Axes, values: Floats, colour: str = COLOURS[0], label: str = "") -> None:
+        """Draw values (points,): full where Pareto optimal, hollow where not."""
+        x, y = self.x[self.front], values[self.front]
+        best = self.pareto[self.front]
+        if is_path(self.data):
+            axes.plot(x, np.where(best, y, np.nan), "-", color=colour, lw=1, alpha=0.6)
+        axes.plot(x[best], y[best], "o", color=colour, ms=4, label=label or "model")
+        axes.plot(x[~best], y[~best], "o", mfc="w", mec=colour, ms=4)
+        axes.plot(self.beside, values[self.others], "D", color=colour, mec="k", mew=0.6, ms=5)
+        self._limit(axes, y[~best], np.concatenate([y[best], values[self.others]]))
+
+    def _limit(self, axes: Axes, dominated: Floats, others: Floats) -> None:
+        """Leave dominated models out that are far from all others."""
+        known = others[np.isfinite(others)]
+        if not known.size or axes.get_yscale() != "linear":
+            return
+        low, high = known.min(), known.max()
+        size = high - low
+        if size > 0 and ((dominated < low - size) | (dominated > high + size)).any():
+            axes.set_ylim(low - 0.15 * size, high + 0.15 * size)
+
+    def bar(self, axes: Axes, bar: Bar, colour: str = COLOURS[0]) -> None:
+        """Draw ranges at the points that have one."""
+        known = np.isfinite(bar.lower) & np.isfinite(bar.upper) & np.isfinite(self.x)
+        for i in np.flatnonzero(known).tolist():
+            axes.plot(
+                [self.x[i]] * 2, [bar.lower[i], bar.upper[i]], "-_", color=colour, lw=1.2, ms=6
+            )
+
+    def at_best(self, lower: float, upper: float) -> Bar:
+        """Return a range of the reference alone."""
+        ends = np.full((2, len(self.x)), np.nan)
+        ends[:, self.best] = lower, upper
+        return Bar(*ends)
+
+    def finish(self, figure: Picture, grid: Sequence[Axes], columns: int) -> None:
+        """Put ticks and labels on the abscissae, and one legend below the panels."""
+        n = self.front.size
+        step = max(1, math.ceil(n / 4 / 5) * 5) if n > 6 else 1
+        marked = sorted({1, *range(step, n + 1, step)} - {0}) if n else []
+        labels = [str(self.data["label"].values[i]) for i in self.others]
+        names = [short(name.removesuffix("-weights")) for name in labels]
+        for i, axes in enumerate(grid):
+            axes.set_xticks([*marked, *self.beside], [*map(str, marked), *names])
+            for tick in axes.get_xticklabels()[len(marked) :]:
+                tick.set(rotation=60, ha="right", rotation_mode="anchor")
+            axes.grid(axis="x", visible=False)
+            axes.set_xlim(0.2, (self.beside[-1] if self.beside.size else n) + 0.8)
+            # Small numbers with a power of ten beside the axis, and none as a difference.
+            if axes.get_yscale() == "linear":
+                axes.ticklabel_format(axis="y", style="sci", scilimits=(-3, 4), useOffset=False)
+            if n and i + columns >= len(grid):
+                axes.annotate(
+                    "point of the front",
+                    (0, 0),
+                    xycoords="axes fraction",
+                    xytext=(0, -20),
+                    textcoords="offset points",
+                    va="top",
+                )
+        handles, labels = grid[0].get_legend_handles_labels()
+        if not self.pareto[self.front].all():
+            hollow = Line2D([], [], ls="", marker="o", mfc="w", mec="0.3", ms=4)
+            handles, labels = [*handles, hollow], [*labels, "dominated"]
+        if len(labels) > 1:
+            figure.legend(handles, labels, loc="outside lower center", ncols=min(4, len(labels)))
+
+
+def titled(axes: Axes, title: object) -> None:
+    """Put a title above a panel."""
+    axes.set_title(plain(title), loc="left")

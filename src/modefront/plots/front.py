@@ -1,0 +1,126 @@
+"""The front in the space of errors: two axes, or pairs and parallel coordinates."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from modefront._typing import Bools, Floats
+from modefront.plots.canvas import Picture, picture
+from modefront.plots.models import branches, is_path, series, shown
+from modefront.plots.parallel import key, parallel
+from modefront.plots.style import COLOURS, plain, short
+
+FAR = 2.5
+"""Error over the greatest of the Pareto-optimal models from which a model is beyond the axes."""
+
+
+def draw(data: xr.Dataset, *, log: bool = False) -> Picture:
+    """Return the front in the space of errors, with logarithmic axes if ``log``."""
+    error = data["error"].values
+    if log:
+        error = np.maximum(error, 1e-4 * np.nanmax(error))
+    groups = [plain(name) for name in data["group"].values]
+    if len(groups) == 1:
+        return _one(data, error, groups[0])
+    if len(groups) == 2:
+        return _two(data, error, groups, log=log)
+    return _many(data, error, groups, log=log)
+
+
+def _one(data: xr.Dataset, error: Floats, group: str) -> Picture:
+    """Draw a line a model."""
+    labels = [short(label, 24) for label in data["label"].values]
+    figure = picture(4.6, 0.9 + 0.25 * len(labels))
+    axes = figure.add_subplot()
+    for each in series(data):
+        axes.plot(error[each.at, 0], each.at, **each.marks, label=each.name)
+    axes.set_yticks(range(len(labels)), labels)
+    axes.invert_yaxis()
+    axes.set_xlabel(f"error of {group}")
+    axes.locator_params(axis="x", nbins=5)
+    return figure
+
+
+def _two(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
+    figure = picture(5.2, 4.0)
+    axes = figure.add_subplot()
+    if is_path(data) and data.attrs["method"] in ("nbi", "weights"):
+        for branch in branches(data):
+            axes.plot(*error[branch].T, "-", color=COLOURS[0], lw=1, alpha=0.5)
+    _points(axes, data, error)
+    axes.set(xlabel=f"error of {groups[0]}", ylabel=f"error of {groups[1]}")
+    if log:
+        axes.set(xscale="log", yscale="log")
+    else:
+        _limits(axes, data, error)
+    axes.legend()
+    return figure
+
+
+def _limits(axes: Axes, data: xr.Dataset, error: Floats) -> None:
+    """Leave far models out that are not Pareto optimal, and say how many these are."""
+    chosen = shown(data)
+    most = np.nanmax(error[chosen], axis=0)
+    most = np.where(most > 0, most, 1.0)
+    far = ~chosen & (error > FAR * most).any(axis=1)
+    if not far.any():
+        return
+    most = np.nanmax(error[~far], axis=0)
+    most = np.where(most > 0, most, 1.0)
+    axes.set(xlim=(-0.05 * most[0], 1.1 * most[0]), ylim=(-0.05 * most[1], 1.1 * most[1]))
+    count = int(far.sum())
+    text = f"beyond the axes: {count} models" if count > 1 else _where(data, error, far)
+    axes.set_title(text, loc="right", color="0.35")
+
+
+def _where(data: xr.Dataset, error: Floats, far: Bools) -> str:
+    """Return which model is beyond the axes, and where."""
+    (i,) = np.flatnonzero(far)
+    label = plain(data["label"].values[i])
+    return f"beyond the axes: {label} ({error[i, 0]:.3g}, {error[i, 1]:.3g})"
+
+
+def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
+    """Draw all pairs of errors, and a line a model across them below."""
+    n = len(groups)
+    size = 2.1 if n < 6 else 1.5
+    figure = picture(max(size * (n - 1), 5.2), size * (n - 1) + 2.6)
+    parts = figure.subfigures(2, 1, squeeze=False, height_ratios=[size * (n - 1), 2.6])
+    above, below = parts[:, 0]
+    grid = above.subplots(n - 1, n - 1, squeeze=False, sharex="col", sharey="row")
+    for i in range(1, n):
+        for j in range(n - 1):
+            axes = grid[i - 1][j]
+            if j >= i:
+                axes.remove()
+                continue
+            _points(axes, data, error[:, [j, i]])
+            if log:
+                axes.set(xscale="log", yscale="log")
+            if i == n - 1:
+                axes.set_xlabel(f"error of {short(groups[j])}")
+            if j == 0:
+                axes.set_ylabel(f"error of {short(groups[i])}")
+    handles, labels = _once(*grid[0][0].get_legend_handles_labels())
+    above.legend(handles, labels, loc="upper right")
+    axes = below.add_subplot()
+    parallel(axes, data, error, groups)
+    axes.set_ylabel("error")
+    if log:
+        axes.set_yscale("log")
+    key(axes, data)
+    return figure
+
+
+def _points(axes: Axes, data: xr.Dataset, error: Floats) -> None:
+    for each in series(data):
+        axes.plot(*error[each.at].T, **each.marks, label=each.name)
+
+
+def _once(handles: Iterable[object], labels: Iterable[object]) -> tuple[list[object], list[str]]:
+    known = {str(label): handle for handle, label in zip(handles, labels, strict=True)}
+    return list(known.values()), list(known)

@@ -1,0 +1,186 @@
+"""Mode shapes of a model at all nodes, the measured shapes over them.
+
+A chain is drawn from the side, its floors at their heights; a mesh in space with arrows along the
+sensors; a model without geometry by the components at its sensors. Measured shapes are scaled to
+the model's by the modal scale factor.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+from mpl_toolkits.mplot3d import Axes3D
+from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
+
+from modefront._typing import Floats, Ints
+from modefront.plots.canvas import Picture, panels, picture
+from modefront.plots.models import position, reference_of
+from modefront.plots.style import COLOURS, COLUMNS, plain, short
+
+REACH = 0.15
+"""Greatest displacement that is drawn, over the diagonal of the model."""
+
+NAMES = 14
+"""Sensors up to which each is named."""
+
+
+@dataclass(frozen=True)
+class _Shape:
+    """One mode of a model.
+
+    Attributes
+    ----------
+    title : mode, frequency and MAC
+    computed : (sensors,) of the model
+    measured : (sets, sensors) in the scale of ``computed``; NaN for none
+    displacement : (nodes, 3) of the drawn nodes; None without geometry
+    """
+
+    title: str
+    computed: Floats
+    measured: Floats
+    displacement: Floats | None
+
+
+def draw(data: xr.Dataset, *, point: str | int | None = None) -> Picture:
+    """Return a panel a mode of one model, the reference unless a point is given."""
+    i = reference_of(data) if point is None else position(data, point)
+    shapes = [_shape(data, i, r) for r in range(data.sizes["mode"])]
+    in_space = "node" in data and data.attrs.get("geometry") != "chain"
+    if in_space:
+        figure = _in_space(data, shapes)
+    else:
+        figure, grid = panels(len(shapes))
+        for axes, shape in zip(grid, shapes, strict=True):
+            if "node" in data:
+                _from_the_side(axes, data, shape)
+            else:
+                _at_sensors(axes, data, shape)
+            axes.set_title(shape.title, loc="left")
+        handles, labels = grid[0].get_legend_handles_labels()
+        figure.legend(handles, labels, loc="outside lower center", ncols=3)
+    figure.suptitle(plain(data["label"].values[i]), x=0.01, ha="left")
+    return figure
+
+
+def _shape(data: xr.Dataset, i: int, r: int) -> _Shape:
+    computed = data["shape"].values[i, r]
+    measured = data["measured_shape"].values[:, r]
+    product, square = np.nansum(measured * computed, axis=1), np.nansum(measured**2, axis=1)
+    factor = np.divide(product, square, out=np.zeros(square.shape), where=square > 0)
+    f, mac = data["frequency"].values[i, r], data["mac"].values[i, r]
+    title = f"mode {data['mode'].values[r]}: {f:.4g} Hz, MAC {mac:.3f}"
+    moved = None
+    if "shape_basis" in data:
+        moved = np.einsum(
+            "b,bnk->nk", data["shape_coefficient"].values[i, r], data["shape_basis"].values
+        )
+    return _Shape(title, computed, measured * factor[:, None], moved)
+
+
+def _from_the_side(axes: Axes, data: xr.Dataset, shape: _Shape) -> None:
+    """Draw displacements of a chain over its heights."""
+    nodes, lines = data["node"].values, data["line_nodes"].values
+    x = np.zeros(len(nodes)) if shape.displacement is None else shape.displacement[:, 0]
+    height = nodes[:, 2]
+    axes.axvline(0, color="0.6", lw=0.8)
+    for line in lines:
+        axes.plot(x[line], height[line], "-", color=COLOURS[0], lw=1.6)
+    axes.plot(x, height, "s", color=COLOURS[0], ms=5, label="model")
+    at = data["sensor_node"].values
+    sign = data["sensor_direction"].values[:, 0]
+    for k, row in enumerate(shape.measured):
+        axes.plot(
+            row * sign,
+            height[at],
+            "o",
+            mfc="none",
+            mec=COLOURS[1],
+            mew=1.4,
+            ms=8,
+            label=None if k else "measured",
+        )
+    axes.set_xlim(-1.15, 1.15)
+    axes.set_yticks(height[at], [short(name) for name in data["sensor"].values])
+
+
+def _at_sensors(axes: Axes, data: xr.Dataset, shape: _Shape) -> None:
+    """Draw components at the sensors beside each other."""
+    x = np.arange(data.sizes["sensor"])
+    axes.axhline(0, color="0.6", lw=0.8)
+    axes.plot(x, shape.computed, "s-", color=COLOURS[0], ms=4, lw=1.2, label="model")
+    for k, row in enumerate(shape.measured):
+        axes.plot(
+            x,
+            row,
+            "o",
+            mfc="none",
+            mec=COLOURS[1],
+            mew=1.2,
+            ms=7,
+            label=None if k else "measured",
+        )
+    if x.size <= NAMES:
+        axes.set_xticks(x, [short(name, 12) for name in data["sensor"].values], rotation=60)
+    else:
+        axes.set_xlabel("sensor")
+
+
+def _in_space(data: xr.Dataset, shapes: list[_Shape]) -> Picture:
+    """Draw a deformed mesh a mode, with arrows along the sensors."""
+    nodes = data["node"].values
+    lines = _array(data, "line_nodes", 2)
+    faces = _array(data, "face_nodes", 4)
+    diagonal = float(np.linalg.norm(np.ptp(nodes, axis=0))) or 1.0
+    columns = min(COLUMNS, len(shapes))
+    rows = -(-len(shapes) // columns)
+    figure = picture(3.1 * columns, 3.3 * rows + 0.4)
+    at, directions = data["sensor_node"].values, data["sensor_direction"].values
+    for k, shape in enumerate(shapes):
+        axes = figure.add_subplot(rows, columns, k + 1, projection="3d")
+        assert isinstance(axes, Axes3D)
+        u = np.zeros(nodes.shape) if shape.displacement is None else shape.displacement
+        deformed = nodes + REACH * diagonal * u
+        _mesh(axes, nodes, lines, faces, "0.75", 0.0)
+        _mesh(axes, deformed, lines, faces, COLOURS[0], 0.25)
+        arrows = ((shape.computed[None], COLOURS[0]), (shape.measured, COLOURS[1]))
+        for values, colour in arrows:
+            for row in values:
+                length = REACH * diagonal * np.nan_to_num(row)[:, None] * directions
+                axes.quiver(*nodes[at].T, *length.T, color=colour, lw=1.4)
+        _same_scale(axes, np.vstack([nodes, deformed]))
+        axes.set_title(shape.title, loc="left")
+        axes.set_axis_off()
+    for colour, name in ((COLOURS[0], "model"), (COLOURS[1], "measured, at the sensors")):
+        figure.axes[0].plot([], [], "-", color=colour, label=name)
+    handles, labels = figure.axes[0].get_legend_handles_labels()
+    figure.legend(handles, labels, loc="outside lower center", ncols=2)
+    return figure
+
+
+def _array(data: xr.Dataset, name: str, width: int) -> Ints:
+    return np.asarray(data[name].values) if name in data else np.empty((0, width), dtype=int)
+
+
+def _mesh(axes: Axes3D, X: Floats, lines: Ints, faces: Ints, colour: str, alpha: float) -> None:
+    if len(lines):
+        axes.add_collection3d(Line3DCollection(list(X[lines]), colors=colour, linewidths=0.9))
+    if len(faces):
+        corners = [X[face[face >= 0]] for face in faces]
+        axes.add_collection3d(
+            Poly3DCollection(corners, facecolors=(colour, alpha), edgecolors=colour, linewidths=0.3)
+        )
+
+
+def _same_scale(axes: Axes3D, X: Floats) -> None:
+    """Give all three axes the same scale."""
+    low, high = X.min(axis=0), X.max(axis=0)
+    span = np.maximum(high - low, 0.15 * (high - low).max() or 1.0)
+    middle = (low + high) / 2
+    axes.set_xlim(middle[0] - span[0] / 2, middle[0] + span[0] / 2)
+    axes.set_ylim(middle[1] - span[1] / 2, middle[1] + span[1] / 2)
+    axes.set_zlim(middle[2] - span[2] / 2, middle[2] + span[2] / 2)
+    axes.set_box_aspect(tuple(span.tolist()))

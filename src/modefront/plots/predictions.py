@@ -1,0 +1,179 @@
+"""Predictions of every kind: their ranges beside each other, and each of them at all models."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import xarray as xr
+from matplotlib.axes import Axes
+
+from modefront._typing import Floats
+from modefront.plots.along import Along, titled
+from modefront.plots.canvas import Picture, panels, picture
+from modefront.plots.models import is_path, reference_of, shown
+from modefront.plots.parallel import key, parallel
+from modefront.plots.style import COLOURS, COLUMNS, plain, short
+from modefront.predictions import KINDS, Kind, ResultVariable
+
+FEW = 12
+"""Values of a prediction up to which each has a panel of its own along the front."""
+
+
+def kinds_in(data: xr.Dataset) -> list[Kind]:
+    """Return the kinds of which the results have predictions."""
+    return [each.kind for each in KINDS if data.sizes.get(each.kind.dimension)]
+
+
+def predictions_in(data: xr.Dataset) -> Iterator[tuple[Kind, str, list[int]]]:
+    """Yield the kind, the name and the positions of the values of each prediction."""
+    for kind in kinds_in(data):
+        names = data.get(f"{kind.dimension}_name")
+        found: dict[str, list[int]] = {}
+        for i, place in enumerate(data[kind.dimension].values):
+            name = str(place).partition(":")[0] if names is None else str(names.values[i])
+            found.setdefault(name, []).append(i)
+        for name, positions in found.items():
+            yield kind, name, positions
+
+
+def draw(data: xr.Dataset) -> Picture:
+    """Return the range of each prediction over the Pareto-optimal models, over the reference.
+
+    Ticks are the posterior's standard deviation to either side; the cross is the nominal model.
+    """
+    best, chosen = reference_of(data), shown(data)
+    nominal = np.flatnonzero(data["kind"].values == "nominal")
+    rows = []
+    for kind, name, positions in predictions_in(data):
+        for variable in kind.ranged:
+            for i in positions:
+                values = data[variable.name].values[:, i]
+                place = str(data[kind.dimension].values[i]).removeprefix(f"{name}: ")
+                label = f"{name}, {place}: {variable.key}"
+                rows.append((label, values, _relative_std(data, kind, variable, i, values[best])))
+    figure = picture(6.4, 1.0 + 0.24 * max(len(rows), 1))
+    axes = figure.add_subplot()
+    for y, (_, values, std) in enumerate(rows):
+        ratio = np.divide(values, values[best], out=np.full(values.shape, np.nan))
+        known = ratio[chosen & np.isfinite(ratio)]
+        if not known.size:
+            continue
+        axes.plot([known.min(), known.max()], [y, y], color=COLOURS[0], lw=5, alpha=0.5)
+        axes.plot(known, [y] * known.size, "|", color=COLOURS[0], ms=5)
+        axes.plot([1 / std, std], [y, y], "-|", color=COLOURS[1], lw=1.2, ms=8)
+        axes.plot(1, y, "*", color=COLOURS[1], mec="k", mew=0.5, ms=9)
+        axes.plot(ratio[nominal], [y] * nominal.size, "X", color="0.4", ms=6)
+    labels = [f"{short(name, 40)} ({values[best]:.3g})" for name, values, _ in rows]
+    axes.set_yticks(range(len(rows)), labels)
+    axes.set_ylim(len(rows) - 0.4, -0.6)
+    if any(_wide(values[chosen]) for _, values, _ in rows):
+        axes.set_xscale("log")
+    label = plain(data["label"].values[best])
+    axes.set_xlabel(f"over that of {label} (its value in brackets)")
+    axes.plot([], [], color=COLOURS[0], lw=5, alpha=0.5, label="Pareto-optimal models")
+    axes.plot([], [], "-*", color=COLOURS[1], mec="k", mew=0.5, ms=9, label=f"{label}, ± 1 std")
+    if nominal.size:
+        axes.plot([], [], "X", color="0.4", ls="", label="nominal")
+    figure.legend(*axes.get_legend_handles_labels(), loc="outside lower left", ncols=3)
+    return figure
+
+
+def _wide(values: Floats) -> bool:
+    known = values[np.isfinite(values) & (values > 0)]
+    return bool(known.size and known.max() > 10 * known.min())
+
+
+def _relative_std(
+    data: xr.Dataset, kind: Kind, variable: ResultVariable, i: int, value: float
+) -> float:
+    """Return the factor of one standard deviation of the posterior; NaN for none."""
+    if variable.logarithmic:
+        std = data.get(f"posterior_{kind.dimension}_log_std")
+        return float(np.exp(std.values[i])) if std is not None else np.nan
+    std = data.get(f"posterior_{variable.name}_std")
+    return 1 + abs(float(std.values[i] / value)) if std is not None and value else np.nan
+
+
+def pages(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
+    """Yield a name and a picture of each prediction at all models."""
+    for kind, name, positions in predictions_in(data):
+        variable = kind.ranged[0] if kind.ranged else kind.variables[0]
+        yield f"{kind.dimension} {name}", one(data, kind, variable, name, positions)
+
+
+def one(
+    data: xr.Dataset, kind: Kind, variable: ResultVariable, name: str, positions: Sequence[int]
+) -> Picture:
+    """Return one prediction at all models, along the front where that is a path."""
+    values = data[variable.name].values[:, positions]
+    places = [str(data[kind.dimension].values[i]).removeprefix(f"{name}: ") for i in positions]
+    quantity = f"{variable.key}, {variable.unit}" if variable.unit else variable.key
+    load = data.get(f"{kind.dimension}_load")
+    title = f"{name} ({load.values[positions[0]]})" if load is not None else name
+    if variable.logarithmic:
+        values = np.where(values > 0, values, np.nan)
+    if not is_path(data) or len(positions) > FEW:
+        figure = picture(max(5.2, 0.4 * len(places)), 3.4)
+        axes = figure.add_subplot()
+        parallel(axes, data, values, places)
+        key(axes, data)
+    elif variable.logarithmic:
+        figure = picture(4.8, 3.3)
+        axes = figure.add_subplot()
+        _levels(figure, axes, data, kind, values, places, positions)
+    else:
+        return _panels(data, variable, title, quantity, values, places, positions)
+    if variable.logarithmic and np.isfinite(values).any():
+        axes.set_yscale("log")
+    axes.set_ylabel(quantity)
+    figure.suptitle(plain(title), x=0.01, ha="left")
+    return figure
+
+
+def _levels(
+    figure: Picture,
+    axes: Axes,
+    data: xr.Dataset,
+    kind: Kind,
+    values: Floats,
+    places: Sequence[str],
+    positions: Sequence[int],
+) -> None:
+    """Draw a line a level of probabilities along the front."""
+    along = Along(data)
+    axes.set_yscale("log")
+    std = data.get(f"posterior_{kind.dimension}_log_std")
+    for k, (i, place) in enumerate(zip(positions, places, strict=True)):
+        colour = COLOURS[k % len(COLOURS)]
+        along.draw(axes, values[:, k], colour, short(place))
+        if std is not None:
+            x, factor = values[along.best, k], float(np.exp(std.values[i]))
+            along.bar(axes, along.at_best(x / factor, x * factor), colour)
+    along.finish(figure, [axes], 1)
+
+
+def _panels(
+    data: xr.Dataset,
+    variable: ResultVariable,
+    title: str,
+    quantity: str,
+    values: Floats,
+    places: Sequence[str],
+    positions: Sequence[int],
+) -> Picture:
+    """Draw a panel a value along the front."""
+    along = Along(data)
+    figure, grid = panels(len(places))
+    std = data.get(f"posterior_{variable.name}_std")
+    for k, (axes, place) in enumerate(zip(grid, places, strict=True)):
+        along.draw(axes, values[:, k])
+        if std is not None:
+            x, s = values[along.best, k], float(std.values[positions[k]])
+            along.bar(axes, along.at_best(x - s, x + s))
+        titled(axes, place)
+        if k % COLUMNS == 0:
+            axes.set_ylabel(quantity)
+    figure.suptitle(plain(title), x=0.01, ha="left")
+    along.finish(figure, grid, min(COLUMNS, len(grid)))
+    return figure

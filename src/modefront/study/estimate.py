@@ -1,0 +1,202 @@
+"""How long a study will probably take, and what would make it shorter.
+
+One model is evaluated a few times, and each prediction once. How many models a run evaluates is
+counted in `_parts` from averages over studies with 1 to 17 parameters: a local search takes 8
+evaluations and one more for every second parameter, a point of the front 4 and half as many.
+Searches for global minima go on for as long as they find new ones, so that the estimate may be
+wrong by a factor of three.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront.errors import InputError, ModelError
+from modefront.models.reduced.model import ReducedModel
+from modefront.residuals.problem import UpdatingProblem
+from modefront.solvers.continuation import default_points, size
+from modefront.study.definition import Study
+from modefront.work.costs import uncounted
+
+SHORT = 30.0
+"""Seconds up to which nothing is said of what would make a run shorter."""
+
+SHARE = 0.25
+"""Share of the time from which a part of the work is worth to be made shorter."""
+
+REDUCED = 0.05
+"""Share of a solution in full that one in a reduced basis takes, for models that have one."""
+
+
+LARGE = 2000
+"""Degrees of freedom from which a reduced basis is worth a try."""
+
+
+@dataclass(frozen=True)
+class Part:
+    """A part of the work.
+
+    Attributes
+    ----------
+    seconds : that it will probably take
+    advice : what would make it shorter
+    """
+
+    seconds: float
+    advice: str
+
+
+@dataclass(frozen=True)
+class Estimate:
+    """The time that a study will probably take.
+
+    Attributes
+    ----------
+    seconds : in all, by one process
+    evaluations : models that are evaluated, about
+    each : seconds for one of them
+    advice : what would make the run shorter, that of the longest part first; none for short runs
+    """
+
+    seconds: float
+    evaluations: int
+    each: float
+    advice: tuple[str, ...]
+
+    @property
+    def text(self) -> str:
+        """The estimate in a sentence."""
+        return (
+            f"a run takes about {duration(self.seconds)} (roughly {_round(self.evaluations)} "
+            f"models at {duration(self.each)} each; within a factor of 3)"
+        )
+
+
+def estimate(study: Study, *, predictions: bool = True) -> Estimate | None:
+    """Return the time that a study takes; None where the nominal model cannot be evaluated.
+
+    Each prediction is evaluated once, which may take a while; none without ``predictions``.
+    """
+    problem = study.problem
+    with uncounted():
+        each = _seconds(problem)
+        if each is None:
+            return None
+        parts = list(_parts(study, each))
+        if predictions:
+            parts += _predictions(study, each)
+    seconds = sum(part.seconds for part in parts)
+    evaluations = round(seconds / each) if each else 0
+    long = [part for part in parts if part.seconds > SHARE * seconds and part.advice]
+    advice = [part.advice for part in sorted(long, key=lambda part: -part.seconds)]
+    if study.problem.model.size >= LARGE and not isinstance(study.problem.model, ReducedModel):
+        advice.insert(0, 'a reduced basis ([model] reduction = "auto")')
+    if seconds > SHORT:
+        advice.append("--workers N with as many as there are cores")
+    return Estimate(seconds, evaluations, each, tuple(advice) if seconds > SHORT else ())
+
+
+def duration(seconds: float) -> str:
+    """Return a time in the unit that suits it.
+
+    >>> duration(0.0004), duration(8.2), duration(400.0), duration(9000.0)
+    ('0.4 ms', '8.2 s', '7 min', '2.5 h')
+    """
+    if seconds < 0.1:
+        return f"{1e3 * seconds:.2g} ms"
+    if seconds < 10:
+        return f"{seconds:.2g} s"
+    if seconds < 90:
+        return f"{seconds:.0f} s"
+    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"
+
+
+def _round(count: int) -> int:
+    """Return a number with one leading digit.
+
+    >>> _round(847)
+    800
+    """
+    power = 10 ** max(len(str(count)) - 1, 0)
+    return max(round(count / power), 1) * power
+
+
+def _seconds(problem: UpdatingProblem) -> float | None:
+    """Return the seconds of an evaluation; the first one makes what others share."""
+    model = problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
+    count = len(problem.data.modes)
+    try:
+        model.modes(problem.start, count)
+        best = math.inf
+        for _ in range(2):
+            began = time.perf_counter()
+            model.modes(problem.start, count)
+            best = min(best, time.perf_counter() - began)
+    except ModelError:
+        return None
+    return best * (REDUCED if isinstance(problem.model, ReducedModel) else 1.0)
+
+
+def _parts(study: Study, each: float) -> Iterator[Part]:
+    """Yield the parts of the work, predictions apart."""
+    p, n = len(study.problem.start), len(study.problem.groups)
+    search, pareto = study.search, study.pareto
+    runs = min(search.limit, search.starts + 4)
+    local = 8 + p / 2
+    yield Part(
+        each * (n + 1) * runs * local,
+        f"fewer local searches ([search] limit, now {search.limit}; starts, now {search.starts})",
+    )
+    points = _points(study)
+    point = 4 + p / 2
+    if pareto.method in ("nbi", "weights"):
+        along = points * point
+        yield Part(each * along, f"fewer points of the front ([pareto] points), now {points}")
+    else:
+        evaluations = pareto.evaluations
+        yield Part(
+            each * evaluations, f"fewer evaluations ([pareto] evaluations, now {evaluations})"
+        )
+    manifolds = min(study.identifiability.models, 40) * n
+    yield Part(each * 3 * manifolds, "fewer equivalent models ([identifiability] models)")
+    yield Part(each * 2 * p * points, "")  # second derivatives of the scatter
+    samples = study.uncertainty.bootstrap
+    if samples:
+        yield Part(
+            each * samples * points * point,
+            f"fewer bootstrap samples ([uncertainty] bootstrap, now {samples})",
+        )
+    if isinstance(study.problem.model, ReducedModel):
+        yield Part(each / REDUCED * (3 * p + 5), "")  # snapshots
+
+
+def _points(study: Study) -> int:
+    """Return how many points the front will probably have."""
+    n = len(study.problem.groups)
+    if n == 1:
+        return 1
+    if study.pareto.method not in ("nbi", "weights"):
+        return study.pareto.population
+    return size(n, study.pareto.points or default_points(n))
+
+
+def _predictions(study: Study, each: float) -> Sequence[Part]:
+    """Return the time of the predictions, each of which is evaluated once for that."""
+    out = []
+    models = _points(study) + 5 + 2 * len(study.problem.start) + study.uncertainty.draws
+    for prediction in study.predictions:
+        began = time.perf_counter()
+        try:
+            complete = prediction.complete(study.problem)
+            complete.evaluate(study.problem, study.problem.start, np.random.SeedSequence(0))
+        except (ModelError, InputError):
+            continue
+        spent = max(time.perf_counter() - began - each, each)
+        advice = f"prediction '{prediction.name}': fewer samples, fewer draws or fewer points"
+        out.append(Part(models * spent, advice))
+    return out

@@ -1,0 +1,35 @@
+"""What goes on inside a long task, for who watches: a search, a generation.
+
+`note` tells the listener of the same thread or process, if there is one; a task is never slower or
+different for it.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
+
+Listener = Callable[[str], None]
+
+
+def _ignore(_: str) -> None:
+    """Ignore a note."""
+
+
+_LISTENER: ContextVar[Listener] = ContextVar("listener", default=_ignore)
+
+
+def note(text: str) -> None:
+    """Tell the listener what the task at work does now, in a few words."""
+    _LISTENER.get()(text)
+
+
+@contextmanager
+def listening(listener: Listener) -> Iterator[None]:
+    """Send notes to a listener until the context ends."""
+    before = _LISTENER.set(listener)
+    try:
+        yield
+    finally:
+        _LISTENER.reset(before)

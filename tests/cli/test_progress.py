@@ -1,0 +1,88 @@
+"""Progress in a terminal and in a log, and estimates of the time."""
+
+from __future__ import annotations
+
+import io
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from rich.console import Console
+
+import modefront as mf
+from modefront.cli.progress import _Lines, _Log
+from modefront.solvers.explore import Search
+from modefront.study.estimate import SHORT, duration, estimate
+from modefront.study.examples import write_example
+from modefront.work.costs import Costs
+from modefront.work.progress import State
+from modefront.work.steps import listening, note
+
+
+def drawn(lines: _Lines, width: int) -> list[str]:
+    stream = io.StringIO()
+    Console(file=stream, width=width, force_terminal=False).print(lines)
+    return stream.getvalue().splitlines()
+
+
+def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
+    now = 0.0
+    costs = Costs()
+    lines = _Lines("a study of a bridge", costs, 100.0, lambda: now, began=0.0)
+    assert drawn(lines, 80)[1] == "starting"
+    lines.take(State("edge", 2, 1, 27, 0.0, None))
+    now, costs.eigenproblems = 30.0, 143
+    with listening(lines.hear):
+        note("search 7 of at most 60")
+    note("heard by nobody")
+    first, second = drawn(lines, 80)
+    assert len(first) <= 80
+    assert first.startswith("a study of a bridge ")
+    assert first.rstrip().endswith("2/27 tasks  0:00:30")
+    assert second == "edges, search 7 of at most 60, 143 models solved, about 70 s left"
+    lines.take(State("edge", 3, 0, 27, 30.0, 50.0))
+    now = 40.0
+    assert drawn(lines, 80)[1] == "edges, 143 models solved, about 40 s left"
+    lines.end()
+    assert drawn(lines, 80)[0].rstrip().endswith("3/3 tasks  0:00:40")
+
+
+def test_nothing_is_cut_in_a_narrow_terminal() -> None:
+    lines = _Lines("three-story C0, chain M0", Costs(), None, lambda: 0.0, began=0.0)
+    lines.take(State("probe-basis", 12, 1, 12345, 0.0, 5000.0))
+    lines.hear("search 12 of at most 1000000")
+    text = " ".join(" ".join(drawn(lines, 40)).split())
+    assert "…" not in text
+    assert "completeness of the basis, search 12 of at most 1000000, about 83 min left" in text
+
+
+def test_a_log_has_a_line_a_stage() -> None:
+    stream = io.StringIO()
+    log = _Log(Console(file=stream), "a\x1b[31m")
+    for done in range(3):
+        log(State("front", done, 1, 20, 1.0, 100.0 * done))
+    log(State("edge", 3, 0, 20, 1.0, None))
+    assert stream.getvalue() == "a\\x1b[31m: 0/20 front\na\\x1b[31m: 3/20 edges\n"
+
+
+def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Path) -> None:
+    write_example("three-story-c0", tmp_path)
+    study = mf.load(tmp_path / "study.toml")
+    short = estimate(study)
+    assert short is not None
+    assert 300 < short.evaluations < 3000  # a run evaluates 847
+    assert short.seconds == pytest.approx(short.evaluations * short.each, rel=0.01)
+    assert "models at" in short.text
+    many = replace(study, search=Search(starts=10**6, limit=10**6))
+    long = estimate(many)
+    assert long is not None
+    assert long.seconds > SHORT
+    assert long.advice[0].startswith("fewer local searches ([search] limit, now 1000000")
+    assert long.advice[-1].startswith("--workers")
+    points = estimate(replace(study, pareto=mf.Pareto(points=9000)))
+    assert points is not None
+    assert points.evaluations > 10 * short.evaluations
+
+
+def test_durations_are_in_the_unit_that_suits_them() -> None:
+    assert [duration(x) for x in (0.0123, 0.5, 45.0, 240.0)] == ["12 ms", "0.5 s", "45 s", "4 min"]

@@ -1,0 +1,131 @@
+"""What the terminal shows of results: all of it, in its width and in its characters."""
+
+from __future__ import annotations
+
+import io
+from collections.abc import Sequence
+
+import numpy as np
+import pytest
+import xarray as xr
+from rich.console import Console
+
+import modefront as mf
+from modefront.cli.layout import Screen
+from modefront.cli.lists import LISTS
+from modefront.cli.remarks import headlines, remarks
+from modefront.cli.show import print_results
+
+SEARCH = mf.Search(starts=2, limit=3, evolutions=0)
+NAMES = ["k1", "the stiffness of the second story"]
+
+
+def solved(groups: Sequence[mf.Group], points: int) -> xr.Dataset:
+    """Return the results of a chain of two stiffnesses."""
+    model = mf.chain(NAMES, [1.0, 1.0], [900.0, 800.0], stiffness_parameters=NAMES)
+    modes = model.modes(np.array([1.1, 0.9]), 2)
+    f, shape = modes.frequency * [1.02, 0.99], modes.phi.T + np.array([[0.02, 0.0], [0.0, -0.03]])
+    std = np.full(shape.shape, 0.02)
+    data = mf.modal_data(f, shape, model.sensors, frequency_std=0.01 * f, shape_std=std)
+    bounds, nominal = dict.fromkeys(NAMES, (0.2, 5.0)), dict.fromkeys(NAMES, 1.0)
+    problem = mf.updating_problem(model, data, groups, bounds, nominal)
+    push = mf.PeakResponse("push", response=["floor1"], force="floor2", damping=0.02)
+    how = mf.Identifiability(models=0)
+    return mf.solve(
+        problem, points=points, search=SEARCH, identifiability=how, predictions=[push]
+    ).dataset
+
+
+@pytest.fixture(scope="module")
+def two() -> xr.Dataset:
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    return solved(groups, 4)
+
+
+@pytest.fixture(scope="module")
+def three() -> xr.Dataset:
+    low, high = mf.Group("low", shape=[1]), mf.Group("high", shape=[2])
+    return solved([mf.Group("frequencies", frequency="all"), low, high], 3)
+
+
+@pytest.mark.parametrize("width", [40, 80, 120])
+@pytest.mark.parametrize("lists", [(), tuple(LISTS)])
+def test_every_line_fits_and_nothing_is_cut(
+    width: int,
+    lists: tuple[str, ...],
+    two: xr.Dataset,
+    three: xr.Dataset,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.setenv("COLUMNS", str(width))
+    for data in (two, three):
+        print_results(data, lists)
+        out = capsys.readouterr().out
+        assert "…" not in out
+        words = " ".join(out.split())
+        assert [line for line in out.splitlines() if len(line) > width] == []
+        for label in data["label"].values if lists else ("nominal",):
+            assert str(label) in words
+        for name in ("k1", "story", "push"):
+            assert name in words
+
+
+def test_the_first_screen_sets_the_nominal_model_beside_the_reference_and_the_edges(
+    two: xr.Dataset, capsys: pytest.CaptureFixture[str]
+) -> None:
+    print_results(two)
+    out = capsys.readouterr().out
+    row = next(line for line in out.splitlines() if line.startswith("  k1"))
+    best = two["label"].values.tolist().index(two.attrs["reference"])
+    std = two["theta_std"].values[best, 0]
+    assert row.split()[1] == "1.000"
+    assert f"{two['theta'].values[best, 0]:#.4g} ± {std:.2g}" in row
+    mode = next(line for line in out.splitlines() if line.startswith("  1: "))
+    error = 100 * (two["frequency"].values[best, 0] / two["measured_frequency"].values[0] - 1)
+    assert f"{error:+.2f}  {two['mac'].values[best, 0]:.3f}" in mode
+    assert "hypervolume" not in out
+    print_results(two, ["findings"])
+    assert "hypervolume" in capsys.readouterr().out
+
+
+def test_pairs_that_change_on_a_lattice_are_said_once(three: xr.Dataset) -> None:
+    paired = three["paired_mode"].values.copy()
+    front = np.flatnonzero(three["kind"].values == "front")
+    paired[front[::2], 0] = 2
+    changed = three.assign(paired_mode=(("point", "mode"), paired))
+    said = [text for text in remarks(changed) if "paired with" in text]
+    count = front[::2].size
+    assert said == [
+        "measured mode 1 is paired with different model modes along the front: "
+        f"2 at {count}, 1 at {front.size - count} of {front.size} points"
+    ]
+    assert said[0] in headlines(changed, "there")
+
+
+def test_many_points_are_counted_and_neighbours_joined(two: xr.Dataset) -> None:
+    converged = two["converged"].values.copy()
+    converged[:3] = False
+    some = two.assign(converged=(("point",), converged))
+    assert "not converged: nbi-1 to nbi-3" in remarks(some)
+
+
+@pytest.mark.parametrize("encoding", ["ascii", "latin-1", "utf-8"])
+def test_every_terminal_shows_names_and_obeys_none(
+    encoding: str, two: xr.Dataset, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    written = io.BytesIO()
+    stream = io.TextIOWrapper(written, encoding=encoding, newline="\n")
+    console = Console(file=stream, width=80, highlight=False)
+    monkeypatch.setattr(Screen, "of_output", lambda: Screen(console))
+    labels = two["label"].values.astype(object)
+    labels[0] = "\x1b]0;owned\x07[bold]\u202eθ"
+    hostile = two.assign(label=(("point",), labels.astype(str)))
+    hostile = hostile.assign_coords(parameter=["k\x1b[31m\n1", "名前"])
+    print_results(hostile)
+    print_results(hostile, list(LISTS))
+    stream.flush()
+    out = written.getvalue().decode(encoding)
+    assert not {c for c in out if not c.isprintable()} - {"\n"}
+    assert "[bold]" in out
+    assert r"k\x1b[31m\n1" in out

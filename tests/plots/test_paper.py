@@ -1,0 +1,71 @@
+"""Figures of the paper for several studies."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import modefront as mf
+from modefront.plots import paper_figures
+from modefront.plots.paper import figures
+from modefront.results.results import Results
+from modefront.study.examples import write_example
+
+SEARCH = mf.Search(starts=3, limit=4, evolutions=0)
+
+
+@pytest.fixture(scope="module")
+def building(tmp_path_factory: pytest.TempPathFactory) -> Results:
+    """The chain of the three-story building with predictions of both kinds."""
+    folder = tmp_path_factory.mktemp("c0")
+    write_example("three-story-c0", folder)
+    problem = mf.load(folder / "study.toml").problem
+    push = mf.PeakResponse("push", response="floor1", force="floor3", damping=0.02)
+    return mf.solve(
+        problem,
+        points=6,
+        search=SEARCH,
+        identifiability=mf.Identifiability(models=0),
+        predictions=[push],
+    )
+
+
+def test_figures_show_all_studies(building: Results, tmp_path: Path) -> None:
+    data = building.dataset
+    studies = [("M0", data), ("again", data)]
+    drawn = dict(figures(studies))
+    assert list(drawn) == [f"figure-{number}" for number in (2, 3, 4, 5, 6)]
+    lines = {line.get_label(): line for line in drawn["figure-2"].axes[0].lines}
+    front = (data["kind"].values == "front") & data["pareto"].values
+    np.testing.assert_array_equal(
+        np.column_stack([np.asarray(x) for x in lines["M0"].get_data()]),
+        data["error"].values[front],
+    )
+    assert {"M0", "again", "equal weights", "optimal weights"} <= set(lines)
+    assert len(drawn["figure-3"].axes) == len(drawn["figure-4"].axes) == 3
+    assert len(drawn["figure-5"].axes) == 6
+    paths = paper_figures(studies, tmp_path / "paper")
+    assert [path.name for path in paths] == [f"{name}.svg" for name in drawn]
+
+
+def test_results_that_are_no_front_of_two_groups_are_refused(
+    building: Results, tmp_path: Path
+) -> None:
+    data = building.dataset
+    with pytest.raises(mf.InputError) as wrong:
+        paper_figures(
+            [
+                ("M0", data),
+                ("M1", data.isel(parameter=[0, 1])),
+                ("none", data.isel(point=data["kind"].values != "front")),
+            ],
+            tmp_path,
+        )
+    parameters, front = map(str, wrong.value.faults)
+    assert parameters == (
+        "M1: --figures: expected as many parameters as in the first study, 3, found 2"
+    )
+    assert front.startswith("none: --figures: expected a front of two groups, found 2 groups, 0")
+    assert list(tmp_path.iterdir()) == []
