@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
@@ -52,13 +52,17 @@ def init(directory: Path, example: str) -> None:
 @click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
 def check(study: Path, every: bool) -> None:
     """Say all that is wrong with STUDY, and prove its derivatives."""
-    from modefront.cli.show import print_findings
+    from modefront.cli.check import print_findings
     from modefront.study.check import check as check_study
     from modefront.study.file import load
 
     loaded = load(study)
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
+    if not findings.sound and findings.mistakes:
+        raise UnfinishedError(
+            "the derivatives cannot be proved before what is warned of first is put right"
+        )
     if not findings.sound:
         cause = findings.derivative_cause
         raise UnfinishedError(f"the derivatives differ from finite differences {cause}")
@@ -206,6 +210,97 @@ def identify(
     if band and band[0] >= band[1]:
         raise click.UsageError(f"--band: expected LOW below HIGH, found {band[0]:g} {band[1]:g}")
     run_identify(test, output, band, figures)
+
+
+@cli.command("import")
+@click.argument(
+    "program", type=click.Choice(["calculix", "abaqus", "nastran", "ansys", "opensees"])
+)
+@click.argument("base", type=click.Path(path_type=Path))
+@click.option(
+    "--parameter",
+    "parameters",
+    metavar="NAME=RUN",
+    multiple=True,
+    required=True,
+    help="A parameter, and the job with it at a factor of its nominal value.",
+)
+@click.option(
+    "--factor",
+    "factors",
+    metavar="NAME=FACTOR",
+    multiple=True,
+    help="This factor, one for each run of the parameter in their order  [default: 2]",
+)
+@click.option(
+    "--function",
+    "functions",
+    metavar="NAME=TERM,…",
+    multiple=True,
+    help="How the matrices depend on a parameter where not linearly: t=t,t^3 or L=1/L.",
+)
+@click.option(
+    "--check",
+    "checks",
+    metavar="RUN:NAME=VALUE,…",
+    multiple=True,
+    help="A job with parameters at other factors, which is compared with the terms.",
+)
+@click.option(
+    "--dofs",
+    type=click.Path(path_type=Path),
+    help="CSV node,direction, one row a degree of freedom, where the program's files have none.",
+)
+@click.option(
+    "--deck", type=click.Path(path_type=Path), help="The deck, if it is not beside the matrices."
+)
+@click.option("--stiffness-name", metavar="NAME", help="Name of K in a file of several matrices.")
+@click.option("--mass-name", metavar="NAME", help="Name of M likewise.")
+@click.option(
+    "--modes", type=click.IntRange(0), help="Frequencies to compute  [default: 6 if it is quick]"
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    required=True,
+    help="Folder for the study; one that has none.",
+)
+def import_(program: str, base: Path, output: Path, modes: int | None, **given: Any) -> None:
+    """Turn the matrices of a finite-element PROGRAM into a study.
+
+    BASE is the job at the nominal values.
+    """
+    from modefront.cli.import_ import Given, run_import
+    from modefront.programs.base import JobOptions
+
+    names = ("parameters", "factors", "functions", "checks")
+    options = JobOptions(given["stiffness_name"], given["mass_name"], given["dofs"], given["deck"])
+    run_import(program, base, Given(*(given[name] for name in names)), options, output, modes)
+
+
+@cli.command()
+@click.argument("directory", type=click.Path(path_type=Path))
+@click.option("--point", metavar="LABEL", help="Which model  [default: the one the data prefer]")
+@click.option(
+    "--study",
+    type=click.Path(path_type=Path),
+    help="The study of the results  [default: the one beside them]",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Folder for the files  [default: export-LABEL in DIRECTORY]",
+)
+@click.option("--modes", type=click.IntRange(1), help="Mode shapes  [default: as many as measured]")
+def export(
+    directory: Path, point: str | None, study: Path | None, output: Path | None, modes: int | None
+) -> None:
+    """Write a model of the results in DIRECTORY: parameters, matrices, mode shapes."""
+    from modefront.cli.export import run_export
+
+    run_export(directory, point, study, output, modes)
 
 
 def _refined(study: Study, size: float | None) -> Study:

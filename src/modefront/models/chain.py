@@ -15,7 +15,8 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, wrong
 from modefront.models.geometry import chain_geometry
-from modefront.models.matrices import BASE, MatrixModel, SensorSpec, matrices
+from modefront.models.matrices import MatrixModel, SensorSpec, matrices
+from modefront.models.terms import BASE
 
 BASE_DIRECTION = "x"
 """The one direction in which the masses, and the ground, can move."""

@@ -1,4 +1,4 @@
-r"""Models given by their matrices: :math:`K(\theta) = K_0 + \sum_j \theta_j K_j`, M likewise."""
+r"""Models given by their matrices: :math:`K(\theta) = K_0 + \sum_j c_j(\theta) K_j`, M likewise."""
 
 from __future__ import annotations
 
@@ -19,13 +19,11 @@ from modefront.linalg.pencil import Pencil, pencil
 from modefront.linalg.products import gram
 from modefront.models.geometry import Geometry
 from modefront.models.ports import Pattern, Ports, Transfer
+from modefront.models.terms import BASE, above_zero, exponents_of, form_of, term_exponents
 from modefront.modes import dense, full, sparse
 from modefront.modes.result import Modes
 from modefront.work.costs import Costs, spend
 from modefront.work.transfer import shared
-
-BASE = "base"
-"""Name of the term that does not depend on the parameters."""
 
 DENSE = 180
 """Degrees of freedom up to which dense matrices are faster."""
@@ -103,6 +101,13 @@ class MatrixModel:
         if not self.is_sparse:
             return 8.0 * 8 * self.size**2
         return 8.0 * FACTOR * self.size ** (4 / 3)
+
+    @property
+    def above_zero(self) -> tuple[str, ...]:
+        """Names of parameters that have to be above 0: there are roots or quotients of them."""
+        tables = self.stiffness.coefficients, self.mass.coefficients
+        found = {i for table in tables for i in above_zero(table.exponents)}
+        return tuple(self.parameters[i] for i in sorted(found))
 
     @property
     def unused(self) -> tuple[str, ...]:
@@ -240,8 +245,9 @@ def matrices(
         Names of the parameters, in the order of theta.
     stiffness, mass
         Symmetric matrices (N, N), dense or scipy-sparse, in consistent units: eigenvalues of K with
-        respect to M are in (rad/s)². K_0 is called ``"base"``, K_j by its parameter; what is not
-        given is zero. The mass matrix may be singular (degrees of freedom without mass).
+        respect to M are in (rad/s)². K_0 is called ``"base"``, K_j by its parameter, or by the
+        product of powers of parameters in its place, such as ``"t^3"``, ``"1/L"``, ``"E*t"``; what
+        is not given is zero. The mass matrix may be singular (degrees of freedom without mass).
     sensors
         For the name of each sensor, in the order of the measured shapes, a degree of freedom
         counted from 0, or pairs (degree of freedom, weight) that are summed.
@@ -307,11 +313,8 @@ def affine_model(
 
 
 def affine(parameters: Sequence[str], terms: Mapping[str, Matrix], size: int) -> SparseAffine:
-    """Return base + sum_j theta_j A_j for terms named ``"base"`` or as a parameter."""
-    exponents = np.zeros((len(terms), len(parameters)))
-    for row, name in enumerate(terms):
-        if name != BASE:
-            exponents[row, list(parameters).index(name)] = 1
+    """Return base + sum_k c_k(theta) A_k for terms named as `modefront.models.terms` says."""
+    exponents = term_exponents(list(terms), parameters)
     sparse_terms = [scipy.sparse.coo_array(A) for A in terms.values()]
     return sparse_affine(sparse_terms, Monomials(exponents), size)
 
@@ -328,9 +331,9 @@ def _common_size(parameters: Sequence[str], tables: Mapping[str, Mapping[str, Ma
         if not terms:
             faults.append(Fault("", place, f"'{BASE}' or a parameter", "nothing"))
         for name, A in terms.items():
-            if name != BASE and name not in parameters:
+            if exponents_of(name, parameters) is None:
                 found = suggestion(name, [BASE, *parameters])
-                faults.append(Fault("", place, f"'{BASE}' or a parameter", found))
+                faults.append(Fault("", place, form_of(name), found))
             if A.shape != (size, size):
                 expected = f"a matrix {size} x {size}, as the first one"
                 found = " x ".join(map(str, A.shape))

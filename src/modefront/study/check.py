@@ -1,4 +1,4 @@
-"""The check of a study before it is run: its derivatives, and what its data do not determine."""
+"""The check of a study before it is run: mistakes, derivatives, what its data do not determine."""
 
 from __future__ import annotations
 
@@ -7,6 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from modefront.diagnosis.comparison import Comparison, compare
+from modefront.diagnosis.diagnose import diagnose
+from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
+from modefront.diagnosis.words import Mistake
+from modefront.diagnosis.words import in_words as mistake_in_words
 from modefront.errors import Fault, InputError, ModelError
 from modefront.identifiability.combinations import (
     NONE,
@@ -45,13 +50,19 @@ class Findings:
         NaN where the model is not defined around them
     derivative_cause : which parameter and mode they differ for, and why; empty where they agree
     determined : which combinations of parameters each group and all of them determine
-    warnings : what a user should know before relying on the results
+    warnings : what a user should know before relying on the results; `mistakes` in words first
+    mistakes : what looks wrong in the model or the data, with its numbers
+    beside : the nominal model beside the measured modes
+    sensitivities : of the modes to the parameters
     """
 
     derivative_error: float
     derivative_cause: str
     determined: tuple[str, ...]
     warnings: tuple[str, ...]
+    mistakes: tuple[Mistake, ...]
+    beside: Comparison
+    sensitivities: Sensitivities
 
     @property
     def sound(self) -> bool:
@@ -76,32 +87,35 @@ def check(study: Study) -> Findings:
     refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))
     nominal = problem.evaluate(problem.start)
     scale = scale_at(problem, problem.start)
+    beside = compare(problem)
+    mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
     warnings = [
+        *map(mistake_in_words, mistakes),
         *_undetermined(problem, nominal, scale),
-        *_unpaired(problem, nominal),
+        *_coincident(problem, nominal),
         *_at_bounds(problem),
         *_infeasible_bounds(problem),
     ]
     agreement = compared(problem)
     cause = "" if agreement.error <= AGREEMENT else cause_of(problem, agreement)
-    return Findings(agreement.error, cause, determined(problem), tuple(warnings))
+    return Findings(
+        agreement.error,
+        cause,
+        determined(problem),
+        tuple(warnings),
+        mistakes,
+        beside,
+        sensitivities(problem),
+    )
 
 
-def _unpaired(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:
-    """Warn of modes that coincide with others, and of measured ones that no mode resembles."""
-    warnings = []
-    for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True):
-        if coincident:
-            warnings.append(
-                f"mode {r} of the nominal model coincides with another one: "
-                "its derivatives are not defined"
-            )
-    for r, value in zip(problem.data.modes, nominal.quantities["mac"], strict=True):
-        if value < 0.5:
-            warnings.append(
-                f"measured mode {r} resembles no mode of the nominal model (best MAC {value:.2f})"
-            )
-    return warnings
+def _coincident(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:
+    """Warn of modes that coincide with others."""
+    return [
+        f"mode {r} of the nominal model coincides with another one: its derivatives are not defined"
+        for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True)
+        if coincident
+    ]
 
 
 def _at_bounds(problem: UpdatingProblem) -> list[str]:

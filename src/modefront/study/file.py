@@ -13,10 +13,13 @@ from typing import Any
 import numpy as np
 
 from modefront.data.modal import ModalData
+from modefront.diagnosis.groups import UnusedGroup
+from modefront.diagnosis.places import DataDirection
 from modefront.errors import Fault, InputError, ModelError, reason
 from modefront.fronts.options import Pareto
 from modefront.identifiability.options import Identifiability
 from modefront.inputs import read_text_bytes
+from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
 from modefront.pairing.match import Pairing
@@ -93,6 +96,7 @@ def load(path: Path | str) -> Study:
         _digest(front.encode(), root.files),
         problem,
         reduction.fallback(problem.model),
+        tuple(note for note in root.notes if isinstance(note, UnusedGroup | DataDirection)),
     )
     return Study(
         *(problem, title, seed, pareto, weighted, search, identifiability, uncertainty),
@@ -137,15 +141,37 @@ def _try_model(root: Table, problem: UpdatingProblem) -> None:
     """Note what only an evaluation shows: an indefinite matrix, a parameter without effect."""
     for name in problem.model.unused:
         root.fault(f"[[parameter]] '{name}'", "a parameter that the model uses", "no use of it")
+    if _refuses_zero(root, problem):
+        return
     try:
         problem.modes(problem.start, derivatives=False)
     except ModelError as error:
         root.fault("[model]", "modes at the nominal parameters", str(error))
         return
-    model = problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
+    model = _full(problem)
     if isinstance(model, MatrixModel) and not model.floating and model.is_singular(problem.start):
         expected = "a structure that is held, or floating = true for rigid-body modes"
         root.fault("[model]", expected, "a singular stiffness matrix at the nominal parameters")
+
+
+def _refuses_zero(root: Table, problem: UpdatingProblem) -> bool:
+    """Note bounds of 0 or less of parameters with roots or quotients; return whether any are."""
+    model = _full(problem)
+    names = model.above_zero if isinstance(model, MatrixModel) else ()
+    before = len(root.faults)
+    for name in names:
+        lower = float(problem.lower[problem.model.parameters.index(name)])
+        if lower <= 0:
+            expected = (
+                "a lower bound above 0, as terms of the matrices have quotients or roots of it"
+            )
+            root.fault(f"[[parameter]] '{name}' bounds", expected, f"{lower:g}")
+    return len(root.faults) > before
+
+
+def _full(problem: UpdatingProblem) -> Model:
+    """Return the model that a reduced basis stands for, or the model itself."""
+    return problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
 
 
 def _without_predictions(values: dict[str, Any]) -> dict[str, Any]:

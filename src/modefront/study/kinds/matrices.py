@@ -1,4 +1,4 @@
-"""``kind = "matrices"``: K(theta) = base + sum_j theta_j K_j from files, and M(theta) likewise."""
+"""``kind = "matrices"``: K(theta) = base + sum_j c_j(theta) K_j from files, M(theta) likewise."""
 
 from __future__ import annotations
 
@@ -11,8 +11,12 @@ import scipy.sparse
 
 from modefront.errors import InputError, suggestion
 from modefront.models.base import Model
+from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs
 from modefront.models.files import matrix_size, read_matrix
-from modefront.models.matrices import BASE, matrices
+from modefront.models.geometry import Cells, Geometry
+from modefront.models.matrices import matrices
+from modefront.models.terms import BASE, exponents_of, form_of
+from modefront.programs.mesh import ProgramMesh, read_mesh
 from modefront.study.kinds.base import ModelKind
 from modefront.study.kinds.sensors import read_base, read_outputs, read_sensors
 from modefront.toml import Table
@@ -26,14 +30,19 @@ def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     stiffness, mass = (_matrices(terms, size) for terms in files.values())
     if size is not None:
         _check_entries(table, {"stiffness": stiffness, "mass": mass}, size)
-    sensors = read_sensors(table, size)
+    dofs, mesh = _dofs(table, size), _mesh(table)
+    sensors = read_sensors(table, size, dofs=dofs)
     floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
-    outputs, base = read_outputs(table, size, sensors), read_base(table, size)
+    outputs = read_outputs(table, size, sensors, dofs)
+    base = read_base(table, size, dofs)
     if len(table.faults) > before or sensors is None:
         return None
-    return matrices(
+    model = matrices(
         parameters, stiffness, mass, sensors, floating=floating, outputs=outputs, base=base
     )
+    if dofs is None or mesh is None:
+        return model
+    return replace(model, geometry=_geometry(dofs, mesh, model.selection))
 
 
 @dataclass(frozen=True)
@@ -85,8 +94,8 @@ def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, _Term
     if not table.values:
         table.fault("", "at least one matrix", "none")
     for name in table.values:
-        if name != BASE and name not in parameters:
-            table.fault(name, f"'{BASE}' or a parameter", suggestion(name, [BASE, *parameters]))
+        if exponents_of(name, parameters) is None:
+            table.fault(name, form_of(name), suggestion(name, [BASE, *parameters]))
             continue
         file = _file(table, name)
         if file is None:
@@ -97,6 +106,56 @@ def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, _Term
         except InputError as error:
             _note(table, name, error)
     return out
+
+
+def _dofs(table: Table, size: int | None) -> DofTable | None:
+    """Return the nodes and directions of the degrees of freedom, where a file names them."""
+    name = table.text("dofs", "the name of a table of degrees of freedom", None)
+    if name is None:
+        return None
+    try:
+        dofs = read_dofs(table.path(name))
+    except InputError as error:
+        table.faults.extend(error.faults)
+        return None
+    if size is not None and dofs.size != size:
+        table.fault("dofs", f"{size} rows, one a degree of freedom", f"{dofs.size} in '{name}'")
+        return None
+    return dofs
+
+
+def _mesh(table: Table) -> ProgramMesh | None:
+    """Return nodes and elements for pictures, where a file names them."""
+    name = table.text("mesh", "the name of a file of nodes and elements", None)
+    if name is None:
+        return None
+    try:
+        return read_mesh(table.path(name))
+    except InputError as error:
+        table.faults.extend(error.faults)
+        return None
+
+
+def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_array) -> Geometry:
+    """Return where the degrees of freedom are; a sensor is at the node that weighs most in it."""
+    motion = motion_of_nodes(dofs, mesh.number)
+    translations = 6 * np.arange(mesh.number.size)[:, None] + np.arange(3)
+    nodes = np.zeros(selection.shape[0], np.intp)
+    directions = np.zeros((selection.shape[0], 3))
+    for k in range(selection.shape[0]):
+        row = selection[[k]].tocoo()
+        node = dofs.node[row.col[np.argmax(np.abs(row.data))]]
+        if node not in mesh.number:
+            continue
+        nodes[k] = np.searchsorted(mesh.number, node)
+        for dof, weight in zip(row.col, row.data, strict=True):
+            if dofs.node[dof] == node and 1 <= dofs.direction[dof] <= 3:
+                directions[k, dofs.direction[dof] - 1] += weight
+        directions[k] /= np.linalg.norm(directions[k]) or 1.0
+    cells = tuple(
+        Cells(kind, kind, np.searchsorted(mesh.number, table)) for kind, table in mesh.cells.items()
+    )
+    return Geometry(mesh.coordinates, cells, motion[translations.ravel()], nodes, directions)
 
 
 def _file(table: Table, key: str) -> tuple[str, str | None] | None:
