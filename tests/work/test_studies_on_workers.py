@@ -173,8 +173,8 @@ def running(group: int) -> list[str]:
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")
-@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
-def test_signals_interrupt_a_run_and_end_its_processes(number: int, tmp_path: Path) -> None:
+@pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
+def test_signals_interrupt_a_run_and_end_its_processes(name: str, tmp_path: Path) -> None:
     path = write_study(tmp_path, "")
     path.write_text(path.read_text().replace("points = 3", "points = 300"))
     heard = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
@@ -190,7 +190,7 @@ def test_signals_interrupt_a_run_and_end_its_processes(number: int, tmp_path: Pa
     ) as process:
         while process.poll() is None and len(list(folder.rglob("*.npz"))) < 5:
             time.sleep(0.01)
-        os.killpg(process.pid, number)
+        os.killpg(process.pid, getattr(signal, name))
         out, err = process.communicate(timeout=60)
     assert process.returncode == 130, err
     assert out == ""

@@ -217,7 +217,10 @@ def test_without_a_cluster_the_run_ends_with_what_it_has(tmp_path: Path) -> None
     assert again.progress.state.done == 8
 
 
-def test_long_parts_are_kept_until_their_task_is_done(tmp_path: Path) -> None:
+def test_long_parts_are_kept_until_their_task_is_done(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("modefront.work.run.KEPT", 0.0)
     store = Store(tmp_path)
     task = Task(("slow",), slow, (str(tmp_path / "calls"),), has_parts=True)
     with pytest.raises(ZeroDivisionError):

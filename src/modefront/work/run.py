@@ -12,7 +12,7 @@ from modefront.work.progress import Progress
 from modefront.work.store import Store
 from modefront.work.task import Key, R, Task
 
-KEPT = 0.5
+KEPT = 5.0
 """Seconds from which the result of a part of a task is kept until that of the task is."""
 
 
