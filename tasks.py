@@ -3,6 +3,7 @@
 python3 tasks.py demo    the three-story study, both configurations, beside the published numbers
 python3 tasks.py test    the tests
 python3 tasks.py lint    formatting, lint and types
+python3 tasks.py trials  inputs that are spoilt by chance and runs that are killed (hours)
 
 Needs Python 3.11 or newer and nothing else. Packages are the ones pinned in requirements.txt.
 """
@@ -22,6 +23,7 @@ REQUIREMENTS = ROOT / "requirements.txt"
 TASKS = {
     "demo": [["examples/three_story.py", "demo"]],
     "test": [["-m", "pytest", "-q", "-n", "auto", "--dist", "worksteal"]],
+    "trials": [["tests/trials/trials.py"]],
     "lint": [
         ["-m", "ruff", "format", "--check", "."],
         ["-m", "ruff", "check", "."],

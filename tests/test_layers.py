@@ -23,7 +23,7 @@ LAYERS = (
     ("programs",),
     ("residuals",),
     ("identifiability", "predictions", "uncertainty"),
-    ("analysis",),
+    ("analysis", "diagnosis"),
     ("results",),
     ("exports",),
     ("study",),

@@ -74,6 +74,10 @@ class InputError(ValueError):
         self.faults = (faults,) if isinstance(faults, Fault) else tuple(faults)
         super().__init__(_message(self.faults))
 
+    def __reduce__(self) -> tuple[type[InputError], tuple[tuple[Fault, ...]]]:
+        """Return how the error is made again, in another process."""
+        return type(self), (self.faults,)
+
 
 def _message(faults: Sequence[Fault]) -> str:
     """Return the faults, a line each, as many as a message holds, and how many more there are."""

@@ -54,3 +54,11 @@ def check_file(file: h5py.File) -> None:
     for name in file:
         if isinstance(inner(file, name), h5py.Group):
             raise ForeignError(f"'{name}' is a group")
+
+
+def check_tree(group: h5py.Group) -> None:
+    """Raise ForeignError where any part of a group, at any depth, is kept elsewhere."""
+    waiting = [group]
+    while waiting:
+        here = waiting.pop()
+        waiting += [item for name in here if isinstance(item := inner(here, name), h5py.Group)]

@@ -53,6 +53,7 @@ class Table:
     faults : all that is wrong with the file, shared by its tables
     asked : keys that were read or are known
     files : paths of the files that the tables name, shared by them; see `path`
+    notes : records of what was found beside faults, shared by the tables
     """
 
     file: str
@@ -61,6 +62,7 @@ class Table:
     faults: list[Fault]
     asked: list[str] = field(default_factory=list)
     files: list[Path] = field(default_factory=list)
+    notes: list[object] = field(default_factory=list)
 
     def fault(self, key: str, expected: str, found: str) -> None:
         """Note that something is wrong; an empty key means the table itself."""
@@ -139,7 +141,7 @@ class Table:
         if value is None:
             return None
         place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
-        return Table(self.file, place, value, self.faults, files=self.files)
+        return Table(self.file, place, value, self.faults, files=self.files, notes=self.notes)
 
     def tables(self, key: str, required: bool) -> list[Table]:
         """Return the tables of a list, such as ``[[parameter]]``."""
@@ -153,7 +155,9 @@ class Table:
         path = f"{self.place.strip('[]')}.{key}" if self.place else key
         return [
             Table(
-                self.file, f"[[{path}]] {i + 1}{_named(item)}", item, self.faults, files=self.files
+                *(self.file, f"[[{path}]] {i + 1}{_named(item)}", item, self.faults),
+                files=self.files,
+                notes=self.notes,
             )
             for i, item in enumerate(value or [])
         ]

@@ -378,3 +378,23 @@ def test_singular_stiffness_is_told_from_a_held_one(cells: int, held: bool) -> N
     model = mesh_model(structure, (), floating=not held)
     assert isinstance(model.stiffness, DenseAffine) == (cells == 3)
     assert model.is_singular(np.zeros(0)) is not held
+
+
+def test_modes_that_the_iteration_loses_are_solved_for_at_once(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    size = 240
+    K = scipy.sparse.diags_array(np.linspace(1, 9, size), format="csr")
+    K = K + scipy.sparse.diags_array([np.full(size - 1, 0.1)] * 2, offsets=[-1, 1])
+    model = matrices(["k"], {"k": K}, {"base": scipy.sparse.eye_array(size)}, {"low": 0})
+
+    def loses(*arguments: Any, **options: Any) -> Ritz:
+        ritz = greatest(*arguments, **options)
+        return replace(ritz, mu=ritz.mu[:5], X=ritz.X[:, :5], converged=5, complete=True)
+
+    monkeypatch.setattr(sparse, "greatest", loses)
+    expected = 2 * np.linalg.eigvalsh(K.toarray())[:20]
+    np.testing.assert_allclose(model.modes(np.array([2.0]), 20).lam, expected, rtol=1e-12)
+    monkeypatch.setattr(sparse, "ALL_AT_ONCE", 100)
+    with pytest.raises(ModelError, match="20 modes asked for, of 240 that have a finite frequency"):
+        model.modes(np.array([2.0]), 20)

@@ -181,7 +181,11 @@ MATRIX_KEYS = [
         "",
         "[[parameter]] 'k1': expected a parameter that the model uses, found no use",
     ),
-    ("low = 0", "low = 2", "[model] sensors low: expected degrees of freedom from 0 to 1, found 2"),
+    (
+        "low = 0",
+        "low = 2",
+        "[model] sensors low: expected degrees of freedom from 0 to 1 ... , found 2",
+    ),
     (
         "sensors = {",
         "sensers = {",
@@ -191,7 +195,7 @@ MATRIX_KEYS = [
     (
         "x = [0, 1]",
         "x = [0, 2]",
-        "[model] base x: expected degrees of freedom from 0 to 1, found 2",
+        "[model] base x: expected degrees of freedom from 0 to 1 ... , found 2",
     ),
     (
         "x = [0, 1]",

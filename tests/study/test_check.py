@@ -6,12 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from modefront.errors import InputError
 from modefront.residuals.groups import Group
 from modefront.study.check import check
 from modefront.study.definition import Study
-from modefront.study.derivatives import derivative_error
+from modefront.study.derivatives import cause_of, compared, derivative_error
 from modefront.study.examples import write_example
 from modefront.study.file import load
+from modefront.study.session import run
 
 
 @pytest.fixture
@@ -52,3 +54,22 @@ def test_a_nominal_value_at_a_bound_and_parameters_alike_are_warned_of(study: St
     warnings = check(replace(study, problem=first)).warnings
     assert sum("do not determine" in text for text in warnings) == 2
     assert sum("act nearly alike" in text for text in warnings) == 3
+
+
+def test_more_parameters_than_the_memory_holds(
+    study: Study, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("modefront.study.check.MANY", 1)
+    assert any("parameters are many" in text for text in check(study).warnings)
+    monkeypatch.setattr("modefront.study.check.available_memory", lambda: 10_000)
+    with pytest.raises(InputError, match="as many parameters as fit into the 1e-05 GB"):
+        run(study, tmp_path / "results")
+
+
+def test_derivatives_that_are_wrong_are_told_by_parameter_and_mode(study: Study) -> None:
+    agreement = compared(study.problem)
+    text = cause_of(study.problem, agreement)
+    (k,) = np.flatnonzero(agreement.step)
+    assert f"for {study.problem.model.parameters[k]}, mostly by measured mode" in text
+    low = replace(agreement, theta=-study.problem.start)
+    assert "a small change leads to no model" in cause_of(study.problem, low)

@@ -7,7 +7,11 @@ at once.
 from __future__ import annotations
 
 import os
+import signal
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -48,13 +52,17 @@ def init(directory: Path, example: str) -> None:
 @click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
 def check(study: Path, every: bool) -> None:
     """Say all that is wrong with STUDY, and prove its derivatives."""
-    from modefront.cli.show import print_findings
+    from modefront.cli.check import print_findings
     from modefront.study.check import check as check_study
     from modefront.study.file import load
 
     loaded = load(study)
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
+    if not findings.sound and findings.mistakes:
+        raise UnfinishedError(
+            "the derivatives cannot be proved before what is warned of first is put right"
+        )
     if not findings.sound:
         cause = findings.derivative_cause
         raise UnfinishedError(f"the derivatives differ from finite differences {cause}")
@@ -76,7 +84,23 @@ def check(study: Path, every: bool) -> None:
     metavar="SIZE",
     help="More points where neighbours on the front are farther apart, in units of its ranges.",
 )
-def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) -> None:
+@click.option(
+    "--workers",
+    type=click.IntRange(1, 61),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="Processes that do the work; the digits do not depend on them.",
+)
+@click.option("--scheduler", metavar="tcp://HOST:PORT", help="Dask cluster that does the work.")
+def run(
+    study: Path,
+    directory: Path | None,
+    fresh: bool,
+    refine: float | None,
+    workers: int,
+    scheduler: str | None,
+) -> None:
     """Do the work of STUDY; continue where an interrupted run stopped."""
     from modefront.cli.certificates import uncertified
     from modefront.cli.progress import progress_bar
@@ -88,7 +112,14 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     loaded = _refined(load(study), refine)
     directory = directory or study.with_name(f"{study.stem}-results")
     with progress_bar(loaded.name) as progress:
-        data = run_study(loaded, directory, fresh=fresh, progress=progress).dataset
+        data = run_study(
+            loaded,
+            directory,
+            fresh=fresh,
+            progress=progress,
+            workers=workers,
+            scheduler=scheduler,
+        ).dataset
     print_summary(data, directory, progress.spent)
     failed = not_converged(data)
     if failed:
@@ -284,11 +315,53 @@ def _refined(study: Study, size: float | None) -> Study:
         raise InputError(faults) from None
 
 
+@contextmanager
+def _signals() -> Iterator[None]:
+    """Let the end of a terminal or of a job interrupt as Ctrl-C does, once.
+
+    What is ignored, as in the background of a shell or under ``nohup``, stays ignored.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    names = ("SIGINT", "SIGTERM", "SIGHUP")
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    before = {x: signal.getsignal(x) for x in numbers if signal.getsignal(x) != signal.SIG_IGN}
+
+    def interrupt(_: int, __: object) -> None:
+        for number in before:
+            signal.signal(number, lambda *_: os._exit(INTERRUPTED))
+        raise KeyboardInterrupt
+
+    for number in before:
+        signal.signal(number, interrupt)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _abandon_output() -> None:
+    """Write nothing more to standard output, which takes no more, at the end of the program."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def main() -> None:
     """Run the command and leave with its exit status; no input produces a traceback."""
     prepare()
+    with _signals():
+        status = _status()
+    sys.exit(status)
+
+
+def _status() -> int:
+    """Run the command and return its exit status."""
     try:
         cli.main(standalone_mode=False)
+        if sys.stdout is not None:
+            sys.stdout.flush()
         status = OK
     except click.exceptions.Exit as exit_:
         status = exit_.exit_code
@@ -305,9 +378,10 @@ def main() -> None:
         complain("modefront: interrupted; what was done is kept, run again to continue")
         status = INTERRUPTED
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _abandon_output()
         status = UNDONE
     except (OSError, MemoryError) as error:  # such as a full disk
+        _abandon_output()
         where = getattr(error, "filename", None)
         place = f"{where}: " if where else ""
         complain(f"modefront: {place}{reason(error)}; what was done is kept")
@@ -321,4 +395,4 @@ def main() -> None:
             "please report it, with the output of the same command under MODEFRONT_TRACEBACK=1"
         )
         status = UNDONE
-    sys.exit(status)
+    return status

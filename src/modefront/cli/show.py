@@ -9,69 +9,18 @@ from typing import Any
 
 import numpy as np
 import xarray as xr
-from rich.console import Console
 
 from modefront.cli.certificates import cost_lines
 from modefront.cli.layout import Screen
 from modefront.cli.lists import print_lists
 from modefront.cli.overview import print_first_models, print_first_predictions
 from modefront.cli.predictions import first_predictions
-from modefront.cli.remarks import MOST, digest, headlines, remarks
-from modefront.cli.tables import console, safe, table
+from modefront.cli.remarks import headlines, remarks
 from modefront.results.selection import front_points
-from modefront.study.check import Findings
-from modefront.study.definition import Study
-from modefront.text import clean
 from modefront.work.costs import Costs
 
 FIRST = 8
 """Predictions on the first screen."""
-
-
-def _print(screen: Console, text: str) -> None:
-    screen.print(clean(text), markup=False, soft_wrap=True)
-
-
-def print_findings(study: Study, findings: Findings, *, every: bool = False) -> None:
-    """Print what a check found, with the ten first findings or ``every`` one."""
-    screen = console()
-    problem = study.problem
-    _print(screen, f"{study.file}: {study.name}")
-    _print(
-        screen,
-        f"  {problem.model.size} degrees of freedom, {len(study.parameters)} parameters, "
-        f"{len(problem.data.modes)} measured modes at {len(problem.data.sensors)} sensors "
-        f"in {len(problem.data.sets)} data set{'s' * (len(problem.data.sets) > 1)}",
-    )
-    evaluation = problem.evaluate(problem.start)
-    modes = table("nominal model", ["mode", "measured Hz", "model Hz", "MAC", "model mode"])
-    for row in zip(
-        problem.data.modes,
-        problem.data.mean_frequency,
-        evaluation.quantities["frequency"],
-        evaluation.quantities["mac"],
-        evaluation.quantities["paired_mode"],
-        strict=True,
-    ):
-        modes.add_row(
-            str(row[0]), _number(row[1]), _number(row[2]), f"{row[3]:.4f}", f"{row[4]:.0f}"
-        )
-    screen.print(modes)
-    groups = table("groups", ["group", "a", "J nominal", "error nominal"])
-    for name, a, J in zip(problem.objectives, problem.properties, evaluation.J, strict=True):
-        groups.add_row(safe(name), f"{a:g}", f"{J:.5g}", f"{np.sqrt(J / a):.4g}")
-    screen.print(groups)
-    verdict = "agree with" if findings.sound else "DIFFER FROM"
-    _print(
-        screen,
-        f"derivatives {verdict} finite differences (relative {findings.derivative_error:.1e})",
-    )
-    sentences = [*findings.determined[-1:], *(f"warning: {text}" for text in findings.warnings)]
-    sentences += findings.determined[:-1]
-    for line in digest(sentences, f"modefront check --all {study.file}", None if every else MOST):
-        _print(screen, line)
-    if not findings.warnings:
-        _print(screen, "no warnings")
 
 
 def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
@@ -141,7 +90,3 @@ def as_plain(values: Any) -> Any:
     if isinstance(values, float) and not np.isfinite(values):
         return None
     return values
-
-
-def _number(value: float) -> str:
-    return "" if np.isnan(value) else f"{value:.4g}"

@@ -1,8 +1,12 @@
 """Modal data in CSV: ``set, mode, frequency, damping``, then one column a sensor.
 
 One row is one mode of one data set; frequencies are in Hz and damping is the ratio to critical.
-An empty field is not measured. Standard deviations, where known, are in columns of the same name
-with ``_std`` behind it; that of damping is checked, and used by nothing so far.
+An empty field is not measured. The columns ``set`` and ``damping`` may be left out. Standard
+deviations, where known, are in columns of the same name with ``_std`` behind it; that of damping
+is checked, and used by nothing so far.
+
+Columns are separated by commas, semicolons or tabs, whichever the header has most of. Where they
+are not separated by commas, numbers may have decimal commas, as spreadsheets write them.
 """
 
 from __future__ import annotations
@@ -16,6 +20,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
@@ -27,10 +32,21 @@ from modefront.text import NAME, clean
 
 KEYS = ("set", "mode")
 QUANTITIES = ("frequency", "damping")
+OPTIONAL = ("set", "damping")
+"""Columns that may be left out: all rows are of one data set then, no damping is measured."""
+
+ONLY_SET = "1"
+"""Name of the data set of a file that names none."""
+
+SEPARATORS = ",;\t"
+
 STD = "_std"
 
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)
 """Python itself would read more as numbers: 1_000, nan, digits of any script."""
+
+DECIMAL_COMMA = re.compile(r"^(\s*[+-]?[0-9]*),([0-9]*(?:e[+-]?[0-9]+)?\s*)$", re.IGNORECASE)
+"""A number with a decimal comma, before and behind it."""
 
 FIELDS = re.compile(
     rf"[ \t]*(?:{NUMBER.pattern})?[ \t]*(?:\n[ \t]*(?:{NUMBER.pattern})?[ \t]*)*", re.IGNORECASE
@@ -38,6 +54,9 @@ FIELDS = re.compile(
 """Numbers and empty fields, one a line."""
 
 MODE = re.compile("[0-9]{1,9}")
+
+LONGEST_LINE = 10**6
+"""Characters of the header in which separators are counted."""
 
 MOST_MODES = 10**6
 
@@ -75,7 +94,9 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
     ----------
     path
         File with the columns ``set, mode, frequency, damping``, then one a sensor, and standard
-        deviations in columns of the same names with ``_std`` behind them; frequencies in Hz.
+        deviations in columns of the same names with ``_std`` behind them; frequencies in Hz. The
+        columns ``set`` and ``damping`` may be left out. Semicolons and tabs separate columns as
+        well as commas do, and decimal commas are read where commas separate none.
     sensors
         Names of the sensors, in the order of the shapes; those of the columns unless given.
 
@@ -112,7 +133,8 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
                 break
     if not parts:
         raise InputError(Fault(file, "line 2", "a row for each measured mode", "the end"))
-    faults += [] if len(faults) > MOST_FAULTS else list(islice(_repeated(file, parts), MOST_FAULTS))
+    repeated = _repeated(file, parts, has_sets="set" in header)
+    faults += [] if len(faults) > MOST_FAULTS else list(islice(repeated, MOST_FAULTS))
     if faults:
         raise InputError(faults)
     return _assemble(path, header, parts, tuple(sensors))
@@ -167,9 +189,11 @@ def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
     try:
         refuse_holes(path, expected, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:
-            reader = csv.reader(stream, strict=True, skipinitialspace=True)
+            separator = _separator(stream)
+            reader = csv.reader(stream, delimiter=separator, strict=True, skipinitialspace=True)
+            rows = ((reader.line_num, row) for row in reader if any(map(str.strip, row)))
             try:
-                yield ((reader.line_num, row) for row in reader if any(map(str.strip, row)))
+                yield rows if separator == "," else _with_points(rows)
             except csv.Error as error:
                 place = f"line {reader.line_num}"
                 raise InputError(Fault(str(path), place, "CSV", reason(error))) from None
@@ -179,6 +203,21 @@ def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
         raise InputError(Fault(str(path), "file", "CSV in UTF-8", reason(error))) from None
 
 
+def _separator(stream: TextIO) -> str:
+    """Return what separates the columns of a file, and go back to its beginning."""
+    first = stream.readline(LONGEST_LINE)
+    while first and not first.strip(SEPARATORS + " \r\n"):
+        first = stream.readline(LONGEST_LINE)
+    stream.seek(0)
+    return max(SEPARATORS, key=first.count)
+
+
+def _with_points(rows: Iterator[tuple[int, list[str]]]) -> Iterator[tuple[int, list[str]]]:
+    """Yield the rows with decimal points for decimal commas."""
+    for number, row in rows:
+        yield number, [DECIMAL_COMMA.sub(r"\1.\2", field) for field in row]
+
+
 def _together(
     header: Sequence[str], lines: Sequence[tuple[int, list[str]]], sensors: Sequence[str]
 ) -> _Rows | None:
@@ -186,7 +225,7 @@ def _together(
     if any(len(fields) != len(header) for _, fields in lines):
         return None
     columns = dict(zip(header, zip(*(fields for _, fields in lines), strict=True), strict=True))
-    names, modes = columns.pop("set"), columns.pop("mode")
+    names, modes = columns.pop("set", (ONLY_SET,) * len(lines)), columns.pop("mode")
     sets = {text: text.strip() for text in set(names)}
     if not all(name and name.isprintable() for name in sets.values()):
         return None
@@ -246,13 +285,16 @@ def _one_by_one(
     return _Rows(numbers, names, modes, {}), faults
 
 
-def _repeated(file: str, parts: Sequence[_Rows]) -> Iterator[Fault]:
+def _repeated(file: str, parts: Sequence[_Rows], *, has_sets: bool) -> Iterator[Fault]:
     """Yield the rows of modes that a data set has already."""
     seen: set[tuple[str, int]] = set()
     for part in parts:
         for line, name, mode in zip(part.lines, part.sets, part.modes, strict=True):
             if (name, mode) in seen:
                 place, expected = "columns 'set' and 'mode'", "each mode of a data set once"
+                if not has_sets:
+                    place = "column 'mode'"
+                    expected = "each mode once, or a column 'set' that tells data sets apart"
                 found = f"{(name, mode)} again"
                 yield Fault(file, f"line {line}, {place}", expected, found)
             seen.add((name, mode))
@@ -267,7 +309,11 @@ def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[
     unknown = [name for name in counts if name not in known]
     faults = [(name, expected, suggestion(name, known)) for name in unknown[:SUGGESTED]]
     faults += [(name, expected, repr(clean(name, NAME))) for name in unknown[SUGGESTED:]]
-    faults += [(name, "this column", "no such column") for name in required if name not in counts]
+    faults += [
+        (name, "this column", "no such column")
+        for name in required
+        if name not in counts and name not in OPTIONAL
+    ]
     faults += [
         (name, "each column once", f"{count} of this name")
         for name, count in counts.items()
@@ -282,7 +328,7 @@ def _row(
     """Return the key (set, mode), the values and the faults of one row."""
     faults: list[tuple[str, str, str]] = []
     values: dict[str, float] = {}
-    name, mode = texts["set"], texts["mode"]
+    name, mode = texts.get("set", ONLY_SET), texts["mode"]
     if not name or not name.isprintable():
         faults.append(("set", "the name of a data set", repr(name)))
     if not MODE.fullmatch(mode) or not 1 <= int(mode) <= MOST_MODES:
@@ -313,7 +359,8 @@ def _range(column: str, value: float) -> str:
     if column == "frequency" and not least <= value <= most:
         return f"a frequency above 0 Hz, from {least:g} to {most:g}"
     if column == "damping" and not 0 <= value < 1:
-        return "a damping ratio from 0 to below 1"
+        percent = f" (if {value:g} % is meant: {value / 100:g})" if 1 <= value <= 100 else ""
+        return f"a damping ratio from 0 to below 1{percent}"
     if column.endswith(STD) and value < 0:
         return "a standard deviation of 0 or more"
     return ""

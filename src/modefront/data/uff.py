@@ -1,5 +1,7 @@
 """Universal files: frequency response functions from dataset 58, modes into dataset 55.
 
+Modes are read in `modefront.data.uff55`.
+
 The text of the file is looked through first: what holds no dataset, is cut off or has exponents
 written with D is said or mended here, since `pyuff`, which decodes the datasets, returns nothing
 or fails without a place. `pyuff` is an extra, imported where it is used.
@@ -32,6 +34,7 @@ QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
 """What the numerator is: displacement, velocity, acceleration."""
 
 AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
+"""Directions by their numbers in universal files."""
 
 DELIMITER = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 EXPONENT = re.compile(rb"(?<=[0-9.])[Dd](?=[+-]?[0-9])")
@@ -58,14 +61,13 @@ def read_uff(path: Path) -> list[Channel]:
 
     Raises InputError where the file holds none, is cut off or cannot be decoded.
     """
-    file = str(path)
-    content = read_text_bytes(path, WHAT, LARGEST)
+    file, content = str(path), read_text_bytes(path, WHAT, LARGEST)
     found = blocks(content, file)
     functions = [one for one in found if one.number == 58]
     if not functions:
         numbers = ", ".join(str(n) for n in dict.fromkeys(one.number for one in found))
         raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
-    decoded = [_decode(content, one, file) for one in functions]
+    decoded = [_function(content, one, file) for one in functions]
     channels, coherences = [], {}
     for block, values in zip(functions, decoded, strict=True):
         kind = int(values["func_type"])
@@ -133,15 +135,16 @@ def _pyuff(file: str) -> ModuleType:
     return module
 
 
-def _decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
-    """Return one dataset as pyuff reads it."""
+def decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
+    """Return one dataset as pyuff reads it; raises InputError where it cannot."""
     pyuff = _pyuff(file)
     text = content[block.start : block.end] + b"\n"
     if not block.binary:
-        head, body = text.split(b"\n", 13)[:13], text.split(b"\n", 13)[13:]
+        lines = 13 if block.number == 58 else 9 if block.number == 55 else 2
+        head, body = text.split(b"\n", lines)[:lines], text.split(b"\n", lines)[lines:]
         text = b"\n".join([*head, *(EXPONENT.sub(b"E", part) for part in body)])
         text = text.replace(b"\r\n", b"\n")
-    place = f"line {block.line}, dataset 58"
+    place = f"line {block.line}, dataset {block.number}"
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "one.uff"
         copy.write_bytes(text)
@@ -149,9 +152,19 @@ def _decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 values: Mapping[str, Any] = pyuff.UFF(str(copy)).read_sets(0)
-            count, data = int(values["num_pts"]), np.asarray(values["data"])
         except Exception as error:  # pyuff raises bare Exceptions
-            raise InputError(Fault(file, place, "a dataset 58", reason(error))) from None
+            expected = f"a dataset {block.number}"
+            raise InputError(Fault(file, place, expected, reason(error))) from None
+    return values
+
+
+def _function(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
+    """Return a dataset 58 that holds as many values as its header says."""
+    values, place = decode(content, block, file), f"line {block.line}, dataset 58"
+    try:
+        count, data = int(values["num_pts"]), np.asarray(values["data"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(Fault(file, place, "a dataset 58", reason(error))) from None
     if len(data) != count or len(np.atleast_1d(values["x"])) != count:
         raise InputError(Fault(file, place, f"{count} values, as its header says", str(len(data))))
     return values

@@ -1,7 +1,8 @@
 """Meshes from files: nodes, cells by group name, sets of nodes.
 
 meshio (an optional extra) reads the file. Groups are Gmsh's physical groups (one without a name
-goes by its number) and the cell sets of other formats; a file without any is one group, `all`.
+goes by its number), the groups of MED (Salome, Code_Aster), of which a cell or node may have
+several, and the cell sets of other formats; a file without any is one group, `all`.
 """
 
 from __future__ import annotations
@@ -44,7 +45,7 @@ MEMORY, PER_BYTE = 2 * 10**9, 40
 """Memory that reading may take, in bytes, and that for each byte of the file besides."""
 
 REFERRING = (
-    *(".xdmf", ".xmf", ".h5m", ".med", ".cgns", ".hmf", ".exo", ".e", ".ex2"),
+    *(".xdmf", ".xmf", ".h5m", ".cgns", ".hmf", ".exo", ".e", ".ex2"),
     *(".ele", ".node", ".xml"),
 )
 """Endings of formats that are several files, or keep values in HDF5, which may refer to others."""
@@ -189,8 +190,27 @@ def refers_to(path: Path) -> str:
                     return f"a part from another file, line {number}: {text}"
     if not zipfile.is_zipfile(path):
         with path.open("rb") as stream:
-            if stream.read(len(HDF5)) == HDF5:
-                return "HDF5, which may refer to other files: convert it to Gmsh or VTK"
+            is_hdf5 = stream.read(len(HDF5)) == HDF5
+        if is_hdf5 and suffix != ".med":
+            return "HDF5, which may refer to other files: convert it to Gmsh, VTK or MED"
+        if is_hdf5:
+            return elsewhere(path)
+    return ""
+
+
+def elsewhere(path: Path) -> str:
+    """Return in words what an HDF5 file keeps in other files; nothing where it keeps nothing."""
+    import h5py
+
+    from modefront.hdf5 import ForeignError, check_tree
+
+    try:
+        with h5py.File(path, "r") as file:
+            check_tree(file)
+    except ForeignError as error:
+        return str(error)
+    except Exception as error:  # h5py raises errors of many kinds for damaged files
+        return f"no HDF5 that can be read, {reason(error)}"
     return ""
 
 
@@ -212,10 +232,22 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     for name, kind, cells in _named_cells(raw):
         blocks.setdefault((str(name), kind), []).append(cells)
     arrays = {f"cells {k}": np.concatenate(cells) for k, cells in enumerate(blocks.values())}
-    for k, nodes in enumerate(raw.point_sets.values()):
-        arrays[f"set {k}"] = np.asarray(nodes, dtype=np.int64)
+    sets = _node_sets(raw)
+    for k, nodes in enumerate(sets.values()):
+        arrays[f"set {k}"] = nodes
     arrays["points"] = np.asarray(raw.points, dtype=float)
-    return arrays, {"blocks": list(blocks), "sets": list(map(str, raw.point_sets))}
+    return arrays, {"blocks": list(blocks), "sets": list(sets)}
+
+
+def _node_sets(raw: Any) -> dict[str, Ints]:
+    """Nodes by the name of their set, or of their MED group."""
+    out = {str(name): np.asarray(nodes, dtype=np.int64) for name, nodes in raw.point_sets.items()}
+    tags = np.asarray(raw.point_data.get("point_tags", []))
+    for family, names in getattr(raw, "point_tags", {}).items():
+        nodes = np.flatnonzero(tags == family)
+        for name in map(str, names):
+            out[name] = np.union1d(out.get(name, np.zeros(0, dtype=np.int64)), nodes)
+    return out
 
 
 def _named_cells(raw: Any) -> Iterator[tuple[str, str, Ints]]:
@@ -227,12 +259,18 @@ def _named_cells(raw: Any) -> Iterator[tuple[str, str, Ints]]:
         for block, data, chosen in zip(raw.cells, cells, members, strict=True):
             if chosen is not None and len(chosen):
                 yield name, block.type, data[np.asarray(chosen, dtype=np.int64)]
+    families = getattr(raw, "cell_tags", {})
+    of_blocks = raw.cell_data.get("cell_tags", [])
+    for block, data, of_block in zip(raw.cells, cells, of_blocks, strict=False):
+        for family in np.unique(of_block).tolist():
+            for name in families.get(family, ()):
+                yield name, block.type, data[np.asarray(of_block) == family]
     names = {(int(tag), int(dim)): name for name, (tag, dim) in raw.field_data.items()}
     for block, data, block_tags in zip(raw.cells, cells, tags, strict=False):
         for tag in np.unique(block_tags):
             name = names.get((int(tag), block.dim), str(tag) if tag else "all")
             if name not in sets:
                 yield name, block.type, data[np.asarray(block_tags) == tag]
-    if not sets and not tags:
+    if not sets and not tags and not families:
         for block, data in zip(raw.cells, cells, strict=True):
             yield "all", block.type, data

@@ -196,7 +196,8 @@ class _Run:
                 near = self._again(("weights", kind.value, name), [x.solution for x in before])
             arguments = (self.problem, _descent(w, sizes), self.search, near)
             seed = seed_sequence(self.seed, label(kind, name))
-            tasks.append(Task(("weights", kind.value, name), explore, arguments, seed))
+            key = ("weights", kind.value, name)
+            tasks.append(Task(key, explore, arguments, seed, has_parts=True))
         minima = self.work.run(tasks)
         return [
             Point(kind, solutions[0], name)
@@ -352,7 +353,8 @@ class _Run:
             near = self._again(("optimal-weights",), self.known.optimal)
         arguments = (self.problem, self.a, sizes, self.search, near)
         seed = seed_sequence(self.seed, "optimal-weights")
-        (minima,) = self.work.run([Task(("optimal-weights",), optimal_minima, arguments, seed)])
+        task = Task(("optimal-weights",), optimal_minima, arguments, seed, has_parts=True)
+        (minima,) = self.work.run([task])
         scale = target.scale if target else sizes
         optimal = accepted(minima, self.a, sizes, rivals, self.archive.J, scale)
         if optimal:
@@ -360,7 +362,8 @@ class _Run:
         if self.floor is None:
             return [], []
         seed = seed_sequence(self.seed, "bounded-weights")
-        task = Task(("bounded-weights",), optimal_minima, (*arguments, self.floor), seed)
+        with_floor = (*arguments, self.floor)
+        task = Task(("bounded-weights",), optimal_minima, with_floor, seed, has_parts=True)
         (bounded,) = self.work.run([task])
         return [], [Point(Kind.BOUNDED, x) for x in bounded[:1]]
 

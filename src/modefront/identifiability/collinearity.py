@@ -48,7 +48,8 @@ def index(gram: Floats, members: Sequence[int] | None = None) -> float:
 
 def pairs(gram: Floats) -> list[tuple[int, int, float]]:
     """Return the pairs of parameters with a critical index, most alike first."""
-    p = len(gram)
-    indices = [(i, j, index(gram, (i, j))) for i in range(p) for j in range(i)]
+    # The index of two is 1 / sqrt(1 - |cosine|), which rules most of them out at once.
+    alike = np.abs(np.tril(cosines(gram), -1)) > 1 - 1.01 / CRITICAL**2
+    indices = [(i, j, index(gram, (i, j))) for i, j in np.argwhere(alike).tolist()]
     chosen = [(j, i, value) for i, j, value in indices if value >= CRITICAL]
     return sorted(chosen, key=lambda pair: -pair[2])

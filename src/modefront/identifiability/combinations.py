@@ -155,6 +155,13 @@ def unchanged_groups(problem: UpdatingProblem) -> list[int]:
     return np.flatnonzero(still).tolist()
 
 
+EQUAL = 1e-9
+"""Difference of singular values, over the greatest one, up to which they are equal."""
+
+TIE = 1e-6
+"""Relative difference of components up to which they are equally great."""
+
+
 def decompose(G: Floats, least: float = 0.0) -> list[Combination]:
     """Return the combinations that a Jacobian (rows, parameters) determines, best first.
 
@@ -167,10 +174,39 @@ def decompose(G: Floats, least: float = 0.0) -> list[Combination]:
     padded = np.vstack([G, np.zeros((max(0, p - len(G)), p))])
     _, sigma, Vt = np.linalg.svd(padded, full_matrices=False)
     share = np.where(sigma > least, sigma, 0.0) / (sigma[0] if sigma[0] > 0 else 1.0)
+    starts = np.flatnonzero(np.diff(share, prepend=np.inf) < -EQUAL)
+    Vt = np.concatenate([_told_apart(part) for part in np.split(Vt, starts[1:])])
     return [
-        Combination(v * np.sign(v[np.argmax(np.abs(v))]), float(s), float(part))
-        for s, part, v in zip(sigma, share, Vt, strict=True)
+        Combination(v, float(s), float(part)) for s, part, v in zip(sigma, share, Vt, strict=True)
     ]
+
+
+def _told_apart(Vt: Floats) -> Floats:
+    """Return the orthonormal rows (k, p) that a rule chooses of the space that given ones span.
+
+    The sign of a singular vector is arbitrary, and so is the basis of those of equal singular
+    values; both would be those of the machine. The first row is the one that has the greatest share
+    of a single parameter, the next one that of what is left; its greatest component is positive.
+    Of almost equal shares, the first parameter counts.
+
+    >>> rows = _told_apart(np.array([[-0.6, -0.8, 0.0], [0.8, -0.6, 0.0]]))
+    >>> (rows.round(9) + 0.0).tolist()
+    [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]
+    """
+    if len(Vt) == 1:
+        return Vt * np.sign(Vt[0, _first_greatest(np.abs(Vt[0]))])
+    left, out = Vt, []
+    for _ in range(len(Vt)):
+        j = _first_greatest((left**2).sum(axis=0))
+        v = left[:, j] @ left
+        out.append(v / np.linalg.norm(v))
+        left = left - np.outer(left @ out[-1], out[-1])
+    return np.array(out)
+
+
+def _first_greatest(values: Floats) -> int:
+    """Return the place of the greatest value, the first of those that rounding tells apart."""
+    return int(np.argmax(values >= values.max() * (1 - TIE)))
 
 
 LEAST = 1e-3

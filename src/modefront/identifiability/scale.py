@@ -161,14 +161,14 @@ def _sparse(model: MatrixModel, stiffness: SparseAffine, theta: Floats, shift: f
     forces = stiffness.derivatives_times(theta, start)[:, 0]
     out = np.zeros(theta.size)
     for j, force in enumerate(forces.T):
-        x, f = np.zeros(force.shape), force
+        x, f, dK = np.zeros(force.shape), force, stiffness.derivative(theta, j)
         for _ in range(STEPS if force.any() else 0):
             x = factor.solve(f[:, None])[:, 0]
             energy = float(x @ f)  # of x in the norm of K, squared
             if energy <= 0:
                 break
             x = x / np.sqrt(energy)
-            f = stiffness.derivatives_times(theta, x[:, None])[:, 0, j]
+            f = dK @ x
             out[j] = np.sqrt(max(float(f @ factor.solve(f[:, None])[:, 0]), 0.0))
     return out
 

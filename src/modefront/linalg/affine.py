@@ -122,6 +122,11 @@ class DenseAffine:
         products = self.terms @ vectors
         return first_axis(self.coefficients.jacobian(theta).T, products).transpose(1, 2, 0)
 
+    def sparse(self) -> SparseAffine:
+        """Return the same matrix with sparse terms."""
+        terms = [scipy.sparse.coo_array(term) for term in self.terms]
+        return sparse_affine(terms, self.coefficients, self.size)
+
 
 @dataclass(frozen=True, eq=False)
 class SparseAffine:
@@ -176,6 +181,14 @@ class SparseAffine:
         out = np.zeros((self.terms.shape[1], self.size, self.size))
         out[:, _expand(self.indptr), self.indices] = self.terms.toarray().T
         return DenseAffine(out, self.coefficients)
+
+    def derivative(self, theta: Floats, i: int) -> scipy.sparse.csr_array:
+        """Return dA/dtheta_i, N x N, without the entries that are zero."""
+        values = self.terms @ self.coefficients.jacobian(theta)[:, i]
+        kept = np.flatnonzero(values)
+        rows = np.searchsorted(self.indptr, kept, side="right") - 1
+        entries = values[kept], (rows, self.indices[kept])
+        return scipy.sparse.csr_array(entries, shape=(self.size, self.size))
 
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""

@@ -48,6 +48,21 @@ class Geometry:
     sensor_nodes: Ints
     sensor_directions: Floats
 
+    def weights(self, nodes: Ints, directions: Floats) -> scipy.sparse.csr_array:
+        """Return weights (sensors, N) of sensors at nodes along ``directions`` (sensors, 3)."""
+        count, columns = len(nodes), 3 * nodes[:, None] + np.arange(3)
+        rows = np.repeat(np.arange(count), 3)
+        picked = scipy.sparse.csr_array(
+            (directions.ravel(), (rows, columns.ravel())), shape=(count, self.motion.shape[0])
+        )
+        return (picked @ self.motion).tocsr()
+
+    @property
+    def axes(self) -> tuple[int, ...]:
+        """The axes, 0 to 2, along which nodes can move."""
+        moved = np.diff(self.motion.indptr).reshape(-1, 3).any(axis=0)
+        return tuple(np.flatnonzero(moved).tolist())
+
     def displacement(self, shapes: Floats) -> Floats:
         """Return the displacement of all nodes, (modes, nodes, 3), in mode shapes (N, modes)."""
         moved = self.motion @ shapes

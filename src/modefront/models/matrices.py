@@ -13,6 +13,7 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, suggestion, wrong
+from modefront.fem.limits import Limits
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Factorisation, Symbolic
 from modefront.linalg.pencil import Pencil, pencil
@@ -23,9 +24,13 @@ from modefront.models.terms import BASE, above_zero, exponents_of, form_of, term
 from modefront.modes import dense, full, sparse
 from modefront.modes.result import Modes
 from modefront.work.costs import Costs, spend
+from modefront.work.transfer import shared
 
 DENSE = 180
 """Degrees of freedom up to which dense matrices are faster."""
+
+FACTOR = 40
+"""Entries of the two factors of an eigensolution and of what belongs to it, over N^(4/3)."""
 
 SensorSpec = int | Sequence[tuple[int, float]]
 """A sensor: a degree of freedom, counted from 0, or weighted degrees of freedom."""
@@ -44,6 +49,7 @@ class _Counted:
         return self.symbolic.factor(values)
 
 
+@shared
 @dataclass(frozen=True, eq=False)
 class MatrixModel:
     """A model with affine stiffness and mass matrices, both dense or both sparse.
@@ -57,6 +63,7 @@ class MatrixModel:
     outputs : weights (N,) of the degrees of freedom at places that are no sensors, by name
     base : motion (N,) of the degrees of freedom with the base, by the name of its direction
     floating : whether the stiffness matrix may be singular: rigid-body modes are wanted
+    limits : what the elements cannot do of which the matrices are made
     geometry : where the degrees of freedom are in space; None where that is not known
     """
 
@@ -68,6 +75,7 @@ class MatrixModel:
     outputs: Mapping[str, Floats] = field(default_factory=dict)
     base: Mapping[str, Floats] = field(default_factory=dict)
     floating: bool = True
+    limits: Limits = field(default_factory=Limits)
     geometry: Geometry | None = None
 
     @property
@@ -79,6 +87,23 @@ class MatrixModel:
     def is_sparse(self) -> bool:
         """Whether the matrices are sparse; those of small models are dense."""
         return isinstance(self.stiffness, SparseAffine) and isinstance(self.mass, SparseAffine)
+
+    @property
+    def version(self) -> int:
+        """Zero: the model does not change."""
+        return 0
+
+    @property
+    def parts(self) -> tuple[()]:
+        """Nothing within the model is sent to other processes on its own."""
+        return ()
+
+    @property
+    def footprint(self) -> float:
+        """Bytes that an eigensolution takes, estimated; factors of solids fill in the most."""
+        if not self.is_sparse:
+            return 8.0 * 8 * self.size**2
+        return 8.0 * FACTOR * self.size ** (4 / 3)
 
     @property
     def above_zero(self) -> tuple[str, ...]:
@@ -178,6 +203,15 @@ class MatrixModel:
                 # The analysis costs more than a factorisation, and is that of the pattern alone.
                 vars(out)["pencil"] = replace(known, K=stiffness, M=mass)
         return out
+
+    def sparse(self) -> MatrixModel:
+        """Return the same model with sparse matrices."""
+        if self.is_sparse:
+            return self
+        stiffness, mass = (
+            A.sparse() if isinstance(A, DenseAffine) else A for A in (self.stiffness, self.mass)
+        )
+        return replace(self, stiffness=stiffness, mass=mass)
 
     @cached_property
     def _dense_selection(self) -> Floats:

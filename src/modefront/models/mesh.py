@@ -11,6 +11,8 @@ import scipy.sparse
 from modefront import fem
 from modefront._typing import Floats
 from modefront.errors import wrong
+from modefront.fem.check import check_points
+from modefront.fem.limits import limits_of
 from modefront.linalg.affine import Monomials, SparseAffine
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import MatrixModel, affine_model
@@ -76,7 +78,8 @@ def mesh_model(
         outputs={built.sensors[i]: built.selection[[i]].toarray()[0] for i in others},
         base={name: motion for name, motion in _motions(built.dofs).items() if motion.any()},
     )
-    return replace(model, geometry=_geometry(structure, built))
+    limits = limits_of(structure, check_points(structure.nodes))
+    return replace(model, limits=limits, geometry=_geometry(structure, built))
 
 
 CELL_TYPES = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}

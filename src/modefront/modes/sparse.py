@@ -34,6 +34,7 @@ from modefront.errors import ModelError
 from modefront.linalg.factorisation import Factorisation, SingularMatrixError
 from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, gram, times
+from modefront.modes import dense
 from modefront.modes import derivatives as exact
 from modefront.modes.lanczos import greatest
 from modefront.modes.result import ModeDerivatives, Modes
@@ -56,6 +57,12 @@ GAP = 1e-2
 
 NARROW = 1e-6
 """Relative gap that is too narrow for sigma: more modes are sought."""
+
+ALL_AT_ONCE = 3000
+"""Degrees of freedom up to which all modes are solved for, where the iteration loses some."""
+
+BEYOND = 1e3
+"""Eigenvalue up to which modes are counted, over the greatest known one."""
 
 CONVERGED = 1e-8
 """Change of a mode in subspace iteration, after which the next one is exact to rounding."""
@@ -96,9 +103,27 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
         ritz = greatest(below.factor.solve, A, M, start, wanted)
         finite = int(np.sum(ritz.mu > SINGULAR * ritz.mu[0]))
         known = min(ritz.converged, finite)
+        lam, X = 1 / ritz.mu[:finite] + below.sigma, ritz.X[:, :known] / np.sqrt(ritz.mu[:known])
+        refines = True
         if known < count and ritz.complete:
-            raise ModelError(f"{count} modes asked for, but only {known} have a finite frequency")
-        lam = 1 / ritz.mu[:finite] + below.sigma
+            there = _finite(pencil, K, M, lam)
+            if there <= known:
+                raise ModelError(
+                    f"{count} modes asked for, but only {known} have a finite frequency"
+                )
+            if pencil.size > ALL_AT_ONCE:
+                raise ModelError(
+                    f"{count} modes asked for, of {there} that have a finite frequency, but the "
+                    f"eigensolver loses those beyond {known}: ask for fewer modes"
+                )
+            # The basis has lost those that are too small beside the greatest: solved all at once.
+            everything = dense.decompose(K.toarray(), M.toarray())
+            lam, X = everything.lam, everything.Phi
+            known, finite, refines = lam.size, lam.size, False
+            if known < count:
+                raise ModelError(
+                    f"{count} modes asked for, but only {known} have a finite frequency"
+                )
         if lam[0] < 1e-2 * below.sigma:
             raise ModelError("the stiffness matrix is indefinite")
         if (
@@ -108,8 +133,9 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
             lower, sigma = gap
             above = Shifted(sigma, pencil.factor(K.data, M.data, sigma))
             if above.factor.negative == lower:
-                X = ritz.X[:, :known] / np.sqrt(ritz.mu[:known])
-                refined = _refined(above, M, lam[:known], X, lower)
+                refined = (
+                    _refined(above, M, lam[:known], X, lower) if refines else (lam, X, times(M, X))
+                )
                 if refined is not None:
                     beyond = lam[refined[0].size] if finite > refined[0].size else np.inf
                     noise = _noise(K, refined[1])
@@ -118,6 +144,17 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
     raise ModelError(
         f"the lowest {count} modes could not be told from the next ones, or some were missed"
     )
+
+
+def _finite(
+    pencil: Pencil, K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, lam: Floats
+) -> int:
+    """Return how many modes have a frequency up to far beyond known eigenvalues (Sylvester)."""
+    try:
+        factor = pencil.factor(K.data, M.data, BEYOND * float(lam[-1]))
+    except SingularMatrixError:
+        return lam.size
+    return lam.size if factor.negative is None else factor.negative
 
 
 def _noise(K: scipy.sparse.csr_array, Phi: Floats) -> Floats:

@@ -9,7 +9,7 @@ those that it has evaluated are stored, so that a run that is continued knows th
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -125,19 +125,15 @@ class Archived:
 class Archiving:
     """An executor that adds all models that tasks evaluate to an archive.
 
-    The first argument of every task is the problem.
+    The first argument of every task is the problem, or the archive in its place.
     """
 
     inner: Executor
     archive: Archive
 
-    def run(self, tasks: Sequence[Task[R]]) -> list[R]:
+    def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
         """Return the results of the tasks."""
-        wrapped: list[Task[Archived]] = [
-            Task(task.key, archived, (task.function, *task.arguments), task.seed, task.turn)
-            for task in tasks
-        ]
-        results = self.inner.run(wrapped)
+        results = self.inner.run([self._of(x) for x in tasks], [self._of(x) for x in ahead])
         for each in results:
             for theta, J in zip(each.theta, each.J, strict=True):
                 self.archive.add(theta, J)
@@ -147,11 +143,27 @@ class Archiving:
         """Pass on the extent of the work."""
         self.inner.expect(stages)
 
+    def _of(self, task: Task[Any]) -> Task[Archived]:
+        """Return a task that evaluates the problem itself, and returns what it evaluated."""
+        problem, *others = task.arguments
+        if problem is self.archive:
+            problem = self.archive.problem
+        return replace(task, function=archived, arguments=(task.function, problem, *others))
+
 
 def archived(
-    function: Callable[..., Any], problem: Problem, *arguments: Any, **options: Any
+    function: Callable[..., Any],
+    problem: Problem,
+    *arguments: Any,
+    work: Executor | None = None,
+    **options: Any,
 ) -> Archived:
-    """Return the result of a function of a problem, and the models that it evaluates."""
+    """Return the result of a function of a problem, and the models that it evaluates.
+
+    ``work`` computes the parts of the function, if it has any.
+    """
     archive = Archive(problem)
+    if work is not None:
+        options["work"] = Archiving(work, archive)
     result = function(archive, *arguments, **options)
     return Archived(result, archive.theta, archive.J)

@@ -38,7 +38,7 @@ def without_slack(
     problem: Problem, target: Payoff, points: Sequence[Solution], work: Executor = IMMEDIATE
 ) -> list[Solution]:
     """Return the points, those of the border with all other objectives as small as they can be."""
-    doubtful = [k for k, point in enumerate(points) if _free(target, point).any()]
+    doubtful = [k for k, point in enumerate(points) if _lowerable(target, point)]
     tasks = [
         Task(("front", "nbi", "border", k + 1), _tightened, (problem, target, points[k]))
         for k in doubtful
@@ -57,24 +57,37 @@ def _free(target: Payoff, point: Solution) -> Bools:
     return ~active if active.any() else np.zeros_like(active)
 
 
+def _lowerable(target: Payoff, point: Solution) -> list[Bools]:
+    """Return sets of objectives (n,) that may be lower at the same values of the others.
+
+    These are the objectives that no bound holds, together and each alone; and each of the others
+    beside one that nearly vanishes, which may hold the bound without any effect.
+    """
+    n = target.scale.size
+    free = _free(target, point)
+    vanishing = VANISHING * target.scale >= point.at.J
+    weak = point.beta is not None and point.at.feasible and vanishing.any()
+    alone = np.flatnonzero(~vanishing if weak else free) if weak or free.sum() > 1 else ()
+    return [*([free] if free.any() else []), *(np.arange(n) == i for i in alone)]
+
+
 def _tightened(problem: Problem, target: Payoff, point: Solution) -> Solution:
     """Return a point of the border with the objectives that no bound holds at their least."""
-    free, J = _free(target, point), point.at.J
-    start = begin(problem.evaluate(point.at.theta))
+    J = point.at.J
+    start = end = begin(problem.evaluate(point.at.theta))
     evaluations = point.evaluations + 1
-    alone = [np.arange(J.size) == i for i in np.flatnonzero(free)] if free.sum() > 1 else []
-    for lowered in (free, *alone):
-        end = _lowered(problem, target, start, lowered)
-        evaluations += end.evaluations
-        if _is_better(target, end.at.J, J):
-            break
-    else:
+    for lowered in _lowerable(target, point):
+        lower = _lowered(problem, target, end, lowered)
+        evaluations += lower.evaluations
+        if _is_better(target, lower.at.J, end.at.J):
+            end = lower
+    if end is start or not _is_better(target, end.at.J, J):
         return replace(point, evaluations=evaluations)
     beta = target.place(J) if point.beta is None else point.beta
     attainment = Attainment(target, np.zeros((0, J.size)))
     again = solve(problem, attainment.subproblem(beta), begin(end.at))
     evaluations += again.evaluations
-    best = again if again.converged and _is_better(target, again.at.J, J) else end
+    best = again if again.converged and _is_better(target, again.at.J, end.at.J) else end
     weights = again.weights if best is again else point.weights
     status = point.status
     return replace(best, weights=weights, status=status, evaluations=evaluations, beta=beta)
@@ -87,12 +100,28 @@ def _lowered(problem: Problem, target: Payoff, start: Solution, lowered: Bools) 
     are held in its place (`modefront.solvers.lexicographic`).
     """
     J, scale = start.at.J, target.scale
-    least = int(np.where(lowered, np.inf, (J - target.utopia) / scale).argmin())
+    least = int(np.where(lowered, np.inf, J / scale).argmin())
     if start.at.residuals and J[least] <= VANISHING * scale[least]:
-        order = Lexicographic(least, scale)
-        return order.lowered(problem, start, np.where(lowered, 1 / scale, 0.0), ~lowered, _FEW)
+        return _around(problem, Lexicographic(least, scale), start, lowered)
     held = np.eye(J.size)[~lowered] / scale
     return solve(problem, Linear(np.where(lowered, 1 / scale, 0.0), held, held @ J), start, _FEW)
+
+
+def _around(problem: Problem, order: Lexicographic, start: Solution, lowered: Bools) -> Solution:
+    """Return the least sum of some objectives around an exact fit of another one.
+
+    At a given sum of squares, residuals along their multipliers are the best.
+    """
+    w, r = np.where(lowered, 1 / order.sizes, 0.0), start.at.residuals[order.objective].r
+    end, mu = order.lowered(problem, start, w, ~lowered, r, _FEW)
+    if not (end.converged and mu.any()):
+        return end
+    aim = mu * float(np.linalg.norm(r) / np.linalg.norm(mu))
+    turned, _ = order.lowered(problem, end, w, ~lowered, aim, _FEW)
+    J, known = turned.at.J, end.at.J
+    kept = J[~lowered] <= known[~lowered] + VANISHING * SAME * order.sizes[~lowered]
+    better = turned.at.feasible and kept.all() and w @ J < w @ known
+    return turned if better else replace(end, evaluations=turned.evaluations)
 
 
 def _is_better(target: Payoff, J: Floats, known: Floats) -> bool:

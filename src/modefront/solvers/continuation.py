@@ -9,10 +9,10 @@ gets the best of them everywhere, at the price of a few more programmes.
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from itertools import combinations
+from itertools import combinations, islice
 from math import comb
 from typing import Protocol
 
@@ -21,7 +21,7 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
-from modefront.work.task import IMMEDIATE, Executor, Key, Task
+from modefront.work.task import IMMEDIATE, Executor, Task
 
 LatticePoint = tuple[int, ...]
 """A point of the lattice: whole coordinates, one an objective, whose sum is that of its corners."""
@@ -135,6 +135,9 @@ ATTEMPTS = 3
 """Neighbours from which a point beyond the simplex is tried at most: where none of these leads to a
 solution, the front ends."""
 
+AHEAD = 16
+"""Next steps that are named to the executor, at most."""
+
 MANY = 300
 """Points of the simplex that are not exceeded if nothing else is wanted."""
 
@@ -164,8 +167,7 @@ def continuation(
     run = _Continuation(problem, programmes, lattice, work, branches=len(edges))
     for i, edge in enumerate(edges):
         run.from_edge(i, edge)
-    for solution in before:
-        run.from_before(solution)
+    run.from_before(before)
     run.spread()
     return run.solutions()
 
@@ -230,19 +232,25 @@ class _Continuation:
             self.fixed.add(point)
         else:
             key = ("front", self.programmes.label, point, "from-edge", number + 1)
-            solution = self._solution(key, _solve, point, edge)
+            arguments = (self.problem, self.programmes, self.beta(point), edge)
+            solution = self.work.run([Task(key, _solve, arguments)])[0]
         if point not in self.solved or self._better(point, solution, self.solved[point]):
             self._accept(point, solution, number)
 
-    def from_before(self, solution: Solution) -> None:
-        """Solve a point from its solution of nearly the same problem."""
-        if solution.beta is None:
-            return
+    def from_before(self, before: Sequence[Solution]) -> None:
+        """Solve points from their solutions of nearly the same problem."""
+        tasks: dict[LatticePoint, Task[Solution]] = {}
         divisions = self.lattice.divisions
-        point = _nearest(divisions * solution.beta, divisions)
-        if point not in self.solved:
-            key = ("front", self.programmes.label, point, "again")
-            self._accept(point, self._solution(key, _from_before, point, solution), -1)
+        for solution in before:
+            if solution.beta is None:
+                continue
+            point = _nearest(divisions * solution.beta, divisions)
+            if point not in self.solved:
+                key = ("front", self.programmes.label, point, "again")
+                arguments = (self.problem, self.programmes, self.beta(point), solution)
+                tasks.setdefault(point, Task(key, _from_before, arguments))
+        for point, solution in zip(tasks, self.work.run(list(tasks.values())), strict=True):
+            self._accept(point, solution, -1)
 
     def spread(self) -> None:
         """Solve every point from its neighbours until none is worth another attempt."""
@@ -271,9 +279,7 @@ class _Continuation:
         start, known = self.solved[source], self.solved.get(point)
         self.tried.add((point, source, self.renewed[source]))
         self.attempts[point] += 1
-        key = ("front", self.programmes.label, point, "from", source, self.renewed[source])
-        again = known is not None and known.converged
-        solution = self._solution(key, _solve_again if again else _solve, point, start)
+        solution = self.work.run([self._task(point, source)], self._next())[0]
         if known is None or self._better(point, solution, known):
             far = self._jumps(solution, start)
             self.branches += far
@@ -286,11 +292,22 @@ class _Continuation:
             # The way back leads to what is known, unless one of the two lies in another basin.
             self.tried.add((source, point, self.renewed[point]))
 
-    def _solution(
-        self, key: Key, solve: Callable[..., Solution], point: LatticePoint, start: Solution
-    ) -> Solution:
-        arguments = (self.problem, self.programmes, self.beta(point), start)
-        return self.work.run([Task(key, solve, arguments)])[0]
+    def _task(self, point: LatticePoint, source: LatticePoint) -> Task[Solution]:
+        """Return the task of a step from a neighbour."""
+        known = self.solved.get(point)
+        solve = _solve_again if known is not None and known.converged else _solve
+        key = ("front", self.programmes.label, point, "from", source, self.renewed[source])
+        arguments = (self.problem, self.programmes, self.beta(point), self.solved[source])
+        return Task(key, solve, arguments)
+
+    def _next(self) -> list[Task[Solution]]:
+        """Return the tasks of the next steps, unless the one at hand changes what they are."""
+        steps = islice(self.queue, AHEAD)
+        return [
+            self._task(*step)
+            for step in dict.fromkeys(steps)
+            if self._worth_trying(*step) and min(step[0]) >= 0
+        ]
 
     def _accept(self, point: LatticePoint, solution: Solution, branch: int) -> None:
         """Keep a solution, and take note of the steps to its neighbours."""

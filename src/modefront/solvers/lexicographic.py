@@ -181,8 +181,9 @@ class Lexicographic:
             return start
         exact = start.at.J[i] <= EXACT * self.sizes[i]
         tight = replace(options, constraint=max(1e-9, 1e-2 * options.step), reduction=1e-16)
-        others = np.arange(n) != i
-        return self.lowered(problem, start, self.others, ~others, tight, aim=0.0 if exact else 1.0)
+        aim = start.at.residuals[i].r * (0.0 if exact else 1.0)
+        held = np.zeros(n, dtype=np.bool_)
+        return self.lowered(problem, start, self.others, held, aim, tight)[0]
 
     def lowered(
         self,
@@ -190,17 +191,17 @@ class Lexicographic:
         start: Solution,
         w: Floats,
         held: Bools,
+        aim: Floats,
         options: Options,
-        *,
-        aim: float = 1.0,
-    ) -> Solution:
-        """Return the least w^T J (n,) at the residuals of the first objective, times ``aim``.
+    ) -> tuple[Solution, Floats]:
+        """Return the least w^T J (n,) where the first objective has the residuals ``aim`` (rows,).
 
-        Those of the other objectives that are ``held`` (n,) keep their values. The arguments are
-        those of a programme and of its solution.
+        Those of the other objectives that are ``held`` (n,) keep their values. The multipliers of
+        the residuals (rows,) follow: what is least falls as ``aim`` moves along them. The arguments
+        are those of a programme and of its solution.
         """
         i, n = self.objective, self.sizes.size
-        residual, Q = start.at.residuals[i], self._changing(problem, start.at)
+        Q = self._changing(problem, start.at)
         reduced, others = Held(i, Q), np.arange(n) != i
         k, root = Q.shape[1], float(np.sqrt(self.sizes[i]))
         first = begin(reduced.of(start.at))
@@ -208,7 +209,7 @@ class Lexicographic:
         learned[k:] = start.learned[others]
         rows = np.eye(k + n - 1)[np.concatenate([np.ones(k, dtype=np.bool_), held[others]])]
         unit = np.concatenate([np.full(k, root), self.sizes[others]])
-        values = np.concatenate([aim * (Q.T @ residual.r), start.at.J[others]])
+        values = np.concatenate([Q.T @ aim, start.at.J[others]])
         programme = Linear(
             np.concatenate([np.zeros(k), w[others]]), rows / unit, rows @ (values / unit)
         )
@@ -217,7 +218,7 @@ class Lexicographic:
         )
         known = start.learned.copy()
         known[others] = solution.learned[k:]
-        return replace(
+        end = replace(
             start,
             at=problem.evaluate(solution.at.theta),
             learned=known,
@@ -225,6 +226,7 @@ class Lexicographic:
             violation=solution.violation,
             evaluations=start.evaluations + solution.evaluations + 1,
         )
+        return end, Q @ solution.weights[:k]
 
     def _limit(self, problem: Problem, start: Solution) -> Solution:
         """Return the limit of the minimisers for epsilon to 0, by Richardson's extrapolation."""

@@ -1,4 +1,4 @@
-"""The check of a study before it is run: its derivatives, and what its data do not determine."""
+"""The check of a study before it is run: mistakes, derivatives, what its data do not determine."""
 
 from __future__ import annotations
 
@@ -7,6 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from modefront.diagnosis.comparison import Comparison, compare
+from modefront.diagnosis.diagnose import diagnose
+from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
+from modefront.diagnosis.words import Mistake
+from modefront.diagnosis.words import in_words as mistake_in_words
 from modefront.errors import Fault, InputError, ModelError
 from modefront.identifiability.combinations import (
     NONE,
@@ -27,11 +32,19 @@ from modefront.identifiability.words import (
     no_effect_in_words,
     summary,
 )
+from modefront.inputs import available_memory
+from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.problem import Evaluation
 from modefront.study.definition import Study
 from modefront.study.derivatives import AGREEMENT, cause_of, compared
+
+MANY = 100
+"""Parameters from which on a run is said to take long."""
+
+KEPT = 500
+"""Models that a search keeps with their second derivatives, some."""
 
 
 @dataclass(frozen=True)
@@ -45,13 +58,19 @@ class Findings:
         NaN where the model is not defined around them
     derivative_cause : which parameter and mode they differ for, and why; empty where they agree
     determined : which combinations of parameters each group and all of them determine
-    warnings : what a user should know before relying on the results
+    warnings : what a user should know before relying on the results; `mistakes` in words first
+    mistakes : what looks wrong in the model or the data, with its numbers
+    beside : the nominal model beside the measured modes
+    sensitivities : of the modes to the parameters
     """
 
     derivative_error: float
     derivative_cause: str
     determined: tuple[str, ...]
     warnings: tuple[str, ...]
+    mistakes: tuple[Mistake, ...]
+    beside: Comparison
+    sensitivities: Sensitivities
 
     @property
     def sound(self) -> bool:
@@ -76,32 +95,80 @@ def check(study: Study) -> Findings:
     refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))
     nominal = problem.evaluate(problem.start)
     scale = scale_at(problem, problem.start)
+    beside = compare(problem)
+    mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
     warnings = [
+        *map(mistake_in_words, mistakes),
         *_undetermined(problem, nominal, scale),
-        *_unpaired(problem, nominal),
+        *_coincident(problem, nominal),
         *_at_bounds(problem),
         *_infeasible_bounds(problem),
+        *_of_elements(problem),
+        *_many(problem),
     ]
     agreement = compared(problem)
     cause = "" if agreement.error <= AGREEMENT else cause_of(problem, agreement)
-    return Findings(agreement.error, cause, determined(problem), tuple(warnings))
+    return Findings(
+        agreement.error,
+        cause,
+        determined(problem),
+        tuple(warnings),
+        mistakes,
+        beside,
+        sensitivities(problem),
+    )
 
 
-def _unpaired(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:
-    """Warn of modes that coincide with others, and of measured ones that no mode resembles."""
-    warnings = []
-    for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True):
-        if coincident:
-            warnings.append(
-                f"mode {r} of the nominal model coincides with another one: "
-                "its derivatives are not defined"
-            )
-    for r, value in zip(problem.data.modes, nominal.quantities["mac"], strict=True):
-        if value < 0.5:
-            warnings.append(
-                f"measured mode {r} resembles no mode of the nominal model (best MAC {value:.2f})"
-            )
-    return warnings
+def _coincident(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:
+    """Warn of modes that coincide with others."""
+    return [
+        f"mode {r} of the nominal model coincides with another one: its derivatives are not defined"
+        for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True)
+        if coincident
+    ]
+
+
+def memory_of(problem: UpdatingProblem) -> float:
+    """Return the bytes that second derivatives of the models take that a search keeps."""
+    p = len(problem.model.parameters)
+    return 8.0 * KEPT * len(problem.groups) * p**2
+
+
+def refuse_too_many(problem: UpdatingProblem, file: str) -> None:
+    """Raise InputError where models with so many parameters do not fit into the memory."""
+    need, there = memory_of(problem), available_memory()
+    if need > there:
+        p = len(problem.model.parameters)
+        expected = (
+            f"as many parameters as fit into the {there / 1e9:.3g} GB of memory that are free"
+        )
+        found = (
+            f"{p}, for which each model keeps {len(problem.groups)} matrices of {p} x {p}, and a "
+            f"search some {KEPT} models, {need / 1e9:.3g} GB: let one parameter scale several "
+            "parts, or keep those at their nominal values that the data do not determine"
+        )
+        raise InputError(Fault(file, "[[parameter]]", expected, found))
+
+
+def _many(problem: UpdatingProblem) -> list[str]:
+    """Warn of so many parameters that a run takes long."""
+    p = len(problem.model.parameters)
+    if p <= MANY:
+        return []
+    return [
+        f"{p} parameters are many: a run takes some {memory_of(problem) / 1e9:.2g} GB and long, as "
+        "every step solves for all of them; let one parameter scale several parts, or keep those "
+        "at their nominal values that the data do not determine"
+    ]
+
+
+def _of_elements(problem: UpdatingProblem) -> list[str]:
+    """Warn of elements that are too thick, skew, distorted or curved for the measured modes."""
+    model = problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
+    if not isinstance(model, MatrixModel):
+        return []
+    measured = problem.data.mean_frequency
+    return model.limits.warnings(float(measured[np.isfinite(measured)].max(initial=0.0)))
 
 
 def _at_bounds(problem: UpdatingProblem) -> list[str]:

@@ -26,8 +26,8 @@ AGREEMENT = 1e-5
 STEP = 4e-3
 """Change of the residuals, in their own units, that a finite difference makes."""
 
-SHARE = 0.1
-"""Share of a parameter that a step takes at most, where its bounds are narrower than that."""
+SHARE = 0.02
+"""Share of a parameter, or of its range where it is zero, that a step takes at most."""
 
 MOST = 60
 """Directions in which derivatives are compared, at most."""
@@ -71,7 +71,7 @@ def compared(problem: UpdatingProblem) -> Agreement:
     """
     span = problem.upper - problem.lower
     size = np.sqrt(np.einsum("ijj->j", problem.evaluate(problem.start).H) / 2)
-    most = np.maximum(span / 2, SHARE * np.abs(problem.start)) / STEP
+    most = SHARE / STEP * np.where(problem.start != 0, np.abs(problem.start), span)
     unit = np.minimum(np.divide(1.0, size, out=span.copy(), where=size > 0), most)
     room = np.minimum(STEP * unit, span / 2)
     theta = np.clip(problem.start, problem.lower + room, problem.upper - room)

@@ -13,6 +13,8 @@ from typing import Any
 import numpy as np
 
 from modefront.data.modal import ModalData
+from modefront.diagnosis.groups import UnusedGroup
+from modefront.diagnosis.places import DataDirection
 from modefront.errors import Fault, InputError, ModelError, reason
 from modefront.fronts.options import Pareto
 from modefront.identifiability.options import Identifiability
@@ -94,6 +96,7 @@ def load(path: Path | str) -> Study:
         _digest(front.encode(), root.files),
         problem,
         reduction.fallback(problem.model),
+        tuple(note for note in root.notes if isinstance(note, UnusedGroup | DataDirection)),
     )
     return Study(
         *(problem, title, seed, pareto, weighted, search, identifiability, uncertainty),

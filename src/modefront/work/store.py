@@ -54,6 +54,14 @@ class Store:
         except _DAMAGED:
             return None
 
+    def has(self, task: Task[Any]) -> bool:
+        """Return whether there is a file of a task, whole or damaged."""
+        return self._path(task).is_file()
+
+    def remove(self, task: Task[Any]) -> None:
+        """Remove the result of a task, if there is one."""
+        self._path(task).unlink(missing_ok=True)
+
     def write(self, task: Task[Any], result: Any, costs: Costs) -> None:
         """Keep the result of a task, whole or not at all."""
         arrays: dict[str, Floats] = {}

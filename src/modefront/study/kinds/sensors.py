@@ -83,7 +83,8 @@ def _read(
         beyond = [dof for dof, _ in pairs if size is not None and dof >= size]
         if beyond and size is not None:
             found = ", ".join(map(str, beyond))
-            table.fault(name, f"degrees of freedom from 0 to {size - 1}", found)
+            one_off = " (they are counted from 0)" if max(beyond) == size else ""
+            table.fault(name, f"degrees of freedom from 0 to {size - 1}{one_off}", found)
         elif not _selects(pairs):
             table.fault(name, "weights that do not cancel", describe(pairs))
         else:

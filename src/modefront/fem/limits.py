@@ -1,0 +1,167 @@
+r"""What elements cannot do: how thick, skew, distorted and curved they are, and what that costs.
+
+Shells are Kirchhoff's: transverse shear is left out. Of a bending wave with the wave number k, the
+eigenvalue is too great by the factor
+
+.. math:: 1 + \frac{D k^2}{\kappa G h} = 1 + \frac{h^2 k^2}{5 (1 - \nu)},
+
+with the thickness h and the shear factor 5/6. The waves are those of the highest measured
+frequency, :math:`k^2 = \omega \sqrt{\rho h / D}`, or of half a wave over the span, if these are
+shorter. Source: Mindlin 1951, doi:10.1115/1.4010217.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront._typing import Floats, Ints
+from modefront.fem.structure import Shells, Solids, Structure
+
+THICK = 0.02
+"""Relative error of eigenvalues by shear from which on it is warned of."""
+
+SKEW = 30.0
+"""Degrees between the lines through opposite midpoints of a quadrilateral and a right angle."""
+
+DISTORTED = 0.3
+"""Difference of the greatest and least volume at the corners of a brick, over the greatest."""
+
+CURVED = 1.0
+"""Square of the size of a triangle over radius and thickness, from which on it is too stiff."""
+
+CORNERS = np.array(
+    [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
+)
+"""Neighbours of each corner of a brick, in the order of a right-handed system."""
+
+
+@dataclass(frozen=True)
+class Thickness:
+    """Thickness of a group of shells beside its span.
+
+    Attributes
+    ----------
+    group : name
+    ratio : thickness over the span
+    span : lesser of the two extents of the group
+    shear : error of the eigenvalue over the square of the wave number
+    bending : square of the wave number over the circular frequency
+    """
+
+    group: str
+    ratio: float
+    span: float
+    shear: float
+    bending: float
+
+    def warning(self, frequency: float) -> str:
+        """Return the warning for modes up to a frequency in Hz; nothing where there is no need."""
+        k2 = max((np.pi / self.span) ** 2, 2 * np.pi * frequency * self.bending)
+        error = self.shear * k2
+        if error < THICK:
+            return ""
+        return (
+            f"shells of group '{self.group}' are {self.ratio:.2g} of their span thick, and waves "
+            f"are {2 * np.pi / np.sqrt(k2):.3g} long at {frequency:.4g} Hz: without shear, "
+            f"their stiffness is some {100 * error:.0f} % too great (frequencies "
+            f"{50 * error:.0f} %); use bricks, or expect that in E"
+        )
+
+
+@dataclass(frozen=True)
+class Limits:
+    """What the elements of a structure cannot do.
+
+    Attributes
+    ----------
+    thickness : of groups of shells
+    shapes : warnings on the shapes of elements
+    """
+
+    thickness: tuple[Thickness, ...] = ()
+    shapes: tuple[str, ...] = ()
+
+    def warnings(self, frequency: float) -> list[str]:
+        """Return what a user should know of modes up to a frequency in Hz."""
+        out = [each.warning(frequency) for each in self.thickness]
+        return [*filter(None, out), *self.shapes]
+
+
+def limits_of(structure: Structure, nodes: Floats) -> Limits:
+    """Return what the elements of a structure cannot do; its nodes (nodes, 3) are checked."""
+    thickness, shapes = [], []
+    for group in structure.groups:
+        cells = np.asarray(group.cells)
+        if isinstance(group, Shells):
+            thickness.append(_thickness(group, nodes[np.unique(cells)]))
+            shapes += _skew(group, nodes[cells]) if cells.shape[1] == 4 else []
+            shapes += _curved(group, cells, nodes) if cells.shape[1] == 3 else []
+        elif isinstance(group, Solids) and cells.shape[1] == 8:
+            shapes += _distorted(group, nodes[cells])
+    return Limits(tuple(thickness), tuple(shapes))
+
+
+def _thickness(group: Shells, X: Floats) -> Thickness:
+    extents = np.sort(np.linalg.svd(X - X.mean(axis=0), compute_uv=False))
+    share = extents[-2] / np.linalg.norm(extents) if len(extents) > 1 else 1.0
+    span = float(np.linalg.norm(np.ptp(X, axis=0)) * share)
+    h, material = group.thickness, group.material
+    D = material.E * h**3 / (12 * (1 - material.nu**2))
+    shear = h**2 / (5 * (1 - material.nu))
+    return Thickness(group.name, h / span, span, shear, float(np.sqrt(material.rho * h / D)))
+
+
+def _skew(group: Shells, X: Floats) -> list[str]:
+    """Return a warning where quadrilaterals X (elements, 4, 3) are skew."""
+    middle = (X + np.roll(X, -1, axis=1)) / 2
+    u, v = middle[:, 2] - middle[:, 0], middle[:, 3] - middle[:, 1]
+    cosine = np.einsum("ei,ei->e", u, v) / np.linalg.norm(u, axis=1) / np.linalg.norm(v, axis=1)
+    skew = np.degrees(np.arcsin(np.abs(cosine).clip(0, 1)))
+    if skew.max() < SKEW:
+        return []
+    return [
+        f"{int((skew >= SKEW).sum())} of {len(skew)} quadrilaterals of group '{group.name}' are "
+        f"skew by up to {skew.max():.0f}° (element {int(np.argmax(skew))}): expect frequencies of "
+        "plates 6 to 14 % off at 45° on a mesh of 12 x 12; refine, or mesh along the edges"
+    ]
+
+
+def _distorted(group: Solids, X: Floats) -> list[str]:
+    """Return a warning where bricks X (elements, 8, 3) are distorted."""
+    edges = X[:, CORNERS] - X[:, :, None]
+    volume = np.abs(np.linalg.det(edges))
+    distortion = 1 - volume.min(axis=1) / volume.max(axis=1)
+    if distortion.max() < DISTORTED:
+        return []
+    return [
+        f"{int((distortion >= DISTORTED).sum())} of {len(distortion)} bricks of group "
+        f"'{group.name}' are distorted, by up to {100 * distortion.max():.0f} % of the volume at "
+        f"their corners (element {int(np.argmax(distortion))}): expect bending frequencies 13 to "
+        "41 % off at 30 % on coarse meshes; refine, or take tetrahedra of 10 nodes"
+    ]
+
+
+def _curved(group: Shells, cells: Ints, nodes: Floats) -> list[str]:
+    """Return a warning where triangles are large beside radius and thickness of the shell."""
+    X = nodes[cells]
+    normal = np.cross(X[:, 1] - X[:, 0], X[:, 2] - X[:, 0])
+    size = np.sqrt(np.linalg.norm(normal, axis=1))
+    normal /= size[:, None] ** 2
+    edges = np.sort(np.concatenate([cells[:, [0, 1]], cells[:, [1, 2]], cells[:, [2, 0]]]), axis=1)
+    owner = np.tile(np.arange(len(cells)), 3)
+    order = np.lexsort(edges.T)
+    same = (edges[order][1:] == edges[order][:-1]).all(axis=1)
+    a, b = owner[order][:-1][same], owner[order][1:][same]
+    angle = np.arccos(np.abs(np.einsum("ei,ei->e", normal[a], normal[b])).clip(0, 1))
+    smooth = angle < np.pi / 4  # greater ones are folds
+    locking = angle * np.maximum(size[a], size[b]) / group.thickness
+    worst = float(locking[smooth].max(initial=0.0))
+    if worst < CURVED:
+        return []
+    return [
+        f"triangles of group '{group.name}' are up to {worst:.2g} times as large as radius and "
+        "thickness of the curved shell allow (size² / radius / thickness): expect them too stiff, "
+        "up to 20 times on coarse meshes; refine, or take quadrilaterals"
+    ]
