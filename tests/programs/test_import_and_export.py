@@ -22,6 +22,7 @@ from modefront.cli.main import cli
 from modefront.errors import InputError
 from modefront.exports.motion import node_motion
 from modefront.models.dofs import read_dofs
+from modefront.models.matrices import MatrixModel
 from modefront.programs import PROGRAMS
 from modefront.programs.base import JobOptions, whole
 from modefront.programs.mesh import read_mesh
@@ -120,6 +121,26 @@ def test_a_list_of_directions_makes_a_sensor_each(small: Path) -> None:
 
 
 LISTED = 'p = { node = 12, direction = ["z", "-y"] }'
+
+
+def test_an_imported_study_has_the_geometry_of_its_deck(small: Path) -> None:
+    model = load(small / "study.toml").problem.model
+    assert isinstance(model, MatrixModel)
+    geometry = model.geometry
+    assert geometry is not None
+    number = sorted({node for node, _ in labels()})
+    assert [number[k] for k in geometry.sensor_nodes] == [12, 3, 40, 7, 5]
+    assert geometry.sensor_directions.tolist() == [
+        *([0, 0, 1], [-1, 0, 0], [0, 0, 1], [0, 0.6, 0.8], [1, 0, 0]),
+    ]
+    assert {cells.type: cells.nodes.shape for cells in geometry.cells} == {
+        "quad": (1, 4),
+        "line": (1, 2),
+    }
+    shapes = np.random.default_rng(0).standard_normal((15, 2))
+    moved = geometry.displacement(shapes)
+    sensed = np.einsum("mkd,kd->km", moved[:, geometry.sensor_nodes], geometry.sensor_directions)
+    assert sensed == pytest.approx(model.selection @ shapes)
 
 
 @pytest.mark.parametrize(

@@ -322,6 +322,7 @@ def test_no_file_raises_anything_else(tmp_path: Path, program: str, content: byt
     suffixes = ".op4 .pch .full _K.npz _M.npz _dofs.csv _STIF1.mtx _MASS1.mtx .sti .mas .dof .dat"
     for suffix in f"{suffixes} .inp _K.mmf _M.mmf".split() if content is not None else ():
         (tmp_path / f"a{suffix}").write_bytes(content or b"")
-    for name in ("a", "a.full", "a.op4", "a.pch", "none/a"):
+    (tmp_path / "folder.op4").mkdir()
+    for name in ("a", "a.full", "a.op4", "a.pch", "none/a", "folder.op4", "folder"):
         with pytest.raises(InputError):
             read(program, tmp_path / name)

@@ -14,6 +14,7 @@ import scipy.sparse
 from modefront._typing import Floats, Ints
 from modefront.errors import Fault, InputError
 from modefront.fem.dofs import DIRECTIONS
+from modefront.inputs import file_size
 
 COLUMNS = ("node", "direction", "weight")
 """Header of a file of degrees of freedom."""
@@ -166,11 +167,10 @@ def read_dofs(path: Path) -> DofTable:
 
     Raises InputError for a file that is not such a table.
     """
+    file_size(path, "a table of degrees of freedom")
     try:
         with path.open(encoding="utf-8-sig", newline="") as stream:
             header, *rows = list(csv.reader(stream))
-    except FileNotFoundError:
-        raise _wrong(path, "file", "a table of degrees of freedom", "no such file") from None
     except (OSError, ValueError, csv.Error) as error:
         raise _wrong(path, "file", "CSV in UTF-8", str(error)) from None
     names = tuple(name.strip() for name in header)

@@ -11,6 +11,7 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import Fault, InputError
+from modefront.inputs import file_size
 from modefront.models.dofs import DofTable
 from modefront.programs.mesh import ProgramMesh
 
@@ -195,12 +196,6 @@ def existing(path: Path, expected: str, advice: str) -> Path:
 
     Raises InputError, which says what to do, where it is not.
     """
-    try:
-        if path.stat().st_size > 0:
-            return path
-        found = "an empty one"
-    except FileNotFoundError:
-        found = "no such file"
-    except OSError as error:
-        found = str(error)
-    raise wrong(path, f"{expected} ({advice})", found)
+    if file_size(path, f"{expected} ({advice})") > 0:
+        return path
+    raise wrong(path, f"{expected} ({advice})", "an empty one")

@@ -117,6 +117,8 @@ def read_bulk(path: Path) -> Bulk:
 
     Raises OSError where it cannot be read.
     """
+    if not path.is_file():
+        raise FileNotFoundError(f"no file {path.name}")
     text = path.read_text(encoding="utf-8", errors="replace")
     control, bulk = _parted(text)
     content = _Content()

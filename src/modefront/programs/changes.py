@@ -12,6 +12,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from modefront.errors import Fault, InputError
+from modefront.inputs import file_size
 
 NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
 """A number in a deck."""
@@ -116,6 +117,7 @@ def write_changes(path: Path, found: Sequence[Change]) -> None:
 
 def read_changes(path: Path) -> list[Change]:
     """Return the changes in a file; raises InputError for any other file."""
+    file_size(path, "changes of a deck")
     try:
         return [
             Change(

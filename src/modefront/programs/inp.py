@@ -72,6 +72,8 @@ def read_deck(path: Path) -> Deck:
     Raises OSError where it cannot be read.
     """
     content = _Content()
+    if not path.is_file():
+        raise FileNotFoundError(f"no file {path.name}")
     for keyword, options, rows in _blocks(path):
         if keyword == "NODE":
             _nodes(content, options, rows)
@@ -99,6 +101,8 @@ def read_deck(path: Path) -> Deck:
 def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], list[list[str]]]]:
     """Yield keyword, options and lines of numbers of every block, those of included files too."""
     keyword, options, rows = "", dict[str, str](), list[list[str]]()
+    if not path.is_file():  # what a deck includes may be elsewhere
+        return
     with path.open(encoding="utf-8", errors="replace") as file:
         for line in file:
             text = line.strip()

@@ -11,6 +11,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import Fault, InputError
+from modefront.inputs import file_size
 
 CORNERS: Mapping[str, int] = {
     "vertex": 1,
@@ -66,6 +67,7 @@ def read_mesh(path: Path) -> ProgramMesh:
 
     Raises InputError for any other file.
     """
+    file_size(path, "nodes and elements (mesh.npz)")
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
             arrays = {name: file[name] for name in file.files}
@@ -78,8 +80,6 @@ def read_mesh(path: Path) -> ProgramMesh:
         if not right:
             raise ValueError("arrays that do not belong together")
         return ProgramMesh(number.astype(np.intp), coordinates.astype(float), cells)
-    except FileNotFoundError:
-        found = "no such file"
     except Exception as error:  # what NumPy raises for a damaged file is not documented
         found = str(error) or type(error).__name__
     raise InputError(Fault(str(path), "file", "nodes and elements (mesh.npz)", found))

@@ -170,10 +170,11 @@ class _Columns:
 
     def _strings(self, body: np.ndarray) -> np.ndarray | None:
         """Return the values of all strings of a column; None where they do not fill it."""
-        words: list[int] = body.view(self._integer).tolist()
-        keep = np.ones(len(words), bool)
+        native = body.view(self._integer).astype(f"=i{self._word}")
+        words = native.data  # its items are Python's integers, made only where needed
         at, end = 0, len(words)
         header = 2 if self._big else 1
+        headers: list[int] = []
         while at < end:
             if self._big and at + 1 < end:
                 length, row = words[at] - 1, words[at + 1]
@@ -182,10 +183,13 @@ class _Columns:
                 row = words[at] - STRING * (length + 1)
             if length <= 0 or row <= 0 or at + header + length > end or length % self._per_value:
                 return None
-            keep[at : at + header] = False
+            headers.append(at)
             self._first.append(row)
             self._length.append(length // self._per_value)
             at += header + length
+        keep = np.ones(len(words), bool)
+        for k in range(header):
+            keep[np.array(headers, dtype=np.intp) + k] = False
         return body.reshape(-1, self._word)[keep].reshape(-1).view(self._real)
 
     def entries(self) -> Entries:
