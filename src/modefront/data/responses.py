@@ -68,7 +68,11 @@ class FrequencyResponses:
 
     def within(self, low: float, high: float) -> FrequencyResponses:
         """Return the lines of a band in Hz, its limits included, without the line at zero."""
-        kept = (self.frequency >= low) & (self.frequency <= high) & (self.frequency > 0)
+        f = self.frequency
+        return self.lines((f >= low) & (f <= high) & (f > 0))
+
+    def lines(self, kept: Bools) -> FrequencyResponses:
+        """Return the lines that are kept, (lines,)."""
         return replace(
             self,
             frequency=self.frequency[kept],

@@ -99,8 +99,10 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
 
     ``H`` is (references, responses, lines) without NaN; ``weight`` (responses, lines).
     """
-    lags = np.arange(-highest, highest + 1)
-    powers = z[:, None] ** lags
+    copies = np.broadcast_to(z[:, None], (len(z), highest))
+    positive: Complexes = np.multiply.accumulate(copies, axis=1)
+    negative = positive[:, ::-1].conj()  # |z| = 1
+    powers: Complexes = np.hstack([negative, np.ones((len(z), 1)), positive])
     first = (weight * H) @ powers
     second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True) @ powers
     return Moments(weight @ powers, first.transpose(1, 0, 2), second)

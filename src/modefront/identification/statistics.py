@@ -240,7 +240,9 @@ def _estimate(
 
 def _inverse(A: Floats) -> Floats:
     """Return the inverse of a symmetric matrix that may be nearly singular: large, not wrong."""
-    scale = 1 / np.sqrt(np.maximum(A.diagonal(), np.finfo(float).tiny))
+    diagonal = A.diagonal()
+    least = 1e-30 * diagonal.max(initial=0.0) + np.finfo(float).tiny
+    scale = 1 / np.sqrt(np.maximum(diagonal, least))
     value, vector = np.linalg.eigh(A * np.outer(scale, scale))
     floored = np.maximum(value, 1e-13)
     out: Floats = ((vector / floored) @ vector.T) * np.outer(scale, scale)
