@@ -133,7 +133,7 @@ def main(runs: int) -> None:
     print(f"{runs} runs a case; root mean squares of errors, CPU seconds a run")
     print("structure    noise  program         frequency   damping    shapes  CPU s")
     for name, structure in (("three-story", three_story()), ("eight", eight())):
-        H = structure.accelerances()
+        H = structure.accelerances(F)
         for level in (0.01, 0.05):
             for program, identified in methods.items():
                 squares, spent = [], 0.0

@@ -7,7 +7,7 @@ same pair again is another blow. Directions with a minus sign turn the function 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -34,6 +34,7 @@ class Channel:
     H : (lines,) complex
     quantity : what it is; empty where the file does not say
     coherence : (lines,), or None
+    variance : (lines,) of the mean, where it is known, or None
     """
 
     file: str
@@ -44,6 +45,7 @@ class Channel:
     H: Complexes
     quantity: str = ""
     coherence: Floats | None = None
+    variance: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -74,12 +76,14 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
     blows = max(map(len, groups.values()))
     frequency = channels[0].frequency
     H = np.full((blows, len(references), len(responses), len(frequency)), np.nan, complex)
-    coherence = np.full(H.shape[1:], np.nan)
+    coherence, variance = np.full(H.shape[1:], np.nan), np.full(H.shape[1:], np.nan)
     for (j, i), group in groups.items():
         for b, channel in enumerate(group):
             H[b, j, i] = channel.H
             if channel.coherence is not None:
                 coherence[j, i] = channel.coherence
+            if channel.variance is not None:
+                variance[j, i] = channel.variance
     dead = ~(np.abs(np.nan_to_num(H)) > 0).any(axis=(0, 3))
     H[:, dead] = np.nan
     warnings = _warnings(name, H, frequency, references, responses, groups, dead)
@@ -90,15 +94,13 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
         references=references,
         responses=responses,
         coherence=coherence if blows == 1 and np.isfinite(coherence).any() else None,
+        variance=variance if blows == 1 and np.isfinite(variance).any() else None,
     )
     return Assembled(data, tuple(warnings))
 
 
 def _turned(channel: Channel) -> Channel:
-    return Channel(
-        *(channel.file, channel.place, channel.response, channel.reference),
-        *(channel.frequency, channel.H, channel.quantity, channel.coherence),
-    )
+    return replace(channel, reference=channel.response, response=channel.reference)
 
 
 def _check_axes(channels: Sequence[Channel]) -> None:

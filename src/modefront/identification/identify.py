@@ -142,14 +142,23 @@ def identify(
 
 
 def weighting(data: FrequencyResponses) -> Weighting:
-    """Return what the variance is from: given, given up to a factor, or residuals alone."""
+    """Return what the variance is from: given, given up to a factor, or residuals alone.
+
+    Where it is unknown for one of the functions that were measured, it is that of the residuals for
+    all of them, so that none is left out.
+    """
     if data.variance is None:
+        return "residuals"
+    known: Bools = np.any(data.measured & np.isfinite(data.variance), axis=2)
+    if not known[data.measured.any(axis=2)].all():
         return "residuals"
     return "scaled" if data.scaled else "given"
 
 
 def _known_variance(data: FrequencyResponses) -> Floats | None:
-    return None if data.variance is None else fitted_variance(data.variance, data.H)
+    if data.variance is None or weighting(data) == "residuals":
+        return None
+    return fitted_variance(data.variance, data.H)
 
 
 def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
@@ -204,8 +213,10 @@ def _diagram(
         orders = sorted(set(np.linspace(2, most, min(MOST_ORDERS, most - 1)).astype(int).tolist()))
     z = lscf.generalised_frequency(omega, omega[0], rate)
     sums = lscf.moments(H, weight, z, max(orders))
-    all_poles = lscf.poles(sums, orders, omega[0], rate)
-    return stabilisation_diagram(all_poles, H, omega, ORDERS[data.quantity])
+    windowed = lscf.poles(sums, orders, omega[0], rate)
+    estimates = [lscf.without_decay(poles, data.decay) for poles in windowed]
+    s: Complexes = np.asarray(1j * omega + data.decay, complex)
+    return stabilisation_diagram(estimates, H, s, ORDERS[data.quantity])
 
 
 def _select(
@@ -271,14 +282,14 @@ def _result(
 ) -> Identification:
     misfit = residuals(task, fit)
     estimates = mode_estimates(task, fit, misfit, omega)
-    reasons = _reasons(data, task, fit, estimates, diagram, count is not None)
+    reasons = _reasons(data, task, fit, omega, estimates, diagram, count is not None)
     kept = [one for one, why in zip(estimates, reasons, strict=True) if not why]
     rejected = [
         Rejected(float(one.frequency), float(one.damping), why)
         for one, why in zip(estimates, reasons, strict=True)
         if why
     ]
-    rejected += _passed_over(clusters, estimates)
+    rejected += _passed_over(clusters, fit.model.lam * omega)
     synthesised = modal_model.synthesise(task, fit.model) * size
     variance = np.where(
         task.weight > 0, size**2 / np.where(task.weight > 0, task.weight, 1), np.nan
@@ -321,6 +332,7 @@ def _reasons(
     data: FrequencyResponses,
     task: Problem,
     fit: Fit,
+    omega: float,
     estimates: Sequence[ModeEstimate],
     diagram: StabilisationDiagram,
     given: bool,
@@ -330,7 +342,7 @@ def _reasons(
     spacing = float(np.median(np.diff(data.frequency)))
     strength = selection.gains(task, fit)
     doubled = selection.doubles(fit.model.lam, fit.model.phi, strength)
-    shares = support(diagram, np.array([mode.pole for mode in estimates]), strength)
+    shares = support(diagram, fit.model.lam * omega, strength)
     out = []
     for one, double, share, seen in zip(
         estimates, doubled, shares, _visibility(task, fit), strict=True
@@ -364,7 +376,7 @@ def _visibility(task: Problem, fit: Fit) -> Floats:
     out = np.zeros(len(model))
     if not len(model):
         return out
-    resonances = replace(task, s=1j * np.abs(model.lam), powers=())
+    resonances = replace(task, s=1j * np.abs(model.lam) + task.s[0].real, powers=())
     E = modal_model.primitives(resonances, model.lam, squares=False)
     a = model.L.T[:, None, :] * model.phi.T[None]  # (references, responses, modes)
     measured = task.weight.any(axis=2)
@@ -375,17 +387,15 @@ def _visibility(task: Problem, fit: Fit) -> Floats:
     return out
 
 
-def _passed_over(clusters: Sequence[Cluster], estimates: Sequence[ModeEstimate]) -> list[Rejected]:
-    """Return the clusters that the likelihood did not need."""
+def _passed_over(clusters: Sequence[Cluster], poles: Complexes) -> list[Rejected]:
+    """Return the clusters that the likelihood did not need, none of the poles being near."""
     out = []
-    for one in clusters:
-        near = any(
-            abs(one.pole - mode.pole) < max(0.02 * abs(one.pole), -mode.pole.real)
-            for mode in estimates
-        )
-        if one.size >= selection.LEAST_ORDERS and not near:
-            frequency = abs(one.pole) / (2 * np.pi)
-            out.append(
-                Rejected(frequency, -one.pole.real / abs(one.pole), "the data do not need it")
+    for cluster in clusters:
+        reach = np.maximum(0.02 * abs(cluster.pole), -poles.real)
+        if cluster.size >= selection.LEAST_ORDERS and not (abs(cluster.pole - poles) < reach).any():
+            frequency, damping = (
+                abs(cluster.pole) / (2 * np.pi),
+                -cluster.pole.real / abs(cluster.pole),
             )
+            out.append(Rejected(frequency, damping, "the data do not need it"))
     return out

@@ -6,10 +6,11 @@ The functions of one data set are (Ewins, *Modal Testing*, 2nd ed., 2000, sec. 2
           + \frac{L_{rj}^*\varphi_{ri}^*}{s-\lambda_r^*}\Bigr)
           + \sum_k R_{kji}\,s^{k}\Bigr],\qquad s = \mathrm{i}\omega,
 
-with q = 0, 1, 2 for receptance, mobility, accelerance, and real residuals R of modes outside the
-band: k = -2 and 0 are the lower and the upper one, further powers their next terms. All
-references share poles and shapes. With errors of H that are independent, complex normal and of
-variance v, the maximum of the likelihood is the minimum of
+(of records with an exponential window :math:`e^{-dt}`, at :math:`s = \mathrm{i}\omega + d`, so that
+poles are those without it), with q = 0, 1, 2 for receptance, mobility, accelerance, and real
+residuals R of modes outside the band: k = -2 and 0 are the lower and the upper one, further powers
+their next terms. All references share poles and shapes. With errors of H that are independent,
+complex normal and of variance v, the maximum of the likelihood is the minimum of
 
 .. math:: J = \sum_{jik} \frac{|H_{ji}(\omega_k) - \hat H_{ji}(\omega_k)|^2}{v_{jik}}
             = \|y - \Phi(\alpha) c\|^2 .
@@ -86,11 +87,13 @@ class Problem:
 
     Attributes
     ----------
-    s : (lines,) i f / f_max
+    s : (lines,) (i omega + decay) / omega_max
     H : (references, responses, lines), 0 where not measured
     weight : of the shape of ``H``, 1/v, 0 where not measured
     order : q
     powers : powers of s of the residual terms
+    correlation : sum of the correlations of the noise of a line with that of all lines; 1 where
+        lines are independent
     """
 
     s: Complexes
@@ -98,6 +101,7 @@ class Problem:
     weight: Floats
     order: int
     powers: tuple[int, ...]
+    correlation: float = 1.0
 
     @cached_property
     def count(self) -> int:
@@ -167,10 +171,28 @@ def problem(data: FrequencyResponses, variance: Floats, level: int) -> tuple[Pro
     used = data.measured & np.isfinite(variance) & (variance > 0)
     weight = np.zeros(data.H.shape)
     weight[used] = size**2 / variance[used]
-    s = 2j * np.pi * data.frequency / omega
+    s = (2j * np.pi * data.frequency + data.decay) / omega
     H = np.zeros(data.H.shape, complex)
     H[used] = data.H[used] / size
-    return Problem(s, H, weight, ORDERS[data.quantity], RESIDUALS[level]), omega, size
+    correlation = windowed_correlation(data.frequency, data.decay)
+    order = ORDERS[data.quantity]
+    return Problem(s, H, weight, order, RESIDUALS[level], correlation), omega, size
+
+
+def windowed_correlation(frequency: Floats, decay: float) -> float:
+    r"""Return the sum of the correlations of a line with all others after an exponential window.
+
+    White noise of a record of length T with the window :math:`w = e^{-dt}` has the correlations
+    :math:`\rho_k = \int w^2 e^{-2\pi\mathrm{i}kt/T}\,\mathrm{d}t / \int w^2\,\mathrm{d}t` between
+    lines; their sum is :math:`T d \coth(T d)`.
+
+    >>> round(windowed_correlation(np.arange(0.0, 9.0, 0.5), 2.0), 3)
+    4.003
+    """
+    if not decay:
+        return 1.0
+    x = decay / float(np.median(np.diff(frequency)))
+    return x / float(np.tanh(x))
 
 
 def primitives(task: Problem, lam: Complexes, squares: bool = True) -> Complexes:

@@ -56,10 +56,13 @@ MOST_EVALUATIONS = 12
 
 
 def noise_level(task: Problem, fit: Fit) -> float:
-    """Return chi^2, the cost over the degrees of freedom; at least 1, the variance of the data."""
+    """Return chi^2, the cost over the degrees of freedom; at least 1, the variance of the data.
+
+    Where the noise of neighbouring lines is correlated, as much less is known.
+    """
     n_out = int(np.sum(task.weight.any(axis=(0, 2))))
     freedom = max(task.count - n_out * fit.inverse.shape[1] - len(fit.gradient), 1)
-    return max(2 * fit.cost / freedom, 1.0)
+    return max(2 * fit.cost / freedom, 1.0) * task.correlation
 
 
 def price(task: Problem) -> float:
