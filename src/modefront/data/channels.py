@@ -12,7 +12,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront._typing import Bools, Complexes, Floats
-from modefront.data.responses import FrequencyResponses, frequency_responses
+from modefront.data.responses import ORDERS, FrequencyResponses, frequency_responses
 from modefront.errors import Fault, InputError
 
 SAME_LINES = 1e-6
@@ -87,6 +87,7 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
     dead = ~(np.abs(np.nan_to_num(H)) > 0).any(axis=(0, 3))
     H[:, dead] = np.nan
     warnings = _warnings(name, H, frequency, references, responses, groups, dead)
+    warnings += _driving_points(H, frequency, quantity, groups)
     data = frequency_responses(
         frequency,
         H if blows > 1 else H[0],
@@ -187,6 +188,28 @@ def _warnings(
                 "functions are: check its unit"
             )
     return out + _reciprocity(name, mean, references, responses)
+
+
+def _driving_points(
+    H: Complexes,
+    frequency: Floats,
+    quantity: str,
+    groups: dict[tuple[int, int], list[Channel]],
+) -> list[str]:
+    """Return where a driving point gives energy back: its mobility has a negative real part."""
+    out = []
+    lines = frequency > 0
+    s = 2j * np.pi * frequency[lines]
+    for (j, i), (first, *_) in groups.items():
+        if first.reference != first.response:
+            continue
+        power = (H[0, j, i, lines] * s ** (1 - ORDERS[quantity])).real
+        if np.isfinite(power).all() and power.sum() < -0.5 * np.abs(power).sum():
+            out.append(
+                f"{first.file}: {first.place}: the driving point has the wrong sign: check the "
+                "directions of hammer and sensor, and the quantity"
+            )
+    return out
 
 
 def _reciprocity(
