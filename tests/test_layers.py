@@ -12,16 +12,20 @@ import pytest
 import modefront
 
 LAYERS = (
-    ("_typing", "_version", "errors", "variables"),
+    ("_typing", "_version", "text"),
+    ("errors", "variables"),
+    ("inputs", "hdf5", "isolated"),
     ("toml", "linalg", "response", "work"),
     ("options",),
     ("data", "fem", "modes", "reliability", "solvers"),
     ("fronts", "identification", "pairing"),
     ("models",),
+    ("programs",),
     ("residuals",),
     ("identifiability", "predictions", "uncertainty"),
-    ("analysis",),
+    ("analysis", "diagnosis"),
     ("results",),
+    ("exports",),
     ("study",),
     ("cli",),
     ("__init__", "__main__"),

@@ -3,8 +3,49 @@
 from __future__ import annotations
 
 import difflib
-from collections.abc import Iterable
+import errno
+from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
+
+from modefront.text import NAME, clean, one_line, shortened
+
+MOST_LINES = 20
+"""Lines of a message, at most."""
+
+MOST_CHARACTERS = 2000
+"""Characters of a message, at most."""
+
+LONGEST = {"file": 300, "place": 240, "expected": 480, "found": 480}
+"""Characters of each part of a fault that a message shows."""
+
+SYSTEM = {
+    errno.ENOENT: "no such file or folder",
+    errno.EACCES: "no permission: change that of the file or of its folder",
+    errno.EPERM: "no permission: the system does not allow it",
+    errno.EISDIR: "a folder",
+    errno.ENOTDIR: "a file where the path needs a folder",
+    errno.EEXIST: "a file of this name, which is in the way",
+    errno.ENAMETOOLONG: "a name that is too long for this drive: choose a shorter one",
+    errno.ELOOP: "a link that leads back to itself",
+    errno.ENOSPC: "no space left on the drive: free some, then run again",
+    errno.EDQUOT: "no space left in the quota of the drive: free some, then run again",
+    errno.EFBIG: "a file that is too large for this drive",
+    errno.EROFS: "a drive that is read-only: choose another folder",
+    errno.EIO: "a failure of the drive: try again, and look after the drive",
+    errno.ESTALE: "a file that the network drive has lost: try again",
+    errno.EBUSY: "a file that another program holds: close that program",
+    errno.ETXTBSY: "a file that another program runs: close that program",
+    errno.EMFILE: "too many open files: raise the limit, ulimit -n",
+    errno.ENFILE: "too many open files on this machine: close some programs",
+    errno.ENOMEM: "too little memory: close other programs, or use a smaller file",
+    errno.EINVAL: "a name or a request that the system refuses: try another name or drive",
+    errno.ENXIO: "a device that is not there",
+    errno.ENODEV: "a device that does not allow it",
+    errno.ETIMEDOUT: "a network drive that does not answer: try again",
+    errno.ENOTEMPTY: "a folder that is not empty",
+    errno.EXDEV: "another drive: choose a folder on the same one",
+}
+"""Errors of the system in words, with what to do."""
 
 
 @dataclass(frozen=True)
@@ -20,8 +61,10 @@ class Fault:
     found: str
 
     def __str__(self) -> str:
-        where = "".join(f"{part}: " for part in (self.file, self.place) if part)
-        return f"{where}expected {self.expected}, found {self.found}"
+        """Return the fault on one line; names may come from anywhere, and be of any length."""
+        shown = {name: clean(getattr(self, name), most) for name, most in LONGEST.items()}
+        where = "".join(f"{part}: " for part in (shown["file"], shown["place"]) if part)
+        return f"{where}expected {shown['expected']}, found {shown['found']}"
 
 
 class InputError(ValueError):
@@ -29,7 +72,27 @@ class InputError(ValueError):
 
     def __init__(self, faults: Fault | Iterable[Fault]) -> None:
         self.faults = (faults,) if isinstance(faults, Fault) else tuple(faults)
-        super().__init__("\n".join(map(str, self.faults)))
+        super().__init__(_message(self.faults))
+
+    def __reduce__(self) -> tuple[type[InputError], tuple[tuple[Fault, ...]]]:
+        """Return how the error is made again, in another process."""
+        return type(self), (self.faults,)
+
+
+def _message(faults: Sequence[Fault]) -> str:
+    """Return the faults, a line each, as many as a message holds, and how many more there are."""
+    lines: list[str] = []
+    length = 0
+    for fault in faults[:MOST_LINES]:
+        line = str(fault)
+        length += len(line) + 1
+        if lines and length > MOST_CHARACTERS - 40:
+            break
+        lines.append(line)
+    if len(lines) < len(faults):
+        lines = lines[: MOST_LINES - 1]
+        lines.append(f"and {len(faults) - len(lines)} more that are wrong")
+    return "\n".join(lines)
 
 
 def wrong(option: str, expected: str, found: object) -> InputError:
@@ -43,6 +106,30 @@ def refuse(faults: Iterable[Fault]) -> None:
         raise InputError(found)
 
 
+def reason(error: BaseException) -> str:
+    r"""Return why something failed, in words and on one line, with what to do where that is known.
+
+    >>> reason(FileNotFoundError(errno.ENOENT, "No such file or directory", "K.mtx"))
+    'no such file or folder'
+    >>> reason(UnicodeDecodeError("utf-8", b"a\xff", 1, 2, "invalid start byte"))
+    'the byte 0xff at position 1, which is not UTF-8: save the file in UTF-8'
+    """
+    if isinstance(error, UnicodeDecodeError):
+        code = error.encoding.upper()
+        byte = f"the byte {error.object[error.start]:#04x} at position {error.start}"
+        return f"{byte}, which is not {code}: save the file in {code}"
+    if isinstance(error, UnicodeEncodeError):
+        return f"characters that {error.encoding} lacks"
+    if isinstance(error, MemoryError):
+        return "more than fits into the memory: close other programs, or use a smaller file"
+    if isinstance(error, RecursionError):
+        return "too many levels, one in another"
+    if isinstance(error, OSError) and error.errno is not None:
+        known = SYSTEM.get(error.errno)
+        return known or one_line(error.strerror or f"error {error.errno} of the system", NAME)
+    return one_line(error, LONGEST["found"]) or type(error).__name__
+
+
 class ModelError(ValueError):
     """A model cannot be evaluated at the given parameters."""
 
@@ -53,5 +140,7 @@ class UnfinishedError(RuntimeError):
 
 def suggestion(name: str, known: Iterable[str]) -> str:
     """Return ``'name'`` with the known name that it resembles, for a message."""
+    if len(name) > NAME:  # comparing takes the square of the length
+        return f"{shortened(name, NAME)!r}"
     close = difflib.get_close_matches(name, list(known), n=1, cutoff=0.5)
-    return f"{name!r}" + (f" (did you mean '{close[0]}'?)" if close else "")
+    return f"{name!r}" + (f" (did you mean '{shortened(close[0], NAME)}'?)" if close else "")

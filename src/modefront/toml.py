@@ -9,9 +9,13 @@ from pathlib import Path
 from typing import Any
 
 from modefront.errors import Fault, suggestion
+from modefront.text import NAME, clean
 
 LARGEST = 1e100
 """Greatest number that a file may hold."""
+
+SUGGESTED = 20
+"""Unknown keys of a table for which a known one is sought."""
 
 SHORT = 6
 """Longest list that a message shows item by item."""
@@ -49,6 +53,7 @@ class Table:
     faults : all that is wrong with the file, shared by its tables
     asked : keys that were read or are known
     files : paths of the files that the tables name, shared by them; see `path`
+    notes : records of what was found beside faults, shared by the tables
     """
 
     file: str
@@ -57,6 +62,7 @@ class Table:
     faults: list[Fault]
     asked: list[str] = field(default_factory=list)
     files: list[Path] = field(default_factory=list)
+    notes: list[object] = field(default_factory=list)
 
     def fault(self, key: str, expected: str, found: str) -> None:
         """Note that something is wrong; an empty key means the table itself."""
@@ -135,7 +141,7 @@ class Table:
         if value is None:
             return None
         place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
-        return Table(self.file, place, value, self.faults, files=self.files)
+        return Table(self.file, place, value, self.faults, files=self.files, notes=self.notes)
 
     def tables(self, key: str, required: bool) -> list[Table]:
         """Return the tables of a list, such as ``[[parameter]]``."""
@@ -149,16 +155,19 @@ class Table:
         path = f"{self.place.strip('[]')}.{key}" if self.place else key
         return [
             Table(
-                self.file, f"[[{path}]] {i + 1}{_named(item)}", item, self.faults, files=self.files
+                *(self.file, f"[[{path}]] {i + 1}{_named(item)}", item, self.faults),
+                files=self.files,
+                notes=self.notes,
             )
             for i, item in enumerate(value or [])
         ]
 
     def close(self) -> None:
         """Note every key that nobody has asked for."""
-        for key in self.values:
-            if key not in self.asked:
-                self.fault("", "a known key", suggestion(key, self.asked))
+        known = set(self.asked)
+        for number, key in enumerate(key for key in self.values if key not in known):
+            found = suggestion(key, self.asked) if number < SUGGESTED else repr(clean(key, NAME))
+            self.fault("", "a known key", found)
 
 
 def is_number(value: object) -> bool:

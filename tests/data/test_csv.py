@@ -133,3 +133,35 @@ def test_arrays_make_the_same_data_as_a_file(tmp_path: Path) -> None:
         np.testing.assert_array_equal(getattr(made, name), getattr(read_data, name))
     with pytest.raises(ValueError, match="expected shapes at 3 sensors, found 2"):
         modal_data(np.ones(1), np.ones((1, 2)), ("a", "b", "c"))
+
+
+@pytest.mark.parametrize("separator", [",", ";", "\t"])
+def test_columns_are_separated_as_spreadsheets_do(separator: str, tmp_path: Path) -> None:
+    text = "\ufeffset,mode,frequency,low,top\r\na,1,4.5,1,-2e-1\r\n".replace(",", separator)
+    data = read(tmp_path, text)
+    np.testing.assert_array_equal(data.frequency, [[4.5]])
+    np.testing.assert_array_equal(data.damping, [[nan]])
+    np.testing.assert_array_equal(data.shape, [[[1.0, -0.2]]])
+
+
+@pytest.mark.parametrize("separator", [";", "\t"])
+def test_decimal_commas_and_columns_left_out(separator: str, tmp_path: Path) -> None:
+    text = ";;;\nmode;frequency;low;top\n1;4,5;,5;-0,2\n2;11,0;-1,5e0;\n".replace(";", separator)
+    data = read(tmp_path, text)
+    assert data.sets == ("1",)
+    np.testing.assert_array_equal(data.frequency, [[4.5, 11.0]])
+    np.testing.assert_array_equal(data.shape, [[[0.5, -0.2], [-1.5, nan]]])
+
+
+@pytest.mark.parametrize(
+    ("text", "says"),
+    [
+        ("mode;frequency;low;top\n1;1.234,5;1;2\n", "a finite number or an empty field"),
+        ("mode;frequency;low;top\n1;1,2,3;1;2\n", "a finite number or an empty field"),
+        ("mode,frequency,low,top\n1,4,1,2\n1,5,1,2\n", "or a column 'set' that tells data sets"),
+        ("mode,frequency,damping,low,top\n1,4,1.5,1,2\n", "if 1.5 % is meant: 0.015"),
+    ],
+)
+def test_numbers_that_are_none_and_modes_twice(text: str, says: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match=says):
+        read(tmp_path, text)

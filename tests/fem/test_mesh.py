@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable
 from pathlib import Path
 
@@ -11,6 +12,7 @@ from structures import STEEL, frequencies
 
 from modefront import fem
 from modefront.fem.mesh import read_mesh
+from modefront.isolated import IsolatedError, isolated
 
 meshio = pytest.importorskip("meshio")
 
@@ -107,3 +109,48 @@ def test_second_order_tetrahedra_keep_their_node_order(tmp_path: Path) -> None:
         mesh = read_mesh(path)
         (found,) = mesh.cells_of("all", "solid")
         assert np.array_equal(found, cells)
+
+
+INCLUDING = [
+    ("a.inp", "*HEADING\nplate\n*include, input=secret.inp\n", "line 3: \\*include"),
+    ("a.inp", "*NODE, NSET=all, INPUT=secret.txt\n", "line 1: \\*NODE"),
+    ("a.bdf", "SOL 103\nINCLUDE 'secret.bdf'\nBEGIN BULK\n", "line 2: INCLUDE"),
+    ("a.xdmf", "<Xdmf><DataItem>secret.h5:/x</DataItem></Xdmf>", "other files"),
+    ("a.msh", "\x89HDF\r\n\x1a\n", "HDF5, which may refer to other files"),
+]
+
+
+@pytest.mark.parametrize(("name", "content", "says"), INCLUDING)
+def test_a_mesh_is_one_file(name: str, content: str, says: str, tmp_path: Path) -> None:
+    (tmp_path / name).write_bytes(content.encode("latin-1"))
+    with pytest.raises(fem.FemError, match=f"a mesh that is one file, found .*{says}"):
+        read_mesh(tmp_path / name)
+
+
+def test_files_that_would_be_read_without_an_end(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    os.mkfifo(tmp_path / "a.ply")
+    with pytest.raises(fem.FemError, match="expected a mesh, found a pipe"):
+        read_mesh(tmp_path / "a.ply")
+    for size, says in ((10**10, "up to 2000 MB, found 10000 MB"), (10**9, "a file with holes")):
+        with (tmp_path / "b.ply").open("wb") as stream:
+            stream.write(b"ply\nformat ascii 1.0\n")
+            stream.truncate(size)
+        with pytest.raises(fem.FemError, match=says):
+            read_mesh(tmp_path / "b.ply")
+    monkeypatch.setattr("modefront.fem.mesh.SECONDS", 3.0)
+    (tmp_path / "c.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n")
+    with pytest.raises(fem.FemError, match="expected a mesh that meshio can read, found "):
+        read_mesh(tmp_path / "c.ply")
+
+
+def test_a_reader_that_fails_takes_no_other_process_with_it(tmp_path: Path) -> None:
+    (tmp_path / "a.txt").write_text("text")
+    for function, says in (
+        ("os:abort", "takes no arguments"),
+        ("os:nothing", "nothing"),
+        ("time:sleep", "float|integer"),
+    ):
+        with pytest.raises(IsolatedError, match=says):
+            isolated(function, tmp_path / "a.txt", 60.0, 4 * 10**9)

@@ -12,7 +12,8 @@ import scipy.sparse
 
 import modefront as mf
 from modefront.identifiability.combinations import NONE, combinations
-from modefront.study.check import derivative_error, determined
+from modefront.study.check import determined
+from modefront.study.derivatives import derivative_error
 
 FILE = Path(__file__).parents[3] / "shared" / "data" / "smu" / "story18_exp.npz"
 STORIES = 18

@@ -11,7 +11,7 @@ import scipy.sparse
 from smu import FOLDER, Structure, frequencies_and_shapes, read
 
 from modefront import ModalData, Pairing
-from modefront.cli.show import remarks
+from modefront.cli.remarks import remarks
 from modefront.linalg.affine import SparseAffine
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import begin

@@ -14,7 +14,7 @@ from modefront.fronts.options import Pareto
 from modefront.solvers.archive import Archive
 from modefront.solvers.explore import Search
 from modefront.work.costs import Costs
-from modefront.work.serial import Serial
+from modefront.work.run import Run
 from modefront.work.store import Store
 
 
@@ -59,7 +59,7 @@ def found(folder: Path) -> Front:
     problem = box(disconnected, [0, -1], [1, 1])
     search = Search(starts=2, limit=2, evolutions=0)
     options = Pareto(points=7, refined=0.2)
-    return pareto_front(problem, np.ones(2), options, search=search, work=Serial(Store(folder)))
+    return pareto_front(problem, np.ones(2), options, search=search, work=Run(Store(folder)))
 
 
 @pytest.mark.parametrize("tasks", [2, 9, 14])

@@ -23,7 +23,7 @@ from modefront.solvers.explore import Descent, Search, explore
 from modefront.solvers.indicators import hypervolume, igd_plus
 from modefront.solvers.scalarisation import LogSum, Squares, weighted
 from modefront.work.costs import counted
-from modefront.work.serial import Serial
+from modefront.work.run import Run
 from modefront.work.store import Store
 
 FEW = Search(starts=4, limit=12, evolutions=0)
@@ -130,7 +130,7 @@ def test_an_evolution_that_is_continued_evaluates_nothing_again(tmp_path: Path) 
     search = Search(starts=4, limit=8, evolutions=0)
     for _ in range(2):
         problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
-        work = Serial(Store(tmp_path))
+        work = Run(Store(tmp_path))
         with counted() as costs:
             fronts.append(
                 pareto_front(
@@ -150,7 +150,7 @@ def test_smooth_fronts_cost_a_few_probes(
     function: Callable[[Floats], Derivatives], evaluations: int
 ) -> None:
     problem = box(function, [-2, -2], [2, 2])
-    work = Serial()
+    work = Run()
     options = Pareto(points=10)
     front = pareto_front(problem, np.ones(2), options, seed=1, search=FEW, work=work)
     assert not any(name[:3] == ("front", "nbi", "between") for name in work.costs)

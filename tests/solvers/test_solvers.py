@@ -283,8 +283,8 @@ class TwoBasins:
     def goes_on(self, _: Floats) -> bool:
         return False
 
-    def distance(self, beta: Floats, other: Floats) -> float:
-        return float(np.abs(beta - other).max())
+    def distance(self, beta: Floats, other: Floats) -> Floats:
+        return np.asarray(np.abs(beta - other).max(axis=-1))
 
     def place(self, edge: int, _: Floats) -> Floats:
         return np.eye(2)[edge]

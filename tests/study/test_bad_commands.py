@@ -92,9 +92,9 @@ def test_results_of_another_program(tmp_path: Path, capsys: pytest.CaptureFixtur
     other.to_netcdf(tmp_path / "results.nc", engine="h5netcdf")
     assert command("show", tmp_path) == 2
     lines = capsys.readouterr().err.splitlines()
-    for place in ("attribute 'version'", "coordinate 'group'", "variable 'kind'"):
-        (line,) = (line for line in lines if f"results.nc: {place}: expected " in line)
-        assert line.endswith(", found nothing")
+    assert lines[-1].endswith("more that are wrong")
+    (line,) = (line for line in lines if "results.nc: attribute 'version': expected " in line)
+    assert line.endswith(", found nothing")
 
 
 def test_a_folder_that_cannot_be_written_to(
@@ -109,7 +109,7 @@ def test_a_folder_that_cannot_be_written_to(
         assert command(*arguments) == 2
         err = capsys.readouterr().err
         assert "x: folder: expected a folder that can be written to, found" in err
-        assert "Permission denied" in err
+        assert "no permission" in err
 
 
 def test_the_module_is_the_command(folder: Path) -> None:

@@ -171,8 +171,12 @@ WRONG = [
     ("[0.0, 0.0, 1.0]", "[0.0, 1.0, 0.0]", "parallel ... element 0"),
     ("orientation = [0.0, 0.0, 1.0]\n", "", "group 'edge': ... orientation is needed"),
     ('nodes = "edge"', 'nodes = "egde"', "nodes: expected a group or node set of the mesh, found"),
-    ('nodes = "edge"', "nodes = []", "nodes: expected a node counted from 0, a list of nodes, or"),
-    ('nodes = "edge"', "nodes = 25", "nodes: expected nodes from 0 to 24, found 25"),
+    (
+        'nodes = "edge"',
+        "nodes = []",
+        "nodes: expected a node counted from 0, the name of a group or",
+    ),
+    ('nodes = "edge"', "nodes = 25", "nodes: expected nodes from 0 to 24 ... , found 25"),
     ('nodes = "edge"', 'nodes = "edge"\ndirections = ["w"]', "directions: expected a list of x, y"),
     ("stiffness = 1e5", "stiffness = 0", "('prop') stiffness: expected a stiffness above 0, found"),
     (

@@ -20,7 +20,11 @@ CONTRADICTIONS = [
     ("[model]\n", '[model]\nstiffness = "K"\n', "[model]: expected a known key, found 'stiffness'"),
     # sensors
     ("{ low = 0, top = [[0, 0.5], [1, 0.5]] }", "{}", "sensors: expected at least one sensor"),
-    ("low = 0", "low = 2", "[model] sensors low: expected degrees of freedom from 0 to 1, found 2"),
+    (
+        "low = 0",
+        "low = 2",
+        "[model] sensors low: expected degrees of freedom from 0 to 1 ... , found 2",
+    ),
     ("low = 0", "low = [[7, 1]]", "sensors low: expected degrees of freedom from 0 to 1, found 7"),
     ("low = 0", f"low = {'9' * 30}", "sensors low: ... degrees of freedom from 0 to 1, found 999"),
     ("low = 0", "low = -1", SENSOR + "-1"),

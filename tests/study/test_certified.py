@@ -189,16 +189,16 @@ def test_run_shows_the_cost_and_show_the_errors(
 ) -> None:
     folder = file.with_name("shown")
     assert command(monkeypatch, "run", file, "-o", folder) == 0
-    out = capfd.readouterr().out
+    out = " ".join(capfd.readouterr().out.split())
     n = whole.attrs["full_eigensolutions"]
     corrected = whole.attrs["corrected_eigensolutions"]
     assert f"reduced basis from {n} full eigensolutions and {corrected} corrected" in out
     assert f"{n} full eigensolutions in" in out
     assert "reduced solutions in" in out
-    assert command(monkeypatch, "show", folder) == 0
+    assert command(monkeypatch, "show", folder, "--points") == 0
     out = capfd.readouterr().out
     assert "estimated relative errors" in out
-    assert "eigenvalue 3" in out
+    assert "eigenvalue" in out
 
 
 PREDICTION = """
@@ -221,7 +221,7 @@ def test_predictions_are_made_in_full_and_that_is_said(
     folder = shutil.copytree(file.with_name("whole"), tmp_path / "results")
     study = variant(file, "predicted", "[pareto]", f"{PREDICTION}[pareto]")
     assert command(monkeypatch, "run", study, "-o", folder) == 0
-    out = capfd.readouterr().out
+    out = " ".join(capfd.readouterr().out.split())
     data = read_dataset(folder)
     basis = whole.attrs["full_eigensolutions"]
     n = data.sizes["point"] + 4  # two models along each of two axes of the posterior
@@ -241,6 +241,7 @@ def test_what_cannot_be_met_in_the_memory_is_said_and_is_an_exit_of_1(
     folder = file.with_name("small")
     assert command(monkeypatch, "run", small, "-o", folder) == 1
     out, err = capfd.readouterr()
+    out = " ".join(out.split())
     data = read_dataset(folder)
     failed = data["label"].values[~data["certified"].values]
     assert failed.size
@@ -255,7 +256,7 @@ def test_a_model_without_a_basis_says_so(
 ) -> None:
     file = write_study(tmp_path)
     for name in ("K0", "K1", "K2", "M"):
-        A = scipy.sparse.load_npz(tmp_path / f"{name}.npz").toarray()[50:150, 50:150]
+        A = scipy.sparse.load_npz(tmp_path / f"{name}.npz").toarray()[50:140, 50:140]
         scipy.sparse.save_npz(tmp_path / f"{name}.npz", scipy.sparse.csr_array(A))
     text = file.read_text().replace("a = 25", "a = 5").replace("b = 62", "b = 32")
     text = (
@@ -265,7 +266,7 @@ def test_a_model_without_a_basis_says_so(
     status = command(monkeypatch, "run", file)
     out = capfd.readouterr().out
     assert status in (0, 1)
-    assert "no reduced basis: the model has only 100 degrees of freedom" in out
+    assert "no reduced basis: the model has only 90 degrees of freedom" in out
 
 
 def test_bounds_are_checked_in_the_full_model(file: Path) -> None:

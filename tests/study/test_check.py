@@ -7,8 +7,9 @@ import numpy as np
 import pytest
 
 from modefront.residuals.groups import Group
-from modefront.study.check import check, derivative_error
+from modefront.study.check import check
 from modefront.study.definition import Study
+from modefront.study.derivatives import derivative_error
 from modefront.study.examples import write_example
 from modefront.study.file import load
 

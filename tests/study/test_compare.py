@@ -144,3 +144,23 @@ def test_a_front_of_one_point_has_no_length(two: tuple[Path, Path], tmp_path: Pa
     first, second = compare((point, two[0])).fronts
     assert (first.points, first.length, first.extent) == (1, 0.0, (0.0, 0.0))
     assert np.isnan(second.length_ratio)
+
+
+def test_models_beside_the_front_count_where_they_are_better(
+    two: tuple[Path, Path], tmp_path: Path
+) -> None:
+    data = results([[0.0, 3.0], [3.0, 0.0]], [[1, 1], [1, 1.5]])
+    error, theta = data["error"].values.copy(), data["theta"].values.copy()
+    error[2], theta[2] = [0.5, 0.5], [0.5, 1.9]
+    better = data.assign(error=(("point", "group"), error), theta=(data["theta"].dims, theta))
+    better.attrs["reference"] = "nbi-2"
+    (found, _) = compare((save(tmp_path / "better", better), two[0])).fronts
+    assert found.points == 2
+    assert found.distance == pytest.approx(np.sqrt(0.5))
+    assert found.extent == (3.0, 3.0)
+    assert [(x.least, x.greatest, x.reference) for x in found.parameters] == [
+        (0.5, 1.0, 1.0),
+        (1.0, 1.9, 1.5),
+    ]
+    assert found.reference == "nbi-2"
+    assert found.reference_distance == 3.0

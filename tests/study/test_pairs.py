@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from modefront import Group, UpdatingProblem, matrices, modal_data, solve, updating_problem
-from modefront.cli.show import remarks
+from modefront.cli.remarks import remarks
 
 SENSORS = ("a", "b", "c")
 

@@ -335,12 +335,12 @@ def test_show_prints_and_draws_predictions(
 ) -> None:
     folder, data = quick
     shutil.copytree(folder / "results", tmp_path / "results")
-    assert command("show", tmp_path / "results") == 0
-    out = capsys.readouterr().out
+    assert command("show", tmp_path / "results", "--predictions") == 0
+    out = " ".join(capsys.readouterr().out.split())
     for text in (
         "pushed: force at 2 high; mobility, greatest peak from 0 to 20 Hz, 2 modes, damping 0.02",
         "two-sided barrier) within 6 s, at rest at first; one-sided spectral density 0.05, time",
-        "half the time step multiplies P at optimal-weights by",
+        "at optimal-weights: probability with half the time step over that with the step given",
         f"{data['frf_peak_range'].values[1, 0]:.5g}",
         "spread",
     ):

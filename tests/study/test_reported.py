@@ -13,7 +13,8 @@ import xarray as xr
 import modefront as mf
 from modefront._typing import Floats
 from modefront.analysis import front as analysis
-from modefront.cli.show import as_json, print_results, remarks
+from modefront.cli.remarks import remarks
+from modefront.cli.show import as_json, print_results
 from modefront.fronts.driver import pareto_front
 from modefront.fronts.methods import nbi
 from modefront.fronts.options import Pareto
@@ -93,9 +94,9 @@ def test_an_end_that_is_not_known_is_said_and_is_no_number(
     assert ends[0] == [None, None]
     assert ends[1] == data["end_objective"].values[1].tolist()
     assert said[0] in told["remarks"]
-    print_results(data)
+    print_results(data, ["findings"])
     shown = capsys.readouterr().out
-    assert said[0] in shown.replace("\n", " ")
+    assert said[0] in " ".join(shown.split())
     assert "nan" not in shown
 
 

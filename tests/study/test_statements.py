@@ -9,7 +9,7 @@ from texts import two_of_each
 
 import modefront as mf
 from modefront.cli.main import cli
-from modefront.cli.show import MOST, digest, remarks
+from modefront.cli.remarks import MOST, digest, remarks
 from modefront.study.file import load
 
 SEARCH = mf.Search(starts=2, limit=6, evolutions=0)

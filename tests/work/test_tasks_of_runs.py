@@ -16,7 +16,7 @@ from two_masses import FRF, PASSAGE, write_study
 import modefront as mf
 from modefront.work.codec import encode
 from modefront.work.costs import Costs
-from modefront.work.serial import Serial
+from modefront.work.run import Run
 from modefront.work.store import Store
 from modefront.work.task import R, Task
 
@@ -87,13 +87,15 @@ def test_every_task_of_a_run_gives_the_same_record_after_pickle(
     with monkeypatch.context() as patch:
         here = kept(patch)
         whole = mf.run(of(tmp_path), tmp_path / "whole")
-    run = Serial.run
+    run = Run.run
 
-    def through_pickle(work: Serial, tasks: Sequence[Task[R]]) -> list[R]:
+    def through_pickle(
+        work: Run, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /
+    ) -> list[R]:
         copies = [pickle.loads(pickle.dumps(task)) for task in tasks]
-        return [pickle.loads(pickle.dumps(result)) for result in run(work, copies)]
+        return [pickle.loads(pickle.dumps(result)) for result in run(work, copies, ahead)]
 
-    monkeypatch.setattr(Serial, "run", through_pickle)
+    monkeypatch.setattr(Run, "run", through_pickle)
     there = kept(monkeypatch)
     again = mf.run(of(tmp_path), tmp_path / "apart")
     assert list(there) == list(here)

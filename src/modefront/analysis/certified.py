@@ -93,7 +93,7 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
     front: Front | None = None
     taken = _take_some(model, "first", model.first, None, work)
     if taken.added and not taken.full:
-        (lacking,) = work.run([Task(("probe-basis",), _lacking, (problem, model))])
+        (lacking,) = work.run([Task(("probe-basis",), _lacking, (problem, model), here=True)])
         if lacking:
             request = SnapshotRequest(np.array(lacking), _lowest(problem))
             _take_some(model, "probes", request, None, work)
@@ -131,7 +131,7 @@ def certified_points(
     if not isinstance(model, ReducedModel) or not points:
         return list(points)
     solutions = [point.solution for point in points]
-    task = Task(("certificate", "others"), _certified, (problem, model, solutions))
+    task = Task(("certificate", "others"), _certified, (problem, model, solutions), here=True)
     (kept,) = work.run([task])
     return [replace(point, solution=x) for point, x in zip(points, kept, strict=True)]
 
@@ -189,7 +189,8 @@ def _take_some(
     error, added = np.inf, False
     for count in range(AHEAD):
         before = model.snapshots
-        (taken,) = work.run([Task(("snapshot", name, count + 1), _take, (model, request))])
+        task = Task(("snapshot", name, count + 1), _take, (model, request), here=True)
+        (taken,) = work.run([task])
         if taken is None:
             return _Taken(error, added, enough=False, full=False)
         model.resume([*before, replace(request, modes=taken.modes)])
@@ -251,7 +252,8 @@ def _with_errors(
     problem: UpdatingProblem, model: ReducedModel, front: Front, work: Executor
 ) -> Front:
     """Return the front with the estimated errors of all its models."""
-    task = Task(("certificate", "front"), _certified, (problem, model, _distinct(front)))
+    arguments = (problem, model, _distinct(front))
+    task = Task(("certificate", "front"), _certified, arguments, here=True)
     (kept,) = work.run([task])
     errors = {
         _key(solution): {name: solution.at.quantities[name] for name in ERRORS} for solution in kept

@@ -3,57 +3,84 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
 import numpy as np
 
+from modefront.cli.layout import Screen
 from modefront.cli.show import as_plain
-from modefront.cli.tables import console, safe, table
 from modefront.results.compare import Comparison, Spread
+
+OPTIMAL = "optimal-weights"
 
 
 def print_comparison(comparison: Comparison) -> None:
-    """Print a comparison as tables."""
-    screen = console()
-    fronts = table(
-        "fronts in the space of errors",
-        ["results", "study", "method", "points", "length", "ratio"]
-        + [f"extent {safe(group)}" for group in comparison.groups]
-        + ["nearest", "optimal weights", "eigenproblems"],
+    """Print a comparison as tables, one column a study, and say which models are meant."""
+    screen = Screen.of_output()
+    fronts = comparison.fronts
+    columns = ["", *(summary.name for summary in fronts)]
+    screen.say("Studies side by side", style="bold")
+    screen.say(
+        "Errors are root mean squares, which mean the same in all studies. Ranges are those of all "
+        "Pareto-optimal models, edges and weighted ones included."
     )
-    for summary in comparison.fronts:
-        fronts.add_row(
-            safe(summary.name),
-            safe(summary.study),
-            summary.method,
-            str(summary.points),
-            *map(_number, (summary.length, summary.length_ratio, *summary.extent)),
-            *map(_number, (summary.distance, summary.optimal_distance)),
-            str(summary.eigenproblems),
-        )
-    screen.print(fronts)
-    apart = table(
-        "distance in the common parameters, over their bounds in the first",
-        ["results", "and", "common", "least", "greatest", "optimal weights"],
+    screen.table("", columns, _fronts(comparison))
+    for summary in fronts:
+        if summary.reference != OPTIMAL:
+            screen.say(
+                f"{summary.name} has no {OPTIMAL}: its reference model is {summary.reference}"
+            )
+    _print_ranges(screen, "parameters", columns, [x.parameters for x in fronts])
+    _print_ranges(screen, "predictions", columns, [x.predictions for x in fronts])
+    pairs = [
+        [
+            f"{pair.first} and {pair.second}",
+            ", ".join(pair.common) or "none",
+            *map(_number, (pair.least, pair.greatest, pair.reference)),
+        ]
+        for pair in comparison.pairs
+    ]
+    title = (
+        "distances in the common parameters, over their bounds in the first: of the two nearest "
+        "models, of the farthest one from the other study, and of the reference models"
     )
-    for pair in comparison.pairs:
-        numbers = map(_number, (pair.least, pair.greatest, pair.optimal))
-        common = safe(", ".join(pair.common)) or "none"
-        apart.add_row(safe(pair.first), safe(pair.second), common, *numbers)
-    screen.print(apart)
-    for title, rows in (
-        ("parameters over the front: least to greatest", [x.parameters for x in comparison.fronts]),
-        (
-            "predictions over the front: least to greatest",
-            [x.predictions for x in comparison.fronts],
-        ),
-    ):
-        names = list(dict.fromkeys(spread.name for row in rows for spread in row))
-        spreads = table(title, ["", *(safe(summary.name) for summary in comparison.fronts)])
-        for name in names:
-            spreads.add_row(safe(name), *(_range(row, name) for row in rows))
-        screen.print(spreads)
+    screen.table(title, ["studies", "common", "least", "greatest", "references"], pairs)
+
+
+def _fronts(comparison: Comparison) -> list[list[str]]:
+    """Return what is said of each front, a row a quantity."""
+    fronts = comparison.fronts
+
+    def row(name: str, of: Sequence[object]) -> list[str]:
+        return [name, *map(str, of)]
+
+    rows = [
+        row("study", [x.study for x in fronts]),
+        row("method", [x.method for x in fronts]),
+        row("Pareto-optimal points of the front", [x.points for x in fronts]),
+        row("eigenproblems", [x.eigenproblems for x in fronts]),
+        row("length of the front", [_number(x.length) for x in fronts]),
+        row("  over that of the first", [_number(x.length_ratio) for x in fronts]),
+    ]
+    for i, group in enumerate(comparison.groups):
+        rows.append(row(f"range of the error of {group}", [_number(x.extent[i]) for x in fronts]))
+    rows += [
+        row("least distance from the origin", [_number(x.distance) for x in fronts]),
+        row("reference model", [x.reference for x in fronts]),
+        row("  its distance from the origin", [_number(x.reference_distance) for x in fronts]),
+    ]
+    return rows
+
+
+def _print_ranges(
+    screen: Screen, title: str, columns: Sequence[str], rows: Sequence[Sequence[Spread]]
+) -> None:
+    """Print values of the reference models with least and greatest of the Pareto-optimal ones."""
+    names = list(dict.fromkeys(spread.name for row in rows for spread in row))
+    cells = [[name, *(_range(row, name) for row in rows)] for name in names]
+    screen.table(f"{title}: reference model, and least to greatest", columns, cells)
 
 
 def comparison_as_json(comparison: Comparison) -> str:
@@ -69,9 +96,13 @@ def comparison_as_json(comparison: Comparison) -> str:
     return json.dumps(plain(asdict(comparison)), indent=1)
 
 
-def _range(row: tuple[Spread, ...], name: str) -> str:
+def _range(row: Sequence[Spread], name: str) -> str:
     chosen = [spread for spread in row if spread.name == name]
-    return f"{chosen[0].least:.5g} to {chosen[0].greatest:.5g}" if chosen else ""
+    if not chosen:
+        return ""
+    spread = chosen[0]
+    ends = f"{_number(spread.least)} to {_number(spread.greatest)}"
+    return f"{_number(spread.reference)} ({ends})"
 
 
 def _number(value: float) -> str:

@@ -18,7 +18,8 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Floats
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
+from modefront.text import NAME, clean, file_name
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -93,7 +94,7 @@ def write_figures(data: xr.Dataset, folder: Path) -> list[Path]:
                 _save(figure, folder, f"failure {name}", written)
     except OSError as error:
         expected = "a folder that can be written to"
-        raise InputError(Fault(str(folder), "folder", expected, str(error))) from None
+        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
     return written
 
 
@@ -128,7 +129,7 @@ class _Along:
         self, front: list[int], others: list[int], labels: list[str], optimal: Bools, best: int
     ):
         self.front, self.others, self.optimal = front, others, optimal
-        self.names = [_plain(labels[i]).removesuffix("-weights") for i in others]
+        self.names = [plain(labels[i]).removesuffix("-weights") for i in others]
         self.best = best
         self.beside = len(front) + 1.6 + 1.6 * np.arange(len(others))
 
@@ -155,13 +156,13 @@ class _Along:
                 self.bar(axes, picture.values[:, i] + np.array([[-std], [std]]), COLOURS[0])
             if picture.measured is not None and np.isfinite(picture.measured[i]):
                 axes.axhline(picture.measured[i], color="k", ls="--", lw=1, label="measured")
-            axes.set_title(_plain(title), loc="left")
+            axes.set_title(plain(title), loc="left")
             if i % picture.columns == 0:
                 axes.set_ylabel(picture.ylabel)
             # Small numbers with a power of ten beside the axis, and none as a difference.
             axes.ticklabel_format(axis="y", style="sci", scilimits=(-3, 4), useOffset=False)
         if picture.title:
-            figure.suptitle(_plain(picture.title))
+            figure.suptitle(plain(picture.title))
         self.finish(figure, list(grid), picture.columns)
 
     def levels(self, figure: Figure, data: xr.Dataset, name: str, positions: Sequence[int]) -> None:
@@ -179,7 +180,7 @@ class _Along:
         axes.set_yscale("log")
         axes.set_ylabel("probability of failure")
         title = f"{name} ({data['failure_load'].values[positions[0]]})"
-        axes.set_title(_plain(title), loc="left")
+        axes.set_title(plain(title), loc="left")
         self.finish(figure, [axes], 1)
 
     def draw(self, axes: Axes, values: Floats, colour: str, label: str) -> None:
@@ -240,17 +241,13 @@ def _posterior_std(data: xr.Dataset, name: str) -> Floats | None:
     return None if std is None else np.asarray(std.values)
 
 
-def _plain(text: object) -> str:
+def plain(text: object) -> str:
     """Return a text that is not taken for mathematics."""
-    return str(text).replace("$", r"\$")
+    return clean(text, NAME).replace("$", r"\$")
 
 
 def _save(figure: Figure, folder: Path, name: str, written: list[Path]) -> None:
     """Write a picture under its name, with a number behind it where the name is taken."""
-    safe = "".join(c if c.isalnum() or c in "-_" else "-" for c in name)
-    path, number = folder / f"{safe}.svg", 1
-    while path in written:
-        number += 1
-        path = folder / f"{safe}-{number}.svg"
+    path = folder / f"{file_name(name, [each.stem for each in written])}.svg"
     figure.savefig(path, metadata={"Date": None})
     written.append(path)

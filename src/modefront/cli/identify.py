@@ -40,7 +40,7 @@ def run_identify(
     identified = []
     for part in test.sets:
         for text in part.assembled.warnings:
-            errors.print(f"warning: {safe(text)}")
+            errors.print(f"warning: {safe(text, None)}")
         identified.append(identify(part.assembled.data, band, test.modes))
     names = [identification.name for identification in test.sets]
     combined = (
@@ -56,12 +56,12 @@ def run_identify(
     for name, identification in zip(names, identified, strict=True):
         _print_rejected(screen, name, identification)
         for text in findings(identification):
-            errors.print(f"warning: set {safe(repr(name))}: {safe(text)}")
+            errors.print(f"warning: set {safe(repr(name))}: {safe(text, None)}")
     if combined is not None:
         _print_modes(screen, combined, identified)
         _print_residuals(screen, names, identified)
     for file in written:
-        screen.print(f"wrote {safe(file)}")
+        screen.print(f"wrote {safe(file, None)}")
     if combined is None:
         raise UnfinishedError("no mode was found in the band; what was rejected is listed above")
 

@@ -2,22 +2,25 @@
 
 from __future__ import annotations
 
-import re
 from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import numpy as np
 
-from modefront.cli.figures import COLOURS, STYLE
-from modefront.errors import Fault, InputError
+from modefront.cli.figures import COLOURS, STYLE, plain
+from modefront.errors import Fault, InputError, reason
 from modefront.identification.identify import Identification
 from modefront.identification.shapes import auto_mac
+from modefront.text import file_name
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_PANELS = 12
+
+SHORT = 40
+"""Characters of the name of a data set in those of its files."""
 
 
 def write_figures(
@@ -38,7 +41,7 @@ def write_figures(
         ("functions", _functions),
         ("auto-mac", _auto_mac),
     ]
-    written = []
+    written: list[Path] = []
     try:
         folder.mkdir(parents=True, exist_ok=True)
         for name, identification in zip(names, identified, strict=True):
@@ -46,13 +49,13 @@ def write_figures(
                 with rc_context(dict(STYLE)):
                     figure = Figure(layout="constrained")
                     draw(figure, identification)
-                    safe_name = re.sub(r"[^\w-]+", "-", name)
-                    path = folder / f"{safe_name}-{kind}.svg"
+                    stem = file_name(f"{name[:SHORT]}-{kind}", [each.stem for each in written])
+                    path = folder / f"{stem}.svg"
                     figure.savefig(path, metadata={"Date": None})
                 written.append(path)
     except OSError as error:
         expected = "a folder that can be written to"
-        raise InputError(Fault(str(folder), "folder", expected, str(error))) from None
+        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
     return written
 
 
@@ -112,7 +115,7 @@ def _functions(figure: Figure, identification: Identification) -> None:
             label="synthesised",
         )
         pair = f"{identification.data.references[j]} to {identification.data.responses[i]}"
-        axes.set_title(f"{pair}: residual {share[j, i]:.1%}")
+        axes.set_title(f"{plain(pair)}: residual {share[j, i]:.1%}")
         axes.set_xlabel("frequency in Hz")
         if not panel:
             axes.legend()

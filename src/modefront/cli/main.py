@@ -7,15 +7,21 @@ at once.
 from __future__ import annotations
 
 import os
+import signal
 import sys
+import threading
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import click
 
 from modefront._version import __version__
-from modefront.errors import InputError, UnfinishedError
+from modefront.cli.terminal import complain, prepare, say, usage
+from modefront.errors import InputError, UnfinishedError, reason
+from modefront.text import one_line
 
 if TYPE_CHECKING:
     from modefront.study.definition import Study
@@ -37,8 +43,8 @@ def init(directory: Path, example: str) -> None:
     from modefront.study.examples import write_example
 
     for path in write_example(example, directory):
-        click.echo(f"wrote {path}")
-    click.echo(f"next: modefront run {directory / 'study.toml'}")
+        say(f"wrote {path}")
+    say(f"next: modefront run {directory / 'study.toml'}")
 
 
 @cli.command()
@@ -46,15 +52,20 @@ def init(directory: Path, example: str) -> None:
 @click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
 def check(study: Path, every: bool) -> None:
     """Say all that is wrong with STUDY, and prove its derivatives."""
-    from modefront.cli.show import print_findings
+    from modefront.cli.check import print_findings
     from modefront.study.check import check as check_study
     from modefront.study.file import load
 
     loaded = load(study)
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
+    if not findings.sound and findings.mistakes:
+        raise UnfinishedError(
+            "the derivatives cannot be proved before what is warned of first is put right"
+        )
     if not findings.sound:
-        raise UnfinishedError("the derivatives differ from finite differences")
+        cause = findings.derivative_cause
+        raise UnfinishedError(f"the derivatives differ from finite differences {cause}")
 
 
 @cli.command()
@@ -73,7 +84,23 @@ def check(study: Path, every: bool) -> None:
     metavar="SIZE",
     help="More points where neighbours on the front are farther apart, in units of its ranges.",
 )
-def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) -> None:
+@click.option(
+    "--workers",
+    type=click.IntRange(1, 61),
+    default=1,
+    show_default=True,
+    metavar="N",
+    help="Processes that do the work; the digits do not depend on them.",
+)
+@click.option("--scheduler", metavar="tcp://HOST:PORT", help="Dask cluster that does the work.")
+def run(
+    study: Path,
+    directory: Path | None,
+    fresh: bool,
+    refine: float | None,
+    workers: int,
+    scheduler: str | None,
+) -> None:
     """Do the work of STUDY; continue where an interrupted run stopped."""
     from modefront.cli.certificates import uncertified
     from modefront.cli.progress import progress_bar
@@ -85,7 +112,14 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     loaded = _refined(load(study), refine)
     directory = directory or study.with_name(f"{study.stem}-results")
     with progress_bar(loaded.name) as progress:
-        data = run_study(loaded, directory, fresh=fresh, progress=progress).dataset
+        data = run_study(
+            loaded,
+            directory,
+            fresh=fresh,
+            progress=progress,
+            workers=workers,
+            scheduler=scheduler,
+        ).dataset
     print_summary(data, directory, progress.spent)
     failed = not_converged(data)
     if failed:
@@ -101,9 +135,19 @@ def run(study: Path, directory: Path | None, fresh: bool, refine: float | None) 
     "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
 @click.option("--figures", is_flag=True, help="Draw predictions along the front, into DIRECTORY.")
-@click.option("--all", "every", is_flag=True, help="All findings, not only the ten first.")
-def show(directory: Path, form: str, figures: bool, every: bool) -> None:
-    """Print the results in DIRECTORY."""
+@click.option("--points", "lists", flag_value="points", multiple=True, help="All models.")
+@click.option("--minima", "lists", flag_value="minima", multiple=True, help="All minima.")
+@click.option(
+    "--uncertainty", "lists", flag_value="uncertainty", multiple=True, help="All deviations."
+)
+@click.option(
+    "--predictions", "lists", flag_value="predictions", multiple=True, help="All predictions."
+)
+@click.option("--findings", "lists", flag_value="findings", multiple=True, help="All findings.")
+@click.option("--all", "every", is_flag=True, help="All of these lists.")
+def show(directory: Path, form: str, figures: bool, lists: tuple[str, ...], every: bool) -> None:
+    """Print the results in DIRECTORY: the main models and findings, or full lists of these."""
+    from modefront.cli.lists import LISTS
     from modefront.cli.show import as_json, print_results
     from modefront.results.files import read_dataset
 
@@ -112,12 +156,12 @@ def show(directory: Path, form: str, figures: bool, every: bool) -> None:
         from modefront.cli.figures import write_figures
 
         for path in write_figures(data, directory / "figures"):
-            click.echo(f"wrote {path}")
+            say(f"wrote {path}")
         return
     if form == "json":
-        click.echo(as_json(data))
+        print(as_json(data))
     else:
-        print_results(data, every=every)
+        print_results(data, tuple(LISTS) if every else lists)
 
 
 @cli.command()
@@ -132,7 +176,7 @@ def compare(directories: tuple[Path, ...], form: str) -> None:
 
     comparison = compare_results(directories)
     if form == "json":
-        click.echo(comparison_as_json(comparison))
+        print(comparison_as_json(comparison))
     else:
         print_comparison(comparison)
 
@@ -168,6 +212,97 @@ def identify(
     run_identify(test, output, band, figures)
 
 
+@cli.command("import")
+@click.argument(
+    "program", type=click.Choice(["calculix", "abaqus", "nastran", "ansys", "opensees"])
+)
+@click.argument("base", type=click.Path(path_type=Path))
+@click.option(
+    "--parameter",
+    "parameters",
+    metavar="NAME=RUN",
+    multiple=True,
+    required=True,
+    help="A parameter, and the job with it at a factor of its nominal value.",
+)
+@click.option(
+    "--factor",
+    "factors",
+    metavar="NAME=FACTOR",
+    multiple=True,
+    help="This factor, one for each run of the parameter in their order  [default: 2]",
+)
+@click.option(
+    "--function",
+    "functions",
+    metavar="NAME=TERM,…",
+    multiple=True,
+    help="How the matrices depend on a parameter where not linearly: t=t,t^3 or L=1/L.",
+)
+@click.option(
+    "--check",
+    "checks",
+    metavar="RUN:NAME=VALUE,…",
+    multiple=True,
+    help="A job with parameters at other factors, which is compared with the terms.",
+)
+@click.option(
+    "--dofs",
+    type=click.Path(path_type=Path),
+    help="CSV node,direction, one row a degree of freedom, where the program's files have none.",
+)
+@click.option(
+    "--deck", type=click.Path(path_type=Path), help="The deck, if it is not beside the matrices."
+)
+@click.option("--stiffness-name", metavar="NAME", help="Name of K in a file of several matrices.")
+@click.option("--mass-name", metavar="NAME", help="Name of M likewise.")
+@click.option(
+    "--modes", type=click.IntRange(0), help="Frequencies to compute  [default: 6 if it is quick]"
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    required=True,
+    help="Folder for the study; one that has none.",
+)
+def import_(program: str, base: Path, output: Path, modes: int | None, **given: Any) -> None:
+    """Turn the matrices of a finite-element PROGRAM into a study.
+
+    BASE is the job at the nominal values.
+    """
+    from modefront.cli.import_ import Given, run_import
+    from modefront.programs.base import JobOptions
+
+    names = ("parameters", "factors", "functions", "checks")
+    options = JobOptions(given["stiffness_name"], given["mass_name"], given["dofs"], given["deck"])
+    run_import(program, base, Given(*(given[name] for name in names)), options, output, modes)
+
+
+@cli.command()
+@click.argument("directory", type=click.Path(path_type=Path))
+@click.option("--point", metavar="LABEL", help="Which model  [default: the one the data prefer]")
+@click.option(
+    "--study",
+    type=click.Path(path_type=Path),
+    help="The study of the results  [default: the one beside them]",
+)
+@click.option(
+    "-o",
+    "--output",
+    type=click.Path(path_type=Path),
+    help="Folder for the files  [default: export-LABEL in DIRECTORY]",
+)
+@click.option("--modes", type=click.IntRange(1), help="Mode shapes  [default: as many as measured]")
+def export(
+    directory: Path, point: str | None, study: Path | None, output: Path | None, modes: int | None
+) -> None:
+    """Write a model of the results in DIRECTORY: parameters, matrices, mode shapes."""
+    from modefront.cli.export import run_export
+
+    run_export(directory, point, study, output, modes)
+
+
 def _refined(study: Study, size: float | None) -> Study:
     """Return a study whose front is refined; what is wrong with that is said of the option."""
     if size is None:
@@ -180,41 +315,84 @@ def _refined(study: Study, size: float | None) -> Study:
         raise InputError(faults) from None
 
 
+@contextmanager
+def _signals() -> Iterator[None]:
+    """Let the end of a terminal or of a job interrupt as Ctrl-C does, once.
+
+    What is ignored, as in the background of a shell or under ``nohup``, stays ignored.
+    """
+    if threading.current_thread() is not threading.main_thread():
+        yield
+        return
+    names = ("SIGINT", "SIGTERM", "SIGHUP")
+    numbers = [getattr(signal, name) for name in names if hasattr(signal, name)]
+    before = {x: signal.getsignal(x) for x in numbers if signal.getsignal(x) != signal.SIG_IGN}
+
+    def interrupt(_: int, __: object) -> None:
+        for number in before:
+            signal.signal(number, lambda *_: os._exit(INTERRUPTED))
+        raise KeyboardInterrupt
+
+    for number in before:
+        signal.signal(number, interrupt)
+    try:
+        yield
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
+def _abandon_output() -> None:
+    """Write nothing more to standard output, which takes no more, at the end of the program."""
+    with suppress(OSError, ValueError):
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+
+
 def main() -> None:
     """Run the command and leave with its exit status; no input produces a traceback."""
+    prepare()
+    with _signals():
+        status = _status()
+    sys.exit(status)
+
+
+def _status() -> int:
+    """Run the command and return its exit status."""
     try:
         cli.main(standalone_mode=False)
+        if sys.stdout is not None:
+            sys.stdout.flush()
         status = OK
     except click.exceptions.Exit as exit_:
         status = exit_.exit_code
-    except click.UsageError as error:
-        error.show()
-        status = WRONG_INPUT
     except click.ClickException as error:
-        error.show()
+        complain(usage(error))
         status = WRONG_INPUT
     except InputError as error:
-        click.echo(str(error), err=True)
+        complain(str(error))
         status = WRONG_INPUT
     except UnfinishedError as error:
-        click.echo(f"modefront: {error}", err=True)
+        complain(f"modefront: {error}")
         status = UNDONE
     except (KeyboardInterrupt, click.Abort):
-        click.echo("modefront: interrupted; what was done is kept, run again to continue", err=True)
+        complain("modefront: interrupted; what was done is kept, run again to continue")
         status = INTERRUPTED
     except BrokenPipeError:
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        _abandon_output()
         status = UNDONE
-    except OSError as error:  # such as a full disk
-        click.echo(f"modefront: {error}; what was done is kept", err=True)
+    except (OSError, MemoryError) as error:  # such as a full disk
+        _abandon_output()
+        where = getattr(error, "filename", None)
+        place = f"{where}: " if where else ""
+        complain(f"modefront: {place}{reason(error)}; what was done is kept")
         status = UNDONE
     except Exception as error:
         if os.environ.get("MODEFRONT_TRACEBACK"):
             raise
-        click.echo(
-            f"modefront: an error of the program itself: {type(error).__name__}: {error}\n"
-            "please report it, with the output of the same command under MODEFRONT_TRACEBACK=1",
-            err=True,
+        complain(
+            f"modefront: an error of the program itself: {type(error).__name__}: "
+            f"{one_line(error, 1000)}\n"
+            "please report it, with the output of the same command under MODEFRONT_TRACEBACK=1"
         )
         status = UNDONE
-    sys.exit(status)
+    return status

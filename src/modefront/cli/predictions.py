@@ -1,77 +1,128 @@
-"""Predictions as tables: range over the Pareto-optimal models, posterior, and labelled models."""
+"""Predictions of every kind as tables: models, range over the Pareto-optimal ones, posterior."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
 
-Row = tuple[str, ...]
+from modefront.cli.layout import Screen
+from modefront.predictions import KINDS, Kind, ResultVariable
 
 DRAWN = ("mean", "5 %", "95 %")
 """Statistics of models drawn from the posterior that are shown."""
 
+RANGE = "range over the Pareto-optimal models; spread is greatest over least"
 
-def prediction_tables(data: xr.Dataset) -> Iterator[tuple[str, list[str], list[Row], list[str]]]:
-    """Yield title, columns, rows and remarks of each prediction; nothing where there are none."""
+
+@dataclass(frozen=True)
+class Quantity:
+    """One predicted number of each model.
+
+    Attributes
+    ----------
+    name : of the prediction, the place and the quantity, in a line of a table
+    variable : of the results that holds it
+    place : its position in the second dimension of that variable
+    std : variable with the standard deviation of the posterior
+    logarithmic : whether that is one of the logarithm
+    ranged : whether the results have its range
+    """
+
+    name: str
+    variable: str
+    place: int
+    std: str
+    logarithmic: bool
+    ranged: bool = True
+
+    @property
+    def form(self) -> str:
+        """Format of its values."""
+        return ".3e" if self.logarithmic else ".5g"
+
+
+def kinds_in(data: xr.Dataset) -> list[Kind]:
+    """Return the kinds of which the results have predictions."""
+    known = [each.kind for each in KINDS]
+    return [kind for kind in known if data.sizes.get(kind.dimension)]
+
+
+def predictions_of(data: xr.Dataset, kind: Kind) -> list[tuple[str, list[int]]]:
+    """Return the predictions of a kind by name, each with the positions of its values."""
+    names = data.get(f"{kind.dimension}_name")
+    out: dict[str, list[int]] = {}
+    for i, place in enumerate(data[kind.dimension].values):
+        name = str(place).partition(":")[0] if names is None else str(names.values[i])
+        out.setdefault(name, []).append(i)
+    return list(out.items())
+
+
+def heading_of(data: xr.Dataset, kind: Kind, name: str, place: int) -> str:
+    """Return the load case and the options of a prediction in a sentence."""
+    settings = {
+        setting.name: data[setting.name].values[place]
+        for setting in kind.settings
+        if setting.name in data
+    }
+    if kind.heading is not None:
+        return kind.heading(name, settings)
+    of = [f"{setting.meaning} {settings[setting.name]}" for setting in kind.settings]
+    return ": ".join([name, *(["; ".join(of)] if of else [])])
+
+
+def print_predictions(screen: Screen, data: xr.Dataset) -> None:
+    """Print all predictions of all models that are no points of the front, and their ranges."""
     if "range" not in data.sizes:
+        screen.say("The study asks for no predictions.")
         return
-    named = np.flatnonzero(data["kind"].values != "front").tolist()
-    posterior = _Posterior(data)
-    labels = list(map(str, data["label"].values[named]))
-    columns = ["minimum", "maximum", "spread", *posterior.columns, *labels]
-
-    def row(head: Sequence[str], name: str, i: int, form: str) -> Row:
-        least, greatest, spread = data[f"{name}_range"].values[:, i]
-        return (
-            *head,
-            _number(least, form),
-            _number(greatest, form),
-            _number(spread, ".4g"),
-            *posterior.row(name, i, form),
-            *(_number(x, form) for x in data[name].values[named, i]),
-        )
-
+    posterior = Posterior(data)
     frequencies = [
-        row([f"f{r}, Hz"], "frequency", i, ".5g") for i, r in enumerate(data["mode"].values)
+        Quantity(f"f{r}, Hz", "frequency", i, "posterior_frequency_std", False)
+        for i, r in enumerate(data["mode"].values)
     ]
-    title = "range over the Pareto-optimal models; spread is greatest over least"
-    yield f"frequencies: {title}", ["", *columns], frequencies, posterior.explained
-    for name, positions in _groups(data, "frf"):
-        rows = []
-        for i in positions:
-            response = _behind(data["frf"].values[i], name)
-            rows.append(row([response, "peak"], "frf_peak", i, ".5g"))
-            rows.append(row(["", "at Hz"], "frf_peak_frequency", i, ".5g"))
-        low, high = data["frf_band"].values[positions[0]]
-        load, quantity, modes, damping = (
-            data[f"frf_{key}"].values[positions[0]]
-            for key in ("load", "quantity", "modes", "damping")
-        )
-        heading = (
-            f"{name}: {load}; {quantity}, greatest peak from {low:g} to {high:g} Hz, {modes} "
-            f"modes, damping {damping}"
-        )
-        yield heading, ["response", "", *columns], rows, []
-    for name, positions in _groups(data, "failure"):
-        rows = []
-        for i in positions:
-            level = f"{data['failure_level'].values[i]:g}"
-            rows.append(row([level, "P"], "failure_probability", i, ".3e"))
-            variation = data["failure_variation"].values[:, i]
-            shown = (_number(x, ".2g") for x in variation[named])
-            blank = [""] * len(posterior.columns)
-            rows.append(("", "c.o.v.", "", _number(variation.max(), ".2g"), "", *blank, *shown))
-        yield (
-            _passage(data, name, positions[0]),
-            ["level", "", *columns],
-            rows,
-            _step_effect(data, positions),
-        )
+    _print_quantities(screen, data, posterior, f"frequencies: {RANGE}", frequencies)
+    for text in posterior.explained:
+        screen.say(text)
+    for kind in kinds_in(data):
+        for name, positions in predictions_of(data, kind):
+            quantities = [
+                quantity for i in positions for quantity in _quantities(data, kind, name, i)
+            ]
+            heading = heading_of(data, kind, name, positions[0])
+            _print_quantities(screen, data, posterior, heading, quantities)
+            _print_check(screen, data, kind, positions)
 
 
-class _Posterior:
+def first_predictions(data: xr.Dataset) -> tuple[list[str], list[list[str]]]:
+    """Return columns and rows of a short table of all predictions but those of the modes."""
+    posterior = Posterior(data)
+    best = _position(data, str(data.attrs["reference"]))
+    rows = []
+    for kind in kinds_in(data):
+        for name, positions in predictions_of(data, kind):
+            for i in positions:
+                for quantity in _quantities(data, kind, name, i):
+                    if not quantity.ranged:
+                        continue
+                    least, greatest, _ = data[f"{quantity.variable}_range"].values[:, i]
+                    value = data[quantity.variable].values[best, i]
+                    rows.append(
+                        [
+                            f"{name}, {quantity.name}",
+                            _number(value, quantity.form),
+                            *posterior.std(quantity),
+                            _number(least, quantity.form),
+                            _number(greatest, quantity.form),
+                        ]
+                    )
+    columns = [str(data.attrs["reference"]), *posterior.columns[: posterior.known]]
+    return ["", *columns, "least", "greatest"], rows
+
+
+class Posterior:
     """Scatter of predictions by the posterior, and models drawn from it, as columns."""
 
     def __init__(self, data: xr.Dataset) -> None:
@@ -101,56 +152,80 @@ class _Posterior:
             )
         return out
 
-    def row(self, name: str, i: int, form: str) -> list[str]:
-        """Return the entries of one prediction."""
-        of_p = name == "failure_probability"
-        out = [""] * len(self.columns)
-        std = self.data.get(f"posterior_{'failure_log' if of_p else name}_std")
-        if std is not None:
-            x = std.values[i]
-            shown = np.exp(x) if of_p else x
-            out[0] = (
-                _number(shown, ".3g") if np.isnan(x) else f"{'×÷' if of_p else '±'} {shown:.3g}"
-            )
-        drawn = self.data.get(f"posterior_{name}")
-        if drawn is not None:
-            out[self.known :] = [_number(x, form) for x in drawn.values[self.drawn, i]]
-        return out
+    def std(self, quantity: Quantity) -> list[str]:
+        """Return the standard deviation of a prediction, that of a logarithm as a factor."""
+        if not self.known:
+            return []
+        std = self.data.get(quantity.std)
+        if std is None or not quantity.ranged:
+            return [""]
+        x = float(std.values[quantity.place])
+        shown = np.exp(x) if quantity.logarithmic else x
+        sign = "×÷" if quantity.logarithmic else "±"
+        return ["none" if np.isnan(x) else f"{sign} {shown:.3g}"]
+
+    def row(self, quantity: Quantity) -> list[str]:
+        """Return the cells of one prediction."""
+        drawn = self.data.get(f"posterior_{quantity.variable}")
+        if drawn is None or not quantity.ranged:
+            return [*self.std(quantity), *[""] * len(self.drawn)]
+        values = drawn.values[self.drawn, quantity.place]
+        return [*self.std(quantity), *(_number(x, quantity.form) for x in values)]
 
 
-def _passage(data: xr.Dataset, name: str, i: int) -> str:
-    def of(what: str) -> object:
-        return data[f"failure_{what}"].values[i]
-
-    return (
-        f"{name}: {of('load')}; probability that any response leaves [-level, level] (two-sided "
-        f"barrier) within {of('duration'):g} s, at rest at first; {of('sided')} spectral density "
-        f"{of('density'):g}, time step {of('step'):g} s, {of('samples')} samples "
-        f"({of('method')}), {of('modes')} modes, damping {of('damping')}"
-    )
+def _quantities(data: xr.Dataset, kind: Kind, name: str, place: int) -> Iterator[Quantity]:
+    where = str(data[kind.dimension].values[place]).removeprefix(f"{name}: ")
+    for variable in kind.variables:
+        log = variable.logarithmic
+        std = f"posterior_{kind.dimension}_log_std" if log else f"posterior_{variable.name}_std"
+        title = f"{where}: {_title(variable)}"
+        yield Quantity(title, variable.name, place, std, log, variable.ranged)
 
 
-def _step_effect(data: xr.Dataset, positions: Sequence[int]) -> list[str]:
-    label = data["failure_halved_at"].values[positions[0]]
-    ratios = ", ".join(
-        f"{_number(data['failure_halved'].values[i], '.3f')} ± "
-        f"{_number(data['failure_halved_error'].values[i], '.3f')} "
-        f"(level {data['failure_level'].values[i]:g})"
-        for i in positions
-    )
-    return [f"half the time step multiplies P at {label} by {ratios}"]
+def _title(variable: ResultVariable) -> str:
+    """Return what a value is, in a word."""
+    return f"{variable.key}, {variable.unit}" if variable.unit else variable.key
 
 
-def _groups(data: xr.Dataset, dimension: str) -> list[tuple[str, list[int]]]:
-    """Return the predictions along a dimension, each with its positions."""
-    out: dict[str, list[int]] = {}
-    for i, name in enumerate(data[f"{dimension}_name"].values if dimension in data.sizes else ()):
-        out.setdefault(str(name), []).append(i)
-    return list(out.items())
+def _print_quantities(
+    screen: Screen,
+    data: xr.Dataset,
+    posterior: Posterior,
+    heading: str,
+    quantities: list[Quantity],
+) -> None:
+    named = np.flatnonzero(data["kind"].values != "front").tolist()
+    rows = []
+    for quantity in quantities:
+        values = data[quantity.variable].values[:, quantity.place]
+        if quantity.ranged:
+            least, greatest, spread = data[f"{quantity.variable}_range"].values[:, quantity.place]
+            extent = [_number(least, quantity.form), _number(greatest, quantity.form)]
+            extent.append(_number(spread, ".4g"))
+        else:
+            known = values[np.isfinite(values)]
+            greatest = known.max() if known.size else np.nan
+            extent = ["", _number(float(greatest), ".2g"), ""]
+        form = quantity.form if quantity.ranged else ".2g"
+        cells = [_number(values[i], form) for i in named]
+        rows.append([quantity.name, *extent, *posterior.row(quantity), *cells])
+    labels = [str(data["label"].values[i]) for i in named]
+    columns = ["", "minimum", "maximum", "spread", *posterior.columns, *labels]
+    screen.table(heading, columns, rows)
 
 
-def _behind(text: object, name: str) -> str:
-    return str(text).removeprefix(f"{name}: ")
+def _print_check(screen: Screen, data: xr.Dataset, kind: Kind, positions: list[int]) -> None:
+    """Print the comparison with finer numerics, where there is one."""
+    if kind.check is None or kind.check.label.name not in data:
+        return
+    label = data[kind.check.label.name].values[positions[0]]
+    for variable in kind.check.variables:
+        values = [_number(data[variable.name].values[i], ".3f") for i in positions]
+        screen.say(f"at {label}: {variable.meaning}: {', '.join(values)}")
+
+
+def _position(data: xr.Dataset, label: str) -> int:
+    return [str(x) for x in data["label"].values].index(label)
 
 
 def _number(value: float, form: str) -> str:

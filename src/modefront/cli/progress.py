@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.progress import BarColumn, MofNCompleteColumn, TextColumn, TimeElapsedColumn
 from rich.progress import Progress as Bar
 
+from modefront.text import NAME, clean
 from modefront.work.progress import Progress, State
 
 TITLES: Mapping[str, str] = {
@@ -37,7 +38,7 @@ TITLES: Mapping[str, str] = {
 }
 """Stages of a run in words."""
 
-NAME = 24
+WIDTH = 24
 """Characters of a study's name in the bar, so that all fits into 80 columns."""
 
 
@@ -55,7 +56,7 @@ def progress_bar(title: str) -> Iterator[Progress]:
         TimeElapsedColumn(),
         TextColumn("{task.fields[stage]}", markup=False),
     )
-    short = title if len(title) <= NAME else f"{title[: NAME - 1]}…"
+    short = clean(title, WIDTH)
     with Bar(*columns, console=screen) as bar:
         task = bar.add_task(short, stage="", total=None)
 
@@ -70,7 +71,7 @@ class _Log:
     """Prints a line when a stage begins."""
 
     def __init__(self, screen: Console, title: str) -> None:
-        self.screen, self.title, self.stage = screen, title, ""
+        self.screen, self.title, self.stage = screen, clean(title, NAME), ""
 
     def __call__(self, state: State) -> None:
         if state.stage and state.stage != self.stage:

@@ -8,6 +8,8 @@ from rich import box
 from rich.console import Console
 from rich.table import Table
 
+from modefront.text import NAME, clean
+
 _WIDTH = 1100
 
 
@@ -25,6 +27,6 @@ def table(title: str, columns: Sequence[str]) -> Table:
     return out
 
 
-def safe(text: object) -> str:
-    """Return a text that the terminal does not take for markup."""
-    return str(text).replace("[", "\\[")
+def safe(text: object, most: int | None = NAME) -> str:
+    """Return a text that the terminal takes neither for markup nor for orders to itself."""
+    return clean(text, most).replace("[", "\\[")

@@ -1,8 +1,12 @@
 """Modal data in CSV: ``set, mode, frequency, damping``, then one column a sensor.
 
 One row is one mode of one data set; frequencies are in Hz and damping is the ratio to critical.
-An empty field is not measured. Standard deviations, where known, are in columns of the same name
-with ``_std`` behind it; that of damping is checked, and used by nothing so far.
+An empty field is not measured. The columns ``set`` and ``damping`` may be left out. Standard
+deviations, where known, are in columns of the same name with ``_std`` behind it; that of damping
+is checked, and used by nothing so far.
+
+Columns are separated by commas, semicolons or tabs, whichever the header has most of. Where they
+are not separated by commas, numbers may have decimal commas, as spreadsheets write them.
 """
 
 from __future__ import annotations
@@ -10,23 +14,65 @@ from __future__ import annotations
 import csv
 import math
 import re
-from collections.abc import Collection, Sequence
+from collections import Counter
+from collections.abc import Collection, Iterator, Mapping, Sequence
+from contextlib import contextmanager
+from dataclasses import dataclass
+from itertools import islice
 from pathlib import Path
+from typing import TextIO
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, InputError, suggestion
+from modefront.errors import Fault, InputError, reason, suggestion
+from modefront.inputs import available_memory, file_size, refuse_holes
+from modefront.text import NAME, clean
 
 KEYS = ("set", "mode")
 QUANTITIES = ("frequency", "damping")
+OPTIONAL = ("set", "damping")
+"""Columns that may be left out: all rows are of one data set then, no damping is measured."""
+
+ONLY_SET = "1"
+"""Name of the data set of a file that names none."""
+
+SEPARATORS = ",;\t"
+
 STD = "_std"
 
 NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORECASE)
 """Python itself would read more as numbers: 1_000, nan, digits of any script."""
 
+DECIMAL_COMMA = re.compile(r"^(\s*[+-]?[0-9]*),([0-9]*(?:e[+-]?[0-9]+)?\s*)$", re.IGNORECASE)
+"""A number with a decimal comma, before and behind it."""
+
+FIELDS = re.compile(
+    rf"[ \t]*(?:{NUMBER.pattern})?[ \t]*(?:\n[ \t]*(?:{NUMBER.pattern})?[ \t]*)*", re.IGNORECASE
+)
+"""Numbers and empty fields, one a line."""
+
+MODE = re.compile("[0-9]{1,9}")
+
+LONGEST_LINE = 10**6
+"""Characters of the header in which separators are counted."""
+
 MOST_MODES = 10**6
+
+MOST_COLUMNS = 20_000
+
+MOST_FAULTS = 100
+"""Faults of rows after which the rest is not looked at."""
+
+SUGGESTED = 20
+"""Unknown columns for which a known one is sought."""
+
+TOGETHER = 10_000
+"""Rows that are read at once, by columns."""
+
+LARGEST = 2 * 10**9
+"""Bytes of a file, at most."""
 
 FREQUENCIES = 1e-9, 1e12
 """Frequencies in Hz beyond which a number must be a slip."""
@@ -48,7 +94,9 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
     ----------
     path
         File with the columns ``set, mode, frequency, damping``, then one a sensor, and standard
-        deviations in columns of the same names with ``_std`` behind them; frequencies in Hz.
+        deviations in columns of the same names with ``_std`` behind them; frequencies in Hz. The
+        columns ``set`` and ``damping`` may be left out. Semicolons and tabs separate columns as
+        well as commas do, and decimal commas are read where commas separate none.
     sensors
         Names of the sensors, in the order of the shapes; those of the columns unless given.
 
@@ -58,38 +106,38 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
         With every row and column in which something is wrong.
     """
     path, file = Path(path), str(path)
-    header, lines = _table(path)
-    if sensors is None:
-        sensors = [
-            name
-            for name in dict.fromkeys(header)
-            if name.isprintable() and name and not is_reserved(name, header)
-        ]
-    faults = [_fault(file, 1, *found) for found in _header_faults(header, sensors)]
-    if faults:
-        raise InputError(faults)
-    if not lines:
+    with _reader(path) as rows:
+        header = [field.strip() for field in next(rows, (1, []))[1]]
+        if not header:
+            raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
+        if len(header) > MOST_COLUMNS:
+            expected = f"up to {MOST_COLUMNS} columns"
+            raise InputError(Fault(file, "line 1", expected, str(len(header))))
+        if sensors is None:
+            sensors = [
+                name
+                for name in dict.fromkeys(header)
+                if name.isprintable() and name and not is_reserved(name, set(header))
+            ]
+        faults = [_fault(file, 1, *found) for found in _header_faults(header, sensors)]
+        if faults:
+            raise InputError(faults)
+        parts: list[_Rows] = []
+        while lines := list(islice(rows, TOGETHER)):
+            part = _together(header, lines, sensors)
+            if part is None or faults:
+                part, found = _one_by_one(header, lines, sensors)
+                faults += [_fault(file, *each) for each in found]
+            parts.append(part)
+            if len(faults) > MOST_FAULTS:
+                break
+    if not parts:
         raise InputError(Fault(file, "line 2", "a row for each measured mode", "the end"))
-
-    rows: dict[tuple[str, int], dict[str, float]] = {}
-    for number, fields in lines:
-        if len(fields) != len(header):
-            wanted = f"{len(header)} fields, as in the header"
-            faults.append(Fault(file, f"line {number}", wanted, str(len(fields))))
-            continue
-        texts = dict(zip(header, fields, strict=True))
-        key, values, found = _row(texts)
-        faults += [_fault(file, number, *one) for one in found]
-        if key is not None and key in rows:
-            place = f"line {number}, columns 'set' and 'mode'"
-            faults.append(Fault(file, place, "each mode of a data set once", f"{key} again"))
-        elif key is not None:
-            rows[key] = values
-            if not found:
-                faults += [_fault(file, number, *one) for one in _empty_faults(values, sensors)]
+    repeated = _repeated(file, parts, has_sets="set" in header)
+    faults += [] if len(faults) > MOST_FAULTS else list(islice(repeated, MOST_FAULTS))
     if faults:
         raise InputError(faults)
-    return _assemble(rows, tuple(sensors))
+    return _assemble(path, header, parts, tuple(sensors))
 
 
 def write_csv(
@@ -118,45 +166,159 @@ def write_csv(
     temporary.replace(path)
 
 
-def _fault(file: str, line: int, column: str, expected: str, found: str) -> Fault:
-    return Fault(file, f"line {line}, column {column!r}", expected, found)
+def _fault(file: str, line: int, column: str | None, expected: str, found: str) -> Fault:
+    place = f"line {line}, column {clean(column, NAME)!r}" if column is not None else f"line {line}"
+    return Fault(file, place, expected, found)
 
 
-def _table(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
-    """Return the header and the numbered rows that are not blank."""
+@dataclass(frozen=True)
+class _Rows:
+    """Some rows: their lines, sets and modes, and the values of all other columns by name."""
+
+    lines: Sequence[int]
+    sets: Sequence[str]
+    modes: Sequence[int]
+    values: Mapping[str, Floats]
+
+
+@contextmanager
+def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
+    """Return the numbered rows that are not blank; raises InputError for what is no CSV."""
+    expected = "a file of modal data"
+    size = file_size(path, expected, min(LARGEST, available_memory() // 4))
     try:
+        refuse_holes(path, expected, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:
-            reader = csv.reader(stream, strict=True, skipinitialspace=True)
+            separator = _separator(stream)
+            reader = csv.reader(stream, delimiter=separator, strict=True, skipinitialspace=True)
+            rows = ((reader.line_num, row) for row in reader if any(map(str.strip, row)))
             try:
-                rows = [(reader.line_num, [field.strip() for field in row]) for row in reader]
+                yield rows if separator == "," else _with_points(rows)
             except csv.Error as error:
                 place = f"line {reader.line_num}"
-                raise InputError(Fault(str(path), place, "CSV", str(error))) from None
+                raise InputError(Fault(str(path), place, "CSV", reason(error))) from None
     except InputError:
         raise
-    except FileNotFoundError:
-        raise InputError(Fault(str(path), "file", "a file of modal data", "no such file")) from None
     except (OSError, ValueError) as error:
-        raise InputError(Fault(str(path), "file", "CSV in UTF-8", str(error))) from None
-    rows = [(number, row) for number, row in rows if any(row)]
-    if not rows:
-        raise InputError(Fault(str(path), "line 1", "a header of column names", "an empty file"))
-    return rows[0][1], rows[1:]
+        raise InputError(Fault(str(path), "file", "CSV in UTF-8", reason(error))) from None
+
+
+def _separator(stream: TextIO) -> str:
+    """Return what separates the columns of a file, and go back to its beginning."""
+    first = stream.readline(LONGEST_LINE)
+    while first and not first.strip(SEPARATORS + " \r\n"):
+        first = stream.readline(LONGEST_LINE)
+    stream.seek(0)
+    return max(SEPARATORS, key=first.count)
+
+
+def _with_points(rows: Iterator[tuple[int, list[str]]]) -> Iterator[tuple[int, list[str]]]:
+    """Yield the rows with decimal points for decimal commas."""
+    for number, row in rows:
+        yield number, [DECIMAL_COMMA.sub(r"\1.\2", field) for field in row]
+
+
+def _together(
+    header: Sequence[str], lines: Sequence[tuple[int, list[str]]], sensors: Sequence[str]
+) -> _Rows | None:
+    """Return rows in which nothing is wrong, read by columns; None where something is."""
+    if any(len(fields) != len(header) for _, fields in lines):
+        return None
+    columns = dict(zip(header, zip(*(fields for _, fields in lines), strict=True), strict=True))
+    names, modes = columns.pop("set", (ONLY_SET,) * len(lines)), columns.pop("mode")
+    sets = {text: text.strip() for text in set(names)}
+    if not all(name and name.isprintable() for name in sets.values()):
+        return None
+    if not all(MODE.fullmatch(text.strip()) for text in set(modes)):
+        return None
+    numbers = {text: int(text) for text in set(modes)}
+    if not all(1 <= number <= MOST_MODES for number in numbers.values()):
+        return None
+    values: dict[str, Floats] = {}
+    for name, texts in columns.items():
+        if not FIELDS.fullmatch("\n".join(texts)):
+            return None
+        values[name] = _numbers(texts)
+        known = values[name][~np.isnan(values[name])]
+        if known.size and (_range(name, known.min()) or _range(name, known.max())):
+            return None
+    shape = np.abs([values[name] for name in sensors])
+    measured = ~np.isnan(shape)
+    greatest = np.where(measured, shape, 0.0).max(axis=0, initial=0.0)
+    possible = (greatest >= SHAPES[0]) & (greatest <= SHAPES[1])
+    if not np.where(measured.any(axis=0), possible, ~np.isnan(values["frequency"])).all():
+        return None
+    lines_of = [number for number, _ in lines]
+    return _Rows(
+        lines_of, [sets[text] for text in names], [numbers[text] for text in modes], values
+    )
+
+
+def _numbers(texts: Sequence[str]) -> Floats:
+    """Return numbers, NaN for empty fields."""
+    try:
+        return np.array(list(map(float, texts)))
+    except ValueError:
+        return np.array([float(text) if text.strip() else math.nan for text in texts])
+
+
+def _one_by_one(
+    header: Sequence[str], lines: Sequence[tuple[int, list[str]]], sensors: Sequence[str]
+) -> tuple[_Rows, list[tuple[int, str | None, str, str]]]:
+    """Return the keys of rows, and line, column, expected and found of what is wrong with them."""
+    faults: list[tuple[int, str | None, str, str]] = []
+    keys: list[tuple[int, str, int]] = []
+    for number, fields in lines:
+        if len(faults) > MOST_FAULTS:
+            break
+        if len(fields) != len(header):
+            expected = f"{len(header)} fields, as in the header"
+            faults.append((number, None, expected, str(len(fields))))
+            continue
+        texts = [field.strip() for field in fields]
+        key, values, found = _row(dict(zip(header, texts, strict=True)))
+        if key is not None:
+            keys.append((number, *key))
+            found = found or _empty_faults(values, sensors)
+        faults += [(number, *each) for each in found]
+    numbers, names, modes = zip(*keys, strict=True) if keys else ((), (), ())
+    return _Rows(numbers, names, modes, {}), faults
+
+
+def _repeated(file: str, parts: Sequence[_Rows], *, has_sets: bool) -> Iterator[Fault]:
+    """Yield the rows of modes that a data set has already."""
+    seen: set[tuple[str, int]] = set()
+    for part in parts:
+        for line, name, mode in zip(part.lines, part.sets, part.modes, strict=True):
+            if (name, mode) in seen:
+                place, expected = "columns 'set' and 'mode'", "each mode of a data set once"
+                if not has_sets:
+                    place = "column 'mode'"
+                    expected = "each mode once, or a column 'set' that tells data sets apart"
+                found = f"{(name, mode)} again"
+                yield Fault(file, f"line {line}, {place}", expected, found)
+            seen.add((name, mode))
 
 
 def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[str, str, str]]:
     """Return (column, expected, found) for everything that is wrong with the header."""
     required = (*KEYS, *QUANTITIES, *sensors)
-    known = (*required, *(name + STD for name in (*QUANTITIES, *sensors)))
-    faults = [
-        (name, "the name of a quantity or of a sensor of the model", suggestion(name, known))
-        for name in dict.fromkeys(header)
-        if name not in known
+    known = dict.fromkeys((*required, *(name + STD for name in (*QUANTITIES, *sensors))))
+    counts = Counter(header)
+    expected = "the name of a quantity or of a sensor of the model"
+    unknown = [name for name in counts if name not in known]
+    faults = [(name, expected, suggestion(name, known)) for name in unknown[:SUGGESTED]]
+    faults += [(name, expected, repr(clean(name, NAME))) for name in unknown[SUGGESTED:]]
+    faults += [
+        (name, "this column", "no such column")
+        for name in required
+        if name not in counts and name not in OPTIONAL
     ]
-    faults += [(name, "this column", "no such column") for name in required if name not in header]
-    for name in dict.fromkeys(header):
-        if header.count(name) > 1:
-            faults.append((name, "each column once", f"{header.count(name)} of this name"))
+    faults += [
+        (name, "each column once", f"{count} of this name")
+        for name, count in counts.items()
+        if count > 1
+    ]
     return faults
 
 
@@ -166,10 +328,10 @@ def _row(
     """Return the key (set, mode), the values and the faults of one row."""
     faults: list[tuple[str, str, str]] = []
     values: dict[str, float] = {}
-    name, mode = texts["set"], texts["mode"]
+    name, mode = texts.get("set", ONLY_SET), texts["mode"]
     if not name or not name.isprintable():
         faults.append(("set", "the name of a data set", repr(name)))
-    if not re.fullmatch("[0-9]{1,9}", mode) or not 1 <= int(mode) <= MOST_MODES:
+    if not MODE.fullmatch(mode) or not 1 <= int(mode) <= MOST_MODES:
         faults.append(("mode", f"a whole number from 1 to {MOST_MODES}", repr(mode)))
     key = None if faults else (name, int(mode))
     for column, text in texts.items():
@@ -197,7 +359,8 @@ def _range(column: str, value: float) -> str:
     if column == "frequency" and not least <= value <= most:
         return f"a frequency above 0 Hz, from {least:g} to {most:g}"
     if column == "damping" and not 0 <= value < 1:
-        return "a damping ratio from 0 to below 1"
+        percent = f" (if {value:g} % is meant: {value / 100:g})" if 1 <= value <= 100 else ""
+        return f"a damping ratio from 0 to below 1{percent}"
     if column.endswith(STD) and value < 0:
         return "a standard deviation of 0 or more"
     return ""
@@ -217,17 +380,27 @@ def _empty_faults(values: dict[str, float], sensors: Sequence[str]) -> list[tupl
     return []
 
 
-def _assemble(rows: dict[tuple[str, int], dict[str, float]], sensors: tuple[str, ...]) -> ModalData:
-    sets = tuple(dict.fromkeys(name for name, _ in rows))
-    modes = tuple(sorted({mode for _, mode in rows}))
+def _assemble(
+    path: Path, header: Sequence[str], parts: Sequence[_Rows], sensors: tuple[str, ...]
+) -> ModalData:
+    """Return the data of all rows; raises InputError where they are spread over too many sets."""
+    of_sets = [name for part in parts for name in part.sets]
+    of_modes = [mode for part in parts for mode in part.modes]
+    sets, modes = tuple(dict.fromkeys(of_sets)), tuple(sorted(set(of_modes)))
+    size = 8 * len(sets) * len(modes) * len(header)
+    if size > available_memory() // 2:
+        found = f"{len(of_sets)} rows of {len(sets)} sets and {len(modes)} modes"
+        raise InputError(Fault(str(path), "rows", "most modes in every data set", found))
+    places = {name: k for k, name in enumerate(sets)}
+    row = np.array([places[name] for name in of_sets])
+    column = np.searchsorted(modes, of_modes)
 
-    def collect(*columns: str) -> Floats:
-        return np.array(
-            [
-                [[rows.get((k, r), {}).get(name, math.nan) for name in columns] for r in modes]
-                for k in sets
-            ]
-        )
+    def collect(*names: str) -> Floats:
+        out = np.full((len(sets), len(modes), len(names)), np.nan)
+        for k, name in enumerate(names):
+            if name in parts[0].values:
+                out[row, column, k] = np.concatenate([part.values[name] for part in parts])
+        return out
 
     return ModalData(
         sets,

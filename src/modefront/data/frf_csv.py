@@ -17,11 +17,15 @@ from modefront._typing import Floats
 from modefront.data.blows import TIME, Contents, blow_of_columns
 from modefront.data.channels import Channel
 from modefront.data.csv import NUMBER
-from modefront.errors import Fault, InputError, suggestion
+from modefront.errors import Fault, InputError, reason, suggestion
+from modefront.inputs import available_memory, file_size, refuse_holes
 
 FREQUENCY, REAL, IMAGINARY, COHERENCE = "frequency", "_re", "_im", "_coherence"
 
 MOST_FAULTS = 5
+
+LARGEST = 2 * 10**9
+"""Bytes of a file, at most."""
 
 
 def read_test_csv(path: Path, reference: str) -> Contents:
@@ -78,20 +82,24 @@ def _names(path: Path, header: Sequence[str]) -> list[str]:
 def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
     """Return the header and the rows of a CSV file of numbers; raises InputError."""
     file = str(path)
+    size = file_size(path, what, min(LARGEST, available_memory() // 4))
     try:
+        refuse_holes(path, what, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:
             header = [field.strip() for field in next(csv.reader(stream), [])]
             rows = stream.read().splitlines()
-    except FileNotFoundError:
-        raise InputError(Fault(file, "file", what, "no such file")) from None
+    except InputError:
+        raise
     except (OSError, ValueError, csv.Error) as error:
-        raise InputError(Fault(file, "file", "CSV in UTF-8", str(error))) from None
+        raise InputError(Fault(file, "file", "CSV in UTF-8", reason(error))) from None
     numbered = [(number, row) for number, row in enumerate(rows, start=2) if row.strip(" ,\t")]
     if not any(header):
         raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
     if not numbered:
         raise InputError(Fault(file, "line 2", "a row for each line of frequency", "the end"))
     faults: list[Fault] = []
+    if (read := _together([row for _, row in numbered], len(header))) is not None:
+        return header, read
     values = np.empty((len(numbered), len(header)))
     for row_number, (number, row) in enumerate(numbered):
         fields = row.split(",")
@@ -111,3 +119,12 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
     if faults:
         raise InputError(faults[:MOST_FAULTS])
     return header, values
+
+
+def _together(rows: Sequence[str], columns: int) -> Floats | None:
+    """Return rows of finite numbers; None where any of them is something else."""
+    try:
+        values = np.loadtxt(rows, delimiter=",", comments=None, ndmin=2)
+    except ValueError:
+        return None
+    return values if values.shape == (len(rows), columns) and np.isfinite(values).all() else None

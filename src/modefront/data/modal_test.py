@@ -18,11 +18,14 @@ from modefront.data.frf_csv import read_test_csv
 from modefront.data.impact import ESTIMATORS
 from modefront.data.responses import ORDERS
 from modefront.data.uff import read_uff
-from modefront.errors import Fault, InputError, suggestion
+from modefront.errors import Fault, InputError, reason, suggestion
+from modefront.inputs import read_text_bytes
 from modefront.toml import Table, is_name, repeated
 
 UFF_ENDINGS = (".uff", ".unv", ".uf", ".bunv", ".ufb")
 MOST_MODES = 200
+LARGEST = 64 * 10**6
+"""Bytes of a test file, at most."""
 
 
 @dataclass(frozen=True)
@@ -84,6 +87,8 @@ def is_universal(path: Path) -> bool:
     if path.suffix.lower() in UFF_ENDINGS:
         return True
     try:
+        if not path.is_file():
+            return False
         with path.open("rb") as stream:
             return stream.read(64).lstrip(b"\r\n").startswith(b"    -1")
     except OSError:
@@ -113,12 +118,11 @@ def _from_toml(path: Path) -> ModalTest:
 
 
 def _parsed(path: Path) -> dict[str, object]:
+    content = read_text_bytes(path, "a test file", LARGEST)
     try:
-        return tomllib.loads(path.read_bytes().decode("utf-8-sig"))
-    except FileNotFoundError:
-        raise InputError(Fault(str(path), "file", "a test file", "no such file")) from None
-    except (OSError, ValueError, RecursionError) as error:
-        raise InputError(Fault(str(path), "file", "TOML in UTF-8", str(error))) from None
+        return tomllib.loads(content.decode("utf-8-sig"))
+    except (ValueError, RecursionError) as error:
+        raise InputError(Fault(str(path), "file", "TOML in UTF-8", reason(error))) from None
 
 
 def _test_table(root: Table) -> tuple[str, _Settings]:

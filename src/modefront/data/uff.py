@@ -1,5 +1,7 @@
 """Universal files: functions or records of blows from dataset 58, modes into dataset 55.
 
+Modes are read in `modefront.data.uff55`.
+
 The text of the file is looked through first: what holds no dataset, is cut off or has exponents
 written with D is said or mended here, since `pyuff`, which decodes the datasets, returns nothing
 or fails without a place. `pyuff` is an extra, imported where it is used.
@@ -23,7 +25,8 @@ import numpy as np
 
 from modefront.data.blows import Blow, Contents
 from modefront.data.channels import Channel
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
+from modefront.inputs import read_text_bytes
 
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
@@ -35,9 +38,13 @@ QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
 """What the numerator is: displacement, velocity, acceleration."""
 
 AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
+"""Directions by their numbers in universal files."""
 
 DELIMITER = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 EXPONENT = re.compile(rb"(?<=[0-9.])[Dd](?=[+-]?[0-9])")
+
+LARGEST = 2 * 10**9
+"""Bytes of a universal file, at most."""
 
 WHAT = "a universal file with frequency response functions or records of blows (dataset 58)"
 
@@ -59,19 +66,13 @@ def read_uff(path: Path) -> Contents:
     Where it has none, the records of blows: of the force and of the responses in time. Raises
     InputError where the file holds neither, is cut off or cannot be decoded.
     """
-    file = str(path)
-    try:
-        content = path.read_bytes()
-    except FileNotFoundError:
-        raise InputError(Fault(file, "file", WHAT, "no such file")) from None
-    except OSError as error:
-        raise InputError(Fault(file, "file", WHAT, str(error))) from None
+    file, content = str(path), read_text_bytes(path, WHAT, LARGEST)
     datasets = blocks(content, file)
     functions = [block for block in datasets if block.number == 58]
     if not functions:
         numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in datasets))
         raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
-    decoded = [(block, _decode(content, block, file)) for block in functions]
+    decoded = [(block, _function(content, block, file)) for block in functions]
     kinds = {int(values["func_type"]) for _, values in decoded}
     if FRF in kinds:
         return Contents(channels=tuple(_channels(decoded, file)))
@@ -193,15 +194,16 @@ def _pyuff(file: str) -> ModuleType:
     return module
 
 
-def _decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
-    """Return one dataset as pyuff reads it."""
+def decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
+    """Return one dataset as pyuff reads it; raises InputError where it cannot."""
     pyuff = _pyuff(file)
     text = content[block.start : block.end] + b"\n"
     if not block.binary:
-        head, body = text.split(b"\n", 13)[:13], text.split(b"\n", 13)[13:]
+        lines = 13 if block.number == 58 else 9 if block.number == 55 else 2
+        head, body = text.split(b"\n", lines)[:lines], text.split(b"\n", lines)[lines:]
         text = b"\n".join([*head, *(EXPONENT.sub(b"E", part) for part in body)])
         text = text.replace(b"\r\n", b"\n")
-    place = f"line {block.line}, dataset 58"
+    place = f"line {block.line}, dataset {block.number}"
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "one.uff"
         copy.write_bytes(text)
@@ -209,9 +211,19 @@ def _decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
             with warnings.catch_warnings():
                 warnings.simplefilter("ignore")
                 values: Mapping[str, Any] = pyuff.UFF(str(copy)).read_sets(0)
-            count, data = int(values["num_pts"]), np.asarray(values["data"])
         except Exception as error:  # pyuff raises bare Exceptions
-            raise InputError(Fault(file, place, "a dataset 58", str(error))) from None
+            expected = f"a dataset {block.number}"
+            raise InputError(Fault(file, place, expected, reason(error))) from None
+    return values
+
+
+def _function(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
+    """Return a dataset 58 that holds as many values as its header says."""
+    values, place = decode(content, block, file), f"line {block.line}, dataset 58"
+    try:
+        count, data = int(values["num_pts"]), np.asarray(values["data"])
+    except (KeyError, TypeError, ValueError) as error:
+        raise InputError(Fault(file, place, "a dataset 58", reason(error))) from None
     if len(data) != count or len(np.atleast_1d(values["x"])) != count:
         raise InputError(Fault(file, place, f"{count} values, as its header says", str(len(data))))
     return values

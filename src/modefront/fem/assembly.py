@@ -29,11 +29,11 @@ from modefront.fem.blocks import element_blocks, mass_blocks, spring_blocks
 from modefront.fem.check import check_names, check_parameters, check_points, node_list
 from modefront.fem.dofs import Dofs, LinkRows, direction_indices, link_rows, number_dofs
 from modefront.fem.elements.common import Part
-from modefront.fem.errors import FemError
+from modefront.fem.errors import Checks, FemError
 from modefront.fem.mechanism import check_mechanisms
 from modefront.fem.scatter import Block, Pattern, condense_links, scatter, scatter_plan
-from modefront.fem.sensors import selection_matrix
-from modefront.fem.structure import Parameter, Structure
+from modefront.fem.sensors import SensorPlaces, selection_matrix, sensor_places
+from modefront.fem.structure import Link, Parameter, Structure, Support
 from modefront.linalg.affine import Monomials, SparseAffine
 
 
@@ -48,6 +48,7 @@ class StructureMatrices:
     parameters : names of the parameters, in the order of theta
     sensors : names of the sensors
     selection : (sensors, free degrees of freedom) displacement at each sensor
+    places : where the sensors are, and in which directions they measure
     dofs : numbering; ``dofs.T`` gives all displacements from the free ones
     """
 
@@ -56,6 +57,7 @@ class StructureMatrices:
     parameters: tuple[str, ...]
     sensors: tuple[str, ...]
     selection: sparse.csr_array
+    places: SensorPlaces
     dofs: Dofs
 
 
@@ -72,20 +74,28 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
     Raises
     ------
     FemError
-        If the structure is wrong or a mechanism: says where, what was expected and found.
+        With everything that is wrong with the structure; where that is nothing, with what makes
+        it a mechanism or its sensors see nothing. Says where, what was expected and found.
     """
-    X = check_points(structure.nodes)
-    check_names(structure)
-    check_parameters(structure)
-    elements = element_blocks(X, structure.groups)
-    springs = spring_blocks(X, structure.springs)
-    blocks = [*elements, *springs, *mass_blocks(X, structure.masses)]
-    links = _links(X, structure)
-    held = _held(X, structure)
+    X, checks = check_points(structure.nodes), Checks()
+    checks.attempt(check_names, structure)
+    checks.attempt(check_parameters, structure)
+    elements = element_blocks(X, structure.groups, checks)
+    springs = spring_blocks(X, structure.springs, checks)
+    blocks = [*elements, *springs, *mass_blocks(X, structure.masses, checks)]
+    links = _links(X, structure, checks)
+    held = _held(X, structure, checks)
     exists = _existing(X, blocks, links)
-    dofs = number_dofs(exists, held, links)
-    check_mechanisms(X, elements, springs, links, held, exists, floating)
-    if len(dofs.free) == 0:
+    used = np.flatnonzero(exists.any(1))
+    places = sensor_places(X, structure.sensors, used, checks)
+    dofs = checks.attempt(number_dofs, exists, held, links)
+    checks.close()
+    if dofs is None or places is None:
+        raise FemError("structure: expected one that can be numbered")
+    checks.attempt(check_mechanisms, X, elements, springs, links, held, exists, floating)
+    selection = checks.attempt(selection_matrix, structure.sensors, places, dofs)
+    checks.close()
+    if selection is None or len(dofs.free) == 0:
         raise FemError("structure: no degree of freedom is free; expected at least one")
     pattern, slots = scatter_plan(dofs.kept, blocks)
     K, K_exponents = _terms(
@@ -111,8 +121,9 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
         mass=_affine(pattern, M, M_exponents),
         parameters=tuple(p.name for p in structure.parameters),
         sensors=tuple(s.name for s in structure.sensors),
-        selection=selection_matrix(X, structure.sensors, np.flatnonzero(exists.any(1)), dofs),
+        selection=selection,
         dofs=dofs,
+        places=places,
     )
 
 
@@ -125,23 +136,27 @@ def _affine(pattern: Pattern, data: Floats, exponents: Ints) -> SparseAffine:
     return SparseAffine(indptr, pattern.indices[kept].astype(np.int32), terms, coefficients)
 
 
-def _links(X: Floats, structure: Structure) -> list[LinkRows]:
-    rows = []
-    for n, link in enumerate(structure.links):
-        place = f"link {n}"
-        master = node_list(link.master, len(X), place)
-        slaves = node_list(link.slaves, len(X), place)
-        rows.append(link_rows(X, master[0], slaves, direction_indices(link.directions, place)))
-    return rows
+def _links(X: Floats, structure: Structure, checks: Checks) -> list[LinkRows]:
+    rows = (checks.attempt(_link, X, link, f"link {n}") for n, link in enumerate(structure.links))
+    return [row for row in rows if row is not None]
 
 
-def _held(X: Floats, structure: Structure) -> Bools:
+def _link(X: Floats, link: Link, place: str) -> LinkRows:
+    master = node_list(link.master, len(X), place)
+    slaves = node_list(link.slaves, len(X), place)
+    return link_rows(X, master[0], slaves, direction_indices(link.directions, place))
+
+
+def _held(X: Floats, structure: Structure, checks: Checks) -> Bools:
     held = np.zeros((len(X), 6), dtype=bool)
     for n, support in enumerate(structure.supports):
-        place = f"support {n}"
-        nodes = node_list(support.nodes, len(X), place)
-        held[nodes[:, None], direction_indices(support.directions, place)] = True
+        checks.attempt(_hold, held, support, f"support {n}")
     return held
+
+
+def _hold(held: Bools, support: Support, place: str) -> None:
+    nodes = node_list(support.nodes, len(held), place)
+    held[nodes[:, None], direction_indices(support.directions, place)] = True
 
 
 def _existing(X: Floats, blocks: list[Block], links: list[LinkRows]) -> Bools:

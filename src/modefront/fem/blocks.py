@@ -21,7 +21,7 @@ from modefront.fem.elements.brick import brick
 from modefront.fem.elements.point import lumped_mass, spring
 from modefront.fem.elements.shell import shell
 from modefront.fem.elements.tetrahedron import tetrahedron
-from modefront.fem.errors import FemError
+from modefront.fem.errors import Checks, FemError
 from modefront.fem.scatter import Block
 from modefront.fem.structure import Beams, Mass, Shells, Solids, Spring
 
@@ -29,18 +29,21 @@ TRANSLATIONS = (0, 1, 2)
 SIX = (0, 1, 2, 3, 4, 5)
 
 
-def element_blocks(X: Floats, groups: Sequence[Beams | Shells | Solids]) -> list[Block]:
-    """One block for each group of elements."""
-    blocks = []
-    for group in groups:
-        place = f"group {group.name!r}"
-        if isinstance(group, Beams):
-            blocks.append(_beams(X, group, place))
-        elif isinstance(group, Shells):
-            blocks.append(_shells(X, group, place))
-        else:
-            blocks.append(_solids(X, group, place))
-    return blocks
+def element_blocks(
+    X: Floats, groups: Sequence[Beams | Shells | Solids], checks: Checks
+) -> list[Block]:
+    """One block for each group of elements in which nothing is wrong."""
+    blocks = (checks.attempt(_elements, X, group) for group in groups)
+    return [block for block in blocks if block is not None]
+
+
+def _elements(X: Floats, group: Beams | Shells | Solids) -> Block:
+    place = f"group {group.name!r}"
+    if isinstance(group, Beams):
+        return _beams(X, group, place)
+    if isinstance(group, Shells):
+        return _shells(X, group, place)
+    return _solids(X, group, place)
 
 
 def _beams(X: Floats, group: Beams, place: str) -> Block:
@@ -96,9 +99,10 @@ def _solids(X: Floats, group: Solids, place: str) -> Block:
     return Block(group.name, cells, TRANSLATIONS, element(X[cells], group.material))
 
 
-def spring_blocks(X: Floats, springs: Sequence[Spring]) -> list[Block]:
-    """One block for each named set of springs."""
-    return [_springs(X, s, f"spring {s.name!r}") for s in springs]
+def spring_blocks(X: Floats, springs: Sequence[Spring], checks: Checks) -> list[Block]:
+    """One block for each named set of springs in which nothing is wrong."""
+    blocks = (checks.attempt(_springs, X, s, f"spring {s.name!r}") for s in springs)
+    return [block for block in blocks if block is not None]
 
 
 def _springs(X: Floats, member: Spring, place: str) -> Block:
@@ -132,9 +136,10 @@ def _springs(X: Floats, member: Spring, place: str) -> Block:
     return Block(member.name, nodes, used, matrices)
 
 
-def mass_blocks(X: Floats, masses: Sequence[Mass]) -> list[Block]:
-    """One block for each named set of lumped masses."""
-    return [_masses(X, m, f"mass {m.name!r}") for m in masses]
+def mass_blocks(X: Floats, masses: Sequence[Mass], checks: Checks) -> list[Block]:
+    """One block for each named set of lumped masses in which nothing is wrong."""
+    blocks = (checks.attempt(_masses, X, m, f"mass {m.name!r}") for m in masses)
+    return [block for block in blocks if block is not None]
 
 
 def _masses(X: Floats, member: Mass, place: str) -> Block:

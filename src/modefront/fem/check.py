@@ -25,8 +25,8 @@ from modefront.fem.elements.shapes import (
     simplex_quadratic,
     square_4,
 )
-from modefront.fem.errors import FemError
-from modefront.fem.structure import Direction, Shells, Structure
+from modefront.fem.errors import Checks, FemError
+from modefront.fem.structure import Direction, Parameter, Shells, Structure
 
 FLAT = 1e-8
 
@@ -140,20 +140,26 @@ def solid_sizes(X: Floats) -> Floats:
 
 
 def check_names(structure: Structure) -> None:
-    """Names of springs, masses, sensors and parameters are unique; none is of two kinds."""
+    """Check that names of springs, masses, sensors and parameters are used once."""
     kinds = {
         "group": {g.name for g in structure.groups},
         "spring": [s.name for s in structure.springs],
         "mass": [m.name for m in structure.masses],
     }
     members = [name for names in kinds.values() for name in names]
-    _check_unique(members, "member")
-    _check_unique([s.name for s in structure.sensors], "sensor")
-    _check_unique([p.name for p in structure.parameters], "parameter")
+    checks = Checks()
+    checks.attempt(_check_unique, members, "member")
+    checks.attempt(_check_unique, [s.name for s in structure.sensors], "sensor")
+    checks.attempt(_check_unique, [p.name for p in structure.parameters], "parameter")
     for name in {g.name for g in structure.groups}:
-        classes = {type(g).__name__ for g in structure.groups if g.name == name}
-        if len(classes) > 1:
-            raise FemError(f"group {name!r}: expected one kind, found {sorted(classes)}")
+        checks.attempt(_check_kind, name, structure)
+    checks.close()
+
+
+def _check_kind(name: str, structure: Structure) -> None:
+    classes = {type(g).__name__ for g in structure.groups if g.name == name}
+    if len(classes) > 1:
+        raise FemError(f"group {name!r}: expected one kind, found {sorted(classes)}")
 
 
 def _check_unique(names: Iterable[str], what: str) -> None:
@@ -174,16 +180,24 @@ def check_parameters(structure: Structure) -> None:
         "spring": {s.name for s in structure.springs},
         "mass": {m.name for m in structure.masses},
     }
+    checks = Checks()
     for parameter in structure.parameters:
         place = f"parameter {parameter.name!r}"
-        if parameter.quantity not in has:
-            raise FemError(
-                f"{place}: quantity must be one of {', '.join(has)}, found {parameter.quantity!r}"
-            )
-        if isinstance(parameter.of, str) or not parameter.of:
-            raise FemError(f"{place}: expected a list of names, found {parameter.of!r}")
-        for name in parameter.of:
-            _check_known(name, has[parameter.quantity], parameter.quantity, place)
+        checks.attempt(_check_parameter, parameter, has, place)
+    checks.close()
+
+
+def _check_parameter(parameter: Parameter, has: dict[str, set[str]], place: str) -> None:
+    if parameter.quantity not in has:
+        raise FemError(
+            f"{place}: quantity must be one of {', '.join(has)}, found {parameter.quantity!r}"
+        )
+    if isinstance(parameter.of, str) or not parameter.of:
+        raise FemError(f"{place}: expected a list of names, found {parameter.of!r}")
+    checks = Checks()
+    for name in parameter.of:
+        checks.attempt(_check_known, name, has[parameter.quantity], parameter.quantity, place)
+    checks.close()
 
 
 def _check_known(name: str, known: set[str], quantity: str, place: str) -> None:

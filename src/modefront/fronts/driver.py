@@ -37,6 +37,9 @@ from modefront.work.task import IMMEDIATE, Executor, Key, Task, Within, seed_seq
 MOVED = 0.1
 """Distance of two edges, over the ranges of the parameters, above which their fronts differ."""
 
+ALIKE = 1e-2
+"""Change of the edges of three and more objectives, over the ranges, that leaves the simplex."""
+
 AGAIN = 2
 """Searches of the front at most, each with edges that are better than those of the one before."""
 
@@ -193,7 +196,8 @@ class _Run:
                 near = self._again(("weights", kind.value, name), [x.solution for x in before])
             arguments = (self.problem, _descent(w, sizes), self.search, near)
             seed = seed_sequence(self.seed, label(kind, name))
-            tasks.append(Task(("weights", kind.value, name), explore, arguments, seed))
+            key = ("weights", kind.value, name)
+            tasks.append(Task(key, explore, arguments, seed, has_parts=True))
         minima = self.work.run(tasks)
         return [
             Point(kind, solutions[0], name)
@@ -258,6 +262,9 @@ class _Run:
             if all(x is other for x, other in zip(better, edges, strict=True)):
                 break
             edges = better
+            if self.n > 2 and _are_near(bests, [edge.best for edge in edges], target):
+                bests = self._reported(edges, models, sizes, Within(work, turn=("near", turn)))
+                break
         if self.options.tolerance == 0:
             bests = [edge.best for edge in edges]
         return edges, bests, spanned or target, along
@@ -295,11 +302,12 @@ class _Run:
         archive = self.archive
         for i, (name, known) in enumerate(zip(self.problem.objectives, edges, strict=True)):
             order = Lexicographic(i, sizes)
-            ahead = [k for k, J in enumerate(archive.J) if order.clearly_better(J, known.best.at.J)]
+            J = archive.J
+            ahead = [k for k, row in enumerate(J) if order.clearly_better(row, known.best.at.J)]
             if not ahead:
                 out.append(known)
                 continue
-            first = min(ahead, key=lambda k: order.value(archive.J[k]))
+            first = min(ahead, key=lambda k: order.value(J[k]))
             arguments = (self.problem, i, sizes, archive.theta[first])
             (minima,) = work.run([Task(("edge", name, "archive"), _refined_again, arguments)])
             refined = ordered(self.problem, i, sizes, [*known.minima, *minima])
@@ -315,10 +323,9 @@ class _Run:
         for model in models:
             w = weights[model.kind, model.name]
             descent, known = _descent(w, sizes), model.solution
-            first = int((archive.J @ w).argmin())
-            if archive.J[first] @ w < known.at.J @ w and not descent.equal(
-                archive.J[first], known.at.J
-            ):
+            J = archive.J
+            first = int((J @ w).argmin())
+            if J[first] @ w < known.at.J @ w and not descent.equal(J[first], known.at.J):
                 key = ("weights", model.kind.value, model.name, "archive")
                 arguments = (self.problem, descent, archive.theta[first])
                 (descended,) = self.work.run([Task(key, _descended, arguments)])
@@ -346,7 +353,8 @@ class _Run:
             near = self._again(("optimal-weights",), self.known.optimal)
         arguments = (self.problem, self.a, sizes, self.search, near)
         seed = seed_sequence(self.seed, "optimal-weights")
-        (minima,) = self.work.run([Task(("optimal-weights",), optimal_minima, arguments, seed)])
+        task = Task(("optimal-weights",), optimal_minima, arguments, seed, has_parts=True)
+        (minima,) = self.work.run([task])
         scale = target.scale if target else sizes
         optimal = accepted(minima, self.a, sizes, rivals, self.archive.J, scale)
         if optimal:
@@ -354,7 +362,8 @@ class _Run:
         if self.floor is None:
             return [], []
         seed = seed_sequence(self.seed, "bounded-weights")
-        task = Task(("bounded-weights",), optimal_minima, (*arguments, self.floor), seed)
+        with_floor = (*arguments, self.floor)
+        task = Task(("bounded-weights",), optimal_minima, with_floor, seed, has_parts=True)
         (bounded,) = self.work.run([task])
         return [], [Point(Kind.BOUNDED, x) for x in bounded[:1]]
 
@@ -369,6 +378,13 @@ class _Run:
             first = equal[0].solution if equal else bests[0]
         arguments = (self.problem, self.a, sizes, first)
         return self.work.run([Task(("iterated-weights",), iterate_weights, arguments)])[0]
+
+
+def _are_near(edges: Sequence[Solution], others: Sequence[Solution], target: Payoff) -> bool:
+    """Return whether a front between edges is that between others."""
+    pairs = zip(edges, others, strict=True)
+    moved = [np.abs(x.at.J - other.at.J) / target.scale for x, other in pairs]
+    return bool(np.max(moved) < ALIKE)
 
 
 def _descent(w: Floats, sizes: Floats) -> Descent:

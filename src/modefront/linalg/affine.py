@@ -122,6 +122,11 @@ class DenseAffine:
         products = self.terms @ vectors
         return first_axis(self.coefficients.jacobian(theta).T, products).transpose(1, 2, 0)
 
+    def sparse(self) -> SparseAffine:
+        """Return the same matrix with sparse terms."""
+        terms = [scipy.sparse.coo_array(term) for term in self.terms]
+        return sparse_affine(terms, self.coefficients, self.size)
+
 
 @dataclass(frozen=True, eq=False)
 class SparseAffine:

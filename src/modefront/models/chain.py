@@ -8,12 +8,15 @@ parameter, :math:`k_i = \theta_j k_{0i}`.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, wrong
-from modefront.models.matrices import BASE, MatrixModel, SensorSpec, matrices
+from modefront.models.geometry import chain_geometry
+from modefront.models.matrices import MatrixModel, SensorSpec, matrices
+from modefront.models.terms import BASE
 
 BASE_DIRECTION = "x"
 """The one direction in which the masses, and the ground, can move."""
@@ -86,7 +89,8 @@ def chain(
     if sensors is None:
         sensors = {f"floor{i + 1}": i for i in range(n)}
     base = {BASE_DIRECTION: [(i, 1.0) for i in range(n)]}
-    return matrices(parameters, K, M, sensors, outputs=outputs, base=base)
+    model = matrices(parameters, K, M, sensors, outputs=outputs, base=base)
+    return replace(model, geometry=chain_geometry(n, model.selection))
 
 
 def _spring(n: int, i: int) -> Floats:

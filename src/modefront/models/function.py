@@ -26,8 +26,10 @@ from modefront.models.parameters import Parameter
 from modefront.models.ports import Ports, Transfer
 from modefront.modes.result import Modes
 from modefront.options import each_once
+from modefront.work.transfer import shared
 
 
+@shared
 @dataclass(frozen=True, eq=False)
 class FunctionModel:
     """A model whose matrices are a function of the parameters; `function_model` makes it.
@@ -55,6 +57,21 @@ class FunctionModel:
     def size(self) -> int:
         """Number of degrees of freedom N."""
         return self.nominal.size
+
+    @property
+    def version(self) -> int:
+        """Zero: the model does not change."""
+        return 0
+
+    @property
+    def parts(self) -> tuple[MatrixModel]:
+        """The nominal model, which is sent to other processes on its own."""
+        return (self.nominal,)
+
+    @property
+    def footprint(self) -> float:
+        """Bytes that an eigensolution takes, estimated."""
+        return self.nominal.footprint
 
     @property
     def unused(self) -> tuple[str, ...]:

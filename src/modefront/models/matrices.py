@@ -1,4 +1,4 @@
-r"""Models given by their matrices: :math:`K(\theta) = K_0 + \sum_j \theta_j K_j`, M likewise."""
+r"""Models given by their matrices: :math:`K(\theta) = K_0 + \sum_j c_j(\theta) K_j`, M likewise."""
 
 from __future__ import annotations
 
@@ -17,16 +17,19 @@ from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse
 from modefront.linalg.factorisation import Factorisation, Symbolic
 from modefront.linalg.pencil import Pencil, pencil
 from modefront.linalg.products import gram
+from modefront.models.geometry import Geometry
 from modefront.models.ports import Pattern, Ports, Transfer
+from modefront.models.terms import BASE, above_zero, exponents_of, form_of, term_exponents
 from modefront.modes import dense, full, sparse
 from modefront.modes.result import Modes
 from modefront.work.costs import Costs, spend
-
-BASE = "base"
-"""Name of the term that does not depend on the parameters."""
+from modefront.work.transfer import shared
 
 DENSE = 180
 """Degrees of freedom up to which dense matrices are faster."""
+
+FACTOR = 40
+"""Entries of the two factors of an eigensolution and of what belongs to it, over N^(4/3)."""
 
 SensorSpec = int | Sequence[tuple[int, float]]
 """A sensor: a degree of freedom, counted from 0, or weighted degrees of freedom."""
@@ -45,6 +48,7 @@ class _Counted:
         return self.symbolic.factor(values)
 
 
+@shared
 @dataclass(frozen=True, eq=False)
 class MatrixModel:
     """A model with affine stiffness and mass matrices, both dense or both sparse.
@@ -58,6 +62,7 @@ class MatrixModel:
     outputs : weights (N,) of the degrees of freedom at places that are no sensors, by name
     base : motion (N,) of the degrees of freedom with the base, by the name of its direction
     floating : whether the stiffness matrix may be singular: rigid-body modes are wanted
+    geometry : where the degrees of freedom are in space; None where that is not known
     """
 
     parameters: tuple[str, ...]
@@ -68,6 +73,7 @@ class MatrixModel:
     outputs: Mapping[str, Floats] = field(default_factory=dict)
     base: Mapping[str, Floats] = field(default_factory=dict)
     floating: bool = True
+    geometry: Geometry | None = None
 
     @property
     def size(self) -> int:
@@ -78,6 +84,30 @@ class MatrixModel:
     def is_sparse(self) -> bool:
         """Whether the matrices are sparse; those of small models are dense."""
         return isinstance(self.stiffness, SparseAffine) and isinstance(self.mass, SparseAffine)
+
+    @property
+    def version(self) -> int:
+        """Zero: the model does not change."""
+        return 0
+
+    @property
+    def parts(self) -> tuple[()]:
+        """Nothing within the model is sent to other processes on its own."""
+        return ()
+
+    @property
+    def footprint(self) -> float:
+        """Bytes that an eigensolution takes, estimated; factors of solids fill in the most."""
+        if not self.is_sparse:
+            return 8.0 * 8 * self.size**2
+        return 8.0 * FACTOR * self.size ** (4 / 3)
+
+    @property
+    def above_zero(self) -> tuple[str, ...]:
+        """Names of parameters that have to be above 0: there are roots or quotients of them."""
+        tables = self.stiffness.coefficients, self.mass.coefficients
+        found = {i for table in tables for i in above_zero(table.exponents)}
+        return tuple(self.parameters[i] for i in sorted(found))
 
     @property
     def unused(self) -> tuple[str, ...]:
@@ -171,6 +201,15 @@ class MatrixModel:
                 vars(out)["pencil"] = replace(known, K=stiffness, M=mass)
         return out
 
+    def sparse(self) -> MatrixModel:
+        """Return the same model with sparse matrices."""
+        if self.is_sparse:
+            return self
+        stiffness, mass = (
+            A.sparse() if isinstance(A, DenseAffine) else A for A in (self.stiffness, self.mass)
+        )
+        return replace(self, stiffness=stiffness, mass=mass)
+
     @cached_property
     def _dense_selection(self) -> Floats:
         return self.selection.toarray()
@@ -206,8 +245,9 @@ def matrices(
         Names of the parameters, in the order of theta.
     stiffness, mass
         Symmetric matrices (N, N), dense or scipy-sparse, in consistent units: eigenvalues of K with
-        respect to M are in (rad/s)². K_0 is called ``"base"``, K_j by its parameter; what is not
-        given is zero. The mass matrix may be singular (degrees of freedom without mass).
+        respect to M are in (rad/s)². K_0 is called ``"base"``, K_j by its parameter, or by the
+        product of powers of parameters in its place, such as ``"t^3"``, ``"1/L"``, ``"E*t"``; what
+        is not given is zero. The mass matrix may be singular (degrees of freedom without mass).
     sensors
         For the name of each sensor, in the order of the measured shapes, a degree of freedom
         counted from 0, or pairs (degree of freedom, weight) that are summed.
@@ -273,11 +313,8 @@ def affine_model(
 
 
 def affine(parameters: Sequence[str], terms: Mapping[str, Matrix], size: int) -> SparseAffine:
-    """Return base + sum_j theta_j A_j for terms named ``"base"`` or as a parameter."""
-    exponents = np.zeros((len(terms), len(parameters)))
-    for row, name in enumerate(terms):
-        if name != BASE:
-            exponents[row, list(parameters).index(name)] = 1
+    """Return base + sum_k c_k(theta) A_k for terms named as `modefront.models.terms` says."""
+    exponents = term_exponents(list(terms), parameters)
     sparse_terms = [scipy.sparse.coo_array(A) for A in terms.values()]
     return sparse_affine(sparse_terms, Monomials(exponents), size)
 
@@ -294,9 +331,9 @@ def _common_size(parameters: Sequence[str], tables: Mapping[str, Mapping[str, Ma
         if not terms:
             faults.append(Fault("", place, f"'{BASE}' or a parameter", "nothing"))
         for name, A in terms.items():
-            if name != BASE and name not in parameters:
+            if exponents_of(name, parameters) is None:
                 found = suggestion(name, [BASE, *parameters])
-                faults.append(Fault("", place, f"'{BASE}' or a parameter", found))
+                faults.append(Fault("", place, form_of(name), found))
             if A.shape != (size, size):
                 expected = f"a matrix {size} x {size}, as the first one"
                 found = " x ".join(map(str, A.shape))

@@ -6,11 +6,13 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
+import scipy.sparse
 
 from modefront import fem
 from modefront._typing import Floats
 from modefront.errors import wrong
 from modefront.linalg.affine import Monomials, SparseAffine
+from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import MatrixModel, affine_model
 
 
@@ -65,7 +67,7 @@ def mesh_model(
         exponents[:, columns] = matrix.coefficients.exponents
         return replace(matrix, coefficients=Monomials(exponents))
 
-    return affine_model(
+    model = affine_model(
         parameters,
         [built.sensors[i] for i in sensors],
         built.selection[sensors],
@@ -73,6 +75,29 @@ def mesh_model(
         placed(built.mass),
         outputs={built.sensors[i]: built.selection[[i]].toarray()[0] for i in others},
         base={name: motion for name, motion in _motions(built.dofs).items() if motion.any()},
+    )
+    return replace(model, geometry=_geometry(structure, built))
+
+
+CELL_TYPES = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
+"""Types of cells, as meshio calls them, by their nodes."""
+
+
+def _geometry(structure: fem.Structure, built: fem.StructureMatrices) -> Geometry:
+    """Return nodes and cells of a structure, and how its free degrees of freedom move them."""
+    nodes = np.asarray(structure.nodes, dtype=float)
+    cells = [np.atleast_2d(np.asarray(group.cells)) for group in structure.groups]
+    translations = 6 * np.arange(len(nodes))[:, None] + np.arange(3)
+    count = len(structure.sensors)
+    return Geometry(
+        nodes,
+        tuple(
+            Cells(group.name, CELL_TYPES[each.shape[1]], each)
+            for group, each in zip(structure.groups, cells, strict=True)
+        ),
+        scipy.sparse.csr_array(built.dofs.T[translations.ravel()]),
+        built.places.nodes[:count],
+        built.places.directions[:count, :3],
     )
 
 

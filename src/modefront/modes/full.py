@@ -70,7 +70,9 @@ def sparse_modes(pencil: Pencil, theta: Floats, count: int, loads: Floats) -> Fu
     lam = _without_rounding(spectrum.lam, spectrum.Phi, pencil.K.at(theta).diagonal())
     below = spectrum.factors[0]
     regular = below.sigma == 0 and lam[0] > 0
-    static = below.factor.solve(np.ascontiguousarray(loads)) if regular else None
+    static = None
+    if regular:  # the factors take one right-hand side at least
+        static = below.factor.solve(np.ascontiguousarray(loads)) if loads.size else loads
     return FullModes(lam[:count], spectrum.Phi[:, :count], static)
 
 

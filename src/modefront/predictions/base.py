@@ -7,7 +7,7 @@ this one, and a line in `modefront.predictions`.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, ClassVar, Protocol, Self
 
@@ -100,6 +100,8 @@ class Kind:
     absent : wording for models that can be solved and have no value
     undefined : why there may be no standard deviation, besides models that cannot be solved
     check : a comparison with finer numerics; None where there is none
+    heading : returns a prediction's options in a sentence, from its name and the values of its
+        settings by their variables; None for the settings with their meanings
     """
 
     table: str
@@ -109,6 +111,7 @@ class Kind:
     absent: str = "have no value"
     undefined: str = "have no such value"
     check: NumericalCheck | None = None
+    heading: Callable[[str, Mapping[str, Any]], str] | None = None
 
     @property
     def ranged(self) -> tuple[ResultVariable, ...]:

@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Annotated, ClassVar, Literal, Self
+from typing import Annotated, Any, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -118,6 +118,17 @@ class SoilFilter:
 FILTER = nested("a table { frequency, damping }, a Kanai-Tajimi filter", SoilFilter)
 
 
+def _heading(name: str, settings: Mapping[str, Any]) -> str:
+    """Return what was asked for in a sentence."""
+    of = {key.removeprefix("failure_"): value for key, value in settings.items()}
+    return (
+        f"{name}: {of['load']}; probability that any response leaves [-level, level] (two-sided "
+        f"barrier) within {of['duration']:g} s, at rest at first; {of['sided']} spectral density "
+        f"{of['density']:g}, time step {of['step']:g} s, {of['samples']} samples "
+        f"({of['method']}), {of['modes']} modes, damping {of['damping']}"
+    )
+
+
 @dataclass(frozen=True)
 class Passage:
     """First-passage probabilities at several levels.
@@ -209,6 +220,7 @@ class Passage:
             ),
             ResultVariable("failure_halved_at", "label", "label of the model of that ratio"),
         ),
+        heading=_heading,
     )
 
     def __post_init__(self) -> None:

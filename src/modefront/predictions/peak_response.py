@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, ClassVar, Self
+from typing import Annotated, Any, ClassVar, Self
 
 import numpy as np
 
@@ -43,6 +43,15 @@ BAND = numbers(
     "[lowest, highest] frequency in Hz, 0 <= lowest < highest",
     lambda x: len(x) == 2 and 0 <= x[0] < x[1],
 )
+
+
+def _heading(name: str, settings: Mapping[str, Any]) -> str:
+    """Return what was asked for in a sentence."""
+    low, high = settings["frf_band"]
+    return (
+        f"{name}: {settings['frf_load']}; {settings['frf_quantity']}, greatest peak from {low:g} "
+        f"to {high:g} Hz, {settings['frf_modes']} modes, damping {settings['frf_damping']}"
+    )
 
 
 @dataclass(frozen=True)
@@ -91,6 +100,7 @@ class PeakResponse:
         ),
         absent="have no peak",
         undefined="have no such peak",
+        heading=_heading,
     )
 
     def __post_init__(self) -> None:

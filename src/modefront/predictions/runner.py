@@ -15,6 +15,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
+from modefront.models.reduced.model import ReducedModel
 from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.work.codec import record
@@ -94,7 +95,14 @@ class PredictionRunner:
         mark = hash_text(f"{prediction!r} {self.seed}")[:8]
         numbers = seed_sequence(self.seed, "predict", prediction.name)
         key = ("predict", prediction.name, *part, mark)
-        return Task(key, function, (self.problem, prediction, numbers, *arguments))
+        model = self.problem.model
+        return Task(
+            key,
+            function,
+            (self.problem, prediction, numbers, *arguments),
+            # Responses are those of the full model.
+            memory=model.full.footprint if isinstance(model, ReducedModel) else 0.0,
+        )
 
 
 def _at_point(

@@ -3,13 +3,15 @@ r"""Results of several model classes and configurations side by side.
 All is measured in the space of errors :math:`e_i = \sqrt{J_i / a_i}`, which has the same meaning
 for every model class and configuration (Christodoulou et al. 2008,
 doi:10.1016/j.cma.2008.04.010): a good class has a front close to the origin, and a front that is
-short makes the choice among its models matter little. Only the Pareto-optimal points of a front
-count. Its length is that of the shortest tree that joins them, gaps between its pieces left out.
+short makes the choice among its models matter little. Its length is that of the shortest tree that
+joins its Pareto-optimal points, gaps between its branches left out. Ranges and distances are those
+of all Pareto-optimal models, edges and weighted ones included: a model that is better than the
+points of the front is never left out.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
@@ -21,40 +23,48 @@ from scipy.spatial.distance import cdist, pdist, squareform
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError
+from modefront.predictions import KINDS
 from modefront.results.files import read_dataset
 from modefront.results.selection import front_points
 
 PREDICTED = ("frequency", "mac")
 """Predictions of the modes that every file of results holds."""
 
-FURTHER = ("frf_peak", "frf_peak_frequency", "failure_probability")
-"""Further predictions, for each point and each load and response that are named."""
-
 
 @dataclass(frozen=True)
 class Spread:
-    """Least and greatest value of one prediction over the Pareto-optimal points of a front."""
+    """Least and greatest value of one quantity over the Pareto-optimal models.
+
+    Attributes
+    ----------
+    name : of the quantity
+    least, greatest : over the models; NaN where none has a value
+    reference : value of the reference model
+    """
 
     name: str
     least: float
     greatest: float
+    reference: float = float("nan")
 
 
 @dataclass(frozen=True)
 class Summary:
-    """One front, in the space of errors.
+    """One front, in the space of errors; a row of the comparison, whose columns these are.
 
     Attributes
     ----------
     name : folder of the results
     study, method : what they are of
-    points : number of Pareto-optimal points
+    points : number of Pareto-optimal points of the front
     eigenproblems : solved in all
     length : of the front
     length_ratio : to that of the first front; NaN where that is a point
-    extent : (groups,) range of each error over the front
-    distance : of the point of the front that is closest to the origin
+    extent : (groups,) range of each error over the Pareto-optimal models
+    distance : of the Pareto-optimal model that is closest to the origin
     optimal_distance : of the optimally weighted model from the origin; NaN where there is none
+    reference : label of the model that the data prefer, of other weights where there is none
+    reference_distance : of that model from the origin
     parameters : least and greatest value of each parameter
     predictions : likewise of each prediction
     """
@@ -69,6 +79,8 @@ class Summary:
     extent: tuple[float, ...]
     distance: float
     optimal_distance: float
+    reference: str
+    reference_distance: float
     parameters: tuple[Spread, ...]
     predictions: tuple[Spread, ...]
 
@@ -81,9 +93,10 @@ class Apart:
     ----------
     first, second : folders of the results
     common : names of the parameters of both
-    least, greatest : distance of a model of one front from the nearest of the other one: least of
-        all, and greatest from either side (Hausdorff); NaN without common parameters
+    least, greatest : distance of a Pareto-optimal model of one from the nearest of the other one:
+        least of all, and greatest from either side (Hausdorff); NaN without common parameters
     optimal : distance of the optimally weighted models; NaN where there is none
+    reference : distance of the reference models
     """
 
     first: str
@@ -92,6 +105,7 @@ class Apart:
     least: float
     greatest: float
     optimal: float
+    reference: float
 
 
 @dataclass(frozen=True)
@@ -135,6 +149,12 @@ def _optimal(data: xr.Dataset) -> xr.Dataset:
     return data.isel(point=front[data["pareto"].values[front]] if front.size > 1 else front)
 
 
+def _best(data: xr.Dataset) -> xr.Dataset:
+    """Return all Pareto-optimal models of any kind; those of the front where there is none."""
+    best = np.flatnonzero(data["pareto"].values)
+    return data.isel(point=best) if best.size else _optimal(data)
+
+
 def _length(data: xr.Dataset) -> float:
     front = _optimal(data)
     e = front["error"].values
@@ -148,41 +168,58 @@ def _length(data: xr.Dataset) -> float:
 
 
 def _summary(name: str, data: xr.Dataset, first: float) -> Summary:
-    front = _optimal(data)
-    e, length = front["error"].values, _length(data)
-    best = _optimally_weighted(data)
+    models, length = _best(data), _length(data)
+    e = models["error"].values
+    best, reference = _optimally_weighted(data), _reference(data)
     return Summary(
         name,
         str(data.attrs.get("study", "")),
         str(data.attrs["method"]),
-        len(e),
+        int(_optimal(data).sizes["point"]),
         int(data.attrs["model_evaluations"]),
         length,
         length / first if first > 0 else float("nan"),
         tuple(np.ptp(e, axis=0).tolist()),
         float(np.linalg.norm(e, axis=1).min()),
         float(np.linalg.norm(best["error"].values)) if best is not None else float("nan"),
-        tuple(_spreads("", data["parameter"].values, front["theta"].values)),
-        tuple(_predictions(front)),
+        str(data.attrs["reference"]),
+        float(np.linalg.norm(reference["error"].values)),
+        tuple(_spreads("", "parameter", "theta", models, reference)),
+        tuple(_predictions(models, reference)),
     )
 
 
-def _predictions(front: xr.Dataset) -> list[Spread]:
+def _predictions(models: xr.Dataset, reference: xr.Dataset) -> list[Spread]:
+    """Return the ranges of frequencies and MAC, then of the predictions of every kind."""
     out = []
     for name in PREDICTED:
-        out += _spreads(f"{name} ", front["mode"].values, front[name].values)
-    for name in FURTHER:
-        if name in front:
-            of = front[name].dims[1]
-            out += _spreads(f"{name} ", front[of].values, front[name].values)
+        out += _spreads(f"{name} ", "mode", name, models, reference)
+    for kind in (each.kind for each in KINDS):
+        for variable in kind.ranged:
+            if variable.name in models:
+                dimension = kind.dimension
+                out += _spreads(f"{variable.name} ", dimension, variable.name, models, reference)
     return out
 
 
-def _spreads(prefix: str, names: Iterable[object], values: Floats) -> list[Spread]:
-    return [
-        Spread(f"{prefix}{name}".strip(), float(column.min()), float(column.max()))
-        for name, column in zip(names, values.T, strict=True)
-    ]
+def _spreads(
+    prefix: str, dimension: str, variable: str, models: xr.Dataset, reference: xr.Dataset
+) -> list[Spread]:
+    out = []
+    names, values = models[dimension].values, models[variable].values
+    for name, column, value in zip(names, values.T, reference[variable].values, strict=True):
+        known = column[np.isfinite(column)]
+        least, greatest = (known.min(), known.max()) if known.size else (np.nan, np.nan)
+        text = f"{prefix}{name}".strip()
+        out.append(Spread(text, float(least), float(greatest), float(value)))
+    return out
+
+
+def _reference(data: xr.Dataset) -> xr.Dataset:
+    """Return the model that the data prefer; the first one of results that do not name it."""
+    labels = [str(x) for x in data["label"].values]
+    name = str(data.attrs["reference"])
+    return data.isel(point=labels.index(name) if name in labels else 0)
 
 
 def _optimally_weighted(data: xr.Dataset) -> xr.Dataset | None:
@@ -196,14 +233,14 @@ def _apart(first_results: tuple[str, xr.Dataset], second_results: tuple[str, xr.
     common = [name for name in a["parameter"].values.tolist() if name in known]
     nan = float("nan")
     if not common:
-        return Apart(first, second, (), nan, nan, nan)
+        return Apart(first, second, (), nan, nan, nan, nan)
     span = np.diff(a["bounds"].sel(parameter=common).values, axis=1)[:, 0]
 
     def scaled(data: xr.Dataset) -> Floats:
         theta: Floats = data["theta"].sel(parameter=common).values / span
         return theta
 
-    away = cdist(scaled(_optimal(a)), scaled(_optimal(b)))
+    away = cdist(scaled(_best(a)), scaled(_best(b)))
     best = [_optimally_weighted(a), _optimally_weighted(b)]
     between = [scaled(data) for data in best if data is not None]
     return Apart(
@@ -213,4 +250,5 @@ def _apart(first_results: tuple[str, xr.Dataset], second_results: tuple[str, xr.
         float(away.min()),
         float(max(away.min(axis=0).max(), away.min(axis=1).max())),
         float(np.linalg.norm(between[0] - between[1])) if len(between) == 2 else nan,
+        float(np.linalg.norm(scaled(_reference(a)) - scaled(_reference(b)))),
     )

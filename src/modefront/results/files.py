@@ -5,10 +5,16 @@ from __future__ import annotations
 import os
 from pathlib import Path
 
+import h5py
+import numpy as np
 import xarray as xr
 
-from modefront.errors import Fault, InputError
-from modefront.results.schema import FORMAT, faults, missing
+from modefront.errors import Fault, InputError, reason
+from modefront.hdf5 import check_file
+from modefront.inputs import file_size
+from modefront.results.schema import FORMAT, VARIABLES, faults, missing
+from modefront.results.soundness import unsound
+from modefront.text import NAME, clean
 
 FILE = "results.nc"
 
@@ -29,20 +35,41 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
     where they are not those of modefront, and where they are of another format.
     """
     path = folder / FILE
-    if not path.is_file():
-        raise InputError(Fault(str(path), "file", "results of a finished run", "no such file"))
+    file_size(path, "results of a finished run")
     try:
-        with xr.open_dataset(path, engine="h5netcdf") as data:
+        with h5py.File(path, "r") as file:
+            check_file(file)
+        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
             data.load()
     except Exception as error:  # what is raised for a damaged file is not documented
-        raise InputError(Fault(str(path), "file", "results in netCDF", str(error))) from None
+        raise InputError(Fault(str(path), "file", "results in netCDF", reason(error))) from None
     version = data.attrs.get("format", 1 if "label" in data else None)
-    if version is not None and version != FORMAT:
+    if version is not None and not np.array_equal(version, FORMAT):
         expected = f"results of format {FORMAT}"
-        text = f"format {version}, of another version of modefront: run the study again"
+        text = (
+            f"format {clean(version, NAME)}, of another version of modefront: run the study again"
+        )
         raise InputError(Fault(str(path), "attribute 'format'", expected, text))
-    found = [*faults(data), *(missing(data) if whole else ())]
+    found = [*faults(data), *(missing(data) if whole else ())] or list(unsound(data))
     wrong = [Fault(str(path), *parts) for parts in found]
     if wrong:
         raise InputError(wrong)
-    return data
+    return _plain(data)
+
+
+def _plain(data: xr.Dataset) -> xr.Dataset:
+    """Return results in which truth is true or false, and no text holds orders to a terminal."""
+    changed: dict[str, xr.Variable] = {}
+    for name, variable in data.variables.items():
+        known = VARIABLES.get(str(name))
+        if known is not None and known.values == "truth" and variable.dtype != bool:
+            changed[str(name)] = variable.astype(bool)
+        if variable.dtype.kind in "UOT":
+            texts = [clean(text) for text in variable.values.ravel().tolist()]
+            if texts != variable.values.ravel().tolist():
+                values = np.array(texts, dtype=object).reshape(variable.shape)
+                changed[str(name)] = xr.Variable(variable.dims, values, variable.attrs)
+    out = data.assign(changed)
+    attributes = data.attrs.items()
+    out.attrs = {k: clean(value) if isinstance(value, str) else value for k, value in attributes}
+    return out

@@ -20,6 +20,8 @@ from modefront.models.matrices import MatrixModel
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
 from modefront.results.selection import front_points
+from modefront.results.shapes import PairedShapes, paired_shapes
+from modefront.results.vtu import write_vtu
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -175,12 +177,7 @@ class Results:
 
         Raises KeyError for an unknown label, IndexError for a position that there is not.
         """
-        labels = [str(x) for x in self["label"].values]
-        if isinstance(point, str):
-            if point not in labels:
-                raise KeyError(f"expected one of {', '.join(labels)}, found {point!r}")
-            point = labels.index(point)
-        row = self.dataset.isel(point=point)
+        row = self.dataset.isel(point=self._position(point))
         return ReportedModel(
             str(row["label"].values),
             str(row["kind"].values),
@@ -190,6 +187,27 @@ class Results:
             row["mac"].values,
             self.problem,
         )
+
+    def shapes(self, point: str | int) -> PairedShapes:
+        """Return the mode shapes of a model at all nodes and sensors, beside the measured ones.
+
+        ``point`` is a label or a position from 0. Raises ModelError for results that were read
+        without their study, KeyError for an unknown label.
+        """
+        if self.problem is None:
+            raise ModelError(
+                "mode shapes of a model: expected results with their study, "
+                "read_results(folder, study), found results alone"
+            )
+        return paired_shapes(self.dataset.isel(point=self._position(point)), self.problem)
+
+    def write_vtu(self, path: Path | str, point: str | int) -> None:
+        """Write the mode shapes of a model for ParaView, at all nodes, and the measured ones.
+
+        Raises what `shapes` raises, ModelError for a model without geometry, and InputError
+        without meshio or where the file cannot be written.
+        """
+        write_vtu(Path(path), self.shapes(point))
 
     def table(self, *points: str) -> pd.DataFrame:
         """Return one row a model, of all points or those of these labels.
@@ -212,6 +230,14 @@ class Results:
             columns[f"MAC {mode}"] = data["mac"].values[:, r]
         frame = pd.DataFrame(columns, index=pd.Index(data["label"].values, name="model"))
         return frame.loc[list(points)] if points else frame
+
+    def _position(self, point: str | int) -> int:
+        if not isinstance(point, str):
+            return point
+        labels = [str(x) for x in self["label"].values]
+        if point not in labels:
+            raise KeyError(f"expected one of {', '.join(labels)}, found {point!r}")
+        return labels.index(point)
 
     def _of(self, kind: Kind) -> xr.Dataset:
         return self.dataset.isel(point=np.flatnonzero(self["kind"].values == kind.value))

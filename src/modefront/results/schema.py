@@ -522,9 +522,14 @@ def faults(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
                 yield f"attribute '{name}'", attribute.meaning, "nothing"
         elif isinstance(data.attrs[name], str) != (attribute.values == "text"):
             yield f"attribute '{name}'", f"a {attribute.values}", f"{data.attrs[name]!r}"
-    for name in ("parameter", "group", "mode"):
+    for name, kinds in (("parameter", "UOST"), ("group", "UOST"), ("mode", "fiu")):
         if name not in data.coords:
             yield f"coordinate '{name}'", DIMENSIONS[name], "nothing"
+            continue
+        names = data[name]
+        if names.dims != (name,) or names.dtype.kind not in kinds:
+            there = f"{names.dtype} of the dimensions {', '.join(map(str, names.dims))}"
+            yield f"coordinate '{name}'", DIMENSIONS[name], there
     for name, variable in VARIABLES.items():
         if name not in data:
             if variable.required:

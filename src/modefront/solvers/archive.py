@@ -9,7 +9,7 @@ those that it has evaluated are stored, so that a run that is continued knows th
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,9 @@ from modefront._typing import Floats
 from modefront.solvers.problem import Evaluation, Problem
 from modefront.work.codec import record
 from modefront.work.task import Executor, R, Task
+
+ROOM = 64
+"""Models for which there is room at first; it doubles when it is full."""
 
 
 @dataclass
@@ -29,16 +32,26 @@ class Archive:
     Attributes
     ----------
     problem : the problem that is evaluated
-    theta, J : (models, p) and (models, n), in the order in which they were evaluated
     """
 
     problem: Problem
-    theta: Floats = field(init=False)
-    J: Floats = field(init=False)
+    _theta: Floats = field(init=False, repr=False)
+    _J: Floats = field(init=False, repr=False)
+    _count: int = 0
 
     def __post_init__(self) -> None:
-        self.theta = np.zeros((0, self.lower.size))
-        self.J = np.zeros((0, len(self.objectives)))
+        self._theta = np.zeros((ROOM, self.lower.size))
+        self._J = np.zeros((ROOM, len(self.objectives)))
+
+    @property
+    def theta(self) -> Floats:
+        """Parameters (models, p), in the order in which they were evaluated."""
+        return self._theta[: self._count].copy()
+
+    @property
+    def J(self) -> Floats:
+        """Objectives (models, n), likewise."""
+        return self._J[: self._count].copy()
 
     @property
     def objectives(self) -> tuple[str, ...]:
@@ -72,11 +85,24 @@ class Archive:
 
     def add(self, theta: Floats, J: Floats) -> None:
         """Keep a model, unless another one is nowhere worse, and drop those that it dominates."""
-        if not np.isfinite(J).all() or (self.J <= J).all(axis=1).any():
+        if not np.isfinite(J).all():
             return
-        kept = (self.J < J).any(axis=1)
-        self.theta = np.vstack([self.theta[kept], theta])
-        self.J = np.vstack([self.J[kept], J])
+        known = self._J[: self._count].T
+        nowhere_worse, better_somewhere = known[0] <= J[0], known[0] < J[0]
+        for values, value in zip(known[1:], J[1:], strict=True):
+            nowhere_worse &= values <= value
+            better_somewhere |= values < value
+        if nowhere_worse.any():
+            return
+        if not better_somewhere.all():
+            kept = np.flatnonzero(better_somewhere)
+            self._theta[: kept.size], self._J[: kept.size] = self._theta[kept], self._J[kept]
+            self._count = kept.size
+        if self._count == len(self._J):
+            self._theta = np.concatenate([self._theta, np.zeros_like(self._theta)])
+            self._J = np.concatenate([self._J, np.zeros_like(self._J)])
+        self._theta[self._count], self._J[self._count] = theta, J
+        self._count += 1
 
 
 @record
@@ -99,19 +125,15 @@ class Archived:
 class Archiving:
     """An executor that adds all models that tasks evaluate to an archive.
 
-    The first argument of every task is the problem.
+    The first argument of every task is the problem, or the archive in its place.
     """
 
     inner: Executor
     archive: Archive
 
-    def run(self, tasks: Sequence[Task[R]]) -> list[R]:
+    def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
         """Return the results of the tasks."""
-        wrapped: list[Task[Archived]] = [
-            Task(task.key, archived, (task.function, *task.arguments), task.seed, task.turn)
-            for task in tasks
-        ]
-        results = self.inner.run(wrapped)
+        results = self.inner.run([self._of(x) for x in tasks], [self._of(x) for x in ahead])
         for each in results:
             for theta, J in zip(each.theta, each.J, strict=True):
                 self.archive.add(theta, J)
@@ -121,11 +143,27 @@ class Archiving:
         """Pass on the extent of the work."""
         self.inner.expect(stages)
 
+    def _of(self, task: Task[Any]) -> Task[Archived]:
+        """Return a task that evaluates the problem itself, and returns what it evaluated."""
+        problem, *others = task.arguments
+        if problem is self.archive:
+            problem = self.archive.problem
+        return replace(task, function=archived, arguments=(task.function, problem, *others))
+
 
 def archived(
-    function: Callable[..., Any], problem: Problem, *arguments: Any, **options: Any
+    function: Callable[..., Any],
+    problem: Problem,
+    *arguments: Any,
+    work: Executor | None = None,
+    **options: Any,
 ) -> Archived:
-    """Return the result of a function of a problem, and the models that it evaluates."""
+    """Return the result of a function of a problem, and the models that it evaluates.
+
+    ``work`` computes the parts of the function, if it has any.
+    """
     archive = Archive(problem)
+    if work is not None:
+        options["work"] = Archiving(work, archive)
     result = function(archive, *arguments, **options)
     return Archived(result, archive.theta, archive.J)

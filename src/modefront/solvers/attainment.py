@@ -45,7 +45,7 @@ from modefront._typing import Bools, Floats
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Achievement
-from modefront.solvers.sqp import Solution, Status, begin, solve
+from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 
 SHARE = 1e-6
 """rho: as small as a weight can be and not be taken for rounding, since a tolerance of 1e-7 of the
@@ -54,6 +54,11 @@ parameters leaves about as much of the multipliers."""
 SAME = 1e-6
 """Distance over the range of the parameters below which two models are the same, in units of the
 tolerance of the parameters ten; likewise of objectives over their ranges."""
+
+
+_BEYOND = Options(iterations=30)
+"""Half of the iterations that a programme beyond the simplex may take: nine of ten that converge
+take less."""
 
 
 def active_bounds(shares: Floats) -> Bools:
@@ -93,8 +98,8 @@ class Attainment:
         """Return whether no objective is below its floor."""
         return self.floor is None or bool((self.floor <= J).all())
 
-    def distance(self, beta: Floats, other: Floats) -> float:
-        """Return the distance of two points of the plane, in units of the ranges."""
+    def distance(self, beta: Floats, other: Floats) -> Floats:
+        """Return the distances (...) of a point (n,) and others (..., n), over the ranges."""
         return self.target.distance(beta, other)
 
     def place(self, _: int, J: Floats) -> Floats:
@@ -141,11 +146,20 @@ class Attainment:
     def _solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         """Return the solution from a start; stalled where it is weakly optimal.
 
-        Of three objectives, the share of the others in what is minimised decides between these.
+        Of three objectives, the share of the others in what is minimised decides between these,
+        where it is quick; most searches beyond the simplex that are slow are on their way nowhere.
         """
-        solution = replace(solve(problem, self.subproblem(beta), start), beta=beta)
-        weak = beta.size > 3 and self.is_weak(beta, solution.at.J)
-        return replace(solution, status=Status.STALLED) if weak else solution
+        programme = self.subproblem(beta)
+        if beta.min() >= 0:
+            return replace(solve(problem, programme, start), beta=beta)
+        solution = replace(solve(problem, programme, start, _BEYOND), beta=beta)
+        slow = solution.status is Status.EXHAUSTED
+        if self.is_weak(beta, solution.at.J) and (slow or beta.size > 3):
+            return replace(solution, status=Status.STALLED)
+        if not slow:
+            return solution
+        again = solve(problem, programme, solution, _BEYOND)
+        return replace(again, evaluations=solution.evaluations + again.evaluations, beta=beta)
 
     def is_weak(self, beta: Floats, J: Floats) -> bool:
         """Return whether, beyond the simplex, an objective that is least holds the bound.

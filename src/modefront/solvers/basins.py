@@ -99,6 +99,13 @@ CROWD = 6
 OTHERS = 1e-2
 """Weight of the other objectives, in units of the ranges, where the least of one is looked for."""
 
+BESIDE, NEIGHBOURS = 1.5, 2
+"""Distance of points of other branches, in steps of the ranges, within which a point is solved
+again from them, and how many of these are tried at most."""
+
+BEHIND = 1e-2
+"""Excess of a half-finished search over a point, in units of the ranges, that is not followed."""
+
 _ROUGH = Options(step=NEAR / 4, iterations=8)
 
 
@@ -283,8 +290,7 @@ class _Between:
 
         Others that dominate it, as in a gap of the front, lie on no way to its normal.
         """
-        places = np.array([self.target.place(row) for row in J])
-        away = np.abs(places - place_of(self.target, one)).max(axis=1)
+        away = np.abs(self.target.place(J) - place_of(self.target, one)).max(axis=1)
         return np.asarray(away <= 1 / self.lattice.divisions)
 
     def ahead(self, probes: Sequence[Solution], known: Models) -> bool:
@@ -411,6 +417,66 @@ class _Between:
         return sorted(along, key=lambda one: -float(self.target.place(one.at.J)[0]))
 
 
+def from_other_branches(
+    problem: Problem,
+    target: Payoff,
+    lattice: Simplex,
+    points: Sequence[Solution],
+    work: Executor = IMMEDIATE,
+) -> list[Solution]:
+    """Return the points, each solved again from those of other branches that lie beside it.
+
+    Where branches meet, the lattice leads along one of them as far as it goes, and the other one
+    may already be better.
+    """
+    current = list(points)
+    span = problem.upper - problem.lower
+    tried: set[tuple[int, bytes]] = set()
+    for turn in range(ROUNDS):
+        theta = np.array([point.at.theta for point in current]) / span
+        y = np.array([point.at.J for point in current]) / target.scale
+        starts: list[tuple[int, int]] = []
+        for k in range(len(current)):
+            if not np.isfinite(y[k]).all():
+                continue
+            away = np.abs(y - y[k]).max(axis=1)
+            other = (np.abs(theta - theta[k]) > JUMP).any(axis=1)
+            beside = np.flatnonzero(other & (away <= BESIDE / lattice.divisions))
+            for j in beside[away[beside].argsort(kind="stable")][:NEIGHBOURS].tolist():
+                key = (k, current[j].at.theta.tobytes())
+                if key not in tried:
+                    tried.add(key)
+                    starts.append((k, j))
+        if not starts:
+            break
+        name: Key = ("front", "nbi", "branches", turn + 1)
+        ends = work.run(
+            [
+                Task((*name, k + 1, j + 1), _from_branch, (problem, target, current[k], current[j]))
+                for k, j in starts
+            ]
+        )
+        for (k, _), end in zip(starts, ends, strict=True):
+            if _is_better(target, end, current[k]):
+                current[k] = end
+    return current
+
+
+def _from_branch(problem: Problem, target: Payoff, point: Solution, start: Solution) -> Solution:
+    """Return the programme of a point of the front solved from another point of it.
+
+    It is not solved to the end where it ends behind the point.
+    """
+    beta, programmes = place_of(target, point), programmes_of(problem, target)
+    end = replace(solve(problem, programmes.subproblem(beta), start, _ROUGH), beta=beta)
+    J = np.array([end.at.J, point.at.J])
+    own, known = place_on_normals(target, beta[None], J)[:, 0]
+    if end.converged or own > known + BEHIND:
+        return end
+    again = programmes.solve_again(problem, beta, end)
+    return replace(again, evaluations=end.evaluations + again.evaluations)
+
+
 def programmes_of(problem: Problem, target: Payoff) -> Projection | Attainment:
     """Return the programmes of the points of the simplex."""
     if target.utopia.size == 2:
@@ -458,21 +524,31 @@ def _others(
     points: Sequence[Solution],
     models: Models,
 ) -> list[Solution]:
-    """Return optimal models that lie apart from the points, the farthest first."""
+    """Return optimal models that lie apart from the points, the farthest first.
+
+    Models that are weakly optimal only are left out.
+    """
     spacing = SPACING / lattice.divisions
     optimal = nondominated(np.concatenate([models.J, [one.at.J for one in points]]))
     left = models[optimal[: len(models.J)]]
-    known = np.array([one.at.J for one in points if one.at.feasible]) / target.scale
+    programmes = programmes_of(problem, target)
+    if isinstance(programmes, Attainment):
+        # Where the least objective holds the bound, no programme chooses among the models.
+        places = zip(target.place(left.J), left.J, strict=True)
+        left = left[~np.array([programmes.is_weak(beta, J) for beta, J in places], dtype=np.bool_)]
+    y = left.J / target.scale
+    away = np.full(len(y), np.inf)
+    for point in points:
+        if point.at.feasible:
+            away = np.minimum(away, np.abs(y - point.at.J / target.scale).max(axis=1))
     out: list[Solution] = []
-    while len(left.J) and len(out) < CROWD * lattice.divisions:
-        away = np.abs(left.J[:, None] / target.scale - known).max(axis=2).min(axis=1)
+    while len(y) and len(out) < CROWD * lattice.divisions:
         farthest = int(away.argmax())
         if away[farthest] < spacing:
             break
         out.append(_bottom(problem, target, left.theta[farthest]))
-        new = np.array([left.J[farthest], out[-1].at.J]) / target.scale
-        known = np.concatenate([known, new])
-        left = left[np.arange(len(left.J)) != farthest]
+        for J in (left.J[farthest], out[-1].at.J):
+            away = np.minimum(away, np.abs(y - J / target.scale).max(axis=1))
     return out
 
 

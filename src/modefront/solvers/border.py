@@ -18,6 +18,7 @@ import numpy as np
 
 from modefront._typing import Bools, Floats
 from modefront.solvers.attainment import SAME, Attainment, active_bounds
+from modefront.solvers.lexicographic import Lexicographic
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Linear
@@ -27,6 +28,9 @@ from modefront.work.task import IMMEDIATE, Executor, Task
 GAIN = 1e-5
 """Fall of an objective, over itself, that is worth another model."""
 
+VANISHING = 1e-5
+"""An objective below this share of its range nearly vanishes: residuals of 3e-3 of theirs."""
+
 _FEW = Options(iterations=40)
 
 
@@ -34,7 +38,7 @@ def without_slack(
     problem: Problem, target: Payoff, points: Sequence[Solution], work: Executor = IMMEDIATE
 ) -> list[Solution]:
     """Return the points, those of the border with all other objectives as small as they can be."""
-    doubtful = [k for k, point in enumerate(points) if _free(target, point).any()]
+    doubtful = [k for k, point in enumerate(points) if _lowerable(target, point)]
     tasks = [
         Task(("front", "nbi", "border", k + 1), _tightened, (problem, target, points[k]))
         for k in doubtful
@@ -53,23 +57,71 @@ def _free(target: Payoff, point: Solution) -> Bools:
     return ~active if active.any() else np.zeros_like(active)
 
 
+def _lowerable(target: Payoff, point: Solution) -> list[Bools]:
+    """Return sets of objectives (n,) that may be lower at the same values of the others.
+
+    These are the objectives that no bound holds, together and each alone; and each of the others
+    beside one that nearly vanishes, which may hold the bound without any effect.
+    """
+    n = target.scale.size
+    free = _free(target, point)
+    vanishing = VANISHING * target.scale >= point.at.J
+    weak = point.beta is not None and point.at.feasible and vanishing.any()
+    alone = np.flatnonzero(~vanishing if weak else free) if weak or free.sum() > 1 else ()
+    return [*([free] if free.any() else []), *(np.arange(n) == i for i in alone)]
+
+
 def _tightened(problem: Problem, target: Payoff, point: Solution) -> Solution:
     """Return a point of the border with the objectives that no bound holds at their least."""
-    free, J = _free(target, point), point.at.J
-    held = np.eye(J.size)[~free] / target.scale
-    programme = Linear(np.where(free, 1 / target.scale, 0.0), held, held @ J)
-    end = solve(problem, programme, begin(problem.evaluate(point.at.theta)), _FEW)
-    evaluations = point.evaluations + end.evaluations + 1
-    if not _is_better(target, end.at.J, J):
+    J = point.at.J
+    start = end = begin(problem.evaluate(point.at.theta))
+    evaluations = point.evaluations + 1
+    for lowered in _lowerable(target, point):
+        lower = _lowered(problem, target, end, lowered)
+        evaluations += lower.evaluations
+        if _is_better(target, lower.at.J, end.at.J):
+            end = lower
+    if end is start or not _is_better(target, end.at.J, J):
         return replace(point, evaluations=evaluations)
     beta = target.place(J) if point.beta is None else point.beta
     attainment = Attainment(target, np.zeros((0, J.size)))
     again = solve(problem, attainment.subproblem(beta), begin(end.at))
     evaluations += again.evaluations
-    best = again if again.converged and _is_better(target, again.at.J, J) else end
+    best = again if again.converged and _is_better(target, again.at.J, end.at.J) else end
     weights = again.weights if best is again else point.weights
     status = point.status
     return replace(best, weights=weights, status=status, evaluations=evaluations, beta=beta)
+
+
+def _lowered(problem: Problem, target: Payoff, start: Solution, lowered: Bools) -> Solution:
+    """Return the least sum of some objectives, the others held at their values.
+
+    Where one of the others nearly vanishes, its slope says nothing of how to keep it: its residuals
+    are held in its place (`modefront.solvers.lexicographic`).
+    """
+    J, scale = start.at.J, target.scale
+    least = int(np.where(lowered, np.inf, J / scale).argmin())
+    if start.at.residuals and J[least] <= VANISHING * scale[least]:
+        return _around(problem, Lexicographic(least, scale), start, lowered)
+    held = np.eye(J.size)[~lowered] / scale
+    return solve(problem, Linear(np.where(lowered, 1 / scale, 0.0), held, held @ J), start, _FEW)
+
+
+def _around(problem: Problem, order: Lexicographic, start: Solution, lowered: Bools) -> Solution:
+    """Return the least sum of some objectives around an exact fit of another one.
+
+    At a given sum of squares, residuals along their multipliers are the best.
+    """
+    w, r = np.where(lowered, 1 / order.sizes, 0.0), start.at.residuals[order.objective].r
+    end, mu = order.lowered(problem, start, w, ~lowered, r, _FEW)
+    if not (end.converged and mu.any()):
+        return end
+    aim = mu * float(np.linalg.norm(r) / np.linalg.norm(mu))
+    turned, _ = order.lowered(problem, end, w, ~lowered, aim, _FEW)
+    J, known = turned.at.J, end.at.J
+    kept = J[~lowered] <= known[~lowered] + VANISHING * SAME * order.sizes[~lowered]
+    better = turned.at.feasible and kept.all() and w @ J < w @ known
+    return turned if better else replace(end, evaluations=turned.evaluations)
 
 
 def _is_better(target: Payoff, J: Floats, known: Floats) -> bool:

@@ -9,10 +9,10 @@ gets the best of them everywhere, at the price of a few more programmes.
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from functools import partial
-from itertools import combinations
+from itertools import combinations, islice
 from math import comb
 from typing import Protocol
 
@@ -21,7 +21,7 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.solvers.problem import Problem
 from modefront.solvers.sqp import Solution
-from modefront.work.task import IMMEDIATE, Executor, Key, Task
+from modefront.work.task import IMMEDIATE, Executor, Task
 
 LatticePoint = tuple[int, ...]
 """A point of the lattice: whole coordinates, one an objective, whose sum is that of its corners."""
@@ -98,8 +98,8 @@ class Programmes(Protocol):
     def scale(self) -> Floats:
         """Range of each objective over the edges, shape (n,)."""
 
-    def distance(self, beta: Floats, other: Floats, /) -> float:
-        """Return the distance of two points of the plane, in units of the ranges."""
+    def distance(self, beta: Floats, other: Floats, /) -> Floats:
+        """Return the distances (...) of a point (n,) and others (..., n), over the ranges."""
 
     def place(self, edge: int, J: Floats, /) -> Floats:
         """Return the coordinates (n,) to which an edge with these objectives belongs."""
@@ -117,9 +117,12 @@ class Programmes(Protocol):
 BETTER = 1e-7
 """Difference of two values below which the solutions are the same."""
 
-BEYOND = 300
-"""Points beyond the simplex that are tried at most; of three objectives, 5 times those within
-where these are more. With each further objective a point has more neighbours."""
+BEYOND, SHARE = 300, 2
+"""Points beyond the simplex that are tried at most; of three objectives, where the lattice is not
+small, so many times those within. With each further objective a point has more neighbours."""
+
+SMALL = 30
+"""Points of a small lattice of three objectives, which the front beyond it may exceed by far."""
 
 APART = 1.0
 """Distance of points beyond the simplex in steps of the ranges, one a division, at least: where the
@@ -131,6 +134,9 @@ DENSE = 60
 ATTEMPTS = 3
 """Neighbours from which a point beyond the simplex is tried at most: where none of these leads to a
 solution, the front ends."""
+
+AHEAD = 16
+"""Next steps that are named to the executor, at most."""
 
 MANY = 300
 """Points of the simplex that are not exceeded if nothing else is wanted."""
@@ -161,8 +167,7 @@ def continuation(
     run = _Continuation(problem, programmes, lattice, work, branches=len(edges))
     for i, edge in enumerate(edges):
         run.from_edge(i, edge)
-    for solution in before:
-        run.from_before(solution)
+    run.from_before(before)
     run.spread()
     return run.solutions()
 
@@ -211,7 +216,8 @@ class _Continuation:
     @property
     def room(self) -> int:
         """Points beyond the simplex that are tried at most."""
-        return max(BEYOND, 5 * len(self.lattice.counts)) if self.few else BEYOND
+        within = len(self.lattice.counts)
+        return SHARE * within if self.few and within > SMALL else BEYOND
 
     def beta(self, point: LatticePoint) -> Floats:
         """Return the coordinates (n,) of a point of the lattice."""
@@ -226,19 +232,25 @@ class _Continuation:
             self.fixed.add(point)
         else:
             key = ("front", self.programmes.label, point, "from-edge", number + 1)
-            solution = self._solution(key, _solve, point, edge)
+            arguments = (self.problem, self.programmes, self.beta(point), edge)
+            solution = self.work.run([Task(key, _solve, arguments)])[0]
         if point not in self.solved or self._better(point, solution, self.solved[point]):
             self._accept(point, solution, number)
 
-    def from_before(self, solution: Solution) -> None:
-        """Solve a point from its solution of nearly the same problem."""
-        if solution.beta is None:
-            return
+    def from_before(self, before: Sequence[Solution]) -> None:
+        """Solve points from their solutions of nearly the same problem."""
+        tasks: dict[LatticePoint, Task[Solution]] = {}
         divisions = self.lattice.divisions
-        point = _nearest(divisions * solution.beta, divisions)
-        if point not in self.solved:
-            key = ("front", self.programmes.label, point, "again")
-            self._accept(point, self._solution(key, _from_before, point, solution), -1)
+        for solution in before:
+            if solution.beta is None:
+                continue
+            point = _nearest(divisions * solution.beta, divisions)
+            if point not in self.solved:
+                key = ("front", self.programmes.label, point, "again")
+                arguments = (self.problem, self.programmes, self.beta(point), solution)
+                tasks.setdefault(point, Task(key, _from_before, arguments))
+        for point, solution in zip(tasks, self.work.run(list(tasks.values())), strict=True):
+            self._accept(point, solution, -1)
 
     def spread(self) -> None:
         """Solve every point from its neighbours until none is worth another attempt."""
@@ -267,9 +279,7 @@ class _Continuation:
         start, known = self.solved[source], self.solved.get(point)
         self.tried.add((point, source, self.renewed[source]))
         self.attempts[point] += 1
-        key = ("front", self.programmes.label, point, "from", source, self.renewed[source])
-        again = known is not None and known.converged
-        solution = self._solution(key, _solve_again if again else _solve, point, start)
+        solution = self.work.run([self._task(point, source)], self._next())[0]
         if known is None or self._better(point, solution, known):
             far = self._jumps(solution, start)
             self.branches += far
@@ -282,11 +292,22 @@ class _Continuation:
             # The way back leads to what is known, unless one of the two lies in another basin.
             self.tried.add((source, point, self.renewed[point]))
 
-    def _solution(
-        self, key: Key, solve: Callable[..., Solution], point: LatticePoint, start: Solution
-    ) -> Solution:
-        arguments = (self.problem, self.programmes, self.beta(point), start)
-        return self.work.run([Task(key, solve, arguments)])[0]
+    def _task(self, point: LatticePoint, source: LatticePoint) -> Task[Solution]:
+        """Return the task of a step from a neighbour."""
+        known = self.solved.get(point)
+        solve = _solve_again if known is not None and known.converged else _solve
+        key = ("front", self.programmes.label, point, "from", source, self.renewed[source])
+        arguments = (self.problem, self.programmes, self.beta(point), self.solved[source])
+        return Task(key, solve, arguments)
+
+    def _next(self) -> list[Task[Solution]]:
+        """Return the tasks of the next steps, unless the one at hand changes what they are."""
+        steps = islice(self.queue, AHEAD)
+        return [
+            self._task(*step)
+            for step in dict.fromkeys(steps)
+            if self._worth_trying(*step) and min(step[0]) >= 0
+        ]
 
     def _accept(self, point: LatticePoint, solution: Solution, branch: int) -> None:
         """Keep a solution, and take note of the steps to its neighbours."""
@@ -315,20 +336,21 @@ class _Continuation:
 
     def _fits(self, point: LatticePoint, source: LatticePoint) -> bool:
         """Return whether there is room for a point beyond the simplex, and it is not too close."""
-        if self.beyond >= DENSE and self._is_close(point, source):
+        if self.beyond >= DENSE and self._are_close(point, [source]):
             # It is left out, and those behind it are reached from the same point.
             if (point, source) not in self.left_out:
                 self.left_out.add((point, source))
                 self.queue.extend((near, source) for near in neighbours(point) if min(near) < 0)
             return False
-        if self.beyond >= DENSE and any(self._is_close(point, other) for other in self.solved):
+        if self.beyond >= DENSE and self._are_close(point, list(self.solved)):
             return False
         self.beyond += 1
         return self.beyond <= self.room
 
-    def _is_close(self, point: LatticePoint, other: LatticePoint) -> bool:
-        distance = self.programmes.distance(self.beta(point), self.beta(other))
-        return distance * self.lattice.divisions < APART - SAME
+    def _are_close(self, point: LatticePoint, others: list[LatticePoint]) -> bool:
+        """Return whether a point lies too close to any of some others."""
+        distances = self.programmes.distance(np.array(point), np.array(others))
+        return bool(distances.min() < APART - SAME)
 
     def _jumps(self, solution: Solution, other: Solution) -> bool:
         """Return whether two solutions lie on different branches."""

@@ -65,7 +65,8 @@ def edge(
     name = problem.objectives[objective]
     order = Lexicographic(objective, sizes)
     arguments = (problem, order, search, starts, _TIGHT)
-    (minima,) = work.run([Task(("edge", name), explore, arguments, seed)])
+    task = Task(("edge", name), explore, arguments, seed, has_parts=True)
+    (minima,) = work.run([task])
     return ordered(problem, objective, sizes, minima)
 
 

@@ -21,7 +21,7 @@ from __future__ import annotations
 import warnings
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
-from typing import Annotated, Protocol, cast
+from typing import Annotated, Protocol, TypeAlias, cast
 
 import numpy as np
 
@@ -31,6 +31,7 @@ from modefront.options import check_fields, number, plain, whole
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import Scalarisation
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
+from modefront.work.task import IMMEDIATE, Executor, Task, Within
 
 DISTINCT = 1e-3
 """Distance of two minima, over the ranges of the parameters, above which they are two."""
@@ -152,84 +153,109 @@ def explore(
     options: Options | None = None,
     *,
     rng: np.random.Generator,
+    work: Executor = IMMEDIATE,
 ) -> list[Solution]:
     """Return the distinct minima that a local search leads to, best first.
 
     ``starts`` that are known to be good are solved from first, then the problem's own start, then
     others until the rule is met. Solutions that did not converge are among them where they are
-    better than all minima. Empty where the problem is defined at no start.
+    better than all minima. Empty where the problem is defined at no start. The arguments are more
+    than six because each is independent of the others.
     """
-    work = _Exploration(problem, local, options or Options())
-    for start in [*starts, begin(problem.evaluate(problem.start))]:
-        work.follow(start)
+    run = _Exploration(problem, local, options or Options(), work)
+    known: list[Start] = [*starts, problem.start]
+    for k, start in enumerate(known):
+        run.follow(start, known[k + 1 :])
     fewest = 0 if starts else search.starts
     rugged, hopeless = True, False
-    for tried, theta in enumerate(latin_hypercube(problem, rng, search.limit)):
-        N, w = tried + len(starts), _different(work.minima, local)
+    for tried, (theta, ahead) in enumerate(latin_hypercube(problem, rng, search.limit)):
+        N, w = tried + len(starts), _different(run.minima, local)
         few_left = tried >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2)
-        if few_left or (tried >= ENOUGH and work.agreed()):
+        if few_left or (tried >= ENOUGH and run.agreed()):
             rugged = False
             break
         hopeless = tried >= ESTIMATED and w * (N - 1) > MANY * search.limit * (N - w - 2)
         if hopeless:
             break
-        work.follow(begin(problem.evaluate(theta)))
+        run.follow(theta, ahead)
     for _ in range(search.evolutions if rugged else 0):
-        before = work.least
-        theta = evolve(problem, local, rng, search)
-        new = work.follow(begin(problem.evaluate(theta)))
-        if not new or (hopeless and work.least >= before):
+        before = run.least
+        theta = evolve(problem, local, rng, search, run.parts)
+        new = run.follow(theta)
+        if not new or (hopeless and run.least >= before):
             break
-    ahead = [x for x in work.unfinished if local.value(x.at.J) < work.least]
-    return sorted([*work.minima, *ahead], key=lambda x: local.value(x.at.J))
+    better = [x for x in run.unfinished if local.value(x.at.J) < run.least]
+    return sorted([*run.minima, *better], key=lambda x: local.value(x.at.J))
+
+
+Start: TypeAlias = Solution | Floats
+"""A solution to start from, or parameters (p,)."""
 
 
 @dataclass
 class _Exploration:
     """Searches for minima from many starts.
 
+    A search from a start depends on no other one until it comes near to a minimum, so that the next
+    ones may be computed at the same time.
+
     Attributes
     ----------
     minima : distinct minima so far
     unfinished : ends of searches that did not converge
     arrived : ends of searches at any minimum, half-finished ones included
+    count : starts so far
     """
 
     problem: Problem
     local: LocalSearch
     options: Options
+    work: Executor
     minima: list[Solution] = field(default_factory=list)
     unfinished: list[Solution] = field(default_factory=list)
     arrived: list[Solution] = field(default_factory=list)
+    count: int = 0
 
     @property
     def least(self) -> float:
         """Least value of all minima; infinite without any."""
         return min((self.local.value(x.at.J) for x in self.minima), default=np.inf)
 
-    def follow(self, start: Solution) -> bool:
+    @property
+    def parts(self) -> Executor:
+        """Executor of the parts that belong to the last start."""
+        return Within(self.work, turn=("start", self.count))
+
+    def follow(self, start: Start, ahead: Sequence[Start] = ()) -> bool:
         """Go to the minima below a start; return whether one is new.
 
-        Where the way down leaves the smooth piece of the objectives on which it began, the minimum
-        of that piece is another start.
+        Starts ``ahead`` will probably be followed next.
         """
-        problem, near = self.problem, replace(self.options, step=NEAR / 4)
-        if start.at.derivatives is None:
-            start = begin(problem.evaluate(start.at.theta))
-        rough = self.local.solve(problem, start, near)
-        new = self.finish(rough)
-        if rough.at.branch != start.at.branch:
-            on_branch = self.local.solve(problem.on_branch(start.at.branch), start, near)
-            again = begin(problem.evaluate(on_branch.at.theta))
-            new |= self.finish(self.local.solve(problem, again, near))
+        tasks = [self._descent(x, self.count + k) for k, x in enumerate([start, *ahead])]
+        self.count += 1
+        new = False
+        for k, rough in enumerate(self.work.run(tasks[:1], tasks[1:])[0]):
+            new |= self._finish(rough, k, tasks[1:])
         return new
 
-    def finish(self, rough: Solution) -> bool:
+    def agreed(self) -> bool:
+        """Return whether enough searches have arrived at the best minimum."""
+        best = min(self.minima, key=lambda x: self.local.value(x.at.J), default=None)
+        close = [x for x in self.arrived if best and not distinct([best], x, self.problem, NEAR)]
+        return len(close) >= AGREED
+
+    def _descent(self, start: Start, number: int) -> Task[list[Solution]]:
+        near = replace(self.options, step=NEAR / 4)
+        arguments = (self.problem, self.local, start, near)
+        return Task(("descent", number), descended, arguments)
+
+    def _finish(self, rough: Solution, number: int, ahead: Sequence[Task[list[Solution]]]) -> bool:
         """Go on to the minimum near a half-finished search; return whether it is a new one."""
         if not distinct(self.minima, rough, self.problem, NEAR):
             self.arrived.append(rough)
             return False
-        end = self.local.solve(self.problem, rough, self.options)
+        arguments = (self.problem, self.local, rough, self.options)
+        (end,) = self.work.run([Task(("end", self.count, number), _solved, arguments)], ahead)
         if not end.at.feasible or not np.isfinite(self.local.value(end.at.J)):
             return False
         if not end.converged:
@@ -241,11 +267,27 @@ class _Exploration:
             self.minima.append(end)
         return new
 
-    def agreed(self) -> bool:
-        """Return whether enough searches have arrived at the best minimum."""
-        best = min(self.minima, key=lambda x: self.local.value(x.at.J), default=None)
-        close = [x for x in self.arrived if best and not distinct([best], x, self.problem, NEAR)]
-        return len(close) >= AGREED
+
+def descended(problem: Problem, local: LocalSearch, start: Start, near: Options) -> list[Solution]:
+    """Return the half-finished searches from a start, up to the tolerance of the options ``near``.
+
+    Where the way down leaves the smooth piece of the objectives on which it began, the minimum
+    of that piece is another start.
+    """
+    if not isinstance(start, Solution):
+        start = begin(problem.evaluate(start))
+    elif start.at.derivatives is None:
+        start = begin(problem.evaluate(start.at.theta))
+    rough = local.solve(problem, start, near)
+    if rough.at.branch == start.at.branch:
+        return [rough]
+    on_branch = local.solve(problem.on_branch(start.at.branch), start, near)
+    again = begin(problem.evaluate(on_branch.at.theta))
+    return [rough, local.solve(problem, again, near)]
+
+
+def _solved(problem: Problem, local: LocalSearch, start: Solution, options: Options) -> Solution:
+    return local.solve(problem, start, options)
 
 
 def _different(minima: Sequence[Solution], local: LocalSearch) -> int:
@@ -261,18 +303,29 @@ def _different(minima: Sequence[Solution], local: LocalSearch) -> int:
     return len(kept)
 
 
-def latin_hypercube(problem: Problem, rng: np.random.Generator, limit: int) -> Iterator[Floats]:
-    """Yield parameters within the bounds, block by block spread evenly over each range."""
+def latin_hypercube(
+    problem: Problem, rng: np.random.Generator, limit: int
+) -> Iterator[tuple[Floats, list[Floats]]]:
+    """Yield parameters within the bounds, block by block spread evenly over each range.
+
+    With each come those that follow in its block.
+    """
     span = problem.upper - problem.lower
     block = 10
     for done in range(0, limit, block):
         cells = rng.permuted(np.tile(np.arange(block), (span.size, 1)), axis=1).T
         thetas = problem.lower + span * (cells + rng.uniform(size=cells.shape)) / block
-        yield from thetas[: limit - done]
+        rest = list(thetas[: limit - done])
+        while rest:
+            yield rest.pop(0), list(rest)
 
 
 def evolve(
-    problem: Problem, local: LocalSearch, rng: np.random.Generator, search: Search
+    problem: Problem,
+    local: LocalSearch,
+    rng: np.random.Generator,
+    search: Search,
+    work: Executor = IMMEDIATE,
 ) -> Floats:
     """Return the best parameters that one run of CMA-ES found, from a random start."""
     with warnings.catch_warnings():
@@ -292,21 +345,30 @@ def evolve(
             "maxiter": search.generations,
         },
     )
-    best, theta = np.inf, problem.lower + span * strategy.x0
+    best, theta, generation = np.inf, problem.lower + span * strategy.x0, 0
     while (
         not strategy.stop() and np.max(strategy.sigma * strategy.sm.variances**0.5) > search.spread
     ):
         asked = strategy.ask()
+        candidates = [problem.lower + span * np.clip(u, 0, 1) for u in asked]
+        tasks = [
+            Task(("member", generation, k), objectives, (problem, candidate))
+            for k, candidate in enumerate(candidates)
+        ]
         values = []
-        for u in asked:
-            candidate = problem.lower + span * np.clip(u, 0, 1)
-            J = problem.evaluate(candidate, derivatives=False).J
+        for candidate, J in zip(candidates, work.run(tasks), strict=True):
             value = local.value(J) if np.isfinite(J).all() else np.inf
             values.append(value)
             if value < best:
                 best, theta = value, candidate
         strategy.tell(asked, values)
+        generation += 1
     return theta
+
+
+def objectives(problem: Problem, theta: Floats) -> Floats:
+    """Return the objectives (n,) at some parameters."""
+    return problem.evaluate(theta, derivatives=False).J
 
 
 def distinct(

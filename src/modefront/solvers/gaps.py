@@ -85,17 +85,20 @@ def gaps(
     """
     kept = np.flatnonzero(optimal).tolist()
     others = np.zeros((0, 2)) if known is None else known
-    out = []
+    tasks, sides = [], []
     for k, (a, b) in enumerate(pairwise(kept)):
         jump = any(points[a] is one and points[b] is other for one, other in jumps)
         if b > a + 1 or jump:
             before = [points[i] for i in kept[: k + 1]]
             behind = [points[i] for i in kept[k + 1 :]]
             arguments = (problem, before, behind, scale, others)
-            (ends,) = work.run([Task(("gap", a + 1, b + 1), _ends, arguments)])
-            end, start = (one if one.converged else None for one in ends)
-            if not jump or _apart(end, start, points[b], scale):
-                out.append(Gap(points[a], points[b], end, start))
+            tasks.append(Task(("gap", a + 1, b + 1), _ends, arguments))
+            sides.append((points[a], points[b], jump))
+    out = []
+    for (last, first, jump), ends in zip(sides, work.run(tasks), strict=True):
+        end, start = (one if one.converged else None for one in ends)
+        if not jump or _apart(end, start, first, scale):
+            out.append(Gap(last, first, end, start))
     return out
 
 

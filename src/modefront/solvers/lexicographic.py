@@ -38,7 +38,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Bools, Floats
 from modefront.solvers.problem import (
     Evaluation,
     ObjectiveDerivatives,
@@ -179,30 +179,54 @@ class Lexicographic:
         i, n = self.objective, self.sizes.size
         if not self.is_open(problem, start.at):
             return start
-        residual, Q = start.at.residuals[i], self._changing(problem, start.at)
-        held = Held(i, Q)
-        k, root = Q.shape[1], float(np.sqrt(self.sizes[i]))
         exact = start.at.J[i] <= EXACT * self.sizes[i]
-        aim = np.zeros(k) if exact else Q.T @ residual.r
-        A = np.hstack([np.eye(k), np.zeros((k, n - 1))]) / root
-        w = np.concatenate([np.zeros(k), np.delete(1 / self.sizes, i)])
-        first = begin(held.of(start.at))
-        learned = first.learned.copy()
-        learned[k:] = np.delete(start.learned, i, axis=0)
         tight = replace(options, constraint=max(1e-9, 1e-2 * options.step), reduction=1e-16)
-        found = solve(
-            held.problem(problem), Linear(w, A, aim / root), replace(first, learned=learned), tight
+        aim = start.at.residuals[i].r * (0.0 if exact else 1.0)
+        held = np.zeros(n, dtype=np.bool_)
+        return self.lowered(problem, start, self.others, held, aim, tight)[0]
+
+    def lowered(
+        self,
+        problem: Problem,
+        start: Solution,
+        w: Floats,
+        held: Bools,
+        aim: Floats,
+        options: Options,
+    ) -> tuple[Solution, Floats]:
+        """Return the least w^T J (n,) where the first objective has the residuals ``aim`` (rows,).
+
+        Those of the other objectives that are ``held`` (n,) keep their values. The multipliers of
+        the residuals (rows,) follow: what is least falls as ``aim`` moves along them. The arguments
+        are those of a programme and of its solution.
+        """
+        i, n = self.objective, self.sizes.size
+        Q = self._changing(problem, start.at)
+        reduced, others = Held(i, Q), np.arange(n) != i
+        k, root = Q.shape[1], float(np.sqrt(self.sizes[i]))
+        first = begin(reduced.of(start.at))
+        learned = first.learned.copy()
+        learned[k:] = start.learned[others]
+        rows = np.eye(k + n - 1)[np.concatenate([np.ones(k, dtype=np.bool_), held[others]])]
+        unit = np.concatenate([np.full(k, root), self.sizes[others]])
+        values = np.concatenate([Q.T @ aim, start.at.J[others]])
+        programme = Linear(
+            np.concatenate([np.zeros(k), w[others]]), rows / unit, rows @ (values / unit)
+        )
+        solution = solve(
+            reduced.problem(problem), programme, replace(first, learned=learned), options
         )
         known = start.learned.copy()
-        known[np.arange(n) != i] = found.learned[k:]
-        return replace(
+        known[others] = solution.learned[k:]
+        end = replace(
             start,
-            at=problem.evaluate(found.at.theta),
+            at=problem.evaluate(solution.at.theta),
             learned=known,
-            status=found.status,
-            violation=found.violation,
-            evaluations=start.evaluations + found.evaluations + 1,
+            status=solution.status,
+            violation=solution.violation,
+            evaluations=start.evaluations + solution.evaluations + 1,
         )
+        return end, Q @ solution.weights[:k]
 
     def _limit(self, problem: Problem, start: Solution) -> Solution:
         """Return the limit of the minimisers for epsilon to 0, by Richardson's extrapolation."""

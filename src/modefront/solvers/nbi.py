@@ -30,6 +30,7 @@ from modefront.solvers.continuation import Simplex, continuation
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
+from modefront.solvers.scalarisation import Linear
 from modefront.solvers.sqp import Solution, solve
 from modefront.work.task import IMMEDIATE, Executor
 
@@ -53,8 +54,8 @@ class Projection:
         """Return False: of two objectives, the front ends at the edges."""
         return False
 
-    def distance(self, beta: Floats, other: Floats) -> float:
-        """Return the distance of two points of the plane, in units of the ranges."""
+    def distance(self, beta: Floats, other: Floats) -> Floats:
+        """Return the distances (...) of a point (n,) and others (..., n), over the ranges."""
         return self.target.distance(beta, other)
 
     def place(self, _: int, J: Floats) -> Floats:
@@ -73,21 +74,25 @@ class Projection:
         return replace(self._solve(problem, beta, start, 0), beta=beta)
 
     def _solve(self, problem: Problem, beta: Floats, start: Solution, halvings: int) -> Solution:
-        found = solve(problem, self.target.subproblem(beta), start)
+        found = solve(problem, self.subproblem(beta), start)
         if found.converged or not halvings or not start.at.feasible:
             return found
         between = (beta + self.place(0, start.at.J)) / 2
         near = self._solve(problem, between, start, halvings - 1)
         evaluations = found.evaluations + near.evaluations
         if near.converged:
-            again = solve(problem, self.target.subproblem(beta), near)
+            again = solve(problem, self.subproblem(beta), near)
             evaluations += again.evaluations
             found = again if again.converged else found
         return replace(found, evaluations=evaluations)
 
+    def subproblem(self, beta: Floats) -> Linear:
+        """Return the programme of the point at beta."""
+        return self.target.subproblem(beta)
+
     def value(self, beta: Floats, J: Floats) -> float:
         """Return -t."""
-        return self.target.subproblem(beta).value(J)
+        return self.subproblem(beta).value(J)
 
 
 def programmes(

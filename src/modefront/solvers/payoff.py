@@ -48,13 +48,17 @@ class Payoff:
     worst: Sequence[Solution] = ()
 
     def place(self, J: Floats) -> Floats:
-        """Return the coordinates (n,) of the point of the plane that is projected onto J."""
-        gamma = np.linalg.solve(self.Phi, (J - self.utopia) / self.scale)
-        return gamma - (gamma.sum() - 1) / gamma.size
+        """Return the coordinates (..., n) of the points of the plane that are projected onto J."""
+        y = (J - self.utopia) / self.scale
+        gamma = np.linalg.solve(self.Phi, y[..., None])[..., 0]
+        return np.asarray(gamma - (gamma.sum(axis=-1, keepdims=True) - 1) / gamma.shape[-1])
 
-    def distance(self, beta: Floats, other: Floats) -> float:
-        """Return the greatest difference of two points of the plane, in units of the ranges."""
-        return float(np.abs(self.Phi @ (beta - other)).max())
+    def distance(self, beta: Floats, other: Floats) -> Floats:
+        """Return the greatest differences (...) of a point (n,) and others (..., n) of the plane.
+
+        They are in units of the ranges.
+        """
+        return np.asarray(np.abs((beta - other) @ self.Phi.T).max(axis=-1))
 
     def subproblem(self, beta: Floats) -> Linear:
         """Return the programme of one point of the simplex."""

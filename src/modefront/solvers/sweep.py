@@ -39,9 +39,9 @@ class WeightedSums:
         """Return False: there are no weights beyond the simplex."""
         return False
 
-    def distance(self, beta: Floats, other: Floats) -> float:
-        """Return the greatest difference of two points of the simplex."""
-        return float(np.abs(beta - other).max())
+    def distance(self, beta: Floats, other: Floats) -> Floats:
+        """Return the greatest differences (...) of a point (n,) and others (..., n)."""
+        return np.asarray(np.abs(beta - other).max(axis=-1))
 
     def place(self, edge: int, _: Floats) -> Floats:
         """Return the corner of the simplex at which an edge is the solution."""

@@ -37,6 +37,7 @@ from modefront.solvers.lexicographic import EXACT, TIE
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import LogSum, weighted
 from modefront.solvers.sqp import Options, Solution, Status, solve
+from modefront.work.task import IMMEDIATE, Executor
 
 _TIGHT = Options(reduction=1e-17)
 """Steps end at the tolerance of the parameters, whatever f: a sum of logarithms has any size."""
@@ -56,6 +57,7 @@ def optimal_minima(
     floor: Floats | float = 0.0,
     *,
     rng: np.random.Generator,
+    work: Executor = IMMEDIATE,
 ) -> list[Solution]:
     """Return minima of I, best first; searches on which an objective vanishes are given up.
 
@@ -65,7 +67,8 @@ def optimal_minima(
     """
     bounded = bool(np.any(np.asarray(floor) > 0))
     programme = LogSum(a, floor, 0.0 if bounded else EXACT * sizes)
-    return explore(problem, Descent(programme, TIE * a.sum()), search, starts, _TIGHT, rng=rng)
+    local = Descent(programme, TIE * a.sum())
+    return explore(problem, local, search, starts, _TIGHT, rng=rng, work=work)
 
 
 def accepted(

@@ -1,4 +1,4 @@
-"""The check of a study before it is run: its derivatives, and what its data do not determine."""
+"""The check of a study before it is run: mistakes, derivatives, what its data do not determine."""
 
 from __future__ import annotations
 
@@ -7,7 +7,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront.diagnosis.comparison import Comparison, compare
+from modefront.diagnosis.diagnose import diagnose
+from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
+from modefront.diagnosis.words import Mistake
+from modefront.diagnosis.words import in_words as mistake_in_words
 from modefront.errors import Fault, InputError, ModelError
 from modefront.identifiability.combinations import (
     NONE,
@@ -32,12 +36,7 @@ from modefront.models.reduced.model import ReducedModel
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.problem import Evaluation
 from modefront.study.definition import Study
-
-AGREEMENT = 1e-5
-"""Greatest relative error of derivatives that finite differences explain."""
-
-STEP = 4e-3
-"""Change of the residuals, in their own units, that a finite difference makes."""
+from modefront.study.derivatives import AGREEMENT, cause_of, compared
 
 
 @dataclass(frozen=True)
@@ -49,13 +48,21 @@ class Findings:
     derivative_error : greatest difference of exact derivatives of the objectives from central
         differences near the nominal parameters, over the greatest derivative of the objective;
         NaN where the model is not defined around them
+    derivative_cause : which parameter and mode they differ for, and why; empty where they agree
     determined : which combinations of parameters each group and all of them determine
-    warnings : what a user should know before relying on the results
+    warnings : what a user should know before relying on the results; `mistakes` in words first
+    mistakes : what looks wrong in the model or the data, with its numbers
+    beside : the nominal model beside the measured modes
+    sensitivities : of the modes to the parameters
     """
 
     derivative_error: float
+    derivative_cause: str
     determined: tuple[str, ...]
     warnings: tuple[str, ...]
+    mistakes: tuple[Mistake, ...]
+    beside: Comparison
+    sensitivities: Sensitivities
 
     @property
     def sound(self) -> bool:
@@ -80,30 +87,35 @@ def check(study: Study) -> Findings:
     refuse_unchanged_groups(problem, str(study.file), unchanged_groups(problem))
     nominal = problem.evaluate(problem.start)
     scale = scale_at(problem, problem.start)
+    beside = compare(problem)
+    mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
     warnings = [
+        *map(mistake_in_words, mistakes),
         *_undetermined(problem, nominal, scale),
-        *_unpaired(problem, nominal),
+        *_coincident(problem, nominal),
         *_at_bounds(problem),
         *_infeasible_bounds(problem),
     ]
-    return Findings(derivative_error(problem), determined(problem), tuple(warnings))
+    agreement = compared(problem)
+    cause = "" if agreement.error <= AGREEMENT else cause_of(problem, agreement)
+    return Findings(
+        agreement.error,
+        cause,
+        determined(problem),
+        tuple(warnings),
+        mistakes,
+        beside,
+        sensitivities(problem),
+    )
 
 
-def _unpaired(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:
-    """Warn of modes that coincide with others, and of measured ones that no mode resembles."""
-    warnings = []
-    for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True):
-        if coincident:
-            warnings.append(
-                f"mode {r} of the nominal model coincides with another one: "
-                "its derivatives are not defined"
-            )
-    for r, value in zip(problem.data.modes, nominal.quantities["mac"], strict=True):
-        if value < 0.5:
-            warnings.append(
-                f"measured mode {r} resembles no mode of the nominal model (best MAC {value:.2f})"
-            )
-    return warnings
+def _coincident(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:
+    """Warn of modes that coincide with others."""
+    return [
+        f"mode {r} of the nominal model coincides with another one: its derivatives are not defined"
+        for r, coincident in zip(problem.data.modes, nominal.quantities["coincident"], strict=True)
+        if coincident
+    ]
 
 
 def _at_bounds(problem: UpdatingProblem) -> list[str]:
@@ -189,34 +201,6 @@ def _undetermined(problem: UpdatingProblem, nominal: Evaluation, scale: Scale) -
 def _is_of(idle: Sequence[int], combination: Combination) -> bool:
     """Return whether a combination is one of parameters without effect."""
     return bool(np.linalg.norm(combination.direction[list(idle)]) > np.sqrt(0.5))
-
-
-def derivative_error(problem: UpdatingProblem) -> float:
-    """Return the greatest relative error of dJ against extrapolated central differences.
-
-    A step changes the residuals by a given small amount, whatever the bounds are: steps that
-    follow narrow bounds would drown in rounding, and those that follow wide ones see no tangent.
-    Where bounds leave no room for a step, it leaves them.
-    """
-    span = problem.upper - problem.lower
-    size = np.sqrt(np.einsum("ijj->j", problem.evaluate(problem.start).H) / 2)
-    unit = np.divide(1.0, size, out=span.copy(), where=size > 0)
-    room = np.minimum(STEP * unit, span / 2)
-    theta = np.clip(problem.start, problem.lower + room, problem.upper - room)
-    exact = problem.evaluate(theta).dJ
-
-    def central(h: float) -> Floats:
-        columns = []
-        for step in np.diag(h * unit):
-            ahead = problem.evaluate(theta + step, derivatives=False).J
-            behind = problem.evaluate(theta - step, derivatives=False).J
-            columns.append((ahead - behind) / (2 * step.sum()))
-        return np.array(columns).T
-
-    estimate = (4 * central(STEP / 2) - central(STEP)) / 3
-    scale = np.abs(exact * unit).max(axis=1, keepdims=True)
-    error = np.abs((estimate - exact) * unit) / np.where(scale > 0, scale, 1.0)
-    return float(error.max())
 
 
 def _infeasible_bounds(problem: UpdatingProblem) -> list[str]:

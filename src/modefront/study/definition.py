@@ -8,6 +8,8 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
+from modefront.diagnosis.groups import UnusedGroup
+from modefront.diagnosis.places import DataDirection
 from modefront.errors import Fault, InputError, refuse
 from modefront.fronts.given import Weighted, label_faults
 from modefront.fronts.options import Pareto
@@ -35,6 +37,7 @@ class Origin:
     work : hash of the inputs of the front: all but predictions and draws
     problem : the problem that was read; a study of another problem has another origin
     remark : reason why a requested option is not in use
+    notes : mistakes that were found when it was read
     """
 
     file: Path
@@ -42,6 +45,7 @@ class Origin:
     work: str
     problem: UpdatingProblem
     remark: str = ""
+    notes: tuple[UnusedGroup | DataDirection, ...] = ()
 
 
 @dataclass(frozen=True)

@@ -13,9 +13,13 @@ from typing import Any
 import numpy as np
 
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, InputError, ModelError
+from modefront.diagnosis.groups import UnusedGroup
+from modefront.diagnosis.places import DataDirection
+from modefront.errors import Fault, InputError, ModelError, reason
 from modefront.fronts.options import Pareto
 from modefront.identifiability.options import Identifiability
+from modefront.inputs import read_text_bytes
+from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
 from modefront.pairing.match import Pairing
@@ -32,6 +36,9 @@ from modefront.study.tables.predict import complete, read_predictions
 from modefront.study.tables.weighted import read_weights
 from modefront.toml import Table
 from modefront.uncertainty.options import Uncertainty
+
+LARGEST = 64 * 10**6
+"""Bytes of a study file, at most."""
 
 
 def load(path: Path | str) -> Study:
@@ -89,6 +96,7 @@ def load(path: Path | str) -> Study:
         _digest(front.encode(), root.files),
         problem,
         reduction.fallback(problem.model),
+        tuple(note for note in root.notes if isinstance(note, UnusedGroup | DataDirection)),
     )
     return Study(
         *(problem, title, seed, pareto, weighted, search, identifiability, uncertainty),
@@ -122,30 +130,48 @@ def _place(root: Table, place: str) -> Table:
 
 
 def _parse(path: Path) -> tuple[dict[str, Any], bytes]:
+    content = read_text_bytes(path, "a study file", LARGEST)
     try:
-        content = path.read_bytes()
         return tomllib.loads(content.decode("utf-8-sig")), content
-    except FileNotFoundError:
-        raise InputError(Fault(str(path), "file", "a study file", "no such file")) from None
-    except IsADirectoryError:
-        raise InputError(Fault(str(path), "file", "a study file", "a folder")) from None
-    except (OSError, ValueError, RecursionError) as error:
-        raise InputError(Fault(str(path), "file", "TOML in UTF-8", str(error))) from None
+    except (ValueError, RecursionError) as error:
+        raise InputError(Fault(str(path), "file", "TOML in UTF-8", reason(error))) from None
 
 
 def _try_model(root: Table, problem: UpdatingProblem) -> None:
     """Note what only an evaluation shows: an indefinite matrix, a parameter without effect."""
     for name in problem.model.unused:
         root.fault(f"[[parameter]] '{name}'", "a parameter that the model uses", "no use of it")
+    if _refuses_zero(root, problem):
+        return
     try:
         problem.modes(problem.start, derivatives=False)
     except ModelError as error:
         root.fault("[model]", "modes at the nominal parameters", str(error))
         return
-    model = problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
+    model = _full(problem)
     if isinstance(model, MatrixModel) and not model.floating and model.is_singular(problem.start):
         expected = "a structure that is held, or floating = true for rigid-body modes"
         root.fault("[model]", expected, "a singular stiffness matrix at the nominal parameters")
+
+
+def _refuses_zero(root: Table, problem: UpdatingProblem) -> bool:
+    """Note bounds of 0 or less of parameters with roots or quotients; return whether any are."""
+    model = _full(problem)
+    names = model.above_zero if isinstance(model, MatrixModel) else ()
+    before = len(root.faults)
+    for name in names:
+        lower = float(problem.lower[problem.model.parameters.index(name)])
+        if lower <= 0:
+            expected = (
+                "a lower bound above 0, as terms of the matrices have quotients or roots of it"
+            )
+            root.fault(f"[[parameter]] '{name}' bounds", expected, f"{lower:g}")
+    return len(root.faults) > before
+
+
+def _full(problem: UpdatingProblem) -> Model:
+    """Return the model that a reduced basis stands for, or the model itself."""
+    return problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
 
 
 def _without_predictions(values: dict[str, Any]) -> dict[str, Any]:
@@ -160,5 +186,6 @@ def _digest(content: bytes, files: Sequence[Path]) -> str:
     """Return a hash of what the study file says and of all files that were read for it."""
     total = hashlib.sha256(content)
     for path in files:
-        total.update(hashlib.sha256(path.read_bytes()).digest())
+        with path.open("rb") as stream:
+            total.update(hashlib.file_digest(stream, "sha256").digest())
     return total.hexdigest()

@@ -19,7 +19,7 @@ from modefront.analysis.certified import (
 )
 from modefront.analysis.coverage import coverage
 from modefront.analysis.front import AnalysisOptions, analyse_front
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
 from modefront.fronts.driver import pareto_front
 from modefront.fronts.front import Front
 from modefront.fronts.given import Weighted
@@ -36,10 +36,12 @@ from modefront.study.check import refuse_unchanged_groups
 from modefront.study.definition import Study
 from modefront.uncertainty.noise import noise_floor
 from modefront.uncertainty.options import Uncertainty
+from modefront.work.lock import locked
 from modefront.work.progress import Progress
-from modefront.work.serial import Serial
+from modefront.work.run import Run
 from modefront.work.store import FOLDER, Store
 from modefront.work.task import Task
+from modefront.work.workers import backend
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -109,7 +111,7 @@ def in_memory(study: Study) -> Results:
     """
     from modefront.results.results import Results
 
-    return Results(_Session(study.completed(), Serial()).results(), study.problem)
+    return Results(_Session(study.completed(), Run()).results(), study.problem)
 
 
 def run(
@@ -119,6 +121,8 @@ def run(
     fresh: bool = False,
     refined: float | None = None,
     progress: Progress | None = None,
+    workers: int = 1,
+    scheduler: str | None = None,
 ) -> Results:
     """Write the results of a study to ``results.nc`` in a folder, and return them.
 
@@ -135,12 +139,20 @@ def run(
         Distance of neighbours on the front, in place of that of the study's `Pareto`.
     progress
         Receives reports of tasks that are begun and done; None for no reports.
+    workers
+        Number of processes that do the work. Where there are several, a script calls this function
+        under ``if __name__ == "__main__":``, since each of them imports the script.
+    scheduler
+        Address of the scheduler of a Dask cluster that does the work, like ``tcp://HOST:PORT``.
+
+    The digits of the results do not depend on who does the work. The arguments are more than six
+    because each is an option of its own.
 
     Raises
     ------
     InputError
-        If the folder cannot be written to, the front cannot be refined, or no parameter changes a
-        group.
+        If the folder cannot be written to, the front cannot be refined, no parameter changes a
+        group, or the model cannot be sent to another process.
     UnfinishedError
         If the work cannot be done; what is done is kept.
     """
@@ -152,18 +164,31 @@ def run(
         study = replace(study, pareto=replace(study.pareto, refined=refined))
     study = study.completed()
     tasks = folder / FOLDER / f"{study.work[:12]}-{__version__}"
-    try:
-        tasks.mkdir(parents=True, exist_ok=True)
-        if fresh or not study.work:
-            _set_aside(tasks)
-            _set_aside(folder / FILE)
-    except OSError as error:
-        fault = Fault(str(folder), "folder", "a folder that can be written to", str(error))
-        raise InputError(fault) from None
-    data = _Session(study, Serial(Store(tasks), progress or Progress())).results()
-    _keep_other(folder / FILE, study.digest)
-    write(data, folder / FILE)
+    _prepare(folder)
+    progress = progress or Progress()
+    with locked(folder):
+        _prepare(tasks, (tasks, folder / FILE) if fresh or not study.work else ())
+        _remove_leftovers(folder / FILE, tasks)
+        with backend(workers, scheduler, warm=__name__) as carrier:
+            progress.workers = carrier.workers
+            data = _Session(study, Run(Store(tasks), progress, carrier)).results()
+        _keep_other(folder / FILE, study.digest)
+        write(data, folder / FILE)
     return Results(data, study.problem)
+
+
+def _prepare(folder: Path, aside: Sequence[Path] = ()) -> None:
+    """Make a folder where there is none, after some files are set aside.
+
+    Raises InputError where the folder cannot be written to.
+    """
+    try:
+        for path in aside:
+            _set_aside(path)
+        folder.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        fault = Fault(str(folder), "folder", "a folder that can be written to", reason(error))
+        raise InputError(fault) from None
 
 
 @dataclass(frozen=True)
@@ -171,7 +196,7 @@ class _Session:
     """The work of a study, and who does it."""
 
     study: Study
-    work: Serial
+    work: Run
 
     def results(self) -> xr.Dataset:
         """Do the work and return its results.
@@ -258,6 +283,12 @@ class _Session:
 def _nominal(problem: UpdatingProblem) -> Solution:
     """Return the model at the nominal parameters."""
     return given(problem.evaluate(problem.start))
+
+
+def _remove_leftovers(file: Path, tasks: Path) -> None:
+    """Remove files that a killed run has not written to the end."""
+    for path in (file.with_name(f"{file.name}.tmp"), *tasks.glob("*.tmp")):
+        path.unlink(missing_ok=True)
 
 
 def _set_aside(path: Path) -> None:

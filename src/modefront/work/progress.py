@@ -48,11 +48,13 @@ class Progress:
     report : is called with the state
     clock : returns seconds
     spent : costs of the tasks computed, without those kept from an earlier run
+    workers : tasks that are computed at the same time, as far as there are so many
     """
 
     report: Callable[[State], None] = ignore
     clock: Callable[[], float] = time.monotonic
     spent: Costs = field(default_factory=Costs)
+    workers: int = 1
     _expected: dict[str, int] = field(default_factory=dict)
     _done: dict[str, int] = field(default_factory=dict)
     _running: dict[str, int] = field(default_factory=dict)
@@ -95,7 +97,7 @@ class Progress:
         elapsed = 0.0 if self._began is None else self.clock() - self._began
         left = None
         if self._computed:
-            left = (expected - done) * self._seconds / self._computed
+            left = (expected - done) * self._seconds / self._computed / self.workers
         return State(self._stage, done, running, expected, elapsed, left)
 
     def _met(self, stage: str) -> int:

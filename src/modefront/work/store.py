@@ -41,8 +41,11 @@ class Store:
 
     def read(self, task: Task[Any]) -> tuple[Any, Costs] | None:
         """Return the result of a task and what it cost; None where no whole one is kept."""
+        path = self._path(task)
+        if not path.is_file():  # a pipe in its place would be waited for
+            return None
         try:
-            with self._path(task).open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
                 arrays = {key: file[key] for key in file.files}
             head = json.loads(arrays.pop("head").tobytes())
             if head["key"] != _identity(task):
@@ -50,6 +53,14 @@ class Store:
             return decode(head["result"], arrays), Costs(**head["costs"])
         except _DAMAGED:
             return None
+
+    def has(self, task: Task[Any]) -> bool:
+        """Return whether there is a file of a task, whole or damaged."""
+        return self._path(task).is_file()
+
+    def remove(self, task: Task[Any]) -> None:
+        """Remove the result of a task, if there is one."""
+        self._path(task).unlink(missing_ok=True)
 
     def write(self, task: Task[Any], result: Any, costs: Costs) -> None:
         """Keep the result of a task, whole or not at all."""

@@ -4,6 +4,10 @@ A task is a module-level function with picklable arguments and a key that nothin
 has. Tasks of one call of `Executor.run` are independent of each other; their results come back in
 the order of the tasks, whoever computed them and whenever. Random numbers belong to the task: a
 task with a seed passes a generator of its own to its function.
+
+Where one task follows from another, a caller names those that it will probably ask for next. An
+executor may compute them ahead; what is not asked for then is forgotten, and neither results nor
+costs depend on it.
 """
 
 from __future__ import annotations
@@ -34,6 +38,9 @@ class Task(Generic[R]):
     arguments : picklable
     seed : of the generator that the function is passed as ``rng``; None where it takes none
     turn : which repetition of the stage the task belongs to
+    has_parts : whether the function is passed an executor as ``work``, which computes its parts
+    here : whether it changes its arguments, and is computed in the process that has them
+    memory : bytes that it takes besides its arguments, where these are many
     """
 
     key: Key
@@ -41,11 +48,19 @@ class Task(Generic[R]):
     arguments: tuple[Any, ...] = ()
     seed: np.random.SeedSequence | None = None
     turn: Key = ()
+    has_parts: bool = False
+    here: bool = False
+    memory: float = 0.0
 
     @property
     def stage(self) -> str:
         """First part of the key."""
         return str(self.key[0])
+
+    @property
+    def identity(self) -> tuple[Key, Key]:
+        """What tells the task from all others of the run."""
+        return self.key, self.turn
 
     @property
     def name(self) -> str:
@@ -56,18 +71,24 @@ class Task(Generic[R]):
         ]
         return "-".join(parts)
 
-    def __call__(self) -> R:
-        """Return the result of the function."""
-        if self.seed is None:
-            return self.function(*self.arguments)
-        return self.function(*self.arguments, rng=np.random.default_rng(self.seed))
+    def __call__(self, work: Executor | None = None) -> R:
+        """Return the result of the function; ``work`` computes its parts, if it has any."""
+        options: dict[str, Any] = {}
+        if self.seed is not None:
+            options["rng"] = np.random.default_rng(self.seed)
+        if self.has_parts:
+            options["work"] = work or IMMEDIATE
+        return self.function(*self.arguments, **options)
 
 
 class Executor(Protocol):
     """Carries out tasks."""
 
-    def run(self, tasks: Sequence[Task[R]]) -> list[R]:
-        """Return the results of independent tasks, in their order."""
+    def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
+        """Return the results of independent tasks, in their order.
+
+        Tasks ``ahead`` will probably be asked for next, in this order.
+        """
 
     def expect(self, stages: Mapping[str, int]) -> None:
         """Take note of how many tasks of each stage are still to come, in the order of stages."""
@@ -77,7 +98,7 @@ class Executor(Protocol):
 class Immediate:
     """Computes every task at once, keeps and reports nothing."""
 
-    def run(self, tasks: Sequence[Task[R]]) -> list[R]:
+    def run(self, tasks: Sequence[Task[R]], _: Sequence[Task[Any]] = (), /) -> list[R]:
         """Return the results of the tasks."""
         return [task() for task in tasks]
 
@@ -103,15 +124,16 @@ class Within:
     part: Key = ()
     turn: Key = ()
 
-    def run(self, tasks: Sequence[Task[R]]) -> list[R]:
+    def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
         """Return the results of the tasks."""
-        return self.inner.run(
-            [replace(x, key=(*self.part, *x.key), turn=(*x.turn, *self.turn)) for x in tasks]
-        )
+        return self.inner.run([self._of(x) for x in tasks], [self._of(x) for x in ahead])
 
     def expect(self, stages: Mapping[str, int]) -> None:
         """Pass on the extent of the work; that of a part is known by the part."""
         self.inner.expect({str(self.part[0]): sum(stages.values())} if self.part else stages)
+
+    def _of(self, task: Task[R]) -> Task[R]:
+        return replace(task, key=(*self.part, *task.key), turn=(*task.turn, *self.turn))
 
 
 def seed_sequence(seed: int, *parts: Part) -> np.random.SeedSequence:

@@ -8,9 +8,8 @@ from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
-from modefront._typing import Floats
 from modefront.fronts.methods.base import Along, Setting
-from modefront.solvers.basins import explore_between
+from modefront.solvers.basins import explore_between, from_other_branches
 from modefront.solvers.border import without_slack
 from modefront.solvers.continuation import Simplex
 from modefront.solvers.dominance import nondominated
@@ -70,6 +69,7 @@ class NormalBoundaryIntersection:
             setting.archive,
         )
         if len(setting.edges) > 2:
+            along = from_other_branches(problem, target, lattice, along, setting.work)
             along = without_slack(problem, target, along, setting.work)
         front = _without_copies(lattice, solved, along, target)
         return _branches(setting, front) if len(setting.edges) == 2 else front
@@ -84,15 +84,18 @@ def _without_copies(
     are the points of the front, of which some have taken the places of these.
     """
     kept: list[Solution] = []
+    J = np.full((len(along), target.scale.size), np.inf)
     position = []
     for point in along:
-        copies = (k for k, other in enumerate(kept) if _copies(point, other, target.scale))
-        k = next(copies, len(kept))
+        with np.errstate(invalid="ignore"):  # models that cannot be evaluated have infinite J
+            copies = (np.abs(J[: len(kept)] - point.at.J) <= COPY * target.scale).all(axis=1)
+        k = int(copies.argmax()) if copies.any() else len(kept)
         position.append(k)
         if k == len(kept):
             kept.append(point)
         elif point.converged and not kept[k].converged:
             kept[k] = point
+        J[k] = kept[k].at.J
     places = []
     for first in solved[: len(lattice.counts)]:
         same = (k for k, point in enumerate(along) if point is first or _of_place(point, first))
@@ -108,16 +111,12 @@ def _of_place(point: Solution, other: Solution) -> bool:
     return np.array_equal(point.beta, other.beta)
 
 
-def _copies(point: Solution, other: Solution, scale: Floats) -> bool:
-    return bool((np.abs(point.at.J - other.at.J) <= COPY * scale).all())
-
-
 def _branches(setting: Setting, front: Along) -> Along:
     """Return a front of two objectives, refined where wanted, with its gaps."""
     problem, target, refined = setting.problem, setting.target, setting.options.refined
     along = front.points
     optimal = nondominated(np.array([point.at.J for point in along]))
-    known = setting.archive.J.copy()
+    known = setting.archive.J
     breaks = gaps(problem, along, optimal, target.scale, setting.work, known=known)
     if refined is None:
         return replace(front, gaps=breaks)

@@ -1,26 +1,107 @@
-"""Matrix Market files."""
+"""Matrix Market files.
+
+SciPy's reader is fast, but ends the process at some bytes that no matrix holds; so the header is
+read here, and what follows is looked through, before it sees the file.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import scipy.io
 
-from modefront.models.formats.base import MatrixFormat, check_square, wrong
+from modefront.models.formats.base import Header, MatrixFormat, check_header, wrong
 
-SHORTEST = 2
-"""Least number of characters that an entry takes."""
+SHORTEST = {"pattern": 4, "integer": 6, "real": 6, "complex": 8}
+"""Characters that a line of an entry takes at least, by the kind of numbers."""
+
+SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
+
+LONGEST = 2**16
+"""Characters of a line of the header, at most; the format allows 1024."""
+
+COMMENTS = 10**5
+"""Lines of comments, at most."""
+
+NUMERIC = b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"
+"""Bytes of numbers, of nan and infinity among them, and of what separates them."""
+
+CHUNK = 2**24
+
+WHAT = "a readable matrix"
+
+
+@dataclass(frozen=True)
+class _Announced:
+    """Header of a file: its words, the matrix, and where the entries begin."""
+
+    layout: str
+    numbers: str
+    symmetry: str
+    header: Header
+    start: int
+
+
+def header(path: Path, _: str | None) -> Header:
+    """Return what a file announces; see `MatrixFormat`."""
+    return _announced(path).header
 
 
 def read(path: Path, _: str | None) -> Any:
     """Return the matrix of a file; see `MatrixFormat`."""
-    rows, columns, entries, *_ = scipy.io.mminfo(path)
-    check_square(path, (rows, columns))  # before reading: SciPy divides by the number of rows
-    size = path.stat().st_size
-    if entries > size / SHORTEST:  # before room is made for them
-        raise wrong(path, "a readable matrix", f"{entries} entries announced in {size} bytes")
+    announced = _announced(path)
+    size = path.stat().st_size - announced.start
+    stored = announced.header.entries
+    if announced.layout == "array":
+        rows = announced.header.shape[0]
+        stored = rows**2 if announced.symmetry == "general" else rows * (rows - 1) // 2
+        shortest = 2
+    else:
+        shortest = SHORTEST[announced.numbers]
+    if stored * shortest > size + 1:  # the last line may lack its end
+        raise wrong(path, WHAT, f"{stored} entries announced in {size} bytes")
+    with path.open("rb") as stream:
+        stream.seek(announced.start)
+        while chunk := stream.read(CHUNK):
+            if other := chunk.translate(None, NUMERIC):
+                raise wrong(path, WHAT, f"the byte {other[:1]!r} among the entries")
     return scipy.io.mmread(path)
 
 
-MATRIX_MARKET = MatrixFormat(".mtx", read)
+def _announced(path: Path) -> _Announced:
+    """Return the header of a file; raises InputError for one that the format does not have."""
+    with path.open("rb") as stream:
+        words = stream.readline(LONGEST).decode("utf-8", "replace").split()
+        if len(words) != 5 or words[0] != "%%MatrixMarket" or words[1].lower() != "matrix":
+            raise wrong(path, WHAT, "no line '%%MatrixMarket matrix ...'", "line 1")
+        layout, numbers, symmetry = (word.lower() for word in words[2:])
+        for word, known in (
+            (layout, ("coordinate", "array")),
+            (numbers, tuple(SHORTEST)),
+            (symmetry, SYMMETRIES),
+        ):
+            if word not in known:
+                raise wrong(path, f"{WHAT}: {' or '.join(known)}", f"'{word}'", "line 1")
+        if (layout, numbers) == ("array", "pattern"):
+            raise wrong(path, WHAT, "an array of a pattern, which has no values", "line 1")
+        for number in range(2, COMMENTS):
+            line = stream.readline(LONGEST)
+            if not line:
+                raise wrong(path, WHAT, "the end of the file", f"line {number}")
+            if line.strip() and not line.lstrip().startswith(b"%"):
+                break
+        counts = line.split()
+        expected = 3 if layout == "coordinate" else 2
+        if len(counts) != expected or not all(x.isdigit() and len(x) < 20 for x in counts):
+            text = line.decode("utf-8", "replace").strip()
+            raise wrong(path, f"{WHAT}: {expected} sizes", f"'{text}'", f"line {number}")
+        sizes = [int(x) for x in counts]
+        entries = sizes[2] if layout == "coordinate" else sizes[0] * sizes[1]
+        found = Header((sizes[0], sizes[1]), entries)
+        check_header(path, found)
+        return _Announced(layout, numbers, symmetry, found, stream.tell())
+
+
+MATRIX_MARKET = MatrixFormat(".mtx", header, read)

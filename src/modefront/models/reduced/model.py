@@ -13,6 +13,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
+from modefront.linalg.affine import DenseAffine
 from modefront.linalg.factorisation import SingularMatrixError
 from modefront.models.matrices import MatrixModel
 from modefront.models.ports import Ports, Transfer
@@ -37,6 +38,7 @@ from modefront.modes import dense
 from modefront.modes.result import Modes
 from modefront.modes.spectrum import Shifted
 from modefront.work.costs import Costs, counted, spend, uncounted
+from modefront.work.transfer import shared
 
 SHORTEST = 0.1
 """Length of the shortest direction of the basis, over the square root of the tolerance."""
@@ -134,6 +136,17 @@ class _State:
     sensed: Floats
 
 
+@dataclass(frozen=True)
+class _Projected:
+    """The matrices in the basis of some snapshots, and the basis as the sensors see it."""
+
+    snapshots: tuple[SnapshotRequest, ...]
+    K: DenseAffine
+    M: DenseAffine
+    sensed: Floats
+
+
+@shared
 @dataclass(eq=False)
 class ReducedModel:
     """A sparse model in the basis of its modes and their derivatives at some parameters.
@@ -161,10 +174,30 @@ class ReducedModel:
     spare: int = 0
     _wanted: tuple[SnapshotRequest, ...] = ()
     _state: _State | None = None
+    _sent: _Projected | None = None
 
     def __getstate__(self) -> dict[str, Any]:
-        """Return the state without basis and factor; snapshots are taken again when needed."""
-        return {**vars(self), "_state": None}
+        """Return the state with the projected matrices, and without basis and factor.
+
+        Modes need no more; for anything else, snapshots are taken again when needed.
+        """
+        return {**vars(self), "_state": None, "_sent": self._at_hand()}
+
+    @property
+    def version(self) -> tuple[tuple[bytes, int, float], ...]:
+        """Snapshots in use."""
+        return tuple((x.theta.tobytes(), x.modes, x.enough) for x in self._wanted)
+
+    @property
+    def parts(self) -> tuple[MatrixModel]:
+        """The full model, which is sent to other processes on its own."""
+        return (self.full,)
+
+    @property
+    def footprint(self) -> float:
+        """Bytes that the projected matrices take; nothing else is needed for modes."""
+        known = self._at_hand()
+        return 0.0 if known is None else 8.0 * 8 * known.K.size**2
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -248,10 +281,9 @@ class ReducedModel:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         if count > self.count:
             return self.full.modes(theta, count, derivatives=derivatives)
-        state = self._ready()
+        small = self._at_hand() or self._projected(self._ready())
         started = time.perf_counter()
-        K, M = state.space.basis.K, state.space.basis.M
-        modes = dense.modes(K, M, state.sensed, theta, count, derivatives)
+        modes = dense.modes(small.K, small.M, small.sensed, theta, count, derivatives)
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return modes
 
@@ -369,6 +401,19 @@ class ReducedModel:
             return True
         proofs.append(InertiaProof(theta, sigma, below))
         return False
+
+    def _at_hand(self) -> _Projected | None:
+        """Return the matrices in the basis of the snapshots wanted, if they are at hand."""
+        sent, state = self._sent, self._state
+        if sent is not None and sent.snapshots is self._wanted:
+            return sent
+        if state is None or len(state.taken) != len(self._wanted) or not self._wanted:
+            return None
+        return self._projected(state) if _begins(self._wanted, state.taken) else None
+
+    def _projected(self, state: _State) -> _Projected:
+        basis = state.space.basis
+        return _Projected(self._wanted, basis.K, basis.M, state.sensed)
 
     def _ready(self) -> _State:
         """Return the basis of the snapshots wanted; only those not yet in it are computed."""

@@ -12,12 +12,13 @@ from modefront.data.modal import ModalData
 from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.parameters import Parameter
+from modefront.models.reduced.cost import estimate
 from modefront.models.reduced.model import MEMORY, TOLERANCE, ReducedModel
 from modefront.options import Requirement, check_fields, number
 from modefront.pairing.match import Pairing, modes_needed
 
-PAYS = 2000
-"""Degrees of freedom from which ``"auto"`` takes a basis; smaller models are solved in full."""
+SMALLEST = 100
+"""Degrees of freedom from which there may be a basis; smaller models are solved in full."""
 
 LEAST, MOST = 1e-12, 1e-2
 """Tolerances that may be asked for."""
@@ -57,15 +58,15 @@ class Reduction:
     ) -> Model:
         """Return the model in a reduced basis, or as it is: by wish, or where nothing is gained.
 
-        A basis needs matrices that are affine in functions of the parameters, and sparse.
+        A basis needs matrices that are affine in functions of the parameters.
         """
-        if self.reduction == "off" or not isinstance(model, MatrixModel) or not model.is_sparse:
-            return model
-        if self.reduction == "auto" and model.size < PAYS:
+        if self.reduction == "off" or not isinstance(model, MatrixModel) or model.size < SMALLEST:
             return model
         count = modes_needed(pairing, data, model.size)
+        if self.reduction == "auto" and estimate(model, count).gain < 1:
+            return model
         return ReducedModel(
-            model,
+            model.sparse(),
             count,
             np.array([each.nominal for each in parameters]),
             np.array([each.lower for each in parameters]),

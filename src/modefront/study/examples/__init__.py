@@ -5,7 +5,7 @@ from __future__ import annotations
 from importlib import resources
 from pathlib import Path
 
-from modefront.errors import Fault, InputError, suggestion
+from modefront.errors import Fault, InputError, reason, suggestion
 
 HAMMER_TEST = "hammer-test"
 """The example of which tests are simulated, and their modes identified, where it is written."""
@@ -50,5 +50,5 @@ def write_example(name: str, directory: Path) -> list[Path]:
             hammer_test.write(directory)
     except OSError as error:
         expected = "a folder that can be written to"
-        raise InputError(Fault(str(directory), "folder", expected, str(error))) from None
+        raise InputError(Fault(str(directory), "folder", expected, reason(error))) from None
     return sorted([*targets, *simulated])

@@ -1,16 +1,22 @@
-"""``kind = "matrices"``: K(theta) = base + sum_j theta_j K_j from files, and M(theta) likewise."""
+"""``kind = "matrices"``: K(theta) = base + sum_j c_j(theta) K_j from files, M(theta) likewise."""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
 
 import numpy as np
 import scipy.sparse
 
-from modefront.errors import Fault, InputError, suggestion
+from modefront.errors import InputError, suggestion
 from modefront.models.base import Model
-from modefront.models.files import read_matrix
-from modefront.models.matrices import BASE, matrices
+from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs
+from modefront.models.files import matrix_size, read_matrix
+from modefront.models.geometry import Cells, Geometry
+from modefront.models.matrices import matrices
+from modefront.models.terms import BASE, exponents_of, form_of
+from modefront.programs.mesh import ProgramMesh, read_mesh
 from modefront.study.kinds.base import ModelKind
 from modefront.study.kinds.sensors import read_base, read_outputs, read_sensors
 from modefront.toml import Table
@@ -19,45 +25,137 @@ from modefront.toml import Table
 def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     """Return the model that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
-    stiffness = _terms(table, "stiffness", parameters)
-    mass = _terms(table, "mass", parameters)
-    size = _common_size(table, {"stiffness": stiffness, "mass": mass})
-    sensors = read_sensors(table, size)
+    files = {key: _terms(table, key, parameters) for key in ("stiffness", "mass")}
+    size = _common_size(table, files)
+    stiffness, mass = (_matrices(terms, size) for terms in files.values())
+    if size is not None:
+        _check_entries(table, {"stiffness": stiffness, "mass": mass}, size)
+    dofs, mesh = _dofs(table, size), _mesh(table)
+    sensors = read_sensors(table, size, dofs=dofs)
     floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
-    outputs, base = read_outputs(table, size, sensors), read_base(table, size)
+    outputs = read_outputs(table, size, sensors, dofs)
+    base = read_base(table, size, dofs)
     if len(table.faults) > before or sensors is None:
         return None
-    return matrices(
+    model = matrices(
         parameters, stiffness, mass, sensors, floating=floating, outputs=outputs, base=base
     )
+    if dofs is None or mesh is None:
+        return model
+    return replace(model, geometry=_geometry(dofs, mesh, model.selection))
 
 
-def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy.sparse.coo_array]:
-    """Return the matrices of one table of terms, each read from its file."""
+@dataclass(frozen=True)
+class _Term:
+    """A term of an affine matrix: the table that names it, its file, and what that announces.
+
+    Attributes
+    ----------
+    table, key : where the file is named
+    path, name : the file, and the name of the matrix in it, None for the only one
+    size : number of rows that the file announces
+    """
+
+    table: Table
+    key: str
+    path: Path
+    name: str | None
+    size: int
+
+    def matrix(self) -> scipy.sparse.coo_array | None:
+        """Return the matrix; None with a fault where it cannot be read."""
+        try:
+            return read_matrix(self.path, self.name)
+        except InputError as error:
+            _note(self.table, self.key, error)
+            return None
+
+
+def _note(table: Table, key: str, error: InputError) -> None:
+    """Note what is wrong with a file under the key that names it."""
+    table.faults += [
+        replace(fault, place=f"{table.place} {key}, {fault.place}") for fault in error.faults
+    ]
+
+
+def _matrices(terms: Mapping[str, _Term], size: int | None) -> dict[str, scipy.sparse.coo_array]:
+    """Return the matrices that can be read; none of them is opened that has another size."""
+    chosen = {name: term.matrix() for name, term in terms.items() if term.size == size}
+    return {name: A for name, A in chosen.items() if A is not None}
+
+
+def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, _Term]:
+    """Return the terms of one table, each with the size that its file announces."""
     expected = f"a table of files, {BASE} = ... and one a parameter"
     table = model.table(key, expected)
-    out: dict[str, scipy.sparse.coo_array] = {}
+    out: dict[str, _Term] = {}
     if table is None:
         return out
     if not table.values:
         table.fault("", "at least one matrix", "none")
     for name in table.values:
-        if name != BASE and name not in parameters:
-            table.fault(name, f"'{BASE}' or a parameter", suggestion(name, [BASE, *parameters]))
+        if exponents_of(name, parameters) is None:
+            table.fault(name, form_of(name), suggestion(name, [BASE, *parameters]))
             continue
         file = _file(table, name)
         if file is None:
             continue
         try:
-            out[name] = read_matrix(table.path(file[0]), file[1])
+            path = table.path(file[0])
+            out[name] = _Term(table, name, path, file[1], matrix_size(path, file[1]))
         except InputError as error:
-            table.faults += [
-                Fault(
-                    fault.file, f"{table.place} {name}, {fault.place}", fault.expected, fault.found
-                )
-                for fault in error.faults
-            ]
+            _note(table, name, error)
     return out
+
+
+def _dofs(table: Table, size: int | None) -> DofTable | None:
+    """Return the nodes and directions of the degrees of freedom, where a file names them."""
+    name = table.text("dofs", "the name of a table of degrees of freedom", None)
+    if name is None:
+        return None
+    try:
+        dofs = read_dofs(table.path(name))
+    except InputError as error:
+        table.faults.extend(error.faults)
+        return None
+    if size is not None and dofs.size != size:
+        table.fault("dofs", f"{size} rows, one a degree of freedom", f"{dofs.size} in '{name}'")
+        return None
+    return dofs
+
+
+def _mesh(table: Table) -> ProgramMesh | None:
+    """Return nodes and elements for pictures, where a file names them."""
+    name = table.text("mesh", "the name of a file of nodes and elements", None)
+    if name is None:
+        return None
+    try:
+        return read_mesh(table.path(name))
+    except InputError as error:
+        table.faults.extend(error.faults)
+        return None
+
+
+def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_array) -> Geometry:
+    """Return where the degrees of freedom are; a sensor is at the node that weighs most in it."""
+    motion = motion_of_nodes(dofs, mesh.number)
+    translations = 6 * np.arange(mesh.number.size)[:, None] + np.arange(3)
+    nodes = np.zeros(selection.shape[0], np.intp)
+    directions = np.zeros((selection.shape[0], 3))
+    for k in range(selection.shape[0]):
+        row = selection[[k]].tocoo()
+        node = dofs.node[row.col[np.argmax(np.abs(row.data))]]
+        if node not in mesh.number:
+            continue
+        nodes[k] = np.searchsorted(mesh.number, node)
+        for dof, weight in zip(row.col, row.data, strict=True):
+            if dofs.node[dof] == node and 1 <= dofs.direction[dof] <= 3:
+                directions[k, dofs.direction[dof] - 1] += weight
+        directions[k] /= np.linalg.norm(directions[k]) or 1.0
+    cells = tuple(
+        Cells(kind, kind, np.searchsorted(mesh.number, table)) for kind, table in mesh.cells.items()
+    )
+    return Geometry(mesh.coordinates, cells, motion[translations.ravel()], nodes, directions)
 
 
 def _file(table: Table, key: str) -> tuple[str, str | None] | None:
@@ -75,31 +173,36 @@ def _file(table: Table, key: str) -> tuple[str, str | None] | None:
     return None if file is None or len(table.faults) > before else (file, variable)
 
 
-def _common_size(
-    model: Table, matrices: dict[str, dict[str, scipy.sparse.coo_array]]
-) -> int | None:
-    """Return N if all matrices are N x N; a fault names the ones that differ from most."""
-    found = {f"{key} {name}": A for key, terms in matrices.items() for name, A in terms.items()}
+def _common_size(model: Table, files: Mapping[str, Mapping[str, _Term]]) -> int | None:
+    """Return the N of most N x N matrices; a fault names the ones that differ from it."""
+    found = {f"{key} {name}": term for key, terms in files.items() for name, term in terms.items()}
     if not found:
         return None
-    sizes = {place: int(A.shape[0]) for place, A in found.items()}
+    sizes = {place: term.size for place, term in found.items()}
     counts = list(sizes.values())
     common = max(set(counts), key=lambda size: (counts.count(size), size))
     for place, size in sizes.items():
         if size != common:
             others = f"{common} x {common}, as the other matrices"
             model.fault(place, others, f"{size} x {size}")
+    return common
+
+
+def _check_entries(
+    model: Table, matrices: Mapping[str, Mapping[str, scipy.sparse.coo_array]], size: int
+) -> None:
+    """Note a mass that is zero, and degrees of freedom with neither stiffness nor mass."""
+    found = [A for terms in matrices.values() for A in terms.values()]
     mass = matrices["mass"]
     if mass and not any(A.nnz for A in mass.values()):
         model.fault("mass", "a mass matrix that is not zero", "only zeros")
-    elif set(counts) == {common} and all(matrices.values()):
-        there = np.unique(np.concatenate([A.row for A in found.values()]))
-        if there.size < common:
-            gap = np.flatnonzero(there != np.arange(there.size))
-            missing = int(gap[0]) if gap.size else there.size
+    elif all(matrices.values()) and not model.faults:
+        there = np.zeros(size, dtype=bool)
+        for A in found:
+            there[A.row] = True
+        if not there.all():
             expected = "stiffness or mass at every degree of freedom"
-            model.fault("", expected, f"neither at {missing} (from 0)")
-    return common
+            model.fault("", expected, f"neither at {int(np.argmin(there))} (from 0)")
 
 
 MATRICES = ModelKind("matrices", read_matrices)

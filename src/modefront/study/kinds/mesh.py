@@ -6,8 +6,12 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, get_args
 
+import numpy as np
+
 from modefront import fem
+from modefront._typing import Floats
 from modefront.data.csv import is_reserved
+from modefront.diagnosis.groups import unused_groups
 from modefront.errors import suggestion
 from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Quantity
@@ -43,12 +47,14 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
         table.asked += KEYS  # what they say cannot be judged without the mesh
         return None
     structure, outputs = _structure(table, parameters, mesh), _outputs(table)
+    table.notes += unused_groups(mesh, (g.name for g in structure.groups), _named_nodes(table))
     if len(table.faults) > before:
         return None
     try:
         return mesh_model(structure, parameters, floating=floating, outputs=outputs)
     except fem.FemError as error:
-        table.fault("", "a structure that can be assembled", str(error))
+        for message in error.messages:
+            table.fault("", "a structure that can be assembled", message)
         return None
 
 
@@ -69,6 +75,21 @@ def _structure(table: Table, parameters: Sequence[str], mesh: Mesh) -> fem.Struc
         _sensors(table),
         _scales(table, parameters),
     )
+
+
+def _named_nodes(model: Table) -> set[str]:
+    """Return the groups and node sets that supports, springs, masses and links name."""
+    named: set[str] = set()
+    for kind in ("support", "spring", "mass", "link"):
+        for table in model.values.get(kind) or ():
+            for key in ("nodes", "to", "master", "slaves"):
+                value = table.get(key)
+                named.update(x for x in _listed(value) if isinstance(x, str))
+    return named
+
+
+def _listed(value: object) -> list[Any]:
+    return value if isinstance(value, list) else [value]
 
 
 def _closed(table: Table) -> bool:
@@ -150,33 +171,37 @@ def _section(group: Table) -> fem.Section | None:
 
 
 def _nodes(table: Table, key: str, mesh: Mesh, default: Any = ...) -> list[int] | None:
-    """Return nodes: one, a list, or those of a group or node set of the mesh."""
+    """Return nodes: one, or a list of nodes and of groups or node sets of the mesh."""
     value = table.take(
         key,
-        "a node counted from 0, a list of nodes, or the name of a group or node set",
-        lambda x: isinstance(x, str) or _is_node(x) or (isinstance(x, list) and _are_nodes(x)),
+        "a node counted from 0, the name of a group or node set, or a list of these",
+        lambda x: _is_place(x) or (isinstance(x, list) and bool(x) and all(map(_is_place, x))),
         default,
     )
-    if isinstance(value, str):
-        try:
-            return [int(node) for node in mesh.nodes_of(value)]
-        except fem.FemError as error:
-            table.fault(key, "a group or node set of the mesh", str(error))
-            return None
-    nodes = [value] if _is_node(value) else value
-    beyond = [node for node in nodes or [] if node >= len(mesh.nodes)]
-    if beyond:
-        table.fault(key, f"nodes from 0 to {len(mesh.nodes) - 1}", str(beyond[0]))
+    if value is None:
         return None
-    return nodes
+    nodes: list[int] = []
+    before = len(table.faults)
+    for place in _listed(value):
+        if isinstance(place, str):
+            try:
+                nodes += [int(node) for node in mesh.nodes_of(place)]
+            except fem.FemError as error:
+                table.fault(key, "a group or node set of the mesh", str(error))
+        elif place >= len(mesh.nodes):
+            one_off = " (they are counted from 0)" if place == len(mesh.nodes) else ""
+            table.fault(key, f"nodes from 0 to {len(mesh.nodes) - 1}{one_off}", str(place))
+        else:
+            nodes.append(place)
+    return list(dict.fromkeys(nodes)) if len(table.faults) == before else None
+
+
+def _is_place(value: object) -> bool:
+    return isinstance(value, str) or _is_node(value)
 
 
 def _is_node(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and value >= 0
-
-
-def _are_nodes(values: list[object]) -> bool:
-    return bool(values) and all(map(_is_node, values))
 
 
 def _directions(table: Table) -> list[str]:
@@ -257,12 +282,14 @@ def _sensors(model: Table) -> list[fem.Sensor]:
     table = model.table("sensors", "a table of sensors")
     if table is None:
         return []
-    for name in table.values:
-        if is_reserved(name, table.values):
-            table.fault(repr(name), "a name that a column of the data can have", repr(name))
     if not table.values:
         table.fault("", "at least one sensor", "none")
-    return _places(table)
+    sensors = _places(table)
+    names = {*table.values, *(sensor.name for sensor in sensors)}
+    for name in sorted(names):
+        if is_reserved(name, names):
+            table.fault(repr(name), "a name that a column of the data can have", repr(name))
+    return sensors
 
 
 def _outputs(model: Table) -> list[fem.Sensor]:
@@ -272,6 +299,7 @@ def _outputs(model: Table) -> list[fem.Sensor]:
 
 
 def _places(table: Table) -> list[fem.Sensor]:
+    """Return sensors; one with a list of directions becomes as many, NAMEx, NAMEy and so on."""
     out: list[fem.Sensor] = []
     for name in table.values:
         place = table.table(name, "a table node or at, and direction")
@@ -279,16 +307,72 @@ def _places(table: Table) -> list[fem.Sensor]:
             continue
         node = place.integer("node", 0, 10**9, default=None)
         coordinates = place.numbers("at", "3 coordinates", lambda x: len(x) == 3, default=None)
-        direction = _direction(place, "direction")
+        directions = _sensor_directions(place)
+        axes = _axes(place)
         tolerance = place.number("tolerance", "a distance above 0", lambda x: x > 0, default=None)
         place.close()
         if (node is None) == (coordinates is None):
             place.fault("", "either node or at", "both" if node is not None else "neither")
-        elif direction is not None:
-            out.append(
-                fem.Sensor(name, node if coordinates is None else coordinates, direction, tolerance)
-            )
+            continue
+        at = node if coordinates is None else coordinates
+        for ending, direction in directions:
+            turned = _turned(place, direction, axes)
+            if turned is not None:
+                out.append(fem.Sensor(name + ending, at, turned, tolerance))
     return out
+
+
+def _sensor_directions(place: Table) -> list[tuple[str, Any]]:
+    """Return the directions of a sensor, each with what it adds to the name."""
+    value = place.values.get("direction")
+    if not (isinstance(value, list) and any(isinstance(x, str) for x in value)):
+        one = _direction(place, "direction")
+        return [] if one is None else [("", one)]
+    known = [sign + name for name in fem.DIRECTIONS for sign in ("", "-")]
+    several = place.take(
+        "direction",
+        "a list of different ones of " + ", ".join(known),
+        lambda x: all(y in known for y in x) and len({y.removeprefix("-") for y in x}) == len(x),
+        ...,
+    )
+    return [(one.removeprefix("-"), one) for one in several or ()]
+
+
+def _axes(place: Table) -> Floats | None:
+    """Return local axes (3, 3), x, y and z in rows; None for those of the mesh."""
+    expected = "two vectors [[...], [...]]: the local x axis, and one in the local x-y plane"
+    rows = place.take(
+        "axes",
+        expected,
+        lambda x: (
+            isinstance(x, list)
+            and len(x) == 2
+            and all(isinstance(v, list) and len(v) == 3 and all(map(is_number, v)) for v in x)
+            and float(np.linalg.norm(np.cross(*x)))
+            > 1e-9 * float(np.prod(np.linalg.norm(x, axis=1)))
+        ),
+        None,
+    )
+    if rows is None:
+        return None
+    first, second = np.asarray(rows, dtype=float)
+    x, z = first / np.linalg.norm(first), np.cross(first, second)
+    z /= np.linalg.norm(z)
+    return np.stack([x, np.cross(z, x), z])
+
+
+def _turned(place: Table, direction: Any, axes: Floats | None) -> Any:
+    """Return a direction in the axes of the mesh, None where it has none there."""
+    if axes is None:
+        return direction
+    if isinstance(direction, str):
+        axis = direction.removeprefix("-")
+        if axis not in fem.DIRECTIONS[:3]:
+            place.fault("direction", "x, y or z where axes are given", f"'{direction}'")
+            return None
+        row = axes[fem.DIRECTIONS.index(axis)]
+        return (-row if direction != axis else row).tolist()
+    return (np.asarray(direction, dtype=float) @ axes).tolist()
 
 
 def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:

@@ -1,4 +1,4 @@
-"""Sensors in a study file: a degree of freedom, or weighted degrees of freedom."""
+"""Sensors in a study file: degrees of freedom, weighted or not, or a node and a direction."""
 
 from __future__ import annotations
 
@@ -6,39 +6,49 @@ from collections.abc import Callable, Iterable
 from typing import Any
 
 from modefront.data.csv import is_reserved
+from modefront.fem.dofs import DIRECTIONS
+from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
 from modefront.toml import Table, describe, is_name, is_number
 
 
 def read_sensors(
-    model: Table, size: int | None, default: Any = ...
+    model: Table, size: int | None, default: Any = ..., dofs: DofTable | None = None
 ) -> dict[str, SensorSpec] | None:
-    """Return the sensors of a model of ``size`` degrees of freedom (None: not known)."""
+    """Return the sensors of a model of ``size`` degrees of freedom (None: not known).
+
+    With ``dofs``, sensors may be given by node and direction too.
+    """
     table = model.table("sensors", "a table of sensors, name = degree of freedom", default)
     if table is None:
         return None
-    out = _read(table, size, lambda name: not is_reserved(name, table.values))
+    out = _read(table, size, lambda name: not is_reserved(name, table.values), dofs)
     if not table.values:
         table.fault("", "at least one sensor", "none")
     return out
 
 
 def read_outputs(
-    model: Table, size: int | None, sensors: Iterable[str] | None
+    model: Table, size: int | None, sensors: Iterable[str] | None, dofs: DofTable | None = None
 ) -> dict[str, SensorSpec]:
     """Return the places besides the sensors that predictions may name, given as these are."""
     expected = "a table of outputs, name = degree of freedom"
     table = model.table("outputs", expected, default=None)
     if table is None:
         return {}
-    out = _read(table, size, is_name)
+    out = _read(table, size, is_name, dofs)
     for name in set(sensors or ()).intersection(table.values):
         table.fault(name, "a name that no sensor has", f"'{name}'")
     return out
 
 
-def read_base(model: Table, size: int | None) -> dict[str, SensorSpec]:
-    """Return which degrees of freedom move with the base, for each direction of its motion."""
+def read_base(
+    model: Table, size: int | None, dofs: DofTable | None = None
+) -> dict[str, SensorSpec]:
+    """Return which degrees of freedom move with the base, for each direction of its motion.
+
+    With ``dofs``, these may be all of a direction: ``x = { direction = "x" }``.
+    """
     expected = "a table, direction = list of the degrees of freedom that move with the base"
     table = model.table("base", expected, default=None)
     if table is None:
@@ -46,15 +56,24 @@ def read_base(model: Table, size: int | None) -> dict[str, SensorSpec]:
     for name, value in table.values.items():
         if isinstance(value, list) and all(map(_is_dof, value)):
             table.values[name] = [[dof, 1.0] for dof in value]
-    return _read(table, size, is_name)
+        elif dofs is not None and isinstance(value, dict) and value.get("direction") in DIRECTIONS:
+            table.values[name] = [list(pair) for pair in dofs.of_direction(value["direction"])]
+    return _read(table, size, is_name, dofs)
 
 
-def _read(table: Table, size: int | None, is_right: Callable[[str], bool]) -> dict[str, SensorSpec]:
+def _read(
+    table: Table, size: int | None, is_right: Callable[[str], bool], dofs: DofTable | None = None
+) -> dict[str, SensorSpec]:
     """Return named degrees of freedom, weighted or not; ``is_right`` tells good names."""
     out: dict[str, SensorSpec] = {}
     for name, value in table.values.items():
         if not is_name(name) or name != name.strip() or not is_right(name):
             table.fault(repr(name), "a name that a column of the data can have", repr(name))
+            continue
+        if isinstance(value, dict) and {"node", "direction"} & value.keys():
+            spec = _by_node(table, name, dofs)
+            if spec is not None:
+                out[name] = spec
             continue
         pairs = [[value, 1.0]] if _is_dof(value) else value
         if not _is_weighted(pairs):
@@ -64,12 +83,35 @@ def _read(table: Table, size: int | None, is_right: Callable[[str], bool]) -> di
         beyond = [dof for dof, _ in pairs if size is not None and dof >= size]
         if beyond and size is not None:
             found = ", ".join(map(str, beyond))
-            table.fault(name, f"degrees of freedom from 0 to {size - 1}", found)
+            one_off = " (they are counted from 0)" if max(beyond) == size else ""
+            table.fault(name, f"degrees of freedom from 0 to {size - 1}{one_off}", found)
         elif not _selects(pairs):
             table.fault(name, "weights that do not cancel", describe(pairs))
         else:
             out[name] = [(int(dof), float(weight)) for dof, weight in pairs]
     return out
+
+
+def _by_node(table: Table, name: str, dofs: DofTable | None) -> SensorSpec | None:
+    """Return the degrees of freedom of a place given by node and direction."""
+    if dofs is None:
+        expected = 'a degree of freedom; nodes and directions need dofs = "dofs.csv"'
+        table.fault(name, expected, describe(table.values[name]))
+        return None
+    place = table.table(name)
+    if place is None:
+        return None
+    node = place.integer("node", 1, 2**62)
+    expected = f"one of {', '.join(DIRECTIONS)}, with or without a minus sign, or a vector"
+    direction = place.take("direction", expected, is_direction, ...)
+    place.close()
+    if node is None or direction is None:
+        return None
+    try:
+        return dofs.sensor(node, direction)
+    except LookupError as error:
+        place.fault("", *error.args)
+        return None
 
 
 def _selects(pairs: Iterable[Any]) -> bool:

@@ -2,11 +2,28 @@
 
 from __future__ import annotations
 
+from typing import Any
+
+import numpy as np
+
+from modefront._typing import Floats
 from modefront.data.csv import read_csv
 from modefront.data.modal import ModalData
-from modefront.errors import InputError
+from modefront.data.uff55 import NodalModes, is_universal, read_uff55
+from modefront.diagnosis.places import DataDirection, axis_name
+from modefront.errors import InputError, suggestion
+from modefront.fem.check import unit_vector
+from modefront.fem.errors import FemError
 from modefront.models.base import Model
-from modefront.toml import Table
+from modefront.models.geometry import Geometry
+from modefront.models.matrices import MatrixModel
+from modefront.toml import Table, describe
+
+NEAR = 0.01
+"""Distance of a sensor from the node of the test that is its own, over the size of the test."""
+
+ASKEW = 0.5
+"""Cosine between the directions of a sensor in the model and in the data below which it is said."""
 
 
 def read_data(root: Table, model: Model | None) -> ModalData | None:
@@ -15,19 +32,123 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
     if table is None:
         return None
     name = table.text("file", "the name of a file of modal data")
+    is_uff = name is not None and is_universal(name)
+    places = (
+        table.table("sensors", "a table, sensor = node and direction", None) if is_uff else None
+    )
     table.close()
     if name is None:
         return None
-    if not name.lower().endswith(".csv"):
-        table.fault("file", "a file that ends in .csv", f"'{name}'")
+    if not is_uff and not name.lower().endswith(".csv"):
+        table.fault("file", "a file that ends in .csv, .uff or .unv", f"'{name}'")
         return None
     try:
-        # Without a model all columns may be sensors: what else is wrong is found nevertheless.
-        data = read_csv(table.path(name), model.sensors if model else None)
+        if is_uff:
+            data = _of_nodes(table, places, read_uff55(table.path(name)), model)
+        else:
+            # Without a model all columns may be sensors: what else is wrong is found nevertheless.
+            data = read_csv(table.path(name), model.sensors if model else None)
     except InputError as error:
         root.faults.extend(error.faults)
         return None
-    if model and len(data.modes) > model.size:
+    if data and model and len(data.modes) > model.size:
         found = f"{len(data.modes)} in '{name}'"
         root.fault("[data] file", f"at most {model.size} modes, as the model has", found)
     return data
+
+
+def _of_nodes(
+    table: Table, places: Table | None, modes: NodalModes, model: Model | None
+) -> ModalData | None:
+    """Return the modes at the sensors of the model, None where a sensor is not found.
+
+    A sensor is where ``[data.sensors]`` says, else where its name says, such as ``12Z``, else at
+    the node of the test that has its coordinates.
+    """
+    if model is None:
+        return None
+    given = {} if places is None else places.values
+    geometry = model.geometry if isinstance(model, MatrixModel) else None
+    in_space = geometry if geometry is not None and len(geometry.axes) > 1 else None
+    found: dict[str, tuple[int, Floats]] = {}
+    before = len(table.faults)
+    for name in given:
+        if name not in model.sensors and places is not None:
+            places.fault(name, "a sensor of the model", suggestion(name, model.sensors))
+    for s, name in enumerate(model.sensors):
+        if name in given and places is not None:
+            place = _given(places, name, modes)
+        else:
+            place = modes.place(name) or _by_coordinates(modes, in_space, s)
+            if place is None:
+                expected = (
+                    f"{name} = node and direction, one of {_listed(modes)}: the file does not say "
+                    "which sensor is which"
+                )
+                table.fault("sensors", expected, "nothing")
+        if place is None:
+            continue
+        found[name] = place
+        own = None if in_space is None else in_space.sensor_directions[s]
+        if own is not None and own.any() and abs(own @ place[1][:3]) < ASKEW:
+            table.notes.append(DataDirection(name, axis_name(own), axis_name(place[1])))
+    if len(table.faults) > before:
+        return None
+    for name, (node, direction) in found.items():
+        if np.isnan(modes.along(node, direction)).all():
+            measured = f"one of {_listed(modes)}"
+            what = f"{modes.nodes[node]} along {axis_name(direction)}, which is 0 in all modes"
+            table.fault(f"sensors {name}", measured, what)
+    return modes.at(found) if len(table.faults) == before else None
+
+
+def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | None:
+    """Return node and direction of a sensor that ``[data.sensors]`` names."""
+    value = places.values[name]
+    if isinstance(value, str):
+        place = modes.place(value)
+        if place is None:
+            places.fault(name, f"one of {_listed(modes)}", suggestion(value, modes.measured))
+        return place
+    if not isinstance(value, dict):
+        places.fault(name, 'node and direction, such as "12Z"', describe(value))
+        return None
+    inner = places.table(name)
+    if inner is None:
+        return None
+    node = inner.integer("node", 0, 10**9)
+    direction: Any = inner.take("direction", "x, y, z, rx, ry, rz or a vector", _is_any, ...)
+    inner.close()
+    if node is None or direction is None:
+        return None
+    at = np.flatnonzero(modes.nodes == node)
+    if not at.size:
+        inner.fault("node", "a node of the test", str(node))
+        return None
+    try:
+        return int(at[0]), unit_vector(direction, name)
+    except FemError as error:
+        inner.fault("direction", "x, y, z, rx, ry, rz or a vector", str(error))
+        return None
+
+
+def _is_any(value: object) -> bool:
+    return isinstance(value, str | list)
+
+
+def _by_coordinates(
+    modes: NodalModes, geometry: Geometry | None, s: int
+) -> tuple[int, Floats] | None:
+    """Return the node of the test at the coordinates of a sensor, and the sensor's direction."""
+    if geometry is None or np.isnan(modes.position).any():
+        return None
+    direction = np.concatenate([geometry.sensor_directions[s], np.zeros(3)])
+    distance = np.linalg.norm(modes.position - geometry.nodes[geometry.sensor_nodes[s]], axis=1)
+    nearest = int(np.argmin(distance))
+    size = float(np.linalg.norm(np.ptp(modes.position, axis=0)))
+    return (nearest, direction) if direction.any() and distance[nearest] <= NEAR * size else None
+
+
+def _listed(modes: NodalModes) -> str:
+    names = modes.measured
+    return ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")

@@ -19,7 +19,7 @@ from modefront.solvers.archive import Archive, Archiving
 from modefront.solvers.problem import Problem
 from modefront.work.costs import Costs, counted, spend, total, uncounted
 from modefront.work.progress import Progress, State
-from modefront.work.serial import Serial
+from modefront.work.run import Run
 from modefront.work.store import Store
 from modefront.work.task import IMMEDIATE, R, Task, Within, seed_sequence
 
@@ -46,15 +46,17 @@ def squares(*numbers: int) -> list[Task[int]]:
 
 
 def test_results_come_in_the_order_of_tasks() -> None:
-    for work in (IMMEDIATE, Serial()):
+    for work in (IMMEDIATE, Run()):
         assert work.run(squares(3, 1, 2)) == [9, 1, 4]
         assert work.run([]) == []
 
 
 def test_two_tasks_of_one_key_are_refused() -> None:
-    work = Serial()
+    work = Run()
     with pytest.raises(ValueError, match="two tasks are named square-3"):
         work.run(squares(3, 3))
+    assert not CALLS
+    work.run(squares(3))
     with pytest.raises(ValueError, match="two tasks are named square-3"):
         work.run(squares(3))
     assert Within(work, turn=("round", 2)).run(squares(3)) == [9], "another turn is another task"
@@ -62,19 +64,19 @@ def test_two_tasks_of_one_key_are_refused() -> None:
 
 
 def test_what_is_kept_is_not_computed_again(tmp_path: Path) -> None:
-    first = Serial(Store(tmp_path))
+    first = Run(Store(tmp_path))
     first.run(squares(1, 2))
-    again = Serial(Store(tmp_path))
+    again = Run(Store(tmp_path))
     assert again.run(squares(1, 2, 3)) == [1, 4, 9]
     assert CALLS == [1, 2, 3]
     assert again.total().eigenproblems == 1 + 2 + 3, "what it has cost then counts"
     assert again.progress.spent.eigenproblems == 3, "what it costs now is told apart"
-    Serial().run(squares(1))
+    Run().run(squares(1))
     assert CALLS == [1, 2, 3, 1], "nothing is kept without a store"
 
 
 def test_each_task_has_its_own_costs_and_all_of_them_add_up(costs: Costs) -> None:
-    work = Serial()
+    work = Run()
     spend(Costs(eigenproblems=100))
     work.run(squares(1, 2))
     work.run([Task(("other", "x"), square, (5,))])
@@ -116,10 +118,10 @@ def test_counts_are_nested_and_work_may_be_left_out(costs: Costs) -> None:
 
 
 def test_a_task_that_fails_keeps_nothing_and_can_be_run_again(tmp_path: Path) -> None:
-    work = Serial(Store(tmp_path))
+    work = Run(Store(tmp_path))
     with pytest.raises(TypeError):
         work.run([*squares(1), Task(("wrong",), square, ("x",))])
-    again = Serial(Store(tmp_path))
+    again = Run(Store(tmp_path))
     again.run([*squares(1), Task(("wrong",), square, (7,))])
     assert CALLS == [1, "x", 7]
 
@@ -145,7 +147,7 @@ class Noting:
     tasks: list[Task[Any]] = field(default_factory=list)
     stages: list[Mapping[str, int]] = field(default_factory=list)
 
-    def run(self, tasks: Sequence[Task[R]]) -> list[R]:
+    def run(self, tasks: Sequence[Task[R]], _: Sequence[Task[Any]] = (), /) -> list[R]:
         self.tasks += tasks
         return [task() for task in tasks]
 
@@ -188,7 +190,7 @@ def tasks_on(problem: Known, seed: int) -> list[Task[float]]:
 class Backwards:
     """An executor that computes the last task first, as one of many processes may."""
 
-    def run(self, tasks: Sequence[Task[R]]) -> list[R]:
+    def run(self, tasks: Sequence[Task[R]], _: Sequence[Task[Any]] = (), /) -> list[R]:
         return [task() for task in tasks[::-1]][::-1]
 
     def expect(self, stages: Mapping[str, int]) -> None:
@@ -201,7 +203,7 @@ def test_the_archive_is_that_of_one_evaluation_after_another(seed: int) -> None:
     tasks = tasks_on(problem, seed)
     straight = Archive(problem)
     sums = [visited(straight, task.arguments[1]) for task in tasks]
-    for work in (IMMEDIATE, Serial(), Backwards(), Within(Serial(), turn=("again", 1))):
+    for work in (IMMEDIATE, Run(), Backwards(), Within(Run(), turn=("again", 1))):
         archive = Archive(problem)
         assert Archiving(work, archive).run(tasks) == sums
         assert archive.theta.tolist() == straight.theta.tolist(), "in the order of the tasks"
@@ -215,7 +217,7 @@ def test_kept_tasks_bring_the_models_that_they_had_evaluated(tmp_path: Path) -> 
         archive = Archive(problem)
         archives.append(archive)
         with counted() as costs:
-            Archiving(Serial(Store(tmp_path)), archive).run(tasks_on(problem, 0))
+            Archiving(Run(Store(tmp_path)), archive).run(tasks_on(problem, 0))
     assert costs.eigenproblems == 0
     assert archives[0].J.tolist() == archives[1].J.tolist()
     assert archives[0].theta.tolist() == archives[1].theta.tolist()
@@ -344,9 +346,9 @@ def test_never_more_is_done_than_expected_whatever_happens(
 
 
 def test_serial_tells_of_every_task_and_of_what_it_took(tmp_path: Path) -> None:
-    Serial(Store(tmp_path)).run(squares(1))
+    Run(Store(tmp_path)).run(squares(1))
     follow, states, _ = progress()
-    work = Serial(Store(tmp_path), follow)
+    work = Run(Store(tmp_path), follow)
     work.expect({"square": 4})
     work.run(squares(1, 2, 3))
     assert [(state.done, state.running) for state in states[1:]] == [

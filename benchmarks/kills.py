@@ -1,0 +1,254 @@
+"""Runs that are killed, at random moments and after each write, go on to the same digits.
+
+    python benchmarks/kills.py [--moments 100] [--writes 1000] [--workers 1 2] [--studies chain ...]
+
+Six studies (a chain, a mesh, a reduced basis, three groups, predictions, an evolutionary front) are
+run once without interruption. Then runs of them, with and without workers, are killed (SIGKILL): at
+``--moments`` random moments in all, each in a new folder, and after each write of a task's result,
+up to ``--writes`` of each study, one run after another in the same folder. Every killed run is
+continued; what is compared is
+
+- the results: all variables, to the last digit;
+- the files of the tasks that were done before: none is written again;
+- processes of the killed run after it: none;
+- unfinished files after the run that continues: none.
+
+Printed is a line a study with the numbers of kills, and every difference. The exit status is 1
+where there is one.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import re
+import signal
+import subprocess
+import sys
+import tempfile
+import time
+from collections.abc import Callable, Iterator
+from contextlib import suppress
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import xarray as xr
+
+FEW = "\n[search]\nstarts = 3\nlimit = 4\n"
+GROUPS = re.compile(r"(?s)\[\[group\]\].*?(?=\n\[pareto\])")
+THREE = """[[group]]
+name = "frequencies"
+frequency = "all"
+
+[[group]]
+name = "low"
+shape = [1]
+
+[[group]]
+name = "high"
+shape = [2, 3]
+"""
+PREDICTIONS = """
+[uncertainty]
+draws = 4
+
+[[predict.frf]]
+name = "pushed"
+force = { floor3 = 1.0 }
+response = { top = "floor3" }
+band = [0.5, 20.0]
+damping = 0.02
+"""
+EVOLUTION = '[pareto]\nmethod = "nsga2"\npopulation = 20\nevaluations = 200\n'
+
+
+def pareto(text: str, table: str) -> str:
+    """Return a study with another table of the front."""
+    return re.sub(r"\n\[pareto\][^\[]*", f"\n{table}\n", text)
+
+
+STUDIES: dict[str, tuple[str, Callable[[str], str]]] = {
+    "chain": ("three-story-c0", lambda text: text),
+    "mesh": ("three-story-fe-c0", lambda text: pareto(text, "[pareto]\npoints = 6\n") + FEW),
+    "reduced": (
+        "three-story-fe-c0",
+        lambda text: (
+            pareto(
+                text.replace('kind = "mesh"', 'kind = "mesh"\nreduction = 1e-8'),
+                "[pareto]\npoints = 6\n",
+            )
+            + FEW
+        ),
+    ),
+    "three": (
+        "three-story-c0",
+        lambda text: pareto(GROUPS.sub(THREE, text), "[pareto]\npoints = 4\n"),
+    ),
+    "predictions": (
+        "three-story-c0",
+        lambda text: pareto(text, "[pareto]\npoints = 5\n") + PREDICTIONS,
+    ),
+    "evolutionary": ("three-story-c0", lambda text: pareto(text, EVOLUTION)),
+}
+
+
+@dataclass
+class Trials:
+    """Kills of the runs of one study.
+
+    Attributes
+    ----------
+    study : its file
+    workers : numbers of processes, in turn
+    expected : results of a run that was not interrupted
+    seconds : that this run took
+    kills : so far
+    differences : what was not as it should be
+    """
+
+    study: Path
+    workers: list[int]
+    expected: xr.Dataset = field(init=False)
+    seconds: float = field(init=False)
+    kills: int = 0
+    differences: list[str] = field(default_factory=list)
+
+    def __post_init__(self) -> None:
+        started = time.monotonic()
+        folder = self.study.with_name("whole")
+        self.start(folder, 1).wait()
+        self.seconds = time.monotonic() - started
+        self.expected = results(folder)
+
+    def start(self, folder: Path, workers: int) -> subprocess.Popen[bytes]:
+        """Start a run in a group of processes of its own."""
+        command = [sys.executable, "-m", "modefront", "run", self.study, "-o", folder]
+        return subprocess.Popen(
+            [*map(str, command), "--workers", str(workers)],
+            stdout=subprocess.DEVNULL,
+            stderr=subprocess.PIPE,
+            start_new_session=True,
+        )
+
+    def at_a_moment(self, rng: np.random.Generator, number: int) -> None:
+        """Kill a run at a random moment, and continue it."""
+        folder, moment = self.study.with_name(f"moment{number}"), rng.uniform(0, self.seconds)
+        workers = self.workers[number % len(self.workers)]
+        process = self.start(folder, workers)
+        with suppress(subprocess.TimeoutExpired):
+            process.wait(moment)
+        self.kill(process)
+        before = written(folder)
+        self.finish(folder, workers, before, f"killed after {moment:.2f} s")
+
+    def after_writes(self, most: int) -> None:
+        """Kill runs after each write, one after another in the same folder, and finish."""
+        folder, count = self.study.with_name("writes"), 0
+        for number in range(most):
+            before = written(folder)
+            workers = self.workers[number % len(self.workers)]
+            process = self.start(folder, workers)
+            while process.poll() is None and len(written(folder)) <= count:
+                time.sleep(0.001)
+            ended = process.poll() is not None
+            self.kill(process)
+            self.compare(folder, before, f"killed after write {count + 1}")
+            count = len(written(folder))
+            if ended:
+                break
+        self.finish(folder, self.workers[-1], written(folder), "after all writes")
+
+    def kill(self, process: subprocess.Popen[bytes]) -> None:
+        """Kill the process that was started, and wait for those that it has started."""
+        process.kill()
+        process.communicate()
+        self.kills += 1
+        for _ in range(2000):
+            if not list(running(process.pid)):
+                return
+            time.sleep(0.01)
+        self.differences.append(f"processes that were left: {list(running(process.pid))}")
+        os.killpg(process.pid, signal.SIGKILL)
+
+    def finish(self, folder: Path, workers: int, before: dict[Path, int], name: str) -> None:
+        """Continue a run to its end, and compare it."""
+        process = self.start(folder, workers)
+        _, err = process.communicate()
+        if process.returncode:
+            self.differences.append(f"{name}: status {process.returncode}, {err.decode()}")
+            return
+        if not results(folder).identical(self.expected):
+            self.differences.append(f"{name}: other digits")
+        self.compare(folder, before, name)
+        left = [str(path) for path in folder.rglob("*.tmp")]
+        if left:
+            self.differences.append(f"{name}: left over {left}")
+
+    def compare(self, folder: Path, before: dict[Path, int], name: str) -> None:
+        """Compare the files that were written before with those that are there."""
+        now = written(folder)
+        again = [path.name for path, at in before.items() if now.get(path, at) != at]
+        if again:
+            self.differences.append(f"{name}: done again {again}")
+
+
+def written(folder: Path) -> dict[Path, int]:
+    """Return the files of tasks that are done, with the times at which they were written."""
+    out = {}
+    for path in folder.rglob("*.npz"):
+        with suppress(OSError):
+            out[path] = path.stat().st_mtime_ns
+    return out
+
+
+def results(folder: Path) -> xr.Dataset:
+    return xr.load_dataset(folder / "results.nc", engine="h5netcdf")
+
+
+def running(group: int) -> Iterator[int]:
+    """Yield the processes of a group that have not ended."""
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            state, _, own = path.read_text().rpartition(")")[2].split()[:3]
+            if int(own) == group and state != "Z":
+                yield int(path.parent.name)
+
+
+def study(name: str, folder: Path) -> Path:
+    """Write a study, and return its file."""
+    example, edit = STUDIES[name]
+    subprocess.run(
+        [sys.executable, "-m", "modefront", "init", str(folder), "--example", example],
+        check=True,
+        stdout=subprocess.DEVNULL,
+    )
+    path = folder / "study.toml"
+    path.write_text(edit(path.read_text()))
+    return path
+
+
+def main() -> None:
+    """Print a line a study."""
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--moments", type=int, default=100)
+    options.add_argument("--writes", type=int, default=1000)
+    options.add_argument("--workers", type=int, nargs="+", default=[1, 2])
+    options.add_argument("--studies", nargs="+", choices=STUDIES, default=list(STUDIES))
+    options.add_argument("--seed", type=int, default=0)
+    given = options.parse_args()
+    rng, bad = np.random.default_rng(given.seed), False
+    for i, name in enumerate(given.studies):
+        with tempfile.TemporaryDirectory() as folder:
+            trials = Trials(study(name, Path(folder) / name), given.workers)
+            for number in range(i, given.moments, len(given.studies)):
+                trials.at_a_moment(rng, number // len(given.studies))
+            if given.writes:
+                trials.after_writes(given.writes)
+        print(f"{name}: {trials.kills} kills", *trials.differences, sep="\n    ", flush=True)
+        bad |= bool(trials.differences)
+    sys.exit(bad)
+
+
+if __name__ == "__main__":
+    main()

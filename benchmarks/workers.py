@@ -1,0 +1,161 @@
+"""What several processes gain over one, in one run.
+
+    python benchmarks/workers.py [--workers 2] [--studies building footbridge]
+
+Studies of a building (576 degrees of freedom, all solved in full) and of a footbridge (2,000, in a
+reduced basis where the cost model takes one) are done by one process and then by several, with a
+bootstrap, posterior draws and predictions. Printed are the elapsed seconds of both and their ratio,
+for each stage of the work that takes a second at least and for the whole, without the start of the
+program but with that of the processes; and what a task costs that does nothing, in milliseconds.
+Results are compared to the last digit. Where other programs use the cores, the ratios say nothing.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tempfile
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any, Literal
+
+import numpy as np
+
+import modefront as mf
+from modefront import fem
+from modefront.models.mesh import mesh_model
+from modefront.study import session
+from modefront.study.examples import write_example
+from modefront.work.run import Run
+from modefront.work.task import R, Task
+from modefront.work.workers import Workers, backend
+
+STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
+MORE = """
+[uncertainty]
+source = "sets"
+bootstrap = 12
+draws = 24
+
+[[predict.frf]]
+name = "pushed"
+force = { floor3 = 1.0 }
+response = { top = "floor3" }
+band = [0.5, 20.0]
+damping = 0.02
+"""
+
+
+@dataclass
+class Timed(Run):
+    """A run that adds up the time of its stages."""
+
+    seconds: dict[str, float] = field(default_factory=dict)
+
+    def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
+        """Return the results of the tasks."""
+        started = time.perf_counter()
+        results = super().run(tasks, ahead)
+        if tasks:
+            stage = tasks[0].stage
+            passed = time.perf_counter() - started
+            self.seconds[stage] = self.seconds.get(stage, 0.0) + passed
+        return results
+
+
+def building(folder: Path) -> mf.Study:
+    """Return the three-story building, with a second data set."""
+    write_example("three-story-fe-c0", folder)
+    data = (folder / "modes.csv").read_text().splitlines()
+    rows = [line.split(",") for line in data[1:] if line.strip()]
+    again = [["2", r[1], str(float(r[2]) * 1.003), *r[3:]] for r in rows if r[0] == rows[0][0]]
+    (folder / "modes.csv").write_text("\n".join([*data, *map(",".join, again)]) + "\n")
+    path = folder / "study.toml"
+    text = path.read_text().replace('kind = "mesh"', 'kind = "mesh"\nreduction = "off"')
+    path.write_text(text + MORE)
+    return mf.load(path)
+
+
+def footbridge(_: Path) -> mf.Study:
+    """Return a footbridge of shells of 2,000 degrees of freedom, 5 parameters and 6 modes."""
+    return mf.Study(footbridge_problem(), pareto=mf.Pareto(points=20), seed=1)
+
+
+def footbridge_problem(reduction: float | Literal["auto", "off"] = "auto") -> mf.UpdatingProblem:
+    """Return the problem of fitting two data sets of a footbridge."""
+    X, cells = fem.grids.plate(20.0, 2.5, 54, 5)
+    X[:, 2] = 0.4 * np.sin(np.pi * X[:, 0] / 20.0)
+    part = np.minimum((X[cells].mean(axis=1)[:, 0] / 4.0).astype(int), 4)
+    names = [f"E{j + 1}" for j in range(5)]
+    ends = np.flatnonzero((X[:, 0] == 0) | (X[:, 0] == X[:, 0].max()))
+    places = np.linspace(0, len(X) - 1, 42).astype(int)[1:-1]
+    structure = fem.Structure(
+        X,
+        [fem.Shells(name, cells[part == j], STEEL, 0.12) for j, name in enumerate(names)],
+        [fem.Support(ends, ("x", "y", "z"))],
+        sensors=[fem.Sensor(f"s{i}", int(node), "z") for i, node in enumerate(places)],
+        parameters=[fem.Parameter(name, "E", (name,)) for name in names],
+    )
+    model = mesh_model(structure, names)
+    rng = np.random.default_rng(0)
+    modes = model.modes(rng.uniform(0.7, 1.4, 5), 6, derivatives=False)
+    frequency = modes.frequency * (1 + 0.005 * rng.standard_normal((2, 6)))
+    phi = modes.phi.T * (1 + 0.03 * rng.standard_normal((2, *modes.phi.T.shape)))
+    data = mf.modal_data(frequency, phi, model.sensors)
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    bounds = dict.fromkeys(names, (0.4, 2.5))
+    nominal = dict.fromkeys(names, 1.0)
+    return mf.updating_problem(
+        model, data, groups, bounds, nominal, reduction=mf.Reduction(reduction)
+    )
+
+
+STUDIES = {"building": building, "footbridge": footbridge}
+
+
+def done(study: mf.Study, workers: int) -> tuple[Any, dict[str, float]]:
+    """Return the results of a study and the elapsed seconds of its stages and of the whole."""
+    started = time.perf_counter()
+    with backend(workers, warm=session.__name__) as carrier:
+        work = Timed(backend=carrier)
+        data = session._Session(study.completed(), work).results()
+    return data, work.seconds | {"whole study": time.perf_counter() - started}
+
+
+def overhead(workers: int) -> float:
+    """Return the seconds that a task costs that does nothing."""
+    with backend(workers) as carrier:
+        assert isinstance(carrier, Workers)
+        while not carrier.pool.ready:
+            time.sleep(0.01)
+        tasks = [Task(("nothing", k), time.sleep, (0.02,)) for k in range(100)]
+        started = time.perf_counter()
+        Run(backend=carrier).run(tasks)
+        return (time.perf_counter() - started) / 100 - 0.02 / workers
+
+
+def main() -> None:
+    """Print a table a study."""
+    options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    options.add_argument("--workers", type=int, default=2)
+    options.add_argument("--studies", nargs="+", choices=STUDIES, default=list(STUDIES))
+    given = options.parse_args()
+    print(f"a task: {1e3 * overhead(given.workers):.2f} ms")
+    for name in given.studies:
+        with tempfile.TemporaryDirectory() as folder:
+            study = STUDIES[name](Path(folder) / name)
+            one, alone = done(study, 1)
+            many, shared = done(study, given.workers)
+        print(f"{name}: same digits {one.identical(many)}")
+        for stage, seconds in alone.items():
+            if seconds >= 1:
+                print(
+                    f"  {stage:20s} {seconds:7.2f} s {shared[stage]:7.2f} s"
+                    f"  ratio {seconds / shared[stage]:.2f}",
+                    flush=True,
+                )
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,93 @@
+"""``modefront export``: finds the study of results, and writes one of its models."""
+
+from __future__ import annotations
+
+import shutil
+import tempfile
+import tomllib
+from pathlib import Path
+
+import click
+
+from modefront.errors import Fault, InputError, ModelError, UnfinishedError, suggestion
+from modefront.exports.model import Origin, matrix_size, write_model
+from modefront.models.dofs import read_dofs
+from modefront.programs.changes import read_changes
+from modefront.programs.mesh import read_mesh
+from modefront.results.files import FILE, read_dataset
+from modefront.results.results import Results
+from modefront.study.definition import Study
+from modefront.study.file import load
+
+
+def run_export(
+    directory: Path, point: str | None, study: Path | None, output: Path | None, modes: int | None
+) -> None:
+    """Write a model of the results in a folder into another folder."""
+    data = read_dataset(directory)
+    labels = [str(label) for label in data["label"].values]
+    point = point or str(data.attrs["reference"])
+    if point not in labels:
+        found = suggestion(point, labels)
+        raise InputError(Fault(str(directory / FILE), "--point", "the label of a model", found))
+    loaded = _study(directory, study, str(data.attrs["study"]), str(data.attrs["inputs"]))
+    results = Results(data, loaded.problem)
+    model = results.model(point)
+    output = output or directory / f"export-{point}"
+    try:
+        count = min(modes or max(len(model.frequency), 1), matrix_size(model))
+        output.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=output, prefix=".export-") as name:
+            missing = write_model(model, _origin(loaded.file), Path(name), count)
+            files = sorted(Path(name).iterdir())
+            for file in files:
+                shutil.move(file, output / file.name)
+                click.echo(f"wrote {output / file.name}")
+    except ModelError as error:
+        raise UnfinishedError(str(error)) from None
+    except OSError as error:
+        expected = "a folder that can be written to"
+        raise InputError(Fault(str(output), "folder", expected, str(error))) from None
+    for what in missing:
+        click.echo(f"not written: {what}")
+
+
+def _study(directory: Path, given: Path | None, name: str, digest: str) -> Study:
+    """Return the study of results: the given one, or one beside them with the same inputs.
+
+    Raises InputError where there is none, or the given one is another.
+    """
+    folders = dict.fromkeys([directory, directory.absolute().parent, Path()])
+    files = [given] if given else [file for x in folders for file in sorted(x.glob("*.toml"))]
+    for file in files:
+        if given is None and not _is_named(file, name):
+            continue
+        study = load(file)
+        if study.digest == digest:
+            return study
+        if given is not None:
+            expected = f"the study of the results in '{directory}'"
+            raise InputError(Fault(str(file), "study", expected, "other inputs: run it again"))
+    expected = f"the study '{name}', unchanged, beside the results (or --study FILE)"
+    raise InputError(Fault(str(directory), "study", expected, "none"))
+
+
+def _is_named(file: Path, name: str) -> bool:
+    try:
+        return bool(tomllib.loads(file.read_text("utf-8-sig"))["study"]["name"] == name)
+    except (OSError, ValueError, KeyError, TypeError):
+        return False
+
+
+def _origin(file: Path) -> Origin:
+    """Return what the study of an imported model keeps of the program's model."""
+    table = tomllib.loads(file.read_text("utf-8-sig")).get("model", {})
+    if table.get("kind") != "matrices":
+        return Origin(None, None, ())
+    dofs, mesh = (table.get(key) for key in ("dofs", "mesh"))
+    changes = file.parent / "changes.json"
+    return Origin(
+        read_dofs(file.parent / dofs) if dofs else None,
+        read_mesh(file.parent / mesh) if mesh else None,
+        read_changes(changes) if changes.is_file() else (),
+    )

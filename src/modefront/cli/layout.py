@@ -1,0 +1,192 @@
+"""Sentences and tables that fit the terminal: wrapped at words, split into blocks, never cut.
+
+A table that is too wide is printed as several blocks, one below the other, which repeat the names
+of the rows. Names that do not fit are broken over lines. All text is cleaned (`modefront.text`),
+and characters that the terminal's encoding lacks are spelled.
+"""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
+
+from rich.cells import cell_len, chop_cells
+from rich.console import Console
+from rich.text import Text
+
+from modefront.text import SPELL, clean
+
+GAP = 2
+"""Spaces between columns."""
+
+LEAST = 8
+"""Width of a column down to which long words are broken."""
+
+KEY = 0.45
+"""Greatest part of the width that the names of the rows take."""
+
+Row = Sequence[str]
+
+
+@dataclass(frozen=True)
+class Screen:
+    """A terminal, or a file of the width that ``COLUMNS`` says, 80 unless given."""
+
+    console: Console
+
+    @classmethod
+    def of_output(cls) -> Screen:
+        """Return the screen of standard output."""
+        return cls(Console(highlight=False))
+
+    @property
+    def width(self) -> int:
+        """Characters a line."""
+        return max(self.console.width, 20)
+
+    def shown(self, text: object) -> str:
+        """Return a text as the terminal can show it."""
+        out = clean(text)
+        encoding = self.console.encoding
+        return out.encode(encoding, errors=SPELL).decode(encoding)
+
+    def say(self, text: object, start: str = "", style: str = "") -> None:
+        """Print a sentence, wrapped at words; further lines are indented as far as its start."""
+        start = self.shown(start)
+        room = max(self.width - cell_len(start), LEAST)
+        # Long words, such as paths and commands, are left whole, to be copied.
+        for i, line in enumerate(_wrapped(self.shown(text), room, whole=True)):
+            indent = start if i == 0 else " " * cell_len(start)
+            self._line(f"{indent}{line}", style)
+
+    def blank(self) -> None:
+        """Print an empty line."""
+        self.console.print()
+
+    def table(self, title: str, columns: Row, rows: Sequence[Row], keys: int = 1) -> None:
+        """Print a table, in blocks where it is too wide; nothing for a table without rows.
+
+        Parameters
+        ----------
+        title
+            Sentence above the table.
+        columns
+            Titles, those of the names of the rows first.
+        rows
+            Cells; a row of one cell is a heading within the table.
+        keys
+            Number of columns with names of the rows, which every block repeats.
+        """
+        if not rows:
+            return
+        self.blank()
+        if title:
+            self.say(title, style="bold")
+        grid = _Grid(
+            [self.shown(x) for x in columns], [[self.shown(x) for x in row] for row in rows], keys
+        )
+        for number, block in enumerate(grid.blocks(self.width)):
+            if number:
+                self.blank()
+            for line, style in block:
+                self._line(line, style)
+
+    def _line(self, text: str, style: str) -> None:
+        # Text that has no spans is printed as it is; rich would wrap a line of its own accord.
+        self.console.print(Text(text.rstrip(), style=style), soft_wrap=True)
+
+
+@dataclass(frozen=True)
+class _Grid:
+    columns: list[str]
+    rows: list[list[str]]
+    keys: int
+
+    def blocks(self, width: int) -> Iterator[list[tuple[str, str]]]:
+        """Yield the lines of each block, with their styles."""
+        most = max(int(KEY * width) // self.keys, LEAST)
+        keys = [min(self._width(j), most) for j in range(self.keys)]
+        room = width - sum(keys) - GAP * self.keys
+        widths = {j: min(self._width(j), room) for j in range(self.keys, len(self.columns))}
+        block: list[int] = []
+        for j, needed in widths.items():
+            if block and sum(widths[i] + GAP for i in block) + needed > room:
+                yield self._block([*keys, *(widths[i] for i in block)], block)
+                block = []
+            block.append(j)
+        yield self._block([*keys, *(widths[i] for i in block)], block)
+
+    def _width(self, j: int) -> int:
+        """Return the width of a column: that of its cells and of the words of its title."""
+        cells = [cell_len(row[j]) for row in self.rows if len(row) > 1]
+        return max([*cells, *map(cell_len, _parts(self.columns[j])), 1])
+
+    def _block(self, widths: list[int], chosen: list[int]) -> list[tuple[str, str]]:
+        order = [*range(self.keys), *chosen]
+        titles = [_titled(self.columns[j], width) for j, width in zip(order, widths, strict=True)]
+        depth = max(map(len, titles))
+        titles = [[""] * (depth - len(title)) + title for title in titles]
+        out = [(self._joined(parts, widths), "bold") for parts in zip(*titles, strict=True)]
+        out = [line for line in out if line[0].strip()]
+        out.append((self._joined(["─" * width for width in widths], widths), "dim"))
+        for row in self.rows:
+            if len(row) == 1:
+                out.append((row[0], "italic"))
+                continue
+            cells = [_broken(row[j], width) for j, width in zip(order, widths, strict=True)]
+            depth = max(map(len, cells))
+            cells = [cell + [""] * (depth - len(cell)) for cell in cells]
+            out += [(self._joined(parts, widths), "") for parts in zip(*cells, strict=True)]
+        return out
+
+    def _joined(self, cells: Sequence[str], widths: Sequence[int]) -> str:
+        """Return a line; names of rows are at the left of their columns, numbers at the right."""
+        parts = []
+        for j, (cell, width) in enumerate(zip(cells, widths, strict=True)):
+            space = " " * (width - cell_len(cell))
+            parts.append(cell + space if j < self.keys else space + cell)
+        return (" " * GAP).join(parts)
+
+
+def _parts(title: str) -> list[str]:
+    """Return the parts of a title that are not broken: words, and what hyphens join."""
+    return [part for part in re.split(r"\s+|(?<=[-_/.])", title) if part]
+
+
+def _titled(title: str, width: int) -> list[str]:
+    """Return a title over lines."""
+    if cell_len(title) <= width:
+        return [title]
+    lines = [""]
+    for word in title.split():
+        for k, part in enumerate(_parts(word)):
+            joined = lines[-1] + (" " if k == 0 and lines[-1] else "") + part
+            if cell_len(joined) <= width or not lines[-1]:
+                lines[-1] = joined
+            else:
+                lines.append(part)
+    return [piece for line in lines for piece in _broken(line, width)]
+
+
+def _broken(text: str, width: int) -> list[str]:
+    """Return a text over lines: at words where that is possible."""
+    if cell_len(text) <= width:
+        return [text]
+    return _wrapped(text, width)
+
+
+def _wrapped(text: str, width: int, *, whole: bool = False) -> list[str]:
+    """Return lines of at most this width; longer words are broken, or left ``whole``."""
+    lines = [""]
+    for word in text.split():
+        joined = f"{lines[-1]} {word}" if lines[-1] else word
+        if cell_len(joined) <= width:
+            lines[-1] = joined
+            continue
+        pieces = [word] if whole or cell_len(word) <= width else chop_cells(word, width)
+        if lines[-1]:
+            lines.append("")
+        lines[-1] = pieces[0]
+        lines += pieces[1:]
+    return lines

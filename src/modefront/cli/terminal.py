@@ -1,0 +1,38 @@
+"""What is written to the terminal: in characters that it has, and without orders to it."""
+
+from __future__ import annotations
+
+import io
+import sys
+
+import click
+
+from modefront.errors import MOST_CHARACTERS
+from modefront.text import SPELL, clean, shortened
+
+
+def prepare() -> None:
+    """Spell characters that the streams' encodings lack, such as ± where there is ASCII only."""
+    for stream in (sys.stdout, sys.stderr):
+        if isinstance(stream, io.TextIOWrapper):
+            stream.reconfigure(errors=SPELL)
+
+
+def say(text: str) -> None:
+    """Print one line."""
+    print(clean(text))
+
+
+def complain(text: str) -> None:
+    """Print a message on standard error: lines of clean text, of limited length."""
+    lines = shortened(text, MOST_CHARACTERS).split("\n")
+    print("\n".join(clean(line) for line in lines), file=sys.stderr)
+
+
+def usage(error: click.ClickException) -> str:
+    """Return what is wrong with the command line, with the way to help where there is one."""
+    out = f"Error: {error.format_message()}"
+    context = error.ctx if isinstance(error, click.UsageError) else None
+    if context is None:
+        return out
+    return f"{context.get_usage()}\nTry '{context.command_path} --help' for help.\n\n{out}"

@@ -1,0 +1,1 @@
+"""Mistakes of models and data that a comparison at the nominal parameters shows."""

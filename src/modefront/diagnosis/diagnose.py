@@ -1,0 +1,68 @@
+"""All that a comparison at the nominal parameters shows of mistakes in models and data."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from modefront.diagnosis.comparison import Comparison, with_data
+from modefront.diagnosis.damping import DampingInPercent, damping_findings
+from modefront.diagnosis.explain import WrongPlaces, explained, finding_of
+from modefront.diagnosis.measured import measured
+from modefront.diagnosis.pairs import OutsideModel, PairFinding, pair_findings, without_outside
+from modefront.diagnosis.sensors import WrongSensors, between_sets
+from modefront.diagnosis.sets import (
+    SetFactor,
+    SetFrequency,
+    SetNumbers,
+    SetShape,
+    factor_findings,
+    frequency_findings,
+    numbering_findings,
+    shape_findings,
+)
+from modefront.diagnosis.units import FrequencyFactor, OtherQuantity, shifts_tried, unit_finding
+
+Finding = (
+    FrequencyFactor
+    | OtherQuantity
+    | WrongSensors
+    | WrongPlaces
+    | SetFactor
+    | SetFrequency
+    | SetNumbers
+    | SetShape
+    | DampingInPercent
+    | PairFinding
+)
+"""What can be found, each a record with its numbers; `modefront.diagnosis.words` has the words."""
+
+
+def diagnose(comparison: Comparison) -> list[Finding]:
+    """Return what is wrong with a model or its data, the causes before what they bring about.
+
+    What one finding explains is put right before the next ones are looked for, so that each is
+    said once.
+    """
+    data = comparison.data
+    of_model = comparison.frequency[comparison.pairs.index]
+    factors, data = factor_findings(data, of_model)
+    numbers, data = numbering_findings(data, of_model)
+    in_sets, view = between_sets(comparison, measured(data))
+    inside = without_outside(comparison, view)
+    best = explained(comparison, inside, shifts_tried(comparison, inside))
+    sensors = finding_of(comparison, inside, best)
+    unit = unit_finding(comparison, best.view, best.phi, best.shift)
+    shift = 0.0
+    if isinstance(unit, FrequencyFactor):
+        shift = float(np.log(unit.factor))
+    out: list[Finding] = [*factors, *numbers, *([unit] if unit else []), *in_sets]
+    out += [sensors] if sensors else []
+    out += [*frequency_findings(data), *shape_findings(data, view), *damping_findings(data)]
+    if not isinstance(unit, OtherQuantity):
+        # Shapes in which sensors of single data sets are put right.
+        shapes = np.where(view.seen, view.psi, np.nan)
+        found = pair_findings(with_data(comparison, replace(data, shape=shapes)), view, shift)
+        out += [each for each in found if sensors is None or isinstance(each, OutsideModel)]
+    return out

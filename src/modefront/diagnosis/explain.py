@@ -1,0 +1,214 @@
+r"""Which single explanation of poor shapes is best: changed sensors, other places, or none.
+
+Explanations and factors on all frequencies compete by the cost of pairing at the nominal model; a
+reversed sensor may make modes look exchanged, and frequencies off by a factor. The best one is
+then proved: data as they are and as explained are both fitted within the bounds
+(`modefront.diagnosis.fit`), since a nominal model that is merely poor is no mistake.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.diagnosis.changes import Change, applied
+from modefront.diagnosis.comparison import Comparison
+from modefront.diagnosis.fit import Fit
+from modefront.diagnosis.measured import Measured, assigned, mac_values, pair_costs
+from modefront.diagnosis.places import Relocation, relocations
+from modefront.diagnosis.sensors import LEAST, WrongSensors, searched, wrong_sensors
+from modefront.diagnosis.units import FROM_ONE
+from modefront.models.matrices import MatrixModel
+
+PROVED = 0.5
+"""Cost after a fit with an explanation, over that without, below which it is proved."""
+
+CERTAIN = 0.2
+"""The same where a quarter of the gain is enough."""
+
+HOPELESS = 0.4
+"""Cost of a mode from which on it is not explained."""
+
+PRICE = 0.03
+"""Cost of each change of an explanation, for each mode: where two do the same, the simpler one."""
+
+
+@dataclass(frozen=True)
+class WrongPlaces:
+    """The model has sensors at other places, or along other directions, than the data.
+
+    Attributes
+    ----------
+    counted : "degrees of freedom" or "nodes" that are counted from 1; empty for directions
+    sensors : names of the sensors that have another direction
+    given, better : their direction in the model, and the one that fits
+    mode : measured mode that gains most
+    before, after : its MAC with the model
+    """
+
+    counted: str
+    sensors: tuple[str, ...]
+    given: str
+    better: str
+    mode: int
+    before: float
+    after: float
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """Data and shapes of the model under an assumption.
+
+    Attributes
+    ----------
+    changes : sensors of the data that are reversed or exchanged
+    relocation : other places of the sensors in the model
+    view : the measured modes with the changes
+    phi : (sensors, model modes) shapes of the model at the places
+    shift : logarithm of the factor on all measured frequencies
+    cost : cost of the pairs, with the price of the explanation
+    """
+
+    changes: tuple[Change, ...]
+    relocation: Relocation | None
+    view: Measured
+    phi: Floats
+    shift: float
+    cost: float
+
+    @property
+    def is_plain(self) -> bool:
+        """Whether nothing is assumed of the sensors."""
+        return not self.changes and self.relocation is None
+
+
+def explained(comparison: Comparison, view: Measured, shifts: list[float]) -> Explanation:
+    """Return the best explanation that a fit proves; the plain one where there is none.
+
+    ``shifts`` are the logarithms of factors on all frequencies that are tried.
+    """
+    found = [each for shift in shifts for each in _explanations(comparison, view, shift)]
+    plain = min((each for each in found if each.is_plain), key=lambda each: each.cost)
+    kinds: dict[str, Explanation] = {}
+    for each in sorted(found, key=lambda each: each.cost):
+        if not each.is_plain and each.cost < plain.cost:
+            kinds.setdefault(_kind(each), each)
+    for each in kinds.values():
+        proved = _proved(comparison, view, each, plain.cost)
+        if proved is not None:
+            return proved
+    return plain
+
+
+def _kind(explanation: Explanation) -> str:
+    """Return of what kind an explanation is; the best of each kind is tried."""
+    if explanation.relocation is None:
+        return "changes"
+    return explanation.relocation.counted or "direction"
+
+
+def _explanations(comparison: Comparison, view: Measured, shift: float) -> Iterator[Explanation]:
+    phi = comparison.phi
+    changes = tuple(searched(comparison, view, shift))
+    everywhere = range(view.psi.shape[0])
+    yield _explanation(comparison, (), None, view, phi, shift)
+    if changes:
+        changed = applied(changes, view, everywhere)
+        yield _explanation(comparison, changes, None, changed, phi, shift)
+    for relocation in relocations(comparison) if view.has_shape.any() else ():
+        moved = relocation.selection @ comparison.Phi
+        yield _explanation(comparison, (), relocation, view, moved, shift)
+
+
+def _explanation(
+    comparison: Comparison,
+    changes: tuple[Change, ...],
+    relocation: Relocation | None,
+    view: Measured,
+    phi: Floats,
+    shift: float,
+) -> Explanation:
+    mac = mac_values(view.psi, view.seen, phi)
+    cost = pair_costs(mac, view.log_frequency, comparison.log_frequency, shift)
+    assumed = PRICE * (len(changes) + (relocation is not None)) + FROM_ONE * abs(shift)
+    total = assigned(cost)[1] + assumed * cost.shape[0]
+    return Explanation(changes, relocation, view, phi, shift, total)
+
+
+def _proved(
+    comparison: Comparison, view: Measured, best: Explanation, plain: float
+) -> Explanation | None:
+    """Return the part of an explanation with which a fit is clearly better than without.
+
+    A reduced basis knows the sensors of its model alone: the costs of pairing at the nominal model,
+    ``plain`` without the explanation, have to do there.
+    """
+    count = int(view.has_shape.sum())
+    last = comparison.updating(best.shift).fit(view)
+    if best.relocation is not None:
+        model = comparison.problem.model
+        if not isinstance(model, MatrixModel):
+            is_clear = best.cost < PROVED * plain and plain - best.cost > LEAST * count
+            return best if is_clear else None
+        moved = replace(model, selection=best.relocation.selection)
+        fit = comparison.updating(best.shift, moved).fit(view)
+        return best if _is_better(fit, last, count) else None
+    everywhere, updating = range(view.psi.shape[0]), comparison.updating(best.shift)
+    kept, fit = list(best.changes), updating.fit(best.view)
+    while kept and not _is_better(fit, last, count):
+        kept.pop()
+        fit = updating.fit(applied(kept, view, everywhere))
+    for change in list(kept) if len(kept) > 1 else ():
+        rest = [each for each in kept if each is not change]
+        without = updating.fit(applied(rest, view, everywhere))
+        if not _is_better(fit, without, count):
+            kept, fit = rest, without
+    if not kept:
+        return None
+    changed = applied(kept, view, everywhere)
+    return _explanation(comparison, tuple(kept), None, changed, best.phi, best.shift)
+
+
+def _is_better(new: Fit | None, old: Fit | None, count: int) -> bool:
+    """Return whether a fit of ``count`` shapes is clearly better than another one.
+
+    Modes that neither explains say nothing. The less is left, the less it takes to be clear.
+    """
+    if new is None or old is None:
+        return new is not None
+    explained = np.minimum(new.costs, old.costs) < HOPELESS
+    left = float(new.costs[explained].sum()) + new.distance
+    before = float(old.costs[explained].sum()) + old.distance
+    gained = before - left
+    if left < CERTAIN * before and gained > LEAST / 4 * count:
+        return True
+    return left < PROVED * before and gained > LEAST * count
+
+
+def finding_of(
+    comparison: Comparison, view: Measured, found: Explanation
+) -> WrongSensors | WrongPlaces | None:
+    """Return what an explanation says is wrong; None for the plain one."""
+    if found.is_plain:
+        return None
+    mac = mac_values(found.view.psi, found.view.seen, found.phi)
+    logs = found.view.log_frequency
+    index, _ = assigned(pair_costs(mac, logs, comparison.log_frequency, found.shift))
+    rows = np.arange(index.size)
+    before, after = mac_values(view.psi, view.seen, comparison.phi)[rows, index], mac[rows, index]
+    if found.relocation is None:
+        return wrong_sensors(found.changes, comparison, before, after, (), "model")
+    r = int(np.nanargmax(after - before))
+    names = comparison.data.sensors
+    return WrongPlaces(
+        found.relocation.counted,
+        tuple(names[s] for s in found.relocation.sensors),
+        found.relocation.given,
+        found.relocation.better,
+        comparison.data.modes[r],
+        float(before[r]),
+        float(after[r]),
+    )

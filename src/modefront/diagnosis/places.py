@@ -1,0 +1,163 @@
+"""Sensors at other places or along other directions than the model says.
+
+Degrees of freedom or nodes that a user counts from 1 are all off by one. A sensor that measures
+along another axis, or all those of an axis, or two axes exchanged, are tried one by one.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse
+
+from modefront._typing import Floats, Ints
+from modefront.diagnosis.comparison import Comparison
+from modefront.models.geometry import Geometry
+
+ALONG = 0.99
+"""Component of a direction from which on it is one along an axis."""
+
+AXES = ("x", "y", "z")
+SIX = (*AXES, "rx", "ry", "rz")
+
+
+@dataclass(frozen=True)
+class DataDirection:
+    """A sensor has another direction in the model than the degree of freedom of the data it takes.
+
+    Attributes
+    ----------
+    sensor : its name
+    model, data : directions
+    """
+
+    sensor: str
+    model: str
+    data: str
+
+
+@dataclass(frozen=True)
+class Relocation:
+    """Other degrees of freedom for the sensors.
+
+    Attributes
+    ----------
+    selection : (sensors, N) weights of the degrees of freedom
+    counted : "degrees of freedom" or "nodes" that are counted from 1; empty for directions
+    sensors : positions of the sensors that have another direction
+    given, better : their direction in the model and the one that fits, such as "x" and "-y"
+    """
+
+    selection: scipy.sparse.csr_array
+    counted: str = ""
+    sensors: tuple[int, ...] = ()
+    given: str = ""
+    better: str = ""
+
+
+def relocations(comparison: Comparison) -> Iterator[Relocation]:
+    """Yield all places that are tried.
+
+    Where nodes move along one axis alone, as in a chain, sensors are named by degrees of freedom.
+    """
+    model = comparison.matrices
+    if model is None or comparison.Phi is None:
+        return
+    geometry = model.geometry
+    if geometry is None or len(geometry.axes) < 2:
+        selection = model.selection.tocoo()
+        if selection.col.size and selection.col.min() > 0:
+            entries = selection.data, (selection.row, selection.col - 1)
+            shifted = scipy.sparse.csr_array(entries, shape=selection.shape)
+            yield Relocation(shifted, counted="degrees of freedom")
+        return
+    places = Places(geometry, model.selection)
+    if (geometry.sensor_nodes > 0).all() and (geometry.sensor_directions != 0).any(axis=1).all():
+        yield Relocation(places.at(geometry.sensor_nodes - 1), counted="nodes")
+    yield from _turned(places)
+
+
+@dataclass(frozen=True, eq=False)
+class Places:
+    """Nodes and directions of sensors.
+
+    Attributes
+    ----------
+    geometry : of the model
+    selection : (sensors, N) weights of the sensors, kept for those of rotations
+    """
+
+    geometry: Geometry
+    selection: scipy.sparse.csr_array
+
+    def at(self, nodes: Ints) -> scipy.sparse.csr_array:
+        """Return the weights of sensors at other nodes."""
+        return self.geometry.weights(nodes, self.geometry.sensor_directions)
+
+    def along(self, sensors: tuple[int, ...], directions: Floats) -> scipy.sparse.csr_array:
+        """Return the weights with other ``directions`` (sensors, 3) of some sensors."""
+        turned = self.geometry.weights(self.geometry.sensor_nodes, directions).tolil()
+        out = self.selection.tolil()
+        out[list(sensors)] = turned[list(sensors)]
+        return out.tocsr()
+
+
+def _turned(places: Places) -> Iterator[Relocation]:
+    """Yield other directions: of all sensors of an axis, of two axes exchanged, of single ones."""
+    directions = places.geometry.sensor_directions
+    axis = np.argmax(np.abs(directions), axis=1)
+    axis = np.where(np.abs(directions).max(axis=1) > ALONG, axis, -1)
+    groups = {a: np.flatnonzero(axis == a) for a in range(3)}
+    for a, members in groups.items():
+        others = [b for b in places.geometry.axes if b != a]
+        if len(members) > 1:
+            for b in others:
+                for sign in (1.0, -1.0) if len(members) < len(axis) else (1.0,):
+                    yield _to(places, {int(s): (b, sign) for s in members}, a, b)
+        for s in members.tolist():
+            for b in others:
+                for sign in (1.0, -1.0):
+                    yield _to(places, {s: (b, sign)}, a, b)
+    for a, b in ((0, 1), (0, 2), (1, 2)):
+        if groups[a].size and groups[b].size:
+            both = {int(s): (b, 1.0) for s in groups[a]} | {int(s): (a, 1.0) for s in groups[b]}
+            yield _to(places, both, a, b, exchanged=True)
+
+
+def _to(
+    places: Places,
+    changed: dict[int, tuple[int, float]],
+    a: int,
+    b: int,
+    *,
+    exchanged: bool = False,
+) -> Relocation:
+    """Return the relocation of some sensors to other axes; each keeps its own sign, or changes it.
+
+    ``a`` and ``b`` are the axes in the model and in the data.
+    """
+    given: Floats = places.geometry.sensor_directions
+    directions = given.copy()
+    for s, (axis, factor) in changed.items():
+        size = given[s, int(np.argmax(np.abs(given[s])))]
+        directions[s] = 0.0
+        directions[s, axis] = factor * size
+    members = tuple(sorted(changed))
+    names = f"{AXES[a]} and {AXES[b]}", f"{AXES[b]} and {AXES[a]}"
+    if not exchanged:
+        names = _name(given[members[0]], a), _name(directions[members[0]], b)
+    return Relocation(places.along(members, directions), "", members, *names)
+
+
+def _name(direction: Floats, axis: int) -> str:
+    return ("-" if direction[axis] < 0 else "") + AXES[axis]
+
+
+def axis_name(direction: Floats) -> str:
+    """Return a direction (6,) in words: an axis with its sign, or a vector."""
+    greatest = int(np.argmax(np.abs(direction)))
+    if abs(direction[greatest]) > ALONG:
+        return ("-" if direction[greatest] < 0 else "") + SIX[greatest]
+    return "(" + ", ".join(f"{x:.2g}" for x in direction[:3]) + ")"

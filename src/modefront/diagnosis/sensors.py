@@ -1,0 +1,186 @@
+"""Sensors that are reversed or exchanged, in one data set or in all.
+
+Changes are looked for one after the other, each the one that helps most. Between data sets, no
+model is needed: the same mode has the same shape. Against the model, the frequencies keep a mode
+with a reversed sensor from being taken for another one; `modefront.diagnosis.explain` proves what
+is found.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.diagnosis.changes import Change, applied, best_change, suspects
+from modefront.diagnosis.comparison import Comparison
+from modefront.diagnosis.measured import Measured, assigned, mac_values, pair_costs
+
+MOST = 8
+"""Changes that are looked for, one after the other."""
+
+HELPS = 0.25
+"""Share of the unexplained part of the shapes that a change has to remove to be tried further."""
+
+LEAST = 0.02
+"""Decrease of 1 - MAC, mean over the modes, below which a change is not worth its name."""
+
+
+@dataclass(frozen=True)
+class WrongSensors:
+    """Changes of sensors that explain the measured shapes.
+
+    Attributes
+    ----------
+    changes : names of the sensors of each change: one is reversed, two are exchanged
+    sets : data sets in which they are; empty for all of them
+    mode : measured mode that gains most
+    before, after : MAC of this mode, with the model or with the other data sets
+    against : "model", or "sets" where the data sets contradict each other
+    other : sensors of which the opposite change does the same
+    """
+
+    changes: tuple[tuple[str, ...], ...]
+    sets: tuple[str, ...]
+    mode: int
+    before: float
+    after: float
+    against: str
+    other: tuple[str, ...] = ()
+
+
+def between_sets(comparison: Comparison, view: Measured) -> tuple[list[WrongSensors], Measured]:
+    """Return the changes in single data sets that others contradict, and the data without them."""
+    out: list[WrongSensors] = []
+    sets, count = comparison.data.sets, len(comparison.data.sets)
+    for _ in range(MOST if count > 1 else 0):
+        best: tuple[float, int, Change, Floats, Floats] | None = None
+        for k in range(count):
+            before = _with_others(view, view, k)
+            total = float(np.nansum(1 - before))
+            if np.isnan(before).all() or total < LEAST * np.isfinite(before).sum():
+                continue
+            for change in _changes_between(view, k):
+                after = _with_others(applied([change], view, [k]), view, k)
+                gain = total - float(np.nansum(1 - after))
+                if best is None or gain > best[0] * 1.0001:
+                    best = gain, k, change, before, after
+        if best is None or not _is_clear(best[3], best[4]):
+            break
+        gain, k, change, before, after = best
+        k = _culprit(comparison, view, k, change)
+        view = applied([change], view, [k])
+        out.append(wrong_sensors([change], comparison, before, after, (sets[k],), "sets"))
+    return _merged(out), view
+
+
+def _with_others(changed: Measured, view: Measured, k: int) -> Floats:
+    """Return the mean MAC of each mode of data set k with the other sets, (modes,)."""
+    total, pairs = np.zeros(view.psi.shape[1]), np.zeros(view.psi.shape[1])
+    for other in range(view.psi.shape[0]):
+        if other == k:
+            continue
+        common = changed.seen[k] & view.seen[other]
+        a, b = np.where(common, changed.psi[k], 0.0), np.where(common, view.psi[other], 0.0)
+        norm = (a**2).sum(axis=1) * (b**2).sum(axis=1)
+        usable = (common.sum(axis=1) > 2) & (norm > 0)
+        total += np.where(usable, (a * b).sum(axis=1) ** 2 / np.where(norm > 0, norm, 1.0), 0.0)
+        pairs += usable
+    return np.divide(total, pairs, out=np.full(total.shape, np.nan), where=pairs > 0)
+
+
+def _changes_between(view: Measured, k: int) -> list[Change]:
+    measured = np.flatnonzero(view.seen[k].any(axis=0)).tolist()
+    pairs = [(s, t) for i, s in enumerate(measured[:60]) for t in measured[i + 1 : 60]]
+    return [*(Change((s,)) for s in measured), *map(Change, pairs)]
+
+
+def _is_clear(before: Floats, after: Floats) -> bool:
+    """Return whether MAC values after a change are clearly above those before."""
+    missing, left = np.nansum(1 - before), np.nansum(1 - after)
+    count = int(np.isfinite(before).sum())
+    return bool(missing - left > max(LEAST * count, 0.6 * missing))
+
+
+def _culprit(comparison: Comparison, view: Measured, k: int, change: Change) -> int:
+    """Return the set in which a change is: of two sets that contradict each other, the model says.
+
+    Where there are three and more, the others agree on it.
+    """
+    if view.psi.shape[0] > 2:
+        return k
+    costs = []
+    for one in range(2):
+        changed = applied([change], view, [one])
+        mac = mac_values(changed.psi, changed.seen, comparison.phi)
+        cost = pair_costs(mac, view.log_frequency, comparison.log_frequency, 0.0)
+        costs.append(assigned(cost)[1])
+    return int(np.argmin(costs))
+
+
+def searched(comparison: Comparison, view: Measured, shift: float) -> list[Change]:
+    """Return the changes in all data sets that help, one after the other, by the nominal model.
+
+    ``shift`` is the logarithm of the factor by which all measured frequencies are too great.
+    """
+    phi, logs, of_model = comparison.phi, view.log_frequency, comparison.log_frequency
+    count = int(view.has_shape.sum())
+
+    def cost(mac: Floats) -> float:
+        return assigned(pair_costs(mac, logs, of_model, shift))[1]
+
+    mac = mac_values(view.psi, view.seen, phi)
+    changes: list[Change] = []
+    total, changed = cost(mac), view
+    for _ in range(MOST if count else 0):
+        index, _ = assigned(pair_costs(mac, logs, of_model, shift))
+        found = best_change(changed, phi, cost, suspects(changed, phi[:, index]))
+        if found is None or total - found[1] < max(LEAST * count, HELPS * total):
+            break
+        changes.append(found[0])
+        total, changed = found[1], applied(changes, view, range(view.psi.shape[0]))
+        mac = mac_values(changed.psi, changed.seen, phi)
+    return changes
+
+
+def wrong_sensors(
+    changes: Sequence[Change],
+    comparison: Comparison,
+    before: Floats,
+    after: Floats,
+    sets: tuple[str, ...],
+    against: str,
+) -> WrongSensors:
+    """Return the finding of changes with the MAC (modes,) ``before`` and ``after`` them."""
+    names = comparison.data.sensors
+    r = int(np.nanargmax(after - before))
+    other: tuple[str, ...] = ()
+    measured = np.flatnonzero(comparison.view.seen.any(axis=(0, 1))).tolist()
+    if len(changes) == 1 and changes[0].is_reversal and len(measured) == 2:
+        other = (names[next(s for s in measured if s != changes[0].sensors[0])],)
+    return WrongSensors(
+        tuple(tuple(names[s] for s in change.sensors) for change in changes),
+        sets,
+        comparison.data.modes[r],
+        float(before[r]),
+        float(after[r]),
+        against,
+        other,
+    )
+
+
+def _merged(found: Sequence[WrongSensors]) -> list[WrongSensors]:
+    """Return the findings with those of one data set joined."""
+    out: dict[tuple[str, ...], WrongSensors] = {}
+    for one in found:
+        known = out.get(one.sets)
+        if known is not None:
+            best = max(known, one, key=lambda each: each.after - each.before)
+            changes = (*known.changes, *one.changes)
+            one = WrongSensors(
+                changes, one.sets, best.mode, best.before, best.after, one.against, one.other
+            )
+        out[one.sets] = one
+    return list(out.values())

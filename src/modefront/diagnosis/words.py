@@ -1,0 +1,283 @@
+"""The findings of a diagnosis in words: what is found, with its numbers, and what to do."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from typing import Any
+
+import numpy as np
+
+from modefront.diagnosis.damping import DampingInPercent
+from modefront.diagnosis.diagnose import Finding
+from modefront.diagnosis.explain import WrongPlaces
+from modefront.diagnosis.groups import UnusedGroup
+from modefront.diagnosis.pairs import BeyondCandidates, DistantPair, OutsideModel, UnseenMode
+from modefront.diagnosis.places import DataDirection
+from modefront.diagnosis.sensors import WrongSensors
+from modefront.diagnosis.sets import SetFactor, SetFrequency, SetNumbers, SetShape
+from modefront.diagnosis.units import FrequencyFactor, OtherQuantity
+
+CAUSES: Mapping[str, tuple[str, str]] = {
+    "rad/s": (
+        "they look like rad/s, 2π times Hz",
+        "divide the column 'frequency' by 6.2832 (2π)",
+    ),
+    "model in rad/s": (
+        "the model looks as if its matrices gave Hz for rad/s, or the data are divided by 2π twice",
+        "see that eigenvalues of K and M are (rad/s)², and multiply the data by 6.2832 (2π) "
+        "where they are not in Hz",
+    ),
+    "rpm": ("they look like revolutions or cycles per minute", "divide 'frequency' by 60"),
+    "weight": (
+        "the model looks as if weight were given for mass, a factor of g = 9.81 on M",
+        "divide masses and densities by 9.81",
+    ),
+    "weight in stiffness": (
+        "the model looks as if stiffness were g = 9.81 times too great, or mass 9.81 too small",
+        "give forces in N and masses in kg, or another consistent set of units",
+    ),
+}
+"""What each cause of a factor looks like, and what to do."""
+
+UNITS: Mapping[int, str] = {
+    1: "masses in kg with stiffness in kN, or in t with N",
+    2: "E in MPa, or lengths in mm, where all else is in SI units",
+    3: "E in GPa where all else is in SI units",
+    4: "lengths in mm with thicknesses and sections in m, where all else is in SI units",
+    -1: "masses in t with stiffness in N, or in kg with kN",
+    -2: "lengths in m where all else is in N, mm and t, or E in Pa where it should be MPa",
+    -3: "E in Pa where it should be GPa",
+    -4: "densities in t/mm³ where all else is in SI units, or sections in mm with lengths in m",
+}
+"""Slips that make measured frequencies the power of the root of 1000 times the model's."""
+
+
+Mistake = Finding | UnusedGroup | DataDirection
+"""What is found by a comparison, or when a study is read."""
+
+
+def in_words(finding: Mistake) -> str:
+    """Return what is found and what to do, as one text."""
+    return "; ".join(_WORDS[type(finding)](finding))
+
+
+def _factor(found: FrequencyFactor) -> tuple[str, str]:
+    who = "the measured frequency is" if found.modes == 1 else "all measured frequencies are about"
+    spread = f" ({found.least:.3g} to {found.greatest:.3g})" if found.modes > 1 else ""
+    what = f"{who} {found.factor:.3g} times the model's{spread}"
+    if found.cause:
+        looks, remedy = CAUSES[found.cause]
+        return f"{what}: {looks}", remedy
+    if abs(np.log10(found.factor)) < 1:
+        times = found.factor**2
+        return (
+            f"{what}: stiffness over mass is off by {times:.3g}",
+            "check units, sections and masses, or the nominal values of the parameters",
+        )
+    return (
+        f"{what}, a factor of units, such as {UNITS[_nearest_slip(found.factor)]}",
+        "give lengths, forces and masses in consistent units: m, N, kg or mm, N, t",
+    )
+
+
+def _nearest_slip(factor: float) -> int:
+    """Return which slip a factor is nearest to: of 31.6, 1e3, 3.2e4 and 1e6, and their inverses."""
+    sizes = {1: 1.5, 2: 3.0, 3: 4.5, 4: 6.0}
+    size = abs(float(np.log10(factor)))
+    nearest = min(sizes, key=lambda k: abs(sizes[k] - size))
+    return nearest if factor > 1 else -nearest
+
+
+def _quantity(found: OtherQuantity) -> tuple[str, str]:
+    return (
+        f"the column 'frequency' looks like {found.quantity}: mode {found.mode} has "
+        f"{found.given:.4g}, which is {found.model:.4g} Hz",
+        "give frequencies in Hz",
+    )
+
+
+def _sensors(found: WrongSensors) -> tuple[str, str]:
+    deeds = [
+        f"reversing {change[0]}" if len(change) == 1 else f"exchanging {change[0]} and {change[1]}"
+        for change in found.changes
+    ]
+    if found.other:
+        deeds[0] += f" (or {', '.join(found.other)}: the data cannot tell)"
+    where = f"in set {' and '.join(found.sets)}" if found.sets else "in all data"
+    kind = "cross-MAC" if found.against == "sets" else "MAC"
+    what = (
+        f"{' and '.join(deeds)} {where} raises {kind} {found.mode} "
+        f"from {found.before:.2f} to {found.after:.2f}"
+    )
+    reversed_ = [change[0] for change in found.changes if len(change) == 1]
+    exchanged = [" and ".join(change) for change in found.changes if len(change) == 2]
+    remedies = []
+    if reversed_:
+        remedies.append(
+            f"check the direction of {', '.join(reversed_)}, and change the sign of "
+            f"{'its column' if len(reversed_) == 1 else 'their columns'}, or of the direction "
+            "in the model"
+        )
+    if exchanged:
+        remedies.append(
+            f"check the cables of {', '.join(exchanged)}, and exchange their columns or sensors"
+        )
+    return what, "; ".join(remedies)
+
+
+def _places(found: WrongPlaces) -> tuple[str, str]:
+    gain = f"raises MAC {found.mode} from {found.before:.2f} to {found.after:.2f}"
+    if found.counted:
+        return (
+            f"the sensors look as if {found.counted} were counted from 1: one less {gain}",
+            f"count {found.counted} from 0: subtract 1 from each in [model.sensors]",
+        )
+    names = enumerated(found.sensors)
+    many = len(found.sensors) > 1
+    return (
+        f"direction {found.given} of {names} does not match the data: {found.better} {gain}",
+        f"check along which axis {names} measure{'' if many else 's'}, and write direction = "
+        f'"{found.better}"' + (" in turn" if " and " in found.better else ""),
+    )
+
+
+def _set_factor(found: SetFactor) -> tuple[str, str]:
+    looks = {"rad/s": ": rad/s for Hz", "model in rad/s": ": Hz for rad/s"}.get(found.cause, "")
+    if found.cause == "rpm":
+        looks = ": per minute for Hz"
+    percent = 100 * (found.factor - 1)
+    size = f"{found.factor:.3g} times" if abs(percent) > 40 else f"{percent:+.1f} % off"
+    remedy = (
+        "give all data sets in Hz"
+        if abs(percent) > 40
+        else "the structure differed (mass, temperature, supports): update with one of the sets, "
+        "or say by frequency_std how far frequencies scatter"
+    )
+    return (f"all frequencies of set {found.set} are {size} those of {found.other}{looks}", remedy)
+
+
+def _set_frequency(found: SetFrequency) -> tuple[str, str]:
+    percent = 100 * (found.frequency / found.other_frequency - 1)
+    return (
+        f"sets {found.set} and {found.other} disagree in the frequency of mode {found.mode}: "
+        f"{found.frequency:.5g} and {found.other_frequency:.5g} Hz, {percent:+.1f} %, where "
+        f"{100 * found.scatter:.2g} % is their scatter",
+        "look at both again, or leave out the worse value",
+    )
+
+
+def _set_numbers(found: SetNumbers) -> tuple[str, str]:
+    own, others = enumerated([str(r) for r in found.modes]), enumerated([str(r) for r in found.of])
+    return (
+        f"modes {own} of set {found.set} are modes {others} of {found.other}, by frequencies and "
+        "shapes",
+        f"number the modes of set {found.set} like those of {found.other}",
+    )
+
+
+def _set_shape(found: SetShape) -> tuple[str, str]:
+    what = (
+        f"sets {found.set} and {found.other} disagree in the shape of mode {found.mode}: "
+        f"cross-MAC {found.mac:.2f}"
+    )
+    if found.resembles:
+        return (
+            f"{what}, but {found.other_mac:.2f} with mode {found.resembles} of {found.other}",
+            f"number the modes of set {found.set} like those of {found.other}",
+        )
+    return what, "look at both again, or leave out the worse shape"
+
+
+def _damping(found: DampingInPercent) -> tuple[str, str]:
+    return (
+        f"damping of {found.least:.3g} to {found.greatest:.3g} looks like percent",
+        "give the ratio to critical damping: divide the column 'damping' by 100",
+    )
+
+
+def _distant(found: DistantPair) -> tuple[str, str]:
+    resembling = "" if np.isnan(found.mac) else f" (MAC {found.mac:.2f})"
+    return (
+        f"measured mode {found.mode} at {found.frequency:.4g} Hz is paired with model mode "
+        f"{found.model_mode} at {found.model_frequency:.4g} Hz{resembling}",
+        f"set window = 1.5 in [pairing]; the nearest is model mode {found.nearest} at "
+        f"{found.nearest_frequency:.4g} Hz",
+    )
+
+
+def _outside(found: OutsideModel) -> tuple[str, str]:
+    which = (
+        f"its {found.modes} modes end"
+        if found.all_modes
+        else f"its {found.modes} lowest modes, which were looked at, end"
+    )
+    return (
+        f"measured mode {found.mode} at {found.frequency:.4g} Hz is outside what the model has: "
+        f"{which} at {found.highest:.4g} Hz",
+        "refine the model, or leave the mode out of all groups",
+    )
+
+
+def _beyond(found: BeyondCandidates) -> tuple[str, str]:
+    return (
+        f"measured mode {found.mode} resembles model mode {found.model_mode} at "
+        f"{found.model_frequency:.4g} Hz (MAC {found.mac:.2f}), which is not looked at; the best "
+        f"of those that are has MAC {found.best:.2f}",
+        f"set spare = {found.spare} in [pairing]",
+    )
+
+
+def _unseen(found: UnseenMode) -> tuple[str, str]:
+    return (
+        f"measured mode {found.mode} resembles no mode of the nominal model "
+        f"(best MAC {found.best:.2f})",
+        "check its shape and the places of the sensors, or leave it out of the groups",
+    )
+
+
+def _group(found: UnusedGroup) -> tuple[str, str]:
+    return (
+        f"mesh group '{found.name}' of {found.cells} {found.type} cells has no elements and holds "
+        "nothing",
+        f'give it a [[model.group]] name = "{found.name}", or leave it out of the mesh',
+    )
+
+
+def _data_direction(found: DataDirection) -> tuple[str, str]:
+    return (
+        f"sensor {found.sensor} is along {found.model} in the model, but takes {found.data} of the "
+        "data",
+        "write the same direction in [model.sensors] and [data.sensors]",
+    )
+
+
+def enumerated(names: Sequence[str], most: int = 6) -> str:
+    """Return names as a text, the first of many.
+
+    >>> enumerated(["a", "b", "c"], 2)
+    'a, b and 1 more'
+    """
+    shown = list(names[:most])
+    if len(names) > most:
+        return f"{', '.join(shown)} and {len(names) - most} more"
+    return " and ".join([*([", ".join(shown[:-1])] if shown[1:] else []), *shown[-1:]])
+
+
+_WORDS: Mapping[type, Callable[[Any], tuple[str, str]]] = {
+    BeyondCandidates: _beyond,
+    DampingInPercent: _damping,
+    DataDirection: _data_direction,
+    DistantPair: _distant,
+    FrequencyFactor: _factor,
+    OtherQuantity: _quantity,
+    OutsideModel: _outside,
+    SetFactor: _set_factor,
+    SetFrequency: _set_frequency,
+    SetNumbers: _set_numbers,
+    SetShape: _set_shape,
+    UnseenMode: _unseen,
+    UnusedGroup: _group,
+    WrongPlaces: _places,
+    WrongSensors: _sensors,
+}
+"""The words of each finding: what it is, and what to do."""

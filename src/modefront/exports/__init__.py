@@ -1,0 +1,1 @@
+"""Models of results as files of other programs."""

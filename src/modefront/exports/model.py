@@ -1,0 +1,98 @@
+"""A model of the results as files: parameters, matrices, mode shapes, lines of the deck."""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import scipy.io
+import scipy.sparse
+
+from modefront.exports.motion import node_motion
+from modefront.exports.uff import write_uff
+from modefront.exports.vtu import write_vtu
+from modefront.models.dofs import DofTable, write_dofs
+from modefront.programs.changes import Change
+from modefront.programs.mesh import ProgramMesh
+from modefront.results.results import ReportedModel
+
+
+@dataclass(frozen=True, eq=False)
+class Origin:
+    """What an imported study keeps of the program's model.
+
+    Attributes
+    ----------
+    dofs : nodes and directions; None for a model that was not imported
+    mesh : nodes and elements, where there was a deck
+    changes : lines of the deck that parameters multiply
+    """
+
+    dofs: DofTable | None
+    mesh: ProgramMesh | None
+    changes: Sequence[Change]
+
+
+def write_model(model: ReportedModel, origin: Origin, folder: Path, modes: int) -> list[str]:
+    """Write all files of a model into a folder that is there; return what could not be written.
+
+    Raises ModelError where the model has no matrices or no such modes.
+    """
+    _parameters(model, folder)
+    _matrices(model, folder)
+    missing = []
+    if origin.dofs is None:
+        missing.append("dofs.csv, modes.vtu and modes.uff: the study names no nodes (dofs)")
+    else:
+        write_dofs(folder / "dofs.csv", origin.dofs)
+        shapes = model.modes(modes)
+        motion = node_motion(origin.dofs, origin.mesh, shapes.shape)
+        write_uff(folder / "modes.uff", origin.mesh, motion, shapes.frequency)
+        if origin.mesh is None:
+            missing.append("modes.vtu: the study names no mesh")
+        else:
+            write_vtu(folder / "modes.vtu", origin.mesh, motion, shapes.frequency)
+    (folder / "deck.txt").write_text(_snippet(model, origin.changes), encoding="utf-8")
+    return missing
+
+
+def _parameters(model: ReportedModel, folder: Path) -> None:
+    values = {name: float(value) for name, value in model.theta.items()}
+    with (folder / "parameters.csv").open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(("parameter", "value"))
+        writer.writerows((name, repr(value)) for name, value in values.items())
+    content = {"label": model.label, "kind": model.kind, "parameters": values}
+    text = json.dumps(content, indent=2, ensure_ascii=False)
+    (folder / "parameters.json").write_text(text + "\n", encoding="utf-8")
+
+
+def _matrices(model: ReportedModel, folder: Path) -> None:
+    for name, A in (("K", model.stiffness), ("M", model.mass)):
+        matrix = scipy.sparse.coo_array(A)
+        matrix.eliminate_zeros()
+        scipy.sparse.save_npz(folder / f"{name}.npz", matrix.tocsr())
+        with (folder / f"{name}.mtx").open("wb") as stream:
+            scipy.io.mmwrite(stream, matrix, symmetry="symmetric", precision=17)
+
+
+def _snippet(model: ReportedModel, changes: Sequence[Change]) -> str:
+    """Return the updated values: lines of the deck where they are known, factors elsewhere."""
+    lines = [f"updated values, model '{model.label}'"]
+    for name, value in model.theta.items():
+        lines += ["", f"{name} = {value:.9g}"]
+        own = [change for change in changes if change.parameter == name]
+        for change in own:
+            lines += [f"  {change.file}, line {change.line}:", f"  {change.updated(value).strip()}"]
+        if not own:
+            lines.append("  a factor of what was changed for this parameter")
+    return "\n".join(lines) + "\n"
+
+
+def matrix_size(model: ReportedModel) -> int:
+    """Return the number of degrees of freedom that have mass, as many modes as there are."""
+    return int(np.count_nonzero(model.mass.diagonal()))

@@ -1,0 +1,70 @@
+"""Universal files: nodes (dataset 2411), elements (2412) and modes at all nodes (55).
+
+Written as text by the published description of the formats; no package is needed.
+
+Format: Structural Dynamics Research Laboratory, University of Cincinnati, *Universal File
+Formats*, datasets 55, 2411 and 2412.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from pathlib import Path
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.exports.motion import NodeMotion
+from modefront.programs.mesh import ProgramMesh
+
+ELEMENTS = {"line": 11, "triangle": 91, "quad": 94, "tetra": 111, "wedge": 112, "hexahedron": 115}
+"""Identifiers of dataset 2412: rod, thin shells, solids; others are left out."""
+
+
+def write_uff(
+    path: Path, mesh: ProgramMesh | None, motion: NodeMotion, frequencies: Floats
+) -> None:
+    """Write nodes, elements and real, mass-normalised modes in Hz."""
+    with path.open("w", encoding="ascii", newline="\n") as stream:
+        if mesh is not None:
+            stream.writelines(_dataset(2411, _nodes(mesh)))
+            stream.writelines(_dataset(2412, _elements(mesh)))
+        for k, frequency in enumerate(frequencies.tolist()):
+            stream.writelines(_dataset(55, _mode(motion, k, frequency)))
+
+
+def _dataset(number: int, lines: Iterable[str]) -> Iterator[str]:
+    yield f"    -1\n{number:6d}\n"
+    yield from lines
+    yield "    -1\n"
+
+
+def _nodes(mesh: ProgramMesh) -> Iterator[str]:
+    for number, point in zip(mesh.number.tolist(), mesh.coordinates, strict=True):
+        numbers = "".join(f"{x:25.16E}" for x in np.nan_to_num(point).tolist())
+        yield f"{number:10d}{1:10d}{1:10d}{11:10d}\n{numbers}\n"
+
+
+def _elements(mesh: ProgramMesh) -> Iterator[str]:
+    number = 0
+    for kind, table in mesh.cells.items():
+        if kind not in ELEMENTS:
+            continue
+        for nodes in table.tolist():
+            number += 1
+            yield "".join(f"{x:10d}" for x in (number, ELEMENTS[kind], 1, 1, 7, len(nodes))) + "\n"
+            if kind == "line":
+                yield "".join(f"{x:10d}" for x in (0, 0, 0)) + "\n"
+            yield "".join(f"{x:10d}" for x in nodes) + "\n"
+
+
+def _mode(motion: NodeMotion, k: int, frequency: float) -> Iterator[str]:
+    """Yield dataset 55: structural, normal mode, 3 or 6 components, displacement, real."""
+    components = 6 if motion.turns else 3
+    kind = 3 if motion.turns else 2
+    yield f"mode {k + 1}\n{frequency:.9g} Hz\nNONE\nNONE\nNONE\n"
+    yield "".join(f"{x:10d}" for x in (1, 2, kind, 8, 2, components)) + "\n"
+    yield "".join(f"{x:10d}" for x in (2, 4, 1, k + 1)) + "\n"
+    yield "".join(f"{x:13.5E}" for x in (frequency, 1.0, 0.0, 0.0)) + "\n"
+    for number, values in zip(motion.number.tolist(), motion.values[k].tolist(), strict=True):
+        yield f"{number:10d}\n" + "".join(f"{x:13.5E}" for x in values[:components]) + "\n"

@@ -1,0 +1,64 @@
+"""HDF5 files that hold what they show: no links to other files, no data kept elsewhere.
+
+External links, external storage and virtual datasets make the library open files that are named in
+the file that is read. Links are looked at before they are followed, and how data is kept before any
+of it is read.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import h5py
+
+LARGE = 64 * 10**6
+"""Bytes of a dataset from which on it is compared with what is stored of it."""
+
+RATIO = 1000
+"""Bytes of a dataset over those stored beyond which it is taken for a bomb."""
+
+
+class ForeignError(ValueError):
+    """A file refers to others, or announces more than it holds."""
+
+
+def inner(group: h5py.Group, name: str) -> Any:
+    """Return a group or dataset of a group that the file itself holds.
+
+    Raises ForeignError for links to other files, soft links, and data that is kept elsewhere.
+    """
+    link = group.get(name, getlink=True)
+    if isinstance(link, h5py.ExternalLink):
+        raise ForeignError(f"'{name}' is a link to another file, '{link.filename}'")
+    if not isinstance(link, h5py.HardLink):
+        raise ForeignError(f"'{name}' is a link to another place")
+    item = group[name]
+    if isinstance(item, h5py.Dataset):
+        check_dataset(name, item)
+    return item
+
+
+def check_dataset(name: str, item: h5py.Dataset) -> None:
+    """Raise ForeignError where a dataset is kept elsewhere, or holds less than it announces."""
+    if item.is_virtual:
+        raise ForeignError(f"'{name}' is a virtual dataset, made of other files")
+    if item.id.get_create_plist().get_external_count():
+        raise ForeignError(f"the data of '{name}' is kept in another file")
+    size, stored = item.size * item.dtype.itemsize, item.id.get_storage_size()
+    if size > LARGE and size > RATIO * stored:
+        raise ForeignError(f"'{name}' announces {size / 1e6:.6g} MB and holds {stored / 1e6:.3g}")
+
+
+def check_file(file: h5py.File) -> None:
+    """Raise ForeignError where any part of a file that holds no groups is kept elsewhere."""
+    for name in file:
+        if isinstance(inner(file, name), h5py.Group):
+            raise ForeignError(f"'{name}' is a group")
+
+
+def check_tree(group: h5py.Group) -> None:
+    """Raise ForeignError where any part of a group, at any depth, is kept elsewhere."""
+    waiting = [group]
+    while waiting:
+        here = waiting.pop()
+        waiting += [item for name in here if isinstance(item := inner(here, name), h5py.Group)]

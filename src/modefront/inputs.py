@@ -1,0 +1,108 @@
+"""Files that are read: regular ones, of a size that their kind can have, and without holes.
+
+A pipe or a device in place of a file would be waited for, or be read without an end; a file with
+holes (sparse, or left by a broken transfer) announces more than there is.
+"""
+
+from __future__ import annotations
+
+import os
+import stat
+from pathlib import Path
+
+from modefront.errors import Fault, InputError, reason
+
+MEGABYTE = 10**6
+
+KINDS = (
+    (stat.S_ISDIR, "a folder"),
+    (stat.S_ISFIFO, "a pipe"),
+    (stat.S_ISSOCK, "a socket"),
+    (stat.S_ISCHR, "a device"),
+    (stat.S_ISBLK, "a device"),
+)
+"""What is no regular file, in words."""
+
+SAMPLES, SAMPLE = 32, 4096
+"""How many parts of a file are looked at for holes, and how long these are."""
+
+
+def file_size(path: Path, expected: str, most: int | None = None) -> int:
+    """Return the size of a regular file in bytes.
+
+    Parameters
+    ----------
+    path
+        The file; links are followed.
+    expected
+        What the file should be, for messages.
+    most
+        Size in bytes above which the file is refused.
+
+    Raises
+    ------
+    InputError
+        Where there is no such file, where it is a folder, a pipe or a device, and where it is too
+        large.
+    """
+    try:
+        found = path.stat()
+    except (FileNotFoundError, NotADirectoryError):
+        raise _wrong(path, expected, "no such file") from None
+    except (OSError, ValueError) as error:  # ValueError where the name holds a null
+        raise _wrong(path, expected, reason(error)) from None
+    for is_kind, words in KINDS:
+        if is_kind(found.st_mode):
+            raise _wrong(path, expected, words)
+    if most is not None and found.st_size > most:
+        limit = f"{expected} of up to {most / MEGABYTE:g} MB"
+        raise _wrong(path, limit, f"{found.st_size / MEGABYTE:.6g} MB")
+    return found.st_size
+
+
+def read_text_bytes(path: Path, expected: str, most: int) -> bytes:
+    """Return the content of a regular file in which there are no holes.
+
+    Raises InputError as `file_size` does, and where the file cannot be read.
+    """
+    size = file_size(path, expected, most)
+    try:
+        refuse_holes(path, expected, size)
+        return path.read_bytes()
+    except (OSError, MemoryError) as error:
+        raise _wrong(path, expected, reason(error)) from None
+
+
+def refuse_holes(path: Path, expected: str, size: int) -> None:
+    """Raise InputError where half of a file, as far as is looked, is zeros."""
+    if size < SAMPLES * SAMPLE:
+        return
+    with path.open("rb") as stream:
+        empty = 0
+        for k in range(SAMPLES):
+            stream.seek(k * (size - SAMPLE) // (SAMPLES - 1))
+            empty += not stream.read(SAMPLE).strip(b"\0")
+    if empty > SAMPLES // 2:
+        raise _wrong(path, expected, "zeros in most places: a file with holes, or torn")
+
+
+def available_memory() -> int:
+    """Return the memory in bytes that may be taken, 8 GB where the system does not say."""
+    found = 8 * 10**9
+    try:
+        with Path("/proc/meminfo").open(encoding="ascii") as stream:
+            for line in stream:
+                if line.startswith("MemAvailable:"):
+                    found = int(line.split()[1]) * 1024
+        limit = Path("/sys/fs/cgroup/memory.max")
+        if limit.is_file() and (text := limit.read_text(encoding="ascii").strip()).isdigit():
+            used = int(Path("/sys/fs/cgroup/memory.current").read_text(encoding="ascii"))
+            found = min(found, max(int(text) - used, 0))
+    except (OSError, ValueError):
+        if hasattr(os, "sysconf") and "SC_PHYS_PAGES" in os.sysconf_names:
+            found = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2
+    return found
+
+
+def _wrong(path: Path, expected: str, found: str) -> InputError:
+    return InputError(Fault(str(path), "file", expected, found))

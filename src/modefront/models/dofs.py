@@ -1,0 +1,206 @@
+"""Degrees of freedom by node and direction, as a finite-element program numbers them."""
+
+from __future__ import annotations
+
+import csv
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse
+
+from modefront._typing import Floats, Ints
+from modefront.errors import Fault, InputError
+from modefront.fem.dofs import DIRECTIONS
+
+COLUMNS = ("node", "direction", "weight")
+"""Header of a file of degrees of freedom."""
+
+FEW = 6
+"""Nodes and directions that a message names."""
+
+
+@dataclass(frozen=True, eq=False)
+class DofTable:
+    """Node and direction of every degree of freedom of a model.
+
+    Several degrees of freedom may have the same node and direction, as those that a program makes
+    through the thickness of a shell: the motion of the node is their weighted sum.
+
+    Attributes
+    ----------
+    node : (N,) number of the node; 0 or less where a degree of freedom belongs to none
+    direction : (N,) 1 to 6 for x, y, z, rx, ry, rz; other numbers for other quantities
+    weight : (N,) share in the motion of the node; 0 for what is no part of it
+    """
+
+    node: Ints
+    direction: Ints
+    weight: Floats
+
+    @property
+    def size(self) -> int:
+        """Number of degrees of freedom N."""
+        return self.node.size
+
+    @cached_property
+    def _order(self) -> Ints:
+        return np.argsort(self.node, kind="stable")
+
+    def of_node(self, node: int) -> Ints:
+        """Return the degrees of freedom of a node, ascending."""
+        ordered = self.node[self._order]
+        first, last = np.searchsorted(ordered, [node, node + 1])
+        return self._order[first:last]
+
+    def of_direction(self, direction: str) -> list[tuple[int, float]]:
+        """Return all degrees of freedom of nodes in a direction, each with the weight 1."""
+        number = number_of(direction)
+        chosen = np.flatnonzero((self.direction == number) & (self.node > 0))
+        return [(dof, 1.0) for dof in chosen.tolist()]
+
+    def sensor(self, node: int, direction: str | Sequence[float]) -> list[tuple[int, float]]:
+        """Return the weighted degrees of freedom that are the motion of a node in a direction.
+
+        Parameters
+        ----------
+        node
+            Number of the node in the program.
+        direction
+            ``x``, ``y``, ``z``, ``rx``, ``ry`` or ``rz``, with a minus sign for the opposite, or a
+            vector of three numbers, which is scaled to the length 1.
+
+        Raises
+        ------
+        LookupError
+            With what was expected and what was found, where the node does not move so.
+        """
+        dofs = self.of_node(node) if node > 0 else np.zeros(0, np.intp)
+        if dofs.size == 0:
+            raise LookupError(f"a node with degrees of freedom, {self._near(node)}", str(node))
+        out: dict[int, float] = {}
+        for number, factor in _components(direction):
+            chosen = dofs[(self.direction[dofs] == number) & (self.weight[dofs] != 0)]
+            if chosen.size == 0:
+                there = {
+                    n for n, w in zip(self.direction[dofs], self.weight[dofs], strict=True) if w
+                }
+                names = ", ".join(name_of(n) for n in sorted(there)) or "none, all are held"
+                expected = f"a direction in which node {node} can move ({names})"
+                raise LookupError(expected, f"{name_of(number)}, which is held or not in the model")
+            for dof in chosen.tolist():
+                out[dof] = out.get(dof, 0.0) + factor * float(self.weight[dof])
+        return list(out.items())
+
+    def label(self, dof: int) -> str:
+        """Return a degree of freedom as a message names it."""
+        if self.node[dof] <= 0:
+            return f"degree of freedom {dof} (from 0), which has no node"
+        return f"node {self.node[dof]} {name_of(int(self.direction[dof]))}"
+
+    def _near(self, node: int) -> str:
+        """Return the nodes that there are, those next to ``node`` first, for a message."""
+        nodes = np.unique(self.node[self.node > 0])
+        near = nodes[np.argsort(np.abs(nodes - node), kind="stable")[:FEW]]
+        more = ", …" if nodes.size > FEW else ""
+        return ", ".join(map(str, np.sort(near).tolist())) + more
+
+
+def motion_of_nodes(dofs: DofTable, nodes: Ints) -> scipy.sparse.csr_array:
+    """Return the weights of the degrees of freedom in the motion of nodes, (6 nodes, N).
+
+    ``nodes`` are ascending numbers; rows are x, y, z, rx, ry, rz of one after the other.
+    """
+    part = (dofs.direction >= 1) & (dofs.direction <= 6) & np.isin(dofs.node, nodes)
+    chosen = np.flatnonzero(part)
+    row = 6 * np.searchsorted(nodes, dofs.node[chosen]) + dofs.direction[chosen] - 1
+    entries = (dofs.weight[chosen], (row, chosen))
+    return scipy.sparse.csr_array(entries, shape=(6 * nodes.size, dofs.size))
+
+
+def number_of(direction: str) -> int:
+    """Return the number of a named direction, from 1."""
+    return DIRECTIONS.index(direction) + 1
+
+
+def name_of(direction: int) -> str:
+    """Return the name of a direction; its number where it has none."""
+    return DIRECTIONS[direction - 1] if 0 < direction <= len(DIRECTIONS) else str(direction)
+
+
+def _components(direction: str | Sequence[float]) -> list[tuple[int, float]]:
+    if isinstance(direction, str):
+        name = direction.removeprefix("-")
+        return [(number_of(name), -1.0 if name != direction else 1.0)]
+    vector = np.asarray(direction, dtype=float)
+    unit = vector / np.linalg.norm(vector)
+    return [(i + 1, float(x)) for i, x in enumerate(unit) if x]
+
+
+def is_direction(value: object) -> bool:
+    """Return whether a value of a study file is a direction."""
+    if isinstance(value, str):
+        return value.removeprefix("-") in DIRECTIONS
+    return (
+        isinstance(value, list)
+        and len(value) == 3
+        and all(isinstance(x, int | float) and not isinstance(x, bool) for x in value)
+        and 0 < float(np.linalg.norm(value)) < np.inf
+    )
+
+
+def write_dofs(path: Path, dofs: DofTable) -> None:
+    """Write a table of degrees of freedom as CSV: one row a degree of freedom, in their order."""
+    directions = [name_of(n) for n in dofs.direction.tolist()]
+    rows = zip(dofs.node.tolist(), directions, dofs.weight.tolist(), strict=True)
+    with path.open("w", encoding="utf-8", newline="") as stream:
+        writer = csv.writer(stream, lineterminator="\n")
+        writer.writerow(COLUMNS)
+        writer.writerows((node, name, f"{weight:.17g}") for node, name, weight in rows)
+
+
+def read_dofs(path: Path) -> DofTable:
+    """Return a table of degrees of freedom; without a column ``weight``, equal labels share 1.
+
+    Raises InputError for a file that is not such a table.
+    """
+    try:
+        with path.open(encoding="utf-8-sig", newline="") as stream:
+            header, *rows = list(csv.reader(stream))
+    except FileNotFoundError:
+        raise _wrong(path, "file", "a table of degrees of freedom", "no such file") from None
+    except (OSError, ValueError, csv.Error) as error:
+        raise _wrong(path, "file", "CSV in UTF-8", str(error)) from None
+    names = tuple(name.strip() for name in header)
+    if names not in (COLUMNS, COLUMNS[:2]):
+        raise _wrong(path, "header", "node,direction or node,direction,weight", ",".join(names))
+    node, direction = np.zeros(len(rows), np.intp), np.zeros(len(rows), np.intp)
+    weight = np.ones(len(rows))
+    numbers = {name: number_of(name) for name in DIRECTIONS} | {str(k): k for k in range(-1, 1000)}
+    for k, row in enumerate(rows):
+        try:
+            if len(row) != len(names):
+                raise ValueError
+            node[k], direction[k] = int(row[0]), numbers[row[1].strip()]
+            weight[k] = float(row[2]) if len(row) > 2 else 1.0
+            if not np.isfinite(weight[k]):
+                raise ValueError
+        except (ValueError, KeyError, OverflowError):
+            expected = f"a node, a direction ({', '.join(DIRECTIONS)})"
+            expected += " and a weight" if len(names) > 2 else ""
+            raise _wrong(path, f"line {k + 2}", expected, ",".join(row)) from None
+    table = DofTable(node, direction, weight)
+    return table if len(names) > 2 else shared(table)
+
+
+def shared(dofs: DofTable) -> DofTable:
+    """Return the table in which degrees of freedom of the same label have equal shares of 1."""
+    labels = np.column_stack([dofs.node, dofs.direction])
+    _, inverse, counts = np.unique(labels, axis=0, return_inverse=True, return_counts=True)
+    return DofTable(dofs.node, dofs.direction, 1.0 / counts[inverse.ravel()])
+
+
+def _wrong(path: Path, place: str, expected: str, found: str) -> InputError:
+    return InputError(Fault(str(path), place, expected, found))

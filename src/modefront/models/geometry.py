@@ -1,0 +1,90 @@
+"""Where a model's degrees of freedom are in space: nodes, cells between them, sensors.
+
+Geometry is for pictures and for other programs; no result depends on it.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.sparse
+
+from modefront._typing import Floats, Ints
+
+
+@dataclass(frozen=True, eq=False)
+class Cells:
+    """Cells of one type in one group.
+
+    Attributes
+    ----------
+    group : name
+    type : as meshio and VTK say: vertex, line, triangle, quad, hexahedron, tetra10
+    nodes : (cells, k) nodes, counted from 0
+    """
+
+    group: str
+    type: str
+    nodes: Ints
+
+
+@dataclass(frozen=True, eq=False)
+class Geometry:
+    """Nodes, cells and sensors of a model, and how its degrees of freedom move the nodes.
+
+    Attributes
+    ----------
+    nodes : (nodes, 3) coordinates
+    cells : what is between the nodes
+    motion : (3 nodes, N) displacement x, y, z of node after node from the degrees of freedom
+    sensor_nodes : (sensors,) node of each sensor
+    sensor_directions : (sensors, 3) unit vector that each sensor measures; zero for a rotation
+    """
+
+    nodes: Floats
+    cells: tuple[Cells, ...]
+    motion: scipy.sparse.csr_array
+    sensor_nodes: Ints
+    sensor_directions: Floats
+
+    def weights(self, nodes: Ints, directions: Floats) -> scipy.sparse.csr_array:
+        """Return weights (sensors, N) of sensors at nodes along ``directions`` (sensors, 3)."""
+        count, columns = len(nodes), 3 * nodes[:, None] + np.arange(3)
+        rows = np.repeat(np.arange(count), 3)
+        picked = scipy.sparse.csr_array(
+            (directions.ravel(), (rows, columns.ravel())), shape=(count, self.motion.shape[0])
+        )
+        return (picked @ self.motion).tocsr()
+
+    @property
+    def axes(self) -> tuple[int, ...]:
+        """The axes, 0 to 2, along which nodes can move."""
+        moved = np.diff(self.motion.indptr).reshape(-1, 3).any(axis=0)
+        return tuple(np.flatnonzero(moved).tolist())
+
+    def displacement(self, shapes: Floats) -> Floats:
+        """Return the displacement of all nodes, (modes, nodes, 3), in mode shapes (N, modes)."""
+        moved = self.motion @ shapes
+        out: Floats = np.asarray(moved).T.reshape(-1, len(self.nodes), 3)
+        return out
+
+
+def chain_geometry(masses: int, sensors: scipy.sparse.csr_array) -> Geometry:
+    """Return the geometry of a chain: masses above each other, which move along x.
+
+    The ground is the node at height 0, mass i is at height i. A sensor of several masses is drawn
+    at the one with the greatest weight; ``sensors`` are weights (sensors, masses).
+    """
+    heights = np.arange(masses + 1.0)
+    nodes = np.column_stack([0 * heights, 0 * heights, heights])
+    lines = np.column_stack([np.arange(masses), np.arange(1, masses + 1)])
+    rows = 3 * np.arange(1, masses + 1)
+    motion = scipy.sparse.csr_array(
+        (np.ones(masses), (rows, np.arange(masses))), shape=(3 * (masses + 1), masses)
+    )
+    weights = sensors.toarray()
+    greatest = np.abs(weights).argmax(axis=1)
+    directions = np.zeros((len(weights), 3))
+    directions[:, 0] = np.sign(weights[np.arange(len(weights)), greatest])
+    return Geometry(nodes, (Cells("chain", "line", lines),), motion, greatest + 1, directions)

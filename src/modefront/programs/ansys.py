@@ -1,0 +1,226 @@
+r"""Ansys: the assembled matrices of a ``.full`` file, or Matrix Market files of ``*EXPORT``.
+
+A ``.full`` file is a sequence of records: length in words of 4 bytes, a word of flags, the words,
+and the length again. The second record is a header whose pointers count words: where degrees of
+freedom, stiffness and mass begin. Of the degrees of freedom, one record has their number for each
+node, one their identifiers, negative where they are held; the order of nodes is that of an earlier
+record. A matrix has two records for each row, columns and values, of which the last is that of the
+diagonal; held rows are listed too and left out here.
+
+========  ===========================================================
+item      meaning (words of the header, counted from 1)
+========  ===========================================================
+1         -4 for an assembled matrix
+2         number of rows
+9, 10     terms of the stiffness (low and high word); 34, 22 mass
+11, 14    lumped mass; unsymmetric
+19, 20    stiffness; 27, 28 mass; 36, 37 degrees of freedom
+21        constraint equations, which are kept apart
+========  ===========================================================
+"""
+
+from __future__ import annotations
+
+import csv
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse
+
+from modefront._typing import Floats, Ints
+from modefront.models.dofs import DofTable, read_dofs
+from modefront.programs.base import (
+    DOUBLE,
+    Entries,
+    Job,
+    JobOptions,
+    Program,
+    existing,
+    kept,
+    upper,
+    wrong,
+)
+from modefront.programs.text import matrix_market
+
+INTEGERS = 0x80
+"""Bit of the flags (their highest byte) for integers."""
+
+PLAIN = (INTEGERS, 0)
+"""Flags of integers and of doubles that are not compressed."""
+
+HEADER = 103
+"""Word at which the header begins."""
+
+SUFFIXES = (".mmf", ".mtx", ".mmx", ".txt")
+MATRICES = {"stiffness": ("_K", "K", "_stiff", "_STIFF"), "mass": ("_M", "M", "_mass", "_MASS")}
+
+IDENTIFIERS = {name: k for k, name in enumerate(("UX", "UY", "UZ", "ROTX", "ROTY", "ROTZ"), 1)}
+"""Names of degrees of freedom in a mapping file."""
+
+ADVICE = "a modal analysis writes file.full (WRFULL,1 stops there), *EXPORT,…,MMF job_K.mmf"
+
+
+def read(path: Path, options: JobOptions) -> Job:
+    """Return the matrices of a job: a .full file, or the beginning of the names of two others."""
+    full = path if path.suffix.lower() == ".full" else path.with_name(path.name + ".full")
+    if full is path or full.is_file():
+        return _from_full(existing(full, "a file of Ansys", ADVICE))
+    return _from_market(path, options)
+
+
+# .full
+
+
+@dataclass(frozen=True, eq=False)
+class _Words:
+    """A file as words of 4 bytes."""
+
+    path: Path
+    words: np.ndarray
+
+    def record(self, at: int) -> tuple[np.ndarray, int]:
+        """Return the words of the record at a position, and the position of the next."""
+        count = int(self.words[at]) if 0 <= at < self.words.size - 2 else -1
+        if count < 0 or at + count + 3 > self.words.size or self.words[at + count + 2] != count:
+            raise wrong(self.path, "whole records of Ansys", "a file that is cut off, or another")
+        flags = (int(self.words[at + 1]) >> 24) & 0xFF
+        if flags not in PLAIN:
+            raise wrong(self.path, "records that are not compressed (/FCOMP,FULL,0)", "others")
+        return self.words[at + 2 : at + 2 + count], at + count + 3
+
+    def long(self, header: np.ndarray, low: int, high: int) -> int:
+        """Return a number of two words of the header, counted from 1."""
+        return (int(header[low - 1]) & 0xFFFFFFFF) + (int(header[high - 1]) << 32)
+
+
+def _from_full(path: Path) -> Job:
+    data = np.fromfile(path, dtype=np.uint8)
+    words = _Words(path, data[: data.size // 4 * 4].view("<i4"))
+    header, at = words.record(HEADER)
+    if words.words[0] != 100 or header.size < 64 or header[0] >= 0:
+        raise wrong(path, "an assembled matrix of Ansys (.full)", "another file")
+    if header[13]:
+        expected = "symmetric matrices"
+        raise wrong(path, expected, "unsymmetric ones (NROPT, contact, rotors, fluids)")
+    if header[20]:
+        expected = "matrices without constraint equations (CE, RBE3, rigid contact), which are "
+        expected += "kept apart: *EXPORT, which applies them"
+        raise wrong(path, expected, f"{header[20]} constraint equations")
+    size = int(header[1])
+    _, at = words.record(at)
+    nodes, _ = words.record(at)
+    counts, at = words.record(words.long(header, 36, 37))
+    identifiers, _ = words.record(at)
+    if identifiers.size != size or counts.sum() != size or counts.size != nodes.size:
+        raise wrong(path, f"{size} degrees of freedom", f"{identifiers.size} of {counts.sum()}")
+    node = np.repeat(nodes, counts).astype(np.intp)
+    dofs = DofTable(node, np.abs(identifiers).astype(np.intp), np.ones(size))
+    free = np.flatnonzero(identifiers > 0)
+    terms = words.long(header, 34, 22)
+    stiffness = _rows(words, words.long(header, 19, 20), words.long(header, 9, 10))
+    if terms == 0:
+        raise wrong(path, "a mass matrix (ANTYPE,MODAL)", "none")
+    at = words.long(header, 27, 28)
+    mass = _diagonal(words, at, size) if header[10] else _rows(words, at, terms)
+    K, M = (kept(upper(path, size, each, dofs), free) for each in (stiffness, mass))
+    dofs = DofTable(dofs.node[free], dofs.direction[free], dofs.weight[free])
+    notes = [f"{size - free.size} degrees of freedom that are held are left out"]
+    if int(header[34]):
+        notes.append("there is a damping matrix, which is left out")
+    return Job(str(path), K, M, dofs, DOUBLE, notes=tuple(notes[size == free.size :]))
+
+
+def _rows(words: _Words, at: int, terms: int) -> Entries:
+    """Return the entries of a matrix, ``terms`` in all, from its records of rows."""
+    columns: list[np.ndarray] = []
+    values: list[np.ndarray] = []
+    found = 0
+    while found < terms:
+        index, at = words.record(at)
+        value, at = words.record(at)
+        if index.size == 0 or value.size != 2 * index.size:
+            raise wrong(words.path, "columns and values of a row", "others")
+        columns.append(index)
+        values.append(value)
+        found += index.size
+    length = np.array([index.size for index in columns])
+    column = np.concatenate(columns) - 1
+    row = np.repeat(column[np.cumsum(length) - 1], length)
+    return Entries(row, column, np.concatenate(values).view("<f8"))
+
+
+def _diagonal(words: _Words, at: int, size: int) -> Entries:
+    value, _ = words.record(at)
+    if value.size != 2 * size:
+        raise wrong(words.path, f"{size} lumped masses", f"{value.size // 2}")
+    place = np.arange(size)
+    return Entries(place, place, np.ascontiguousarray(value).view("<f8"))
+
+
+# *EXPORT, MMF
+
+
+def _from_market(path: Path, options: JobOptions) -> Job:
+    matrices: dict[str, scipy.sparse.coo_array] = {}
+    for what, endings in MATRICES.items():
+        names = [path.with_name(path.name + end + suffix) for end in endings for suffix in SUFFIXES]
+        file = next((name for name in names if name.is_file()), names[0])
+        matrices[what] = matrix_market(existing(file, f"the {what} of Ansys", ADVICE))
+    size = matrices["stiffness"].shape[0]
+    if matrices["mass"].shape[0] != size:
+        raise wrong(path, f"a mass matrix of {size} rows", str(matrices["mass"].shape[0]))
+    dofs, labelled = _labels(path, size, options)
+    K, M = (
+        upper(path, size, Entries(matrix.row, matrix.col, matrix.data), dofs)
+        for matrix in (matrices["stiffness"], matrices["mass"])
+    )
+    notes = () if labelled else ("sensors can be given by degrees of freedom only, unless --dofs",)
+    return Job(str(path), K, M, dofs, DOUBLE, labelled=labelled, notes=notes)
+
+
+def _labels(path: Path, size: int, options: JobOptions) -> tuple[DofTable, bool]:
+    """Return nodes and directions from --dofs, a mapping of HBMAT, or the vectors of the file."""
+    mapping = path.with_name(path.name + ".mapping")
+    maps = [path.with_name(f"{path.name}_{name}.mmf") for name in ("nod2bcs", "back")]
+    if options.dofs is not None:
+        table = read_dofs(options.dofs)
+    elif mapping.is_file():
+        table = _mapping(mapping)
+    elif all(file.is_file() for file in maps):
+        table = _maps(maps[0], maps[1])
+    else:
+        return DofTable(np.zeros(size, np.intp), np.zeros(size, np.intp), np.ones(size)), False
+    if table.size != size:
+        raise wrong(path, f"{size} degrees of freedom in the table of nodes", str(table.size))
+    return table, True
+
+
+def _mapping(path: Path) -> DofTable:
+    """Return the table of a mapping file: lines of equation, node, name of the direction."""
+    rows: list[tuple[int, int, int]] = []
+    with path.open(encoding="utf-8", errors="replace", newline="") as stream:
+        for row in csv.reader(stream, delimiter=" ", skipinitialspace=True):
+            items = [item for item in row if item]
+            if len(items) >= 3 and items[0].isdigit() and items[1].isdigit():
+                rows.append((int(items[0]), int(items[1]), IDENTIFIERS.get(items[2].upper(), 0)))
+    table = np.array(sorted(rows), dtype=np.intp).reshape(-1, 3)
+    if not np.array_equal(table[:, 0], np.arange(1, len(table) + 1)):
+        raise wrong(path, "one line for each equation: equation, node, direction", "others")
+    return DofTable(table[:, 1], table[:, 2], np.ones(len(table)))
+
+
+def _maps(nod2bcs: Path, back: Path) -> DofTable:
+    """Return the table of the maps NOD2BCS (equations, nodal values) and BACK (nodes)."""
+    nodes: Ints = matrix_market(back, square=False).toarray().ravel().astype(np.intp)
+    picked = matrix_market(nod2bcs, square=False)
+    per_node = picked.shape[1] // max(nodes.size, 1)
+    if picked.shape[1] != per_node * nodes.size or picked.nnz < picked.shape[0]:
+        raise wrong(nod2bcs, f"a whole number of columns for {nodes.size} nodes", str(picked.shape))
+    column = np.zeros(picked.shape[0], np.intp)
+    ones: Floats = picked.data
+    column[picked.row[ones != 0]] = picked.col[ones != 0]
+    return DofTable(nodes[column // per_node], column % per_node + 1, np.ones(column.size))
+
+
+ANSYS = Program("ansys", read)

@@ -1,0 +1,170 @@
+r"""CalculiX: ``*FREQUENCY, SOLVER=MATRIXSTORAGE`` writes ``.sti``, ``.mas`` and ``.dof``.
+
+The matrices are upper triangles as text, with the same pattern; ``.dof`` names node and direction
+of each row. CalculiX makes solids of shells, beams, membranes and trusses: their nodes become two
+or more through the thickness, which all keep the number of the node. So a label stands for several
+degrees of freedom,
+
+.. math:: u_\text{node} = \tfrac1n \sum_k u_k,
+
+unless the node itself is there too, as where a mass, a spring or a solid is attached: it is the
+mean already. What the program writes for nodes that are not in the deck (knots, incompatible
+modes) moves with the model, and belongs to no node.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+from pathlib import Path
+
+import numpy as np
+
+from modefront.models.dofs import DofTable
+from modefront.programs.base import Entries, Job, JobOptions, Program, existing, upper, wrong
+from modefront.programs.inp import Deck, read_deck
+from modefront.programs.text import columns, coordinates
+
+SUFFIXES = (".inp", ".sti", ".mas", ".dof", ".dat", ".frd")
+
+PRECISION = 1e-13
+"""Relative error of numbers with 14 digits."""
+
+ADVICE = (
+    "the deck needs *FREQUENCY, SOLVER=MATRIXSTORAGE; look for *ERROR in what ccx prints, as it "
+    "may leave with status 0 nevertheless"
+)
+
+
+def read(path: Path, options: JobOptions) -> Job:
+    """Return the matrices of a job, given with or without a suffix; see `Program`."""
+    job = path.with_suffix("") if path.suffix in SUFFIXES else path
+    files = {suffix: job.with_name(job.name + suffix) for suffix in (".dof", ".sti", ".mas")}
+    for file in files.values():
+        existing(file, "a matrix or table of CalculiX", ADVICE)
+    labels = columns(files[".dof"], ".", "ii", comment="#")
+    node, direction = (column.astype(np.intp) for column in labels)
+    plain = DofTable(node, direction, np.ones(node.size))
+    entries = {suffix: coordinates(files[suffix], node.size) for suffix in (".sti", ".mas")}
+    _refuse_cut_off(files, entries, node.size)
+    notes: list[str] = []
+    deck = _deck(options.deck or job.with_name(job.name + ".inp"), notes)
+    if deck is not None and _is_newer(job, files[".sti"]):
+        notes.append(f"{job.name}.inp is newer than {job.name}.sti: was it run since?")
+    dofs = _table(plain, deck)
+    _describe(dofs, notes)
+    return Job(
+        str(files[".sti"]),
+        upper(files[".sti"], node.size, entries.pop(".sti"), plain),
+        upper(files[".mas"], node.size, entries.pop(".mas"), plain),
+        dofs,
+        PRECISION,
+        mesh=deck.mesh if deck else None,
+        notes=tuple(notes),
+    )
+
+
+def _refuse_cut_off(files: dict[str, Path], entries: dict[str, Entries], size: int) -> None:
+    """Refuse matrices that do not reach their last row, or have different patterns."""
+    for suffix, found in entries.items():
+        last = int(max(found.row.max(initial=-1), found.column.max(initial=-1))) + 1
+        if last != size:
+            expected = f"entries up to row {size}, as '{files['.dof'].name}' has"
+            raise wrong(files[suffix], expected, f"entries up to row {last}; is it cut off?")
+    counts = {suffix: found.row.size for suffix, found in entries.items()}
+    if counts[".sti"] != counts[".mas"]:
+        shorter = min(counts, key=lambda suffix: counts[suffix])
+        expected = f"{max(counts.values())} entries, as in the other matrix"
+        raise wrong(files[shorter], expected, f"{counts[shorter]}; is it cut off?")
+
+
+def _deck(path: Path, notes: list[str]) -> Deck | None:
+    try:
+        return read_deck(path)
+    except OSError as error:
+        notes.append(f"without the deck ({error}) there are no coordinates, and held nodes of")
+        notes[-1] += " shells and beams cannot be told from others"
+        return None
+
+
+def _is_newer(job: Path, matrix: Path) -> bool:
+    deck = job.with_name(job.name + ".inp")
+    return deck.is_file() and deck.stat().st_mtime > matrix.stat().st_mtime
+
+
+def _table(labels: DofTable, deck: Deck | None) -> DofTable:
+    """Return the degrees of freedom with their shares in the motion of their node."""
+    node, direction = labels.node.copy(), labels.direction
+    if deck is not None:
+        node[~np.isin(node, deck.mesh.number)] *= -1
+    weight = np.zeros(node.size)
+    own = _own_blocks(labels, deck)
+    order = np.lexsort((direction, labels.node))
+    keys = np.column_stack([labels.node, direction])[order]
+    starts = np.flatnonzero(np.append(True, (keys[1:] != keys[:-1]).any(axis=1)))
+    groups = np.split(order, starts[1:])
+    most: dict[int, int] = {}
+    for group in groups:
+        number = int(labels.node[group[0]])
+        most[number] = max(most.get(number, 0), group.size)
+    for group in groups:
+        number, along = int(labels.node[group[0]]), int(direction[group[0]])
+        held = deck is not None and (number, along) in deck.held
+        if held or node[group[0]] < 0:
+            continue
+        if number in own:
+            first, last = own[number]
+            group = group[(group >= first) & (group < last)]
+        elif group.size < most[number]:
+            continue  # the program eliminated one of them: the mean of all is held
+        weight[group] = 1.0 / max(group.size, 1)
+    return DofTable(node, direction, weight)
+
+
+def _own_blocks(labels: DofTable, deck: Deck | None) -> dict[int, tuple[int, int]]:
+    """Return the degrees of freedom (first, one behind the last) of nodes that move themselves.
+
+    The program numbers the nodes of the deck before those that it makes of them. So the first block
+    of a node whose other blocks follow later is the node itself.
+    """
+    node, direction = labels.node, labels.direction
+    new = np.append(True, (node[1:] != node[:-1]) | (direction[1:] <= direction[:-1]))
+    starts = np.append(np.flatnonzero(new), node.size).tolist()
+    blocks = [(int(node[first]), first, last) for first, last in pairwise(starts)]
+    there: dict[int, list[int]] = {}
+    for k, (number, _, _) in enumerate(blocks):
+        there.setdefault(number, []).append(k)
+    leading = _ascending(number for number, _, _ in blocks)
+    out = {}
+    for number, places in there.items():
+        if len(places) < 2 or places[0] >= leading:
+            continue
+        apart = places[1] > places[0] + 1
+        attached = deck is not None and number in deck.others and places[0] == leading - 1
+        if apart or attached:
+            out[number] = blocks[places[0]][1:]
+    return out
+
+
+def _ascending(numbers: Iterable[int]) -> int:
+    """Return how many numbers at the beginning ascend."""
+    count, before = 0, -1
+    for number in numbers:
+        if number <= before:
+            break
+        count, before = count + 1, number
+    return count
+
+
+def _describe(dofs: DofTable, notes: list[str]) -> None:
+    shared = np.unique(dofs.node[(dofs.weight > 0) & (dofs.weight < 1)]).size
+    if shared:
+        notes.append(f"{shared} nodes of shells and beams are means of the nodes made of them")
+    if internal := int((dofs.node <= 0).sum()):
+        notes.append(f"{internal} degrees of freedom that the program made belong to no node")
+    there = np.unique(dofs.node[dofs.node > 0])
+    if dead := np.setdiff1d(there, dofs.node[dofs.weight != 0]).size:
+        notes.append(f"{dead} nodes are held: there are no sensors at them")
+
+
+CALCULIX = Program("calculix", read)

@@ -1,0 +1,131 @@
+"""What the decks of runs change: lines with numbers that are a factor times those of the nominal.
+
+From it, updated values can be written as lines of the deck.
+"""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Sequence
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+from modefront.errors import Fault, InputError
+
+NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
+"""A number in a deck."""
+
+SUFFIXES = (".inp", ".dat", ".bdf", ".nas", ".mac", ".py", ".tcl")
+SAME = 1e-6
+"""Relative difference from the factor that passes for the digits of a deck."""
+
+LARGEST = 2**26
+"""Bytes of a deck above which it is not compared."""
+
+
+@dataclass(frozen=True)
+class Change:
+    """A line of the nominal deck that a run changes.
+
+    Attributes
+    ----------
+    parameter : name
+    file : the nominal deck
+    line : number from 1
+    text : the line
+    spans : beginning and end of each number that the factor multiplies
+    """
+
+    parameter: str
+    file: str
+    line: int
+    text: str
+    spans: tuple[tuple[int, int], ...]
+
+    def updated(self, factor: float) -> str:
+        """Return the line with its numbers times a factor."""
+        out = self.text
+        for first, last in reversed(self.spans):
+            out = f"{out[:first]}{_pointed(_value(out[first:last]) * factor)}{out[last:]}"
+        return out
+
+
+def _pointed(value: float) -> str:
+    """Return a number with a decimal point, without which some programs take it for an integer."""
+    mantissa, e, exponent = f"{value:.9g}".partition("e")
+    return f"{mantissa}{'' if '.' in mantissa else '.'}{e}{exponent}"
+
+
+def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Change]:
+    """Return the lines in which a run multiplies numbers of the nominal deck by a factor.
+
+    None are returned where there are no decks, or these have different numbers of lines.
+    """
+    pair = [_deck(path) for path in (nominal, run)]
+    if pair[0] is None or pair[1] is None:
+        return []
+    lines = [path.read_text("utf-8", "replace").splitlines() for path in pair if path]
+    if len(lines[0]) != len(lines[1]):
+        return []
+    out = []
+    for number, (old, new) in enumerate(zip(*lines, strict=True), start=1):
+        if old != new and (spans := _scaled(old, new, factor)):
+            out.append(Change(parameter, pair[0].name, number, old, spans))
+    return out
+
+
+def _deck(path: Path) -> Path | None:
+    stem = path.with_suffix("") if path.suffix else path
+    for file in (*(stem.with_name(stem.name + x) for x in SUFFIXES), path):
+        if file.suffix.lower() in SUFFIXES and file.is_file() and file.stat().st_size < LARGEST:
+            return file
+    return None
+
+
+def _scaled(old: str, new: str, factor: float) -> tuple[tuple[int, int], ...]:
+    """Return the numbers of a line that are multiplied, if nothing else in it is different."""
+    before, after = list(NUMBER.finditer(old)), list(NUMBER.finditer(new))
+    if len(before) != len(after) or _rest(NUMBER.sub("#", old)) != _rest(NUMBER.sub("#", new)):
+        return ()
+    spans = []
+    for a, b in zip(before, after, strict=True):
+        x, y = _value(a[0]), _value(b[0])
+        if x == y:
+            continue
+        if x == 0 or abs(y / x / factor - 1) > SAME:
+            return ()
+        spans.append(a.span())
+    return tuple(spans)
+
+
+def _rest(text: str) -> str:
+    return "".join(text.split())
+
+
+def _value(text: str) -> float:
+    text = re.sub("[Dd]", "E", text)
+    return float(re.sub(r"(?<=[\d.])([+-]\d+)$", r"E\1", text))
+
+
+def write_changes(path: Path, found: Sequence[Change]) -> None:
+    """Write changes as JSON."""
+    text = json.dumps([asdict(each) for each in found], indent=1, ensure_ascii=False)
+    path.write_text(text + "\n", encoding="utf-8")
+
+
+def read_changes(path: Path) -> list[Change]:
+    """Return the changes in a file; raises InputError for any other file."""
+    try:
+        return [
+            Change(
+                str(each["parameter"]),
+                str(each["file"]),
+                int(each["line"]),
+                str(each["text"]),
+                tuple((int(a), int(b)) for a, b in each["spans"]),
+            )
+            for each in json.loads(path.read_text(encoding="utf-8"))
+        ]
+    except (OSError, ValueError, TypeError, KeyError) as error:
+        raise InputError(Fault(str(path), "file", "changes of a deck", str(error))) from None

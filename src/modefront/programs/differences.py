@@ -1,0 +1,429 @@
+r"""Affine terms of matrices from runs of a program at several values of the parameters.
+
+With the parameters as factors of their nominal values, so that all are 1 in the nominal run,
+
+.. math::
+    A(\theta) = A_0 + \sum_k c_k(\theta) A_k, \qquad
+    A(\theta_r) - A(\mathbb 1) = \sum_k \bigl(c_k(\theta_r) - 1\bigr) A_k,
+
+which the runs r solve for the terms; the base is what is left of the nominal run. A parameter in
+which the matrices are linear takes one run, at any factor; one with the functions t and t³ two.
+
+Differences of large numbers are noise where nothing has changed. Dropped is what is below 1e-13 of
+the greatest entry and no more than 1e-10 of what joins the same degrees of freedom (so that the
+penalties of some programs hide nothing), and what is below the rounding of the file. Terms of few
+degrees of freedom keep the rank that they have above the rounding: a spring's is 1.
+
+========  ==========================================================
+symbol    meaning
+========  ==========================================================
+A         stiffness or mass matrix, upper triangle
+c         (runs, terms) coefficients minus those of the nominal run
+W         (terms, runs) pseudo-inverse of c
+D         A(theta_r) - A(1)
+E         A of a run for checking, minus that of the terms
+========  ==========================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Literal, TypeAlias
+
+import numpy as np
+import scipy.sparse
+
+from modefront._typing import Bools, Floats, Ints
+from modefront.errors import Fault, InputError
+from modefront.linalg.affine import Monomials
+from modefront.models.dofs import DofTable
+from modefront.models.terms import BASE, term_exponents
+from modefront.programs.base import Job, whole
+
+DROPPED = 1e-13
+"""Entries of a difference below it, over the greatest entry of the matrix, are dropped."""
+
+LOCAL = 1e-10
+"""They are kept if they are more than this of the diagonal entries of their row and column."""
+
+AFFINE = 1e-10
+"""Greatest error of the terms at other values of the parameters, over the change."""
+
+ROUNDING = 20.0
+"""Roundings that may add up in an entry."""
+
+SMALL = 60
+"""Degrees of freedom up to which the rank of a term is found."""
+
+COVERED = 0.99
+"""Share of an error within the terms of a parameter, from which it may come from it."""
+
+Quantity = Literal["stiffness", "mass"]
+QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")
+
+Matrix: TypeAlias = scipy.sparse.csr_array
+
+
+@dataclass(frozen=True, eq=False)
+class Run:
+    """A job at given values of the parameters.
+
+    Attributes
+    ----------
+    label : as messages name it
+    job : its matrices
+    values : (parameters,) factors of the nominal values
+    """
+
+    label: str
+    job: Job
+    values: Floats
+
+
+@dataclass(frozen=True, eq=False)
+class Term:
+    """One term of K and M.
+
+    Attributes
+    ----------
+    name : as `modefront.models.terms` has it
+    matrices : upper triangles by quantity; only those that are not zero
+    dofs : number of degrees of freedom on which the term acts
+    rank : of the stiffness, or of the mass where there is no stiffness; None where not found
+    """
+
+    name: str
+    matrices: Mapping[Quantity, Matrix]
+    dofs: int
+    rank: int | None
+
+
+@dataclass(frozen=True, eq=False)
+class Terms:
+    """Base and terms of both matrices.
+
+    Attributes
+    ----------
+    parameters : names
+    base : upper triangles of the terms that do not depend on parameters
+    terms : all others
+    dofs : degrees of freedom, those of the nominal run
+    """
+
+    parameters: tuple[str, ...]
+    base: Mapping[Quantity, Matrix]
+    terms: tuple[Term, ...]
+    dofs: DofTable
+
+
+class Differences:
+    """Matrices of a nominal run, and what other runs differ from it by.
+
+    Runs are added one after the other, so that two of them are in memory at a time.
+    """
+
+    def __init__(self, nominal: Job, parameters: Sequence[str], terms: Sequence[str]) -> None:
+        self.parameters, self.names = tuple(parameters), tuple(terms)
+        self.nominal = nominal
+        self.precision = nominal.precision
+        exponents = term_exponents(self.names, self.parameters)
+        self.coefficients = Monomials(exponents)
+        self._runs: list[tuple[Floats, Mapping[Quantity, Matrix]]] = []
+
+    def add(self, run: Run) -> None:
+        """Take the differences of a run.
+
+        Raises InputError where its degrees of freedom are others, or nothing differs.
+        """
+        differences = self._differences(run)
+        if not any(D.nnz for D in differences.values()):
+            changed = self._changed(run.values)
+            expected = f"other matrices than those of '{self.nominal.name}', as {changed}"
+            found = "the same: did the run fail, or is the change below the digits of the files?"
+            raise _wrong(run.label, expected, found)
+        self.precision = max(self.precision, run.job.precision)
+        self._runs.append((run.values, differences))
+
+    def _changed(self, values: Floats) -> str:
+        return ", ".join(
+            f"{name} = {value:g}"
+            for name, value in zip(self.parameters, values, strict=True)
+            if value != 1
+        )
+
+    def _matrix(self, quantity: Quantity) -> Matrix:
+        return self.nominal.stiffness if quantity == "stiffness" else self.nominal.mass
+
+    def _differences(self, run: Run) -> dict[Quantity, Matrix]:
+        order = matching(self.nominal, run.job, run.label)
+        found: dict[Quantity, Matrix] = {"stiffness": run.job.stiffness, "mass": run.job.mass}
+        return {
+            quantity: _cleaned(reordered(A, order), self._matrix(quantity))
+            for quantity, A in found.items()
+        }
+
+    def terms(self) -> Terms:
+        """Return base and terms.
+
+        Raises InputError where the runs do not determine a term, and for one without effect.
+        """
+        values = np.array([values for values, _ in self._runs]).reshape(-1, len(self.parameters))
+        c = np.array([self.coefficients.values(theta) for theta in values]) - 1.0
+        self._refuse_undetermined(c.reshape(len(values), len(self.names)))
+        W = np.linalg.pinv(c)
+        found: dict[str, dict[Quantity, Matrix]] = {name: {} for name in self.names}
+        base: dict[Quantity, Matrix] = {}
+        for quantity in QUANTITIES:
+            A = self._matrix(quantity)
+            differences = [each[quantity] for _, each in self._runs]
+            noise = ROUNDING * self.precision
+            rest = A
+            for name, row in zip(self.names, W, strict=True):
+                term = self._combined(row, differences, A, noise * np.abs(row).sum())
+                if term.nnz:
+                    found[name][quantity] = term
+                    rest = rest - term
+            base[quantity] = _above(rest.tocsr(), A, noise)
+        return Terms(
+            self.parameters,
+            base,
+            tuple(self._term(name, found[name]) for name in self.names),
+            self.nominal.dofs,
+        )
+
+    def _refuse_undetermined(self, c: Floats) -> None:
+        """Refuse terms that no combination of runs can tell apart."""
+        for i, name in enumerate(self.parameters):
+            own = np.flatnonzero(self.coefficients.exponents[:, i] != 0)
+            if np.linalg.matrix_rank(c[:, own]) < own.size:
+                terms = ", ".join(self.names[k] for k in own)
+                expected = f"at least {own.size} runs with other values for the terms {terms}"
+                found = f"{np.linalg.matrix_rank(c[:, own])} that tell them apart"
+                raise _wrong(f"--parameter {name}", expected, found)
+        if c.shape[1] == 0 or np.linalg.matrix_rank(c) < c.shape[1]:
+            raise _wrong("--parameter", f"runs that tell {c.shape[1]} terms apart", f"{len(c)}")
+
+    def _combined(
+        self, weights: Floats, differences: Sequence[Matrix], A: Matrix, noise: float
+    ) -> Matrix:
+        out = scipy.sparse.csr_array(A.shape)
+        for weight, D in zip(weights, differences, strict=True):
+            if abs(weight) > 1e-14 * np.abs(weights).max():
+                out = out + weight * D
+        return _above(_reduced(_above(out.tocsr(), A, noise), A, noise)[0], A, 0.0)
+
+    def _term(self, name: str, matrices: Mapping[Quantity, Matrix]) -> Term:
+        if not matrices:
+            expected = f"a term '{name}' of the stiffness or the mass"
+            raise _wrong("--function" if name not in self.parameters else name, expected, "zeros")
+        quantity: Quantity = "stiffness" if "stiffness" in matrices else "mass"
+        term, A = matrices[quantity], self._matrix(quantity)
+        rank = _reduced(term, A, ROUNDING * self.precision)[1]
+        return Term(name, matrices, _support(term).size, rank)
+
+    def check(self, terms: Terms, run: Run) -> float:
+        """Return the error of the terms at another run, over the greatest entry of the matrices.
+
+        Raises InputError, which names the parameter, where the matrices are not affine.
+        """
+        order = matching(self.nominal, run.job, run.label)
+        shifts = self.coefficients.values(run.values) - 1.0
+        worst = 0.0
+        for quantity in QUANTITIES:
+            A = self._matrix(quantity)
+            there = run.job.stiffness if quantity == "stiffness" else run.job.mass
+            change = (reordered(there, order) - A).tocsr()
+            E = change
+            for shift, term in zip(shifts, terms.terms, strict=True):
+                if quantity in term.matrices:
+                    E = E - shift * term.matrices[quantity]
+            noise = ROUNDING * max(self.precision, run.job.precision)
+            wrong = _beyond(E.tocsr(), A, noise * max(1.0, float(np.abs(shifts).max(initial=1.0))))
+            scale = np.abs(change.data).max(initial=0.0)
+            if wrong.nnz and np.abs(wrong.data).max() > AFFINE * scale:
+                raise self._not_affine(run, terms, quantity, wrong, scale)
+            greatest = np.abs(A.data).max(initial=0.0) or 1.0
+            worst = max(worst, float(np.abs(E.tocsr().data).max(initial=0.0) / greatest))
+        return worst
+
+    def _not_affine(
+        self, run: Run, terms: Terms, quantity: Quantity, E: Matrix, scale: float
+    ) -> InputError:
+        """Return the error that says which parameter the matrices are not affine in."""
+        moved = [name for name, x in zip(self.parameters, run.values, strict=True) if x != 1]
+        shares = {name: _share(E, terms, quantity, self.coefficients, [name]) for name in moved}
+        guilty = [name for name, share in shares.items() if share >= COVERED] or moved
+        if _share(E, terms, quantity, self.coefficients, moved) < COVERED:
+            entries = scipy.sparse.coo_array(E)
+            k = int(np.argmax(np.abs(entries.data)))
+            place = terms.dofs.label(int(entries.row[k]))
+            expected = f"only {', '.join(moved)} to differ from '{self.nominal.name}'"
+            return _wrong(run.label, expected, f"other changes of the {quantity}, at {place}")
+        names = " and ".join(f"'{name}'" for name in guilty)
+        functions = f"--function {guilty[0]}={guilty[0]},{guilty[0]}^3"
+        if len(guilty) > 1:
+            functions = f"--function {guilty[0]}={'*'.join(guilty)}"
+        greatest = float(np.abs(E.data).max() / scale)
+        return _wrong(
+            run.label,
+            f"matrices that are affine in {names} to {AFFINE:g} (or functions of it that are "
+            f"declared, as in {functions}, with as many runs)",
+            f"a {quantity} that differs by {greatest:.2g} of its change at "
+            f"{self._changed(run.values)}",
+        )
+
+
+def _share(
+    E: Matrix, terms: Terms, quantity: Quantity, coefficients: Monomials, names: Sequence[str]
+) -> float:
+    """Return the share of the squares of E within the entries of the terms of parameters."""
+    columns = [terms.parameters.index(name) for name in names]
+    acting: Bools = np.asarray(coefficients.exponents[:, columns].any(axis=1))
+    pattern = scipy.sparse.csr_array(E.shape)
+    for term, acts in zip(terms.terms, acting, strict=True):
+        if acts and quantity in term.matrices:
+            pattern = pattern + abs(term.matrices[quantity]).sign()
+    inside = E.multiply(pattern.sign()).tocsr()
+    return float((inside.data**2).sum() / (E.data**2).sum())
+
+
+def matching(nominal: Job, job: Job, label: str) -> Ints | None:
+    """Return where each degree of freedom of ``job`` is among the nominal ones; None for the same.
+
+    They are matched by node and direction, and those of the same label in their order. Raises
+    InputError where there are others.
+    """
+    one, two = nominal.dofs, job.dofs
+    if one.size != two.size and not (nominal.labelled and job.labelled):
+        raise _wrong(
+            label, f"{one.size} degrees of freedom, as '{nominal.name}' has", f"{two.size}"
+        )
+    if not (nominal.labelled and job.labelled):
+        return None
+    same = np.array_equal(one.node, two.node) and np.array_equal(one.direction, two.direction)
+    if same:
+        return None
+    orders = [np.lexsort((table.direction, table.node)) for table in (one, two)]
+    sorted_labels = [
+        np.column_stack([table.node[order], table.direction[order]])
+        for table, order in zip((one, two), orders, strict=True)
+    ]
+    if one.size != two.size or (sorted_labels[0] != sorted_labels[1]).any():
+        raise _unmatched(nominal, job, label)
+    out = np.zeros(one.size, np.intp)
+    out[orders[1]] = orders[0]
+    return out
+
+
+def _unmatched(nominal: Job, job: Job, label: str) -> InputError:
+    """Return the error that names the first degree of freedom that only one of two jobs has."""
+    tables = [
+        {(int(n), int(d)): k for k, (n, d) in enumerate(zip(t.node, t.direction, strict=True))}
+        for t in (nominal.dofs, job.dofs)
+    ]
+    missing, more = (sorted(tables[a].keys() - tables[b].keys()) for a, b in ((0, 1), (1, 0)))
+    expected = f"the degrees of freedom of '{nominal.name}' ({nominal.size})"
+    if missing:
+        return _wrong(label, expected, f"none at {nominal.dofs.label(tables[0][missing[0]])}")
+    if more:
+        return _wrong(label, expected, f"one at {job.dofs.label(tables[1][more[0]])}, {job.size}")
+    return _wrong(label, expected, f"{job.size}, other numbers of them at the same nodes")
+
+
+def reordered(A: Matrix, order: Ints | None) -> Matrix:
+    """Return an upper triangle whose rows and columns move to other places."""
+    if order is None:
+        return A
+    entries = scipy.sparse.coo_array(A)
+    row, column = order[entries.row], order[entries.col]
+    places = np.minimum(row, column), np.maximum(row, column)
+    return scipy.sparse.coo_array((entries.data, places), shape=A.shape).tocsr()
+
+
+def _joint(E: scipy.sparse.coo_array, A: Matrix) -> Floats:
+    """Return, for each entry of E, the geometric mean of the diagonal entries of A beside it."""
+    scale = np.sqrt(np.abs(A.diagonal()))
+    out: Floats = scale[E.row] * scale[E.col]
+    return out
+
+
+def _cleaned(there: Matrix, A: Matrix) -> Matrix:
+    """Return what a matrix differs from the nominal one by, without noise."""
+    D = scipy.sparse.coo_array(there - A)
+    greatest = np.abs(A.data).max(initial=0.0)
+    noise = (np.abs(D.data) <= DROPPED * greatest) & (np.abs(D.data) <= LOCAL * _joint(D, A))
+    return _with(D, ~noise & (D.data != 0))
+
+
+def _above(D: Matrix, A: Matrix, noise: float) -> Matrix:
+    """Return the entries of D that are above the rounding of those of A at the same places."""
+    there = scipy.sparse.coo_array(D)
+    limit = noise * np.abs(_at(A, there))
+    return _with(there, (np.abs(there.data) > limit) & (there.data != 0))
+
+
+def _at(A: Matrix, places: scipy.sparse.coo_array) -> Floats:
+    """Return the entries of A at the places of another matrix, 0 where it has none."""
+    if places.nnz == 0:
+        return np.zeros(0)
+    A.sum_duplicates()
+    n = A.shape[1]
+    entries = scipy.sparse.coo_array(A)
+    keys = entries.row.astype(np.int64) * n + entries.col
+    wanted = places.row.astype(np.int64) * n + places.col
+    at = np.searchsorted(keys, wanted)
+    at = np.minimum(at, max(keys.size - 1, 0))
+    found: Bools = keys[at] == wanted if keys.size else np.zeros(wanted.size, bool)
+    out: Floats = np.where(found, entries.data[at] if keys.size else 0.0, 0.0)
+    return out
+
+
+def _beyond(E: Matrix, A: Matrix, noise: float) -> Matrix:
+    """Return the entries of E that are above the rounding of the matrix around them."""
+    entries = scipy.sparse.coo_array(E)
+    return _with(entries, np.abs(entries.data) > noise * _joint(entries, A))
+
+
+def _with(entries: scipy.sparse.coo_array, chosen: Bools) -> Matrix:
+    places = entries.row[chosen], entries.col[chosen]
+    return scipy.sparse.coo_array((entries.data[chosen], places), shape=entries.shape).tocsr()
+
+
+def _support(term: Matrix) -> Ints:
+    entries = scipy.sparse.coo_array(term)
+    return np.unique(np.concatenate([entries.row, entries.col]))
+
+
+def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]:
+    """Return a term with the rank that it has above the rounding, and this rank.
+
+    None is returned for the rank of a term of many degrees of freedom, which is left as it is.
+    """
+    dofs = _support(term)
+    if dofs.size == 0 or dofs.size > SMALL:
+        return term, None if dofs.size else 0
+    dense = whole(term)[dofs][:, dofs].toarray()
+    values, vectors = np.linalg.eigh(dense)
+    limit = max(noise * float(np.abs(A.diagonal()[dofs]).max()), 1e-12 * np.abs(values).max())
+    strong = np.abs(values) > limit
+    rank = int(strong.sum())
+    if rank in (0, dofs.size):
+        return term, rank or dofs.size
+    part = (vectors[:, strong] * values[strong]) @ vectors[:, strong].T
+    part[np.abs(part) <= 1e-14 * np.abs(part).max()] = 0.0
+    small = scipy.sparse.coo_array(np.triu(part))
+    places = dofs[small.row], dofs[small.col]
+    return scipy.sparse.coo_array((small.data, places), shape=term.shape).tocsr(), rank
+
+
+def all_terms(terms: Terms, quantity: Quantity) -> dict[str, Matrix]:
+    """Return the upper triangles of a quantity by the names of the terms, the base first."""
+    out = {BASE: terms.base[quantity]} if terms.base[quantity].nnz else {}
+    return out | {
+        term.name: term.matrices[quantity] for term in terms.terms if quantity in term.matrices
+    }
+
+
+def _wrong(place: str, expected: str, found: str) -> InputError:
+    return InputError(Fault("", place, expected, found))

@@ -1,0 +1,361 @@
+"""From jobs of a program to a study: what the command line asks for, done in its order."""
+
+from __future__ import annotations
+
+import json
+import re
+import shutil
+import tempfile
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse
+
+from modefront._typing import Floats
+from modefront.errors import Fault, InputError, ModelError, refuse, suggestion
+from modefront.fem.dofs import DIRECTIONS
+from modefront.models.dofs import number_of, write_dofs
+from modefront.models.matrices import MatrixModel, matrices
+from modefront.models.terms import exponents_of, form_of
+from modefront.programs.base import Job, JobOptions, Program, whole
+from modefront.programs.changes import Change, changes, write_changes
+from modefront.programs.condense import condensed
+from modefront.programs.differences import (
+    Differences,
+    Quantity,
+    Run,
+    Term,
+    Terms,
+    all_terms,
+)
+from modefront.programs.mesh import write_mesh
+
+FACTOR = 2.0
+"""Factor of a parameter in its run, unless given."""
+
+LARGE = 100_000
+"""Degrees of freedom from which on frequencies are computed only if asked for."""
+
+SHOWN = 6
+"""Frequencies that are computed unless asked for others."""
+
+BOUNDS = (0.5, 2.0)
+"""Bounds of the parameters in the study that is written."""
+
+
+@dataclass(frozen=True)
+class Request:
+    """What is to be imported.
+
+    Attributes
+    ----------
+    program : who made the jobs
+    nominal : the job at the nominal values
+    runs : name of a parameter and its job, in the order of the command line
+    factors : name of a parameter and its value in its runs, in their order
+    functions : terms of a parameter in place of itself, by its name
+    checks : job and values of parameters in it
+    options : what holds for all jobs
+    modes : frequencies to compute; None for a few, unless the model is large
+    """
+
+    program: Program
+    nominal: Path
+    runs: Sequence[tuple[str, Path]]
+    factors: Sequence[tuple[str, float]] = ()
+    functions: Mapping[str, Sequence[str]] = field(default_factory=dict)
+    checks: Sequence[tuple[Path, Mapping[str, float]]] = ()
+    options: JobOptions = field(default_factory=JobOptions)
+    modes: int | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class Imported:
+    """What was imported.
+
+    Attributes
+    ----------
+    nominal : the nominal job
+    terms : base and terms, internal degrees of freedom being eliminated
+    frequencies : (modes,) of the nominal model in Hz; None where they are not computed
+    floating : whether the nominal model has rigid-body modes
+    errors : error of the terms in each run for checking
+    notes : what the program did to the model, and what was done about it
+    changes : lines of the nominal deck that the runs change
+    """
+
+    nominal: Job
+    terms: Terms
+    frequencies: Floats | None
+    floating: bool
+    errors: tuple[float, ...]
+    notes: tuple[str, ...]
+    changes: tuple[Change, ...] = ()
+
+
+def read_jobs(request: Request, progress: Callable[[str], None] = lambda _: None) -> Imported:
+    """Return the terms that the jobs of a request determine.
+
+    Raises InputError for jobs that cannot be read, do not belong together, or are not affine.
+    """
+    names = tuple(dict.fromkeys(name for name, _ in request.runs))
+    terms = _term_names(names, request.functions)
+    values = _values(request, names)
+    progress(f"reading {request.nominal}")
+    nominal = request.program.read(request.nominal, request.options)
+    differences = Differences(nominal, names, terms)
+    for (_, path), theta in zip(request.runs, values, strict=True):
+        progress(f"reading {path}")
+        job = request.program.read(path, request.options)
+        differences.add(Run(str(path), job, theta))
+    found = differences.terms()
+    errors = []
+    for path, given in request.checks:
+        progress(f"checking with {path}")
+        theta = np.array([given.get(name, 1.0) for name in names])
+        job = request.program.read(path, request.options)
+        errors.append(differences.check(found, Run(str(path), job, theta)))
+    notes = list(nominal.notes)
+    if request.program.eliminates:
+        found, gone, stayed = condensed(found)
+        if gone:
+            notes.append(
+                f"{gone} massless degrees of freedom of the program are eliminated exactly"
+            )
+        if stayed:
+            notes.append(
+                f"{stayed} degrees of freedom of the program are kept, without nodes: they have "
+                "mass, or several terms act on them, so that to eliminate them were not exact"
+            )
+    frequencies, floating = _frequencies(found, request.modes, notes, progress)
+    changed = _changes(request, names, values)
+    return Imported(nominal, found, frequencies, floating, tuple(errors), tuple(notes), changed)
+
+
+def _changes(
+    request: Request, names: Sequence[str], values: Sequence[Floats]
+) -> tuple[Change, ...]:
+    """Return the lines of the deck that the first run of each parameter changes."""
+    out: dict[str, list[Change]] = {}
+    for (name, path), theta in zip(request.runs, values, strict=True):
+        factor = float(theta[names.index(name)])
+        out.setdefault(name, changes(name, request.nominal, path, factor))
+    return tuple(change for each in out.values() for change in each)
+
+
+def _term_names(names: Sequence[str], functions: Mapping[str, Sequence[str]]) -> list[str]:
+    """Return the terms: those declared for a parameter, or the parameter itself."""
+    faults = [
+        Fault("", "--function", "a parameter", suggestion(name, names))
+        for name in functions
+        if name not in names
+    ]
+    for name, terms in functions.items():
+        for term in terms:
+            exponents = exponents_of(term, names)
+            if exponents is None or not exponents.any():
+                faults.append(Fault("", f"--function {name}", form_of(term + "^"), repr(term)))
+            elif name in names and not exponents[names.index(name)]:
+                faults.append(Fault("", f"--function {name}", f"terms with '{name}'", repr(term)))
+    refuse(faults)
+    every = [term for name in names for term in functions.get(name, (name,))]
+    return list(dict.fromkeys(every))
+
+
+def _values(request: Request, names: Sequence[str]) -> list[Floats]:
+    """Return the values of all parameters in every run."""
+    given: dict[str, list[float]] = {name: [] for name in names}
+    faults = []
+    for name, factor in request.factors:
+        if name not in given:
+            faults.append(Fault("", "--factor", "a parameter", suggestion(name, names)))
+        elif not 0 < factor < np.inf or factor == 1:
+            faults.append(
+                Fault("", f"--factor {name}", "a factor above 0, and not 1", f"{factor:g}")
+            )
+        else:
+            given[name].append(factor)
+    for _, values in request.checks:
+        unknown = [name for name in values if name not in given]
+        faults += [Fault("", "--check", "a parameter", suggestion(x, names)) for x in unknown]
+    refuse(faults)
+    out, taken = [], dict.fromkeys(names, 0)
+    for name, _ in request.runs:
+        count = sum(1 for other, _ in request.runs if other == name)
+        factors = given[name] or ([FACTOR] if count == 1 else [])
+        if len(factors) != count:
+            expected = f"{count} factors, one for each of its runs"
+            raise InputError(Fault("", f"--factor {name}", expected, str(len(given[name]))))
+        theta = np.ones(len(names))
+        theta[names.index(name)] = factors[taken[name]]
+        taken[name] += 1
+        out.append(theta)
+    return out
+
+
+def model_of(terms: Terms, floating: bool = True) -> MatrixModel:
+    """Return the model of terms, without sensors that mean anything."""
+    tables: dict[Quantity, dict[str, scipy.sparse.csr_array]] = {
+        quantity: {name: whole(A) for name, A in all_terms(terms, quantity).items()}
+        for quantity in ("stiffness", "mass")
+    }
+    return matrices(
+        terms.parameters, tables["stiffness"], tables["mass"], {"first": 0}, floating=floating
+    )
+
+
+def _frequencies(
+    terms: Terms, modes: int | None, notes: list[str], progress: Callable[[str], None]
+) -> tuple[Floats | None, bool]:
+    """Return frequencies of the nominal model, and whether it can move as a rigid body."""
+    size = terms.dofs.size
+    if modes == 0 or (modes is None and size > LARGE):
+        notes.append("frequencies are not computed (--modes computes them)")
+        return None, False
+    if not any(A.nnz for A in all_terms(terms, "mass").values()):
+        raise InputError(Fault("", "mass", "a mass matrix that is not zero", "only zeros"))
+    progress("computing the frequencies of the nominal model")
+    model = model_of(terms)
+    massless = int((whole(sum_of(terms, "mass")).diagonal() == 0).sum())
+    if massless:
+        notes.append(f"{massless} degrees of freedom have no mass, which is allowed")
+    count = min(modes or SHOWN, size - massless)
+    theta = np.ones(len(terms.parameters))
+    try:
+        found = model.full_modes(theta, max(count, 1))
+    except ModelError as error:
+        expected = "matrices with modes"
+        raise InputError(Fault("", "the nominal model", expected, str(error))) from None
+    frequencies = np.sqrt(np.maximum(found.lam, 0.0)) / (2 * np.pi)
+    floating = bool((found.lam == 0).any())
+    if floating:
+        count = int((found.lam == 0).sum())
+        notes.append(f"{count} rigid-body modes or mechanisms: floating = true is written")
+    return frequencies, floating
+
+
+def sum_of(terms: Terms, quantity: Quantity) -> scipy.sparse.csr_array:
+    """Return the upper triangle of the nominal matrix."""
+    out = terms.base[quantity]
+    for term in terms.terms:
+        if quantity in term.matrices:
+            out = out + term.matrices[quantity]
+    return out.tocsr()
+
+
+# The study
+
+
+def write_study(imported: Imported, program: str, directory: Path) -> list[Path]:
+    """Write a study with its matrices into a folder, and return the files.
+
+    Raises InputError where the folder has a study already, or cannot be written to.
+    """
+    study = directory / "study.toml"
+    if study.exists():
+        expected = "a folder without a study, as nothing is overwritten"
+        raise InputError(Fault(str(study), "file", expected, "an existing one"))
+    try:
+        directory.mkdir(parents=True, exist_ok=True)
+        with tempfile.TemporaryDirectory(dir=directory, prefix=".import-") as name:
+            folder = Path(name)
+            names = _write_matrices(imported.terms, folder)
+            write_dofs(folder / "dofs.csv", imported.terms.dofs)
+            if imported.nominal.mesh is not None:
+                write_mesh(folder / "mesh.npz", imported.nominal.mesh)
+            if imported.changes:
+                write_changes(folder / "changes.json", imported.changes)
+            text = _study(imported, program, names)
+            (folder / "study.toml").write_text(text, encoding="utf-8")
+            files = sorted(folder.iterdir(), key=lambda file: file.name == "study.toml")
+            return [Path(shutil.move(file, directory / file.name)) for file in files]
+    except OSError as error:
+        expected = "a folder that can be written to"
+        raise InputError(Fault(str(directory), "folder", expected, str(error))) from None
+
+
+def _write_matrices(terms: Terms, folder: Path) -> dict[Quantity, dict[str, str]]:
+    """Write all matrices; return the names of their files by quantity and term."""
+    out: dict[Quantity, dict[str, str]] = {"stiffness": {}, "mass": {}}
+    for quantity, files in out.items():
+        for name, A in all_terms(terms, quantity).items():
+            stem = f"{quantity}-{re.sub(r'[^A-Za-z0-9]+', '-', name).strip('-') or 'term'}"
+            number, file = 1, f"{stem}.npz"
+            while file in files.values():
+                number, file = number + 1, f"{stem}-{number}.npz"
+            scipy.sparse.save_npz(folder / file, whole(A), compressed=False)
+            files[name] = file
+    return out
+
+
+def _study(imported: Imported, program: str, names: dict[Quantity, dict[str, str]]) -> str:
+    """Return the text of the study file."""
+    dofs = imported.terms.dofs
+    lines = [
+        f"# Imported from {program}: {Path(imported.nominal.name).name}. Parameters are factors of "
+        "the nominal values.",
+        *(f"# - {_comment(note)}" for note in imported.notes),
+        "",
+        "[study]",
+        f"name = {_quoted(Path(imported.nominal.name).stem)}",
+        "",
+        "# What is left to you: measured modes, and where the sensors are.",
+        "# [data]",
+        '# file = "modes.csv"',
+        "#",
+        "# [model.sensors]",
+        f'# a = {{ node = {_example(imported)}, direction = "z" }}',
+        "",
+        "[model]",
+        'kind = "matrices"',
+        'dofs = "dofs.csv"',
+        *(['mesh = "mesh.npz"'] if imported.nominal.mesh is not None else []),
+        *(["floating = true"] if imported.floating else []),
+        *(f"{quantity} = {_inline(files)}" for quantity, files in names.items()),
+    ]
+    used = [d for d in DIRECTIONS[:3] if ((dofs.direction == number_of(d)) & (dofs.node > 0)).any()]
+    if used:
+        base = ", ".join(f'{d} = {{ direction = "{d}" }}' for d in used)
+        lines.append(f"base = {{ {base} }}")
+    for name in imported.terms.parameters:
+        lines += [
+            "",
+            "[[parameter]]",
+            f"name = {_quoted(name)}",
+            "nominal = 1.0",
+            f"bounds = [{BOUNDS[0]}, {BOUNDS[1]}]",
+        ]
+    for group, what in (("frequencies", "frequency"), ("shapes", "shape")):
+        lines += ["", "[[group]]", f'name = "{group}"', f'{what} = "all"']
+    return "\n".join(lines) + "\n"
+
+
+def _example(imported: Imported) -> int:
+    nodes = imported.terms.dofs.node[imported.terms.dofs.node > 0]
+    return int(nodes[-1]) if nodes.size else 12
+
+
+def _inline(files: Mapping[str, str]) -> str:
+    return (
+        "{ "
+        + ", ".join(f"{_quoted(name)} = {_quoted(file)}" for name, file in files.items())
+        + " }"
+    )
+
+
+def _quoted(text: str) -> str:
+    """Return a text as TOML has it, for which JSON's form is right."""
+    return json.dumps(text, ensure_ascii=False)
+
+
+def _comment(text: str) -> str:
+    return " ".join(text.split())
+
+
+def describe(term: Term) -> str:
+    """Return what a term is, in words."""
+    what = " and ".join(term.matrices)
+    rank = "" if term.rank is None else f", of rank {term.rank}"
+    return f"{what}, at {term.dofs} degrees of freedom{rank}"

@@ -1,0 +1,189 @@
+"""Decks in the keyword language of Abaqus and CalculiX: nodes, elements, supports."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.programs.mesh import CORNERS, ProgramMesh, mesh_of
+
+DEEPEST = 20
+"""Decks that include each other, one in the other, at most."""
+
+_TYPES = (
+    (r"C3D(8|20|27)|SC8|F3D8|DC3D(8|20)", "hexahedron"),
+    (r"C3D(4|10)|F3D4|DC3D(4|10)", "tetra"),
+    (r"C3D(6|15)|SC6|F3D6|DC3D(6|15)", "wedge"),
+    (r"(S|STRI|M3D|CPS|CPE|CAX|DS)(3|6|65)(?!\d)", "triangle"),
+    (r"(S|M3D|CPS|CPE|CAX|DS)[489]", "quad"),
+    (r"B[23][123]|PIPE|T[23]D|SPRINGA|SPRING2|DASHPOT[A2]|GAP|CONN[23]D2|D$|DCOUP|ITS", "line"),
+    (r"MASS|ROTARYI|SPRING1|DASHPOT1", "vertex"),
+)
+"""Beginnings of the names of element types, and the cells that they are."""
+
+_EXPANDED = re.compile(r"S[3468]|M3D|CPS|CPE|CAX|B[23][123]|PIPE|T[23]D")
+"""Elements that CalculiX makes solids of."""
+
+_MIDDLE = re.compile(r"B[23]2|T[23]D3|PIPE[23]2")
+"""Lines with a node in the middle, which is listed between their ends."""
+
+
+@dataclass
+class Deck:
+    """What a deck says of the model.
+
+    Attributes
+    ----------
+    mesh : nodes and elements
+    held : node and direction, from 1, of every support
+    expanded : nodes of elements that CalculiX makes solids of
+    others : nodes of all other elements
+    parts : whether nodes are numbered in parts, so that their numbers are not those of matrices
+    """
+
+    mesh: ProgramMesh
+    held: frozenset[tuple[int, int]]
+    expanded: frozenset[int]
+    others: frozenset[int]
+    parts: bool
+
+
+@dataclass
+class _Content:
+    """What is gathered while a deck is read."""
+
+    nodes: dict[int, Floats] = field(default_factory=dict)
+    cells: dict[str, list[list[int]]] = field(default_factory=dict)
+    sets: dict[str, list[int]] = field(default_factory=dict)
+    held: list[tuple[str, int, int]] = field(default_factory=list)
+    expanded: set[int] = field(default_factory=set)
+    others: set[int] = field(default_factory=set)
+    parts: bool = False
+
+
+def read_deck(path: Path) -> Deck:
+    """Return what a deck says of the model; lines that cannot be understood are left out.
+
+    Raises OSError where it cannot be read.
+    """
+    content = _Content()
+    for keyword, options, rows in _blocks(path):
+        if keyword == "NODE":
+            _nodes(content, options, rows)
+        elif keyword == "ELEMENT":
+            _elements(content, options, rows)
+        elif keyword == "NSET" and options.get("NSET"):
+            _add_set(content, options, rows)
+        elif keyword == "BOUNDARY":
+            _boundary(content, rows)
+        elif keyword in ("PART", "INSTANCE"):
+            content.parts = True
+    held = set()
+    for name, first, last in content.held:
+        nodes = [int(name)] if name.isdigit() else content.sets.get(name.upper(), [])
+        held |= {(node, direction) for node in nodes for direction in range(first, last + 1)}
+    return Deck(
+        mesh_of(content.nodes, content.cells),
+        frozenset(held),
+        frozenset(content.expanded),
+        frozenset(content.others),
+        content.parts,
+    )
+
+
+def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], list[list[str]]]]:
+    """Yield keyword, options and lines of numbers of every block, those of included files too."""
+    keyword, options, rows = "", dict[str, str](), list[list[str]]()
+    with path.open(encoding="utf-8", errors="replace") as file:
+        for line in file:
+            text = line.strip()
+            if text.startswith("**") or not text:
+                continue
+            if not text.startswith("*"):
+                if text.endswith(","):
+                    text += " "
+                rows.append([item.strip() for item in text.split(",")])
+                continue
+            if keyword:
+                yield keyword, options, rows
+            keyword, options, rows = *_keyword(text), []
+            if keyword == "INCLUDE" and options.get("INPUT") and depth < DEEPEST:
+                yield from _blocks(path.parent / options["INPUT"], depth + 1)
+    if keyword:
+        yield keyword, options, rows
+
+
+def _keyword(text: str) -> tuple[str, dict[str, str]]:
+    name, *parts = text[1:].split(",")
+    options = {}
+    for part in parts:
+        key, _, value = part.partition("=")
+        options[key.strip().upper()] = value.strip().strip('"')
+    return name.strip().upper(), options
+
+
+def _nodes(content: _Content, options: dict[str, str], rows: list[list[str]]) -> None:
+    for row in rows:
+        try:
+            number = int(row[0])
+            point = [float(x) if x else 0.0 for x in row[1:4]]
+        except ValueError:
+            continue
+        content.nodes[number] = np.array(point + [0.0] * (3 - len(point)))
+        if "NSET" in options:
+            content.sets.setdefault(options["NSET"].upper(), []).append(number)
+
+
+def _elements(content: _Content, options: dict[str, str], rows: list[list[str]]) -> None:
+    name = options.get("TYPE", "").upper()
+    cell = next((cell for pattern, cell in _TYPES if re.match(pattern, name)), None)
+    numbers: list[int] = []
+    joined: list[list[int]] = []
+    for row in rows:  # elements of many nodes go on in the next line after a comma at the end
+        goes_on = bool(row) and row[-1] == ""
+        try:
+            numbers += [int(x) for x in row if x]
+        except ValueError:
+            numbers = []
+            continue
+        if not goes_on:
+            joined.append(numbers[1:])
+            numbers = []
+    target = content.expanded if _EXPANDED.match(name) else content.others
+    for nodes in joined:
+        target.update(nodes)
+        if _MIDDLE.match(name) and len(nodes) == 3:
+            nodes = [nodes[0], nodes[2]]
+        if cell and len(nodes) >= CORNERS[cell]:
+            content.cells.setdefault(cell, []).append(nodes[: CORNERS[cell]])
+
+
+def _add_set(content: _Content, options: dict[str, str], rows: list[list[str]]) -> None:
+    chosen = content.sets.setdefault(options["NSET"].upper(), [])
+    for row in rows:
+        items = [x for x in row if x]
+        if "GENERATE" in options and all(x.isdigit() for x in items) and len(items) > 1:
+            first, last, step = (*map(int, items), 1)[:3]
+            chosen += range(first, last + 1, max(step, 1))
+            continue
+        for item in items:
+            chosen += [int(item)] if item.isdigit() else content.sets.get(item.upper(), [])
+
+
+def _boundary(content: _Content, rows: list[list[str]]) -> None:
+    named = {"ENCASTRE": (1, 6), "PINNED": (1, 3)}
+    for row in rows:
+        if len(row) < 2:
+            continue
+        if row[1].upper() in named:
+            content.held.append((row[0], *named[row[1].upper()]))
+            continue
+        last = row[2] if len(row) > 2 and row[2] else row[1]
+        value = row[3] if len(row) > 3 else ""
+        if row[1].isdigit() and last.isdigit() and not value.strip("0.+-eE "):
+            content.held.append((row[0], int(row[1]), min(int(last), 6)))

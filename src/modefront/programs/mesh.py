@@ -1,0 +1,85 @@
+"""Nodes and elements of a program's deck, for pictures; no result depends on them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from modefront._typing import Floats, Ints
+from modefront.errors import Fault, InputError
+
+CORNERS: Mapping[str, int] = {
+    "vertex": 1,
+    "line": 2,
+    "triangle": 3,
+    "quad": 4,
+    "tetra": 4,
+    "pyramid": 5,
+    "wedge": 6,
+    "hexahedron": 8,
+}
+"""Types of cells, as meshio and VTK call them, and their nodes; further nodes are left out."""
+
+
+@dataclass(frozen=True, eq=False)
+class ProgramMesh:
+    """Nodes by their numbers, and cells between them.
+
+    Attributes
+    ----------
+    number : (nodes,) numbers of the program, ascending
+    coordinates : (nodes, 3)
+    cells : (cells, k) numbers of nodes, by the type of the cell
+    """
+
+    number: Ints
+    coordinates: Floats
+    cells: Mapping[str, Ints]
+
+
+def mesh_of(nodes: Mapping[int, Floats], elements: Mapping[str, list[list[int]]]) -> ProgramMesh:
+    """Return the mesh of nodes and of elements, of which those with unknown nodes are left out."""
+    number = np.array(sorted(nodes), dtype=np.intp)
+    coordinates = np.array([nodes[n] for n in number.tolist()], dtype=float).reshape(-1, 3)
+    cells: dict[str, Ints] = {}
+    for kind, rows in elements.items():
+        table = np.array(rows, dtype=np.intp).reshape(-1, CORNERS[kind])
+        table = table[np.isin(table, number).all(axis=1)]
+        if len(table):
+            cells[kind] = table
+    return ProgramMesh(number, coordinates, cells)
+
+
+def write_mesh(path: Path, mesh: ProgramMesh) -> None:
+    """Write a mesh as arrays of NumPy."""
+    arrays: dict[str, Any] = {f"cells_{kind}": table for kind, table in mesh.cells.items()}
+    arrays |= {"number": mesh.number, "coordinates": mesh.coordinates}
+    np.savez(path, **arrays)
+
+
+def read_mesh(path: Path) -> ProgramMesh:
+    """Return a mesh that `write_mesh` has written.
+
+    Raises InputError for any other file.
+    """
+    try:
+        with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
+            arrays = {name: file[name] for name in file.files}
+        number, coordinates = arrays.pop("number"), arrays.pop("coordinates")
+        cells = {name.removeprefix("cells_"): table for name, table in arrays.items()}
+        right = coordinates.shape == (number.size, 3) and all(
+            table.shape[1:] == (CORNERS[kind],) and np.isin(table, number).all()
+            for kind, table in cells.items()
+        )
+        if not right:
+            raise ValueError("arrays that do not belong together")
+        return ProgramMesh(number.astype(np.intp), coordinates.astype(float), cells)
+    except FileNotFoundError:
+        found = "no such file"
+    except Exception as error:  # what NumPy raises for a damaged file is not documented
+        found = str(error) or type(error).__name__
+    raise InputError(Fault(str(path), "file", "nodes and elements (mesh.npz)", found))

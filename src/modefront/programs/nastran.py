@@ -1,0 +1,237 @@
+"""Nastran: matrices of OUTPUT4 (``.op4``) or DMIG entries (``.pch``).
+
+OUTPUT4 has no numbers of nodes: the deck beside it tells which degrees of freedom are in the a-set
+(see `modefront.programs.bulk`). What it tells is accepted only if the matrices agree: there are as
+many rows, and a translation of the whole strains nothing but elements that are held somewhere.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from pathlib import Path
+
+import numpy as np
+import scipy.sparse
+
+from modefront._typing import Bools, Ints
+from modefront.models.dofs import DofTable, read_dofs
+from modefront.programs.base import (
+    DOUBLE,
+    Entries,
+    Job,
+    JobOptions,
+    Program,
+    existing,
+    kept,
+    refuse_mass_alone,
+    upper,
+    whole,
+    wrong,
+)
+from modefront.programs.bulk import Bulk, read_bulk
+from modefront.programs.dmig import DmigMatrix, read_dmig
+from modefront.programs.mesh import ProgramMesh
+from modefront.programs.op4 import read_op4
+
+DECKS = (".dat", ".bdf", ".nas", ".inp")
+MATRICES = (".op4", ".pch")
+
+SETS = ("AA", "AAX", "LL", "XX", "HH", "GG", "JJ", "2GG", "")
+"""Names of pairs of matrices behind K and M, the first that there is being taken."""
+
+EQUILIBRIUM = 1e-6
+"""Force of a rigid-body translation, over the forces that cancel, that passes for rounding."""
+
+ADVICE = "OUTPUT4 KAA,MAA,,,//-1/21 writes an .op4 file, EXTSEOUT or PARAM,EXTOUT,DMIGPCH a .pch"
+
+
+def read(path: Path, options: JobOptions) -> Job:
+    """Return the matrices of a job, given by its .op4 or .pch file, or without suffix.
+
+    A file with another suffix that is no deck, such as that of a Fortran unit, is one of OUTPUT4.
+    """
+    file = _file(path)
+    if file.suffix.lower() == ".pch":
+        return _from_dmig(file, options)
+    return _from_op4(file, options)
+
+
+def _file(path: Path) -> Path:
+    deck = path.suffix.lower() in DECKS
+    if path.suffix.lower() in MATRICES or (path.is_file() and not deck):
+        return existing(path, "matrices of Nastran", ADVICE)
+    job = path.with_suffix("") if deck else path
+    for suffix in MATRICES:
+        if job.with_name(job.name + suffix).is_file():
+            return job.with_name(job.name + suffix)
+    return existing(job.with_name(job.name + ".op4"), "matrices of Nastran", ADVICE)
+
+
+def _pair(path: Path, names: Iterable[str], options: JobOptions) -> tuple[str, str]:
+    """Return the names of stiffness and mass among those in a file."""
+    known = list(names)
+    if options.stiffness or options.mass:
+        pair = (options.stiffness or "").upper(), (options.mass or "").upper()
+    else:
+        there = [(f"K{name}", f"M{name}") for name in SETS]
+        there += [(x, "M" + x[1:]) for x in known if x.startswith("K")]
+        pair = next((x for x in there if x[0] in known and x[1] in known), ("KAA", "MAA"))
+    for name in pair:
+        if name not in known:
+            expected = f"a matrix '{name}'" if name else "--stiffness-name with --mass-name"
+            raise wrong(path, expected, f"matrices {', '.join(known) or 'none'}")
+    return pair
+
+
+def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
+    """Return the deck of a job, None where there is none."""
+    candidates = [options.deck] if options.deck else [path.with_suffix(x) for x in DECKS]
+    for deck in candidates:
+        try:
+            return read_bulk(deck)
+        except FileNotFoundError:
+            continue
+        except OSError as error:
+            raise wrong(deck, "a deck that can be read", str(error)) from None
+    if options.deck:
+        raise wrong(options.deck, "a deck", "no such file")
+    notes.append(f"there is no deck ({path.stem}.dat or .bdf), and so there are no coordinates")
+    return None
+
+
+# OUTPUT4
+
+
+def _from_op4(path: Path, options: JobOptions) -> Job:
+    found = read_op4(path)
+    names = _pair(path, found, options)
+    pair = [found[name] for name in names]
+    size = pair[0].rows
+    for name, matrix in zip(names, pair, strict=True):
+        if (matrix.rows, matrix.columns) != (size, size):
+            expected = f"'{name}' with {size} rows and columns"
+            raise wrong(path, expected, f"{matrix.rows} x {matrix.columns}")
+    nobody = DofTable(np.zeros(size, np.intp), np.zeros(size, np.intp), np.ones(size))
+    K, M = (upper(path, size, matrix.entries, nobody) for matrix in pair)
+    notes: list[str] = []
+    deck = _deck(path, options, notes)
+    precision = max(DOUBLE, *(matrix.precision for matrix in pair))
+    if options.dofs is not None:
+        return Job(str(path), K, M, _given(options.dofs, size), precision, notes=tuple(notes))
+    if deck is None:
+        notes.append("sensors can be given by degrees of freedom only, unless --dofs names nodes")
+        return Job(str(path), K, M, nobody, precision, labelled=False, notes=tuple(notes))
+    return _labelled(path, deck, (K, M), precision, notes)
+
+
+def _given(path: Path, size: int) -> DofTable:
+    table = read_dofs(path)
+    if table.size != size:
+        raise wrong(path, f"{size} rows, one a degree of freedom", str(table.size))
+    return table
+
+
+def _labelled(
+    path: Path,
+    deck: Bulk,
+    matrices: tuple[scipy.sparse.csr_array, scipy.sparse.csr_array],
+    precision: float,
+    notes: list[str],
+) -> Job:
+    """Return a job with nodes and components of the deck, those that are held being left out."""
+    K, M = matrices
+    size = K.shape[0]
+    choices = {
+        "all nodes": deck.dofs(reduced=False, singular=True),
+        "its free degrees of freedom": deck.dofs(reduced=True, singular=True),
+        "its free degrees of freedom that are stiff": deck.dofs(reduced=True, singular=False),
+    }
+    fitting = [dofs for dofs in choices.values() if len(dofs) == size]
+    if not fitting:
+        counts = ", ".join(f"{len(dofs)} for {name}" for name, dofs in choices.items())
+        expected = f"{size} degrees of freedom, as the matrices have, in the deck (or --dofs FILE)"
+        raise wrong(path, expected, counts)
+    table = np.array(fitting[0], dtype=np.intp).reshape(-1, 2)
+    dofs = DofTable(table[:, 0], table[:, 1], np.ones(size))
+    free = np.array([dof not in deck.held | deck.followers for dof in fitting[0]])
+    free &= K.diagonal() + M.diagonal() != 0
+    if not free.all():
+        notes.append(f"{int((~free).sum())} degrees of freedom that are held are left out")
+        at = np.flatnonzero(free)
+        K, M = kept(K, at), kept(M, at)
+        dofs = DofTable(dofs.node[at], dofs.direction[at], dofs.weight[at])
+    _check_labels(path, deck, K, dofs)
+    if deck.turned:
+        some = ", ".join(map(str, sorted(deck.turned)[:6]))
+        notes.append(f"directions are those of the nodes' own systems at node {some}")
+    mesh = _drawn(deck, notes)
+    return Job(str(path), K, M, dofs, precision, mesh=mesh, notes=tuple(notes))
+
+
+def _drawn(deck: Bulk, notes: list[str]) -> ProgramMesh | None:
+    """Return the mesh of a deck, if all of its coordinates are in the basic system."""
+    if np.isfinite(deck.mesh.coordinates).all():
+        return deck.mesh
+    notes.append("nodes in coordinate systems of their own (CP): coordinates are left out")
+    return None
+
+
+def _check_labels(path: Path, deck: Bulk, triangle: scipy.sparse.csr_array, dofs: DofTable) -> None:
+    """Refuse nodes and components with which translations strain what is held nowhere."""
+    K = whole(triangle)
+    special = _near_supports(deck, dofs)
+    for direction in (1, 2, 3):
+        r = (dofs.direction == direction).astype(float)
+        force, size = K @ r, abs(K) @ r
+        bad = (np.abs(force) > EQUILIBRIUM * size) & (size > 0) & ~special
+        if bad.any():
+            k = int(np.argmax(np.abs(force) * bad))
+            raise wrong(
+                path,
+                "a stiffness matrix that fits the nodes of the deck; --dofs FILE says which "
+                "degrees of freedom its rows are",
+                f"a force at {dofs.label(k)} in a translation of the whole",
+            )
+
+
+def _near_supports(deck: Bulk, dofs: DofTable) -> Bools:
+    """Return which degrees of freedom are at nodes that an element joins with one that is held."""
+    free = {(int(n), int(c)) for n, c in zip(dofs.node, dofs.direction, strict=True)}
+    held = {int(n) for n in deck.mesh.number if any((int(n), c) not in free for c in (1, 2, 3))}
+    held |= deck.turned | {n for n, _ in deck.followers} | set(deck.scalar)
+    near = set(held)
+    for _ in range(2 if deck.followers else 1):  # followers join elements of their masters
+        near |= {n for link in deck.links if near.intersection(link) for n in link}
+    out: Bools = np.isin(dofs.node, list(near))
+    return out
+
+
+# DMIG
+
+
+def _from_dmig(path: Path, options: JobOptions) -> Job:
+    found = read_dmig(path)
+    names = _pair(path, found, options)
+    pair = [found[name] for name in names]
+    labels = np.concatenate([table for each in pair for table in (each.row, each.column)])
+    table = np.unique(labels, axis=0)
+    dofs = DofTable(table[:, 0], table[:, 1], np.ones(len(table)))
+    K, M = (upper(path, len(table), _numbered(each, table), dofs) for each in pair)
+    refuse_mass_alone(path, K, M, dofs)
+    notes: list[str] = []
+    deck = _deck(path, options, notes)
+    mesh = _drawn(deck, notes) if deck else None
+    precision = max(each.precision for each in pair)
+    return Job(str(path), K, M, dofs, precision, mesh=mesh, notes=tuple(notes))
+
+
+def _numbered(matrix: DmigMatrix, table: Ints) -> Entries:
+    """Return the entries of a matrix by the rows of a sorted table of labels."""
+    keys = table[:, 0] * 10 + table[:, 1]
+    row, column = (
+        np.searchsorted(keys, x[:, 0] * 10 + x[:, 1]) for x in (matrix.row, matrix.column)
+    )
+    return Entries(row, column, matrix.value)
+
+
+NASTRAN = Program("nastran", read)

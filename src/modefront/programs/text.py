@@ -1,0 +1,109 @@
+"""Numbers from large text files, read by vectorised parsers."""
+
+from __future__ import annotations
+
+import io
+from pathlib import Path
+from typing import BinaryIO
+
+import numpy as np
+import scipy.io
+import scipy.sparse
+
+from modefront._typing import Floats
+from modefront.programs.base import Entries, wrong
+
+BLOCK = 2**24
+"""Bytes that are read at once."""
+
+
+class _Headed(io.RawIOBase):
+    """A file with some lines before it."""
+
+    def __init__(self, head: bytes, file: BinaryIO) -> None:
+        super().__init__()
+        self._head, self._file = head, file
+
+    def readable(self) -> bool:
+        return True
+
+    def read(self, size: int = -1) -> bytes:
+        head, self._head = self._head, b""
+        return head or self._file.read(size)
+
+
+def coordinates(path: Path, size: int, *, skip: int = 0) -> Entries:
+    """Return the entries of a file of lines ``row column value``, counted from 1.
+
+    ``skip`` bytes at its beginning are left out. SciPy's reader of Matrix Market files reads
+    it, as that is what such lines are. Raises InputError where a line is none, or is cut off.
+    """
+    count, end = 0, b"\n"
+    with path.open("rb") as file:
+        file.seek(skip)
+        while block := file.read(BLOCK):
+            count += block.count(b"\n")
+            end = block[-1:]
+        if end != b"\n":
+            raise wrong(path, "whole lines to the end", "a file that is cut off")
+        file.seek(skip)
+        head = b"%%%%MatrixMarket matrix coordinate real general\n%d %d %d\n" % (size, size, count)
+        try:
+            matrix = scipy.io.mmread(_Headed(head, file))
+        except (ValueError, OverflowError) as error:
+            expected = f"lines 'row column value' with rows and columns from 1 to {size}"
+            raise wrong(path, expected, str(error)) from None
+    return Entries(matrix.row, matrix.col, matrix.data)
+
+
+def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.ndarray]:
+    """Return the columns of a table of numbers in a file.
+
+    Lines that begin with ``comment`` are left out. ``kinds`` has a letter for each column, ``i``
+    for whole numbers and ``f`` for real ones. Raises InputError for other lines.
+    """
+    import pandas as pd  # xarray needs it, so that it is there
+
+    types = {k: np.int32 if kind == "i" else np.float64 for k, kind in enumerate(kinds)}
+    try:
+        table = pd.read_csv(
+            path,
+            sep=separator,
+            header=None,
+            comment=comment,
+            skipinitialspace=True,
+            dtype=types,
+            names=range(len(kinds)),
+            index_col=False,
+            engine="c",
+        )
+    except (ValueError, OSError, OverflowError) as error:
+        expected = f"{len(kinds)} numbers in every line"
+        raise wrong(path, expected, " ".join(str(error).split())) from None
+    return [table[k].to_numpy() for k in range(len(kinds))]
+
+
+def fixed_width(text: bytes, width: int) -> Floats:
+    """Return numbers of a fixed width that follow each other without separators.
+
+    A ``D`` stands for the ``E`` of an exponent. Raises ValueError where one is no number.
+    """
+    array = np.frombuffer(text.replace(b"D", b"E").replace(b"d", b"e"), dtype=f"S{width}")
+    out: Floats = array.astype(float)
+    return out
+
+
+def matrix_market(path: Path, *, square: bool = True) -> scipy.sparse.coo_array:
+    """Return the matrix of a Matrix Market file, both triangles where it is symmetric.
+
+    Raises InputError for a file that is none, is not ``square``, or holds complex numbers.
+    """
+    try:
+        matrix = scipy.sparse.coo_array(scipy.io.mmread(path))
+    except (ValueError, OSError, OverflowError) as error:
+        raise wrong(path, "a Matrix Market file", str(error)) from None
+    if matrix.dtype.kind not in "biuf":
+        raise wrong(path, "real numbers", str(matrix.dtype))
+    if square and matrix.shape[0] != matrix.shape[1]:
+        raise wrong(path, "a square matrix", " x ".join(map(str, matrix.shape)))
+    return matrix.astype(float)

@@ -1,0 +1,112 @@
+r"""Mode shapes of a model at all its degrees of freedom, beside the measured ones.
+
+The shape of a model mode and that of a measured one have a scale and a sign of their own. Model
+shapes are scaled to a greatest displacement of 1 at the nodes; the measured shape follows by the
+modal scale factor, which fits the one to the other at the sensors,
+
+.. math:: \mathrm{MSF} = \hat\varphi^T \varphi / (\hat\varphi^T \hat\varphi)
+
+(Allemang, Sound and Vibration 37 (8), 2003).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import xarray as xr
+
+from modefront._typing import Floats
+from modefront.data.modal import ModalData
+from modefront.errors import ModelError
+from modefront.models.geometry import Geometry
+from modefront.models.local import matrices_at
+from modefront.residuals.problem import UpdatingProblem
+
+
+@dataclass(frozen=True)
+class PairedShapes:
+    """Model modes that are paired with the measured ones, each pair in one scale.
+
+    Attributes
+    ----------
+    modes : numbers of the measured modes
+    frequency : (modes,) of the model, in Hz
+    measured_frequency : (modes,) in Hz; NaN where it is not measured
+    mac : (modes,) MAC of the pairs
+    displacement : (modes, nodes, 3) greatest length 1; None for a model without geometry
+    computed : (modes, sensors) in the scale of ``displacement``, or with greatest value 1
+    measured : (sets, modes, sensors) scaled to ``computed``; NaN where it is not measured
+    sensors : names of the sensors
+    geometry : of the model; None where it is not known
+    """
+
+    modes: tuple[int, ...]
+    frequency: Floats
+    measured_frequency: Floats
+    mac: Floats
+    displacement: Floats | None
+    computed: Floats
+    measured: Floats
+    sensors: tuple[str, ...]
+    geometry: Geometry | None
+
+
+def paired_shapes(row: xr.Dataset, problem: UpdatingProblem) -> PairedShapes:
+    """Return the mode shapes of the model of one point of the results.
+
+    Raises ModelError for a point whose model has no such modes.
+    """
+    theta = row["theta"].values
+    paired = row["paired_mode"].values
+    if not np.isfinite(paired).all():
+        raise ModelError(f"{row['label'].values!s} has no modes: its model cannot be solved")
+    index = paired.astype(int) - 1
+    model = matrices_at(problem.model, theta)
+    geometry = displacement = None
+    if model is not None:
+        shapes = model.full_modes(theta, int(index.max()) + 1).Phi[:, index]
+        computed = np.asarray(model.selection @ shapes).T
+        geometry = model.geometry
+        if geometry is not None:
+            displacement = geometry.displacement(shapes)
+    else:
+        count = int(index.max()) + 1
+        computed = problem.model.modes(theta, count, derivatives=False).phi[:, index].T
+    computed, displacement = _scaled(problem.data, computed, displacement)
+    return PairedShapes(
+        problem.data.modes,
+        row["frequency"].values,
+        problem.data.mean_frequency,
+        row["mac"].values,
+        displacement,
+        computed,
+        _fitted(problem.data, computed),
+        problem.data.sensors,
+        geometry,
+    )
+
+
+def _scaled(
+    data: ModalData, computed: Floats, displacement: Floats | None
+) -> tuple[Floats, Floats | None]:
+    """Return shapes with a greatest displacement of 1 and the sign of the first measured one."""
+    if displacement is None:
+        size = np.abs(computed).max(axis=1)
+    else:
+        size = np.sqrt((displacement**2).sum(axis=2)).max(axis=1)
+    product = np.nansum(data.shape * computed, axis=2)
+    first = np.argmax(product != 0, axis=0)
+    sign = np.where(product[first, np.arange(len(size))] < 0, -1.0, 1.0)
+    scale = sign / np.where(size > 0, size, 1.0)
+    moved = None if displacement is None else displacement * scale[:, None, None]
+    return computed * scale[:, None], moved
+
+
+def _fitted(data: ModalData, computed: Floats) -> Floats:
+    """Return measured shapes (sets, modes, sensors) times their modal scale factors."""
+    product = np.nansum(data.shape * computed, axis=2)
+    square = np.nansum(data.shape**2, axis=2)
+    factor = np.divide(product, square, out=np.zeros(square.shape), where=square > 0)
+    out: Floats = data.shape * factor[:, :, None]
+    return out

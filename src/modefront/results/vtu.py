@@ -1,0 +1,70 @@
+"""Mode shapes as a VTU file, for ParaView and other programs that read VTK's formats.
+
+Every mode is a vector of displacements at the nodes, with a greatest length of 1; measured shapes
+are vectors along the sensors, in the scale of the model's, and zero where nothing is measured.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+from pathlib import Path
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.errors import Fault, InputError, ModelError
+from modefront.models.geometry import Geometry
+from modefront.results.shapes import PairedShapes
+
+
+def write_vtu(path: Path, shapes: PairedShapes) -> None:
+    """Write nodes, cells and mode shapes, whole or not at all.
+
+    Raises ModelError for a model without geometry, InputError where meshio is missing or the file
+    cannot be written.
+    """
+    try:
+        import meshio
+    except ImportError:
+        expected = "meshio, which `pip install modefront[mesh]` brings"
+        raise InputError(Fault(str(path), "VTU", expected, "no such package")) from None
+    geometry, displacement = shapes.geometry, shapes.displacement
+    if geometry is None or displacement is None:
+        raise ModelError(
+            "mode shapes at nodes: expected a model with geometry (a chain or finite elements), "
+            "found matrices alone"
+        )
+    vectors = {
+        f"mode {mode} ({frequency:.5g} Hz)": displacement[r]
+        for r, (mode, frequency) in enumerate(zip(shapes.modes, shapes.frequency, strict=True))
+    }
+    for r, mode in enumerate(shapes.modes):
+        vectors[f"mode {mode} measured"] = _at_sensors(geometry, shapes.measured[:, r])
+    groups = sorted({cells.group for cells in geometry.cells})
+    mesh = meshio.Mesh(
+        geometry.nodes,
+        [(cells.type, cells.nodes) for cells in geometry.cells],
+        point_data=vectors,
+        cell_data={"group": [np.full(len(x.nodes), groups.index(x.group)) for x in geometry.cells]},
+    )
+    temporary = path.with_name(f"{path.name}.tmp")
+    try:
+        # meshio prints warnings of its own.
+        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
+            meshio.write(temporary, mesh, file_format="vtu")
+        temporary.replace(path)
+    except OSError as error:
+        temporary.unlink(missing_ok=True)
+        expected = "a file that can be written"
+        raise InputError(Fault(str(path), "file", expected, str(error))) from None
+
+
+def _at_sensors(geometry: Geometry, measured: Floats) -> Floats:
+    """Return displacements (nodes, 3) of shapes (sets, sensors), the mean over the data sets."""
+    known = np.isfinite(measured)
+    count = np.maximum(known.sum(axis=0), 1)
+    mean = np.where(known, measured, 0.0).sum(axis=0) / count
+    out = np.zeros(geometry.nodes.shape)
+    np.add.at(out, geometry.sensor_nodes, mean[:, None] * geometry.sensor_directions)
+    return out

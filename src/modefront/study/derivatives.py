@@ -1,0 +1,191 @@
+r"""Derivatives of the objectives against finite differences, and why they differ where they do.
+
+Central differences along directions d with two steps are extrapolated,
+
+.. math:: \frac{4\,\Delta(h/2) - \Delta(h)}{3}, \qquad
+    \Delta(h) = \frac{J(\theta + h d) - J(\theta - h d)}{2 h} .
+
+A direction is one parameter; of many parameters, several are changed together. A step changes the
+residuals by a given small amount: steps that follow narrow bounds would drown in rounding, and
+those that follow wide ones see no tangent.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.errors import ModelError
+from modefront.residuals.problem import UpdatingProblem
+
+AGREEMENT = 1e-5
+"""Greatest relative error of derivatives that finite differences explain."""
+
+STEP = 4e-3
+"""Change of the residuals, in their own units, that a finite difference makes."""
+
+SHARE = 0.1
+"""Share of a parameter that a step takes at most, where its bounds are narrower than that."""
+
+MOST = 60
+"""Directions in which derivatives are compared, at most."""
+
+SHRINK, ATTEMPTS = 8.0, 3
+"""Division of a step at which the model is not defined, and how often that is done."""
+
+CLOSE = 1e-3
+"""Relative gap of two frequencies below which modes are close."""
+
+WIDE = 1e12
+"""Ratio of effects of parameters from which on units are likely wrong."""
+
+NAMED = 3
+"""Parameters of a direction that are named."""
+
+
+@dataclass(frozen=True)
+class Agreement:
+    """How well derivatives agree with finite differences.
+
+    Attributes
+    ----------
+    error : greatest difference over the greatest derivative of the objective; NaN where the model
+        is not defined around the point
+    theta : the point
+    objective : number of the objective with this difference
+    step : (p,) change of the parameters for a difference, in the direction with this difference
+    """
+
+    error: float
+    theta: Floats
+    objective: int
+    step: Floats
+
+
+def compared(problem: UpdatingProblem) -> Agreement:
+    """Return how well the derivatives of the objectives agree, near the nominal parameters.
+
+    Where bounds leave no room for a step, it leaves them.
+    """
+    span = problem.upper - problem.lower
+    size = np.sqrt(np.einsum("ijj->j", problem.evaluate(problem.start).H) / 2)
+    most = np.maximum(span / 2, SHARE * np.abs(problem.start)) / STEP
+    unit = np.minimum(np.divide(1.0, size, out=span.copy(), where=size > 0), most)
+    room = np.minimum(STEP * unit, span / 2)
+    theta = np.clip(problem.start, problem.lower + room, problem.upper - room)
+    evaluation = problem.evaluate(theta)
+    directions = _directions(unit)
+    if not evaluation.feasible:
+        return Agreement(float("nan"), theta, 0, STEP * directions[0])
+    exact = evaluation.dJ @ directions.T
+    estimate = np.array([_slope(problem, theta, d) for d in directions]).T
+    scale = np.abs(exact).max(axis=1, keepdims=True)
+    error = np.abs(estimate - exact) / np.where(scale > 0, scale, 1.0)
+    i, k = np.unravel_index(int(np.argmax(error)), error.shape)  # the first NaN, if there is any
+    return Agreement(float(error[i, k]), theta, int(i), STEP * directions[k])
+
+
+def derivative_error(problem: UpdatingProblem) -> float:
+    """Return the greatest relative error of dJ against extrapolated central differences."""
+    return compared(problem).error
+
+
+def _directions(unit: Floats) -> Floats:
+    """Return directions (k, p), one a parameter, or several parameters together."""
+    count = min(len(unit), MOST)
+    out = np.zeros((count, len(unit)))
+    signs = np.random.default_rng(0).choice((-1.0, 1.0), len(unit))
+    place = np.arange(len(unit)) % count
+    together = np.bincount(place)[place]
+    out[place, np.arange(len(unit))] = unit * np.where(together > 1, signs / np.sqrt(together), 1)
+    return out
+
+
+def _slope(problem: UpdatingProblem, theta: Floats, direction: Floats) -> Floats:
+    """Return the slopes of the objectives, with a shorter step where the model needs one."""
+
+    def central(h: float) -> Floats:
+        ahead = problem.evaluate(theta + h * direction, derivatives=False).J
+        behind = problem.evaluate(theta - h * direction, derivatives=False).J
+        if not np.isfinite([ahead, behind]).all():
+            return np.full(len(ahead), np.nan)
+        return (ahead - behind) / (2 * h)
+
+    h = STEP
+    for _ in range(ATTEMPTS):
+        estimate = (4 * central(h / 2) - central(h)) / 3
+        if np.isfinite(estimate).all():
+            break
+        h /= SHRINK
+    return estimate
+
+
+def cause_of(problem: UpdatingProblem, agreement: Agreement) -> str:
+    """Return which parameter and mode derivatives are wrong for, and the likely cause."""
+    names = [problem.model.parameters[j] for j in np.flatnonzero(agreement.step)]
+    more = f" and {len(names) - NAMED} more" if len(names) > NAMED else ""
+    of = f"{', '.join(names[:NAMED])}{more}"
+    theta, step = agreement.theta, agreement.step
+    undefined = _undefined(problem, [theta, theta + step, theta - step])
+    if undefined:
+        return f"for {of}: a small change leads to no model: {undefined}; check its value and units"
+    group = problem.objectives[agreement.objective]
+    mode, why = _mode_and_cause(problem, theta, step)
+    return (
+        f"of group '{group}' for {of}, mostly by measured mode {mode} "
+        f"(relative {agreement.error:.1e}): {why}"
+    )
+
+
+def _undefined(problem: UpdatingProblem, points: list[Floats]) -> str:
+    """Return why the model has no modes at any of some points; nothing where it has."""
+    for theta in points:
+        try:
+            problem.modes(theta, derivatives=False)
+        except ModelError as error:
+            return str(error)
+    return ""
+
+
+def _mode_and_cause(problem: UpdatingProblem, theta: Floats, step: Floats) -> tuple[int, str]:
+    """Return the measured mode that changes least smoothly, and what that is likely due to."""
+    points = [problem.evaluate(theta + k * step, derivatives=False) for k in (-1, -0.5, 0, 0.5, 1)]
+    values = {name: np.array([x.quantities[name] for x in points]) for name in ("frequency", "mac")}
+    bend = np.zeros(len(problem.data.modes))
+    for of in values.values():
+        # Fourth differences: what is left of a smooth curve is close to nothing.
+        fourth = of[0] - 4 * of[1] + 6 * of[2] - 4 * of[3] + of[4]
+        bend = np.maximum(bend, np.abs(np.nan_to_num(fourth / np.abs(of[2]).clip(1e-300))))
+    r = int(np.argmax(bend))
+    mode = problem.data.modes[r]
+    pairs = {int(x.quantities["paired_mode"][r]) for x in points}
+    if len(pairs) > 1:
+        listed = " and ".join(map(str, sorted(pairs)))
+        return mode, f"it is paired with the model modes {listed} in turn; they are alike in MAC"
+    frequency = np.sort(problem.modes(theta, derivatives=False)[0].frequency)
+    k = pairs.pop() - 1
+    near = [abs(frequency[i] / frequency[k] - 1) for i in (k - 1, k + 1) if 0 <= i < len(frequency)]
+    if frequency[k] > 0 and near and min(near) < CLOSE:
+        return mode, (
+            f"model mode {k + 1} and its neighbour are {100 * min(near):.2g} % apart, and close "
+            "modes turn into each other within a small change of the parameter"
+        )
+    effects = np.sqrt(np.einsum("ijj->j", problem.evaluate(theta).H) / 2) * np.abs(theta)
+    known = effects[effects > 0]
+    if known.size and known.max() > WIDE * known.min():
+        return mode, (
+            f"parameters differ by {known.max() / known.min():.0e} in their effect: check units "
+            "of the matrices, and whether a stiffness vanishes"
+        )
+    if (np.abs(step) > np.abs(theta) + 1e-300).any():
+        return mode, (
+            "the parameter has so little effect that a step beyond its own size is needed to see "
+            "any: check its value, its units, and whether a stiffness vanishes"
+        )
+    return mode, (
+        "the model does not change smoothly there, or digits are lost in it: check its units, and "
+        "whether a stiffness or mass vanishes; derivatives of a Python model have to be those of "
+        "its matrices"
+    )

@@ -1,0 +1,253 @@
+"""Processes that compute messages of tasks: spawned on this machine, or those of a Dask cluster.
+
+A process of this machine ends with the one that has started it, whatever ends that, and leaves
+interrupts of the terminal to it.
+"""
+
+from __future__ import annotations
+
+import importlib
+import logging
+import multiprocessing
+import os
+import signal
+import threading
+import time
+from collections.abc import Iterator, Sequence
+from concurrent.futures import CancelledError, Future, ProcessPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, field
+from enum import Enum
+from multiprocessing.connection import wait
+from multiprocessing.context import SpawnContext, SpawnProcess
+from typing import Any, ClassVar, Protocol
+
+from threadpoolctl import threadpool_limits
+
+from modefront.errors import Fault, InputError, UnfinishedError
+from modefront.work.transfer import Message, Reply, work
+
+ANSWER, JOIN = 10.0, 60.0
+"""Seconds in which a scheduler has to answer, and one of its workers to join."""
+
+OFTEN = 10.0
+"""Seconds after which the workers of a cluster are counted again."""
+
+
+class Loss(Enum):
+    """What is lost with an error that is not one of a task."""
+
+    PROCESS = "the process that computed the task"
+    POOL = "all processes, which can be started again"
+    CLUSTER = "the cluster"
+
+
+class Pool(Protocol):
+    """Processes that compute messages."""
+
+    @property
+    def count(self) -> int:
+        """Number of processes."""
+
+    @property
+    def ready(self) -> bool:
+        """Whether a message would be computed at once."""
+
+    def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
+        """Compute a message in one of the processes."""
+
+    def lost(self, error: Exception, /) -> Loss | None:
+        """Return what is lost with an error; None where it is an error of the task."""
+
+    def restart(self) -> None:
+        """Start the processes again."""
+
+    def close(self) -> None:
+        """End all processes, whatever they do."""
+
+
+class _Process(SpawnProcess):
+    """A process that is remembered, so that it can be ended."""
+
+    started: ClassVar[list[SpawnProcess]] = []
+
+    def start(self) -> None:
+        """Start the process."""
+        super().start()
+        self.started.append(self)
+
+
+class _Context(SpawnContext):
+    """The context in which such processes are spawned."""
+
+    Process = _Process
+
+
+@dataclass
+class LocalPool:
+    """Processes of this machine, spawned, with one thread of the BLAS each.
+
+    They import the module ``warm`` when they start, and with it what tasks need.
+    """
+
+    count: int
+    warm: str = ""
+    _processes: Sequence[SpawnProcess] = ()
+    _executor: ProcessPoolExecutor = field(init=False)
+    _first: Future[None] = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.restart()
+
+    @property
+    def ready(self) -> bool:
+        """Whether the first process has started."""
+        return self._first.done()
+
+    def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
+        """Compute a message in one of the processes."""
+        return self._executor.submit(work, message, objects)
+
+    def lost(self, error: Exception, /) -> Loss | None:
+        """Return that all processes are lost where one has ended: the executor ends the others."""
+        return Loss.POOL if isinstance(error, BrokenProcessPool) else None
+
+    def restart(self) -> None:
+        """Start the processes, or others in their place."""
+        before = list(_Process.started)
+        with _interrupts_held():  # what is started now never sees any
+            self._executor = ProcessPoolExecutor(self.count, _Context(), _prepare, (self.warm,))
+            # The executor starts a process a task, as long as none of them is idle.
+            self._first, *_ = [self._executor.submit(_started) for _ in range(self.count)]
+        self._processes = [x for x in _Process.started if x not in before]
+
+    def close(self) -> None:
+        """End all processes, whatever they do."""
+        self._executor.shutdown(wait=False, cancel_futures=True)
+        for process in self._processes:
+            process.kill()
+        for process in self._processes:
+            process.join()
+            _Process.started.remove(process)
+
+
+def _started() -> None:
+    """Show that a process works."""
+
+
+def _prepare(warm: str) -> None:
+    """Prepare a process: one thread of the BLAS, no interrupts, an end with its parent."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    threading.Thread(target=_end_with_parent, daemon=True).start()
+    if warm:
+        importlib.import_module(warm)
+    threadpool_limits(1, user_api="blas")
+
+
+def _end_with_parent() -> None:
+    """End the process as soon as the one that has started it has ended."""
+    parent = multiprocessing.parent_process()
+    if parent is not None:
+        wait([parent.sentinel])
+        os._exit(1)
+
+
+@contextmanager
+def _interrupts_held() -> Iterator[None]:
+    """Hold interrupts back until the context ends; processes started in it hold them for good.
+
+    Among these is the one in which `multiprocessing` keeps account of semaphores.
+    """
+    if not hasattr(signal, "pthread_sigmask"):  # Windows, where the initializer ignores them
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
+
+
+@dataclass
+class Cluster:
+    """Workers of a Dask cluster that runs already, at the address of its scheduler.
+
+    Raises InputError where `distributed` is not installed or the address is none, UnfinishedError
+    where no scheduler answers, no worker joins, or the versions differ.
+    """
+
+    address: str
+    _count: int = 1
+    _counted: float = -OFTEN
+    _client: Any = field(init=False)
+    _executor: Any = field(init=False)
+
+    def __post_init__(self) -> None:
+        place = "--scheduler"
+        try:
+            distributed: Any = importlib.import_module("distributed")
+        except ImportError:
+            expected = "the extra 'cluster': pip install modefront[cluster]"
+            raise InputError(Fault("", place, expected, "no package 'distributed'")) from None
+        try:
+            logging.getLogger("distributed").setLevel(logging.CRITICAL)  # errors say what it logs
+            self._client = distributed.Client(self.address, timeout=ANSWER, set_as_default=False)
+        except ValueError as error:
+            expected = "an address like tcp://HOST:PORT"
+            raise InputError(Fault("", place, expected, f"{self.address}: {error}")) from None
+        except OSError:
+            raise UnfinishedError(f"no Dask scheduler answers at {self.address}") from None
+        try:
+            self._client.wait_for_workers(1, timeout=JOIN)
+        except TimeoutError:
+            self._client.close()
+            raise UnfinishedError(f"no worker has joined the scheduler {self.address}") from None
+        self._executor = self._client.get_executor(pure=False, retries=0)
+
+    @property
+    def count(self) -> int:
+        """Number of threads of all workers, as it was a few seconds ago."""
+        if time.monotonic() > self._counted + OFTEN:
+            self._counted = time.monotonic()
+            with suppress(Exception):  # what is lost shows when it is used
+                self._count = max(1, sum(self._client.nthreads().values()))
+        return self._count
+
+    @property
+    def ready(self) -> bool:
+        """True: the workers run already."""
+        return True
+
+    def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
+        """Compute a message in one of the workers."""
+        return self._executor.submit(_work_of_one_thread, message, objects)
+
+    def lost(self, error: Exception, /) -> Loss | None:
+        """Return whether a worker or the whole cluster is lost."""
+        from distributed import KilledWorker
+
+        if isinstance(error, KilledWorker):
+            return Loss.PROCESS
+        return Loss.CLUSTER if isinstance(error, CancelledError | OSError) else None
+
+    def restart(self) -> None:
+        """Do nothing: the scheduler replaces workers."""
+
+    def close(self) -> None:
+        """Leave the cluster, which cancels what it still computes for this run."""
+        with suppress(Exception):  # a scheduler that is gone needs no farewell
+            self._executor.shutdown(wait=False, cancel_futures=True)
+            self._client.close(timeout=5)
+
+
+def _work_of_one_thread(message: Message, objects: dict[str, bytes]) -> Reply:
+    """Compute a message with one thread of the BLAS."""
+    global _LIMITED
+    if not _LIMITED:
+        threadpool_limits(1, user_api="blas")
+        _LIMITED = True
+    return work(message, objects)
+
+
+_LIMITED = False

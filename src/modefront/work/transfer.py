@@ -1,0 +1,167 @@
+"""Tasks as bytes for other processes, and large objects that they share sent once.
+
+An object of a class that is registered by `shared` is replaced by a name in the tasks that have it
+among their arguments. A process that does not know the name says so, and is sent the object.
+"""
+
+from __future__ import annotations
+
+import io
+import pickle
+import threading
+import uuid
+from collections import OrderedDict
+from collections.abc import Hashable, Sequence
+from dataclasses import dataclass, field
+from typing import Any, Protocol, TypeVar
+
+from modefront.work.backend import Done, computed
+from modefront.work.task import Task
+
+KNOWN = 2
+"""Shared objects that a process keeps at most: those used last."""
+
+
+class Shared(Protocol):
+    """An object that many tasks have among their arguments."""
+
+    @property
+    def version(self) -> Hashable:
+        """What changes whenever the object does."""
+
+    @property
+    def footprint(self) -> float:
+        """Bytes that a process takes to work with it, estimated."""
+
+    @property
+    def parts(self) -> Sequence[Shared]:
+        """Objects within it that are sent on their own, as they change less often."""
+
+
+S = TypeVar("S", bound=type)
+
+_REGISTERED: set[type] = set()
+
+
+def shared(kind: S) -> S:
+    """Register a class of objects that are sent to a process once; they are `Shared`."""
+    _REGISTERED.add(kind)
+    return kind
+
+
+@dataclass(frozen=True)
+class Message:
+    """Tasks as bytes, with the names of the shared objects among their arguments."""
+
+    content: bytes
+    names: tuple[str, ...]
+    memory: float
+
+
+@dataclass
+class Sender:
+    """Makes bytes of tasks."""
+
+    _objects: dict[tuple[int, Hashable], tuple[str, Shared]] = field(default_factory=dict)
+
+    def message(self, tasks: Sequence[Task[Any]]) -> Message:
+        """Return tasks as bytes. Raises what `pickle` raises for what cannot be pickled."""
+        stream = io.BytesIO()
+        pickler = _Pickler(stream, self)
+        pickler.dump(list(tasks))
+        memory = max((x.footprint for x in pickler.met.values()), default=0.0)
+        memory += max((task.memory for task in tasks), default=0.0)
+        return Message(stream.getvalue(), tuple(pickler.met), memory)
+
+    def objects(self, names: Sequence[str]) -> dict[str, bytes]:
+        """Return shared objects by their names, in this order."""
+        values = dict(self._objects.values())
+        out = {}
+        for name in names:
+            stream = io.BytesIO()
+            _Pickler(stream, self, values[name]).dump(values[name])
+            out[name] = stream.getvalue()
+        return out
+
+    def name(self, value: Shared) -> str:
+        """Return the name of a shared object; another version of it has another name."""
+        key = id(value), value.version
+        if key not in self._objects:
+            # Of an object that changes, no task asks for an earlier version again.
+            for other in [x for x in self._objects if x[0] == key[0]]:
+                del self._objects[other]
+            self._objects[key] = uuid.uuid4().hex, value
+        return self._objects[key][0]
+
+
+class _Pickler(pickle.Pickler):
+    """Pickles tasks, or the ``root`` among the shared objects, with names of these in them.
+
+    Attributes
+    ----------
+    met : shared objects by their names, each after its parts
+    """
+
+    def __init__(self, stream: io.BytesIO, sender: Sender, root: Shared | None = None) -> None:
+        super().__init__(stream, pickle.HIGHEST_PROTOCOL)
+        self.sender, self.root = sender, root
+        self.met: dict[str, Shared] = {}
+
+    def persistent_id(self, value: Any) -> str | None:
+        if type(value) not in _REGISTERED or value is self.root:
+            return None
+        for part in value.parts:
+            self.met[self.sender.name(part)] = part
+        name = self.sender.name(value)
+        self.met[name] = value
+        return name
+
+
+class _Unpickler(pickle.Unpickler):
+    """Unpickles tasks, with shared objects in the place of their names."""
+
+    def persistent_load(self, name: Any) -> Any:
+        return _OBJECTS[name]
+
+
+_OBJECTS: OrderedDict[str, Any] = OrderedDict()
+_LOCK = threading.Lock()
+
+
+@dataclass(frozen=True)
+class Reply:
+    """What comes back from a process.
+
+    Attributes
+    ----------
+    done : results of tasks, of the first ones where one has failed
+    error : of the task after these; None where none has
+    lacking : names of shared objects that the process does not know; then nothing was computed
+    """
+
+    done: Sequence[Done] = ()
+    error: Exception | None = None
+    lacking: tuple[str, ...] = ()
+
+
+def work(message: Message, objects: dict[str, bytes]) -> Reply:
+    """Compute the tasks of a message, which comes with shared objects or without."""
+    with _LOCK:  # workers of a cluster may have several threads
+        for name, content in objects.items():
+            if name not in _OBJECTS:
+                _OBJECTS[name] = _Unpickler(io.BytesIO(content)).load()
+        lacking = tuple(name for name in message.names if name not in _OBJECTS)
+        if lacking:
+            return Reply(lacking=lacking)
+        for name in message.names:
+            _OBJECTS.move_to_end(name)
+        while len(_OBJECTS) > max(KNOWN, len(message.names)):
+            _OBJECTS.popitem(last=False)
+        tasks: list[Task[Any]] = _Unpickler(io.BytesIO(message.content)).load()
+    done: list[Done] = []
+    for task in tasks:
+        try:
+            done.append(computed(task))
+        except Exception as error:  # it belongs to the caller, with what was done before it
+            return Reply(done, error)
+    return Reply(done)

@@ -1,0 +1,339 @@
+"""A backend that hands tasks to other processes.
+
+Tasks are sent as bytes, short ones several at a time. What a caller will probably ask for next is
+computed where there is nothing else to do, and kept until it asks for something else.
+
+Where a process is lost, the tasks that it may have computed are done again, one at a time. One
+that is lost alone as well, or whose memory does not suffice twice, is given up: the others are
+computed to the end, and an error names it.
+"""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import FIRST_COMPLETED, Future, wait
+from contextlib import contextmanager
+from dataclasses import dataclass, field
+from math import ceil
+from pathlib import Path
+from pickle import PicklingError
+from typing import Any
+
+from modefront.errors import Fault, InputError, UnfinishedError, wrong
+from modefront.work.backend import Backend, Done, InTurn, computed
+from modefront.work.costs import spend
+from modefront.work.pools import Cluster, LocalPool, Loss, Pool
+from modefront.work.task import Key, Task
+from modefront.work.transfer import Message, Reply, Sender
+
+SHORT = 0.02
+"""Seconds of tasks that are sent together, about."""
+
+TINY = 0.005
+"""Seconds of all tasks below which they are computed in the calling process."""
+
+QUEUED = 2
+"""Messages that are sent, over the number of processes."""
+
+LOSSES = 2
+"""Times that a task is lost, after which it is given up."""
+
+SHARE = 0.6
+"""Share of the memory that is available that processes may take."""
+
+MOST = 61
+"""Processes of this machine at most; Windows waits for no more."""
+
+Identity = tuple[Key, Key]
+
+
+@dataclass(frozen=True)
+class _Sent:
+    """Tasks that are being computed elsewhere."""
+
+    tasks: Sequence[Task[Any]]
+    message: Message
+
+
+@dataclass
+class _Call:
+    """Tasks of one call.
+
+    Attributes
+    ----------
+    tasks : of the call
+    position : of each task that has no result yet, by its identity
+    pending : positions of tasks to be sent
+    alone : positions of tasks that are sent one at a time, since a process was lost with them
+    errors : of tasks, by their position
+    """
+
+    tasks: Sequence[Task[Any]]
+    position: dict[Identity, int]
+    pending: deque[int] = field(default_factory=deque)
+    alone: deque[int] = field(default_factory=deque)
+    errors: dict[int, Exception] = field(default_factory=dict)
+
+    def wants(self, task: Task[Any]) -> bool:
+        """Return whether a task is one of the call without a result."""
+        k = self.position.get(task.identity)
+        return k is not None and self.tasks[k].function is task.function
+
+
+@dataclass
+class Workers:
+    """Hands tasks to the processes of a pool.
+
+    Attributes
+    ----------
+    pool : the processes
+    memory : bytes that they may take together
+    """
+
+    pool: Pool
+    memory: float = field(default_factory=lambda: SHARE * available_memory())
+    _sender: Sender = field(default_factory=Sender)
+    _flying: dict[Future[Reply], _Sent] = field(default_factory=dict)
+    _ready: dict[Identity, tuple[Task[Any], Done]] = field(default_factory=dict)
+    _seconds: dict[str, float] = field(default_factory=dict)
+    _losses: Counter[Identity] = field(default_factory=Counter)
+
+    @property
+    def workers(self) -> int:
+        """Number of processes."""
+        return self.pool.count
+
+    def __enter__(self) -> Workers:
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.pool.close()
+
+    def compute(
+        self,
+        tasks: Sequence[Task[Any]],
+        ahead: Sequence[Task[Any]],
+        begun: Callable[[int], None],
+        /,
+    ) -> Iterator[tuple[int, Done]]:
+        """Yield the results of the tasks as they end.
+
+        Raises UnfinishedError where a task was lost twice or the cluster is gone, InputError where
+        the model cannot be sent to another process, and what tasks raise; but for a cluster that
+        is gone, all other tasks are computed first.
+        """
+        call = _Call(tasks, {task.identity: k for k, task in enumerate(tasks)})
+        self._forget(call, ahead)
+        flying = {task.identity for sent in self._flying.values() for task in sent.tasks}
+        for k, task in enumerate(tasks):
+            if task.identity in self._ready:
+                begun(k)
+                yield self._finished(call, task, self._ready.pop(task.identity)[1])
+            elif task.identity in flying:
+                begun(k)
+            else:
+                call.pending.append(k)
+        yield from self._here(call, ahead, begun)
+        while call.position:
+            self._send(call, begun)
+            self._send_ahead(call, ahead)
+            for future in wait(self._flying, return_when=FIRST_COMPLETED).done:
+                if future in self._flying:  # else it was lost with another one
+                    yield from self._received(call, future)
+        if call.errors:
+            raise call.errors[min(call.errors)]
+
+    def _forget(self, call: _Call, ahead: Sequence[Task[Any]]) -> None:
+        """Forget what was computed ahead and is not wanted any more."""
+        wanted = {task.identity: task.function for task in (*ahead, *call.tasks)}
+
+        def is_wanted(task: Task[Any]) -> bool:
+            return wanted.get(task.identity) is task.function
+
+        self._ready = {x: entry for x, entry in self._ready.items() if is_wanted(entry[0])}
+        for future, sent in list(self._flying.items()):
+            if not any(map(is_wanted, sent.tasks)) and future.cancel():
+                del self._flying[future]
+
+    def _here(
+        self, call: _Call, ahead: Sequence[Task[Any]], begun: Callable[[int], None]
+    ) -> Iterator[tuple[int, Done]]:
+        """Compute tasks in this process: a single one, tiny ones, and while the pool starts.
+
+        Where a process was lost, none is: it might have been the fault of a task.
+        """
+        while call.pending and not self._losses:
+            next_ones = [*(call.tasks[k] for k in call.pending), *ahead]
+            seconds = sum(self._seconds.get(_kind(task), SHORT) for task in next_ones)
+            lone = len(next_ones) == 1 and not self._flying
+            if self.pool.ready and not lone and seconds >= TINY:
+                return
+            k = call.pending.popleft()
+            begun(k)
+            done = computed(call.tasks[k])
+            self._learn(call.tasks[k], done.seconds)
+            del call.position[call.tasks[k].identity]
+            yield k, done
+
+    def _send(self, call: _Call, begun: Callable[[int], None]) -> None:
+        """Send tasks of a call, as many as the processes have room for."""
+        if call.alone:
+            if not self._flying:
+                self._submit([call.tasks[call.alone.popleft()]])
+            return
+        while call.pending and len(self._flying) < QUEUED * self.pool.count:
+            share = ceil(len(call.pending) / self.pool.count)
+            first = call.tasks[call.pending[0]]
+            count = min(share, self._together(first), len(call.pending))
+            positions = [call.pending[k] for k in range(count)]
+            if not self._submit([call.tasks[k] for k in positions]):
+                return
+            for k in positions:
+                call.pending.popleft()
+                begun(k)
+
+    def _send_ahead(self, call: _Call, ahead: Sequence[Task[Any]]) -> None:
+        """Send tasks that will probably be wanted to processes that have nothing else to do."""
+        if call.pending or call.alone:
+            return
+        known = {task.identity for sent in self._flying.values() for task in sent.tasks}
+        left = [x for x in ahead if x.identity not in known and x.identity not in self._ready]
+        while left and len(self._flying) < self.pool.count:
+            count = self._together(left[0])
+            if not self._submit(left[:count]):
+                return
+            del left[:count]
+
+    def _submit(self, tasks: Sequence[Task[Any]]) -> bool:
+        """Send tasks; return False where the memory does not suffice for one message more."""
+        try:
+            message = self._sender.message(tasks)
+        except (PicklingError, AttributeError, TypeError) as error:
+            expected = "a model that other processes can import: functions of a module"
+            raise InputError(Fault("", "workers", expected, str(error))) from None
+        taken = sum(sent.message.memory for sent in self._flying.values())
+        if self._flying and taken + message.memory > self.memory:
+            return False
+        self._fly(tasks, message, {})
+        return True
+
+    def _fly(self, tasks: Sequence[Task[Any]], message: Message, objects: dict[str, bytes]) -> None:
+        try:
+            self._flying[self.pool.submit(message, objects)] = _Sent(tasks, message)
+        except Exception as error:
+            loss = self.pool.lost(error)
+            if loss is Loss.CLUSTER:
+                raise UnfinishedError("the Dask scheduler is gone") from None
+            if loss is not Loss.POOL:
+                raise
+            self.pool.restart()
+            self._flying[self.pool.submit(message, objects)] = _Sent(tasks, message)
+
+    def _received(self, call: _Call, future: Future[Reply]) -> Iterator[tuple[int, Done]]:
+        """Yield what has come back with one message."""
+        try:
+            reply = future.result()
+        except Exception as error:
+            loss = self.pool.lost(error)
+            if loss is None:
+                raise
+            self._lose(call, future, loss)
+            return
+        sent = self._flying.pop(future)
+        if reply.lacking:
+            objects = self._sender.objects(reply.lacking)
+            self._fly(sent.tasks, sent.message, objects)
+            return
+        for task, done in zip(sent.tasks, reply.done, strict=False):
+            self._learn(task, done.seconds)
+            if call.wants(task):
+                yield self._finished(call, task, done)
+            else:
+                self._ready[task.identity] = task, done
+        if reply.error is not None:
+            self._fail(call, sent.tasks[len(reply.done) :], reply.error)
+
+    def _finished(self, call: _Call, task: Task[Any], done: Done) -> tuple[int, Done]:
+        """Return the position and the result of a task, which counts now."""
+        spend(done.costs)
+        return call.position.pop(task.identity), done
+
+    def _fail(self, call: _Call, tasks: Sequence[Task[Any]], error: Exception) -> None:
+        """Take note of the error of the first of some tasks; the others are sent again."""
+        failed, *others = tasks
+        if call.wants(failed):
+            if isinstance(error, MemoryError):
+                self._lost_one(call, failed, "its memory does not suffice")
+            else:
+                call.errors[call.position.pop(failed.identity)] = error
+        call.pending.extend(call.position[x.identity] for x in others if call.wants(x))
+
+    def _lose(self, call: _Call, future: Future[Reply], loss: Loss) -> None:
+        """Take note of a loss; the tasks that it concerns are done again, one at a time."""
+        if loss is Loss.CLUSTER:
+            raise UnfinishedError("the Dask scheduler is gone; what was done is kept")
+        lost = list(self._flying.values()) if loss is Loss.POOL else [self._flying[future]]
+        if loss is Loss.POOL:
+            self._flying.clear()
+            self.pool.restart()
+        else:
+            del self._flying[future]
+        for sent in lost:
+            for task in sent.tasks:
+                if call.wants(task):
+                    self._lost_one(call, task, "the process that computed it ended")
+
+    def _lost_one(self, call: _Call, task: Task[Any], reason: str) -> None:
+        """Take note that a task was lost, and give it up where that is not the first time."""
+        self._losses[task.identity] += 1
+        if self._losses[task.identity] < LOSSES:
+            call.alone.append(call.position[task.identity])
+            return
+        text = f"task '{task.name}' could not be done: {reason}, twice; all others are kept"
+        call.errors[call.position.pop(task.identity)] = UnfinishedError(text)
+
+    def _together(self, task: Task[Any]) -> int:
+        """Return how many tasks like this one are sent together."""
+        return max(1, int(SHORT / max(self._seconds.get(_kind(task), SHORT), SHORT / 1000)))
+
+    def _learn(self, task: Task[Any], seconds: float) -> None:
+        """Take note of how long tasks like this one take."""
+        kind = _kind(task)
+        self._seconds[kind] = (self._seconds.get(kind, seconds) + seconds) / 2
+
+
+def _kind(task: Task[Any]) -> str:
+    """Return what tasks have in common that take about as long."""
+    functions = [task.function, *(x for x in task.arguments[:1] if callable(x))]
+    return " ".join([task.stage, *(function.__qualname__ for function in functions)])
+
+
+def available_memory() -> float:
+    """Return the bytes of memory that are free on this machine, as far as is known."""
+    try:
+        for line in Path("/proc/meminfo").read_text().splitlines():
+            if line.startswith("MemAvailable:"):
+                return 1024.0 * int(line.split()[1])
+    except OSError:  # not on every system
+        pass
+    return float("inf")
+
+
+@contextmanager
+def backend(workers: int, scheduler: str | None = None, warm: str = "") -> Iterator[Backend]:
+    """Open the backend of so many processes, or of the cluster with this scheduler.
+
+    Processes import the module ``warm`` when they start. Raises InputError for a number of
+    processes that is not possible, and what `Cluster` raises.
+    """
+    if not isinstance(workers, int) or not 1 <= workers <= MOST:
+        raise wrong("workers", f"a whole number from 1 to {MOST}", workers)
+    if scheduler is not None and workers > 1:
+        raise wrong("workers", "1, since the cluster has its own", workers)
+    if scheduler is None and workers == 1:
+        yield InTurn()
+        return
+    pool = LocalPool(workers, warm) if scheduler is None else Cluster(scheduler)
+    with Workers(pool) as out:
+        yield out

@@ -1,0 +1,147 @@
+"""Modes from universal files: what pyuff writes is read again, and what is wrong is said."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+from modefront.data.uff import write_uff55
+from modefront.data.uff55 import NodalModes, read_uff55
+from modefront.errors import InputError
+from modefront.study.check import check
+from modefront.study.examples import write_example
+from modefront.study.file import load
+
+pyuff = pytest.importorskip("pyuff")
+
+NODES = [3, 7]
+SHAPES = np.array([[[0.5, 0.0, 0.1], [1.0, 0.0, -0.2]], [[1.0, 0.0, 0.3], [-0.6, 0.0, 0.4]]])
+
+
+def normal_mode(number: int, frequency: float, values: np.ndarray[Any, Any]) -> dict[str, Any]:
+    written: dict[str, Any] = pyuff.prepare_55(
+        *("NONE", "NONE", "NONE", "NONE", "NONE", 1, 2, 2, 8, 2, 3),
+        r1=values[:, 0],
+        r2=values[:, 1],
+        r3=values[:, 2],
+        load_case=1,
+        mode_n=number,
+        freq=frequency,
+        modal_m=1.0,
+        modal_damp_vis=0.01 * number,
+        modal_damp_his=0.0,
+        node_nums=NODES,
+    )
+    return written
+
+
+def write(path: Path, *more: dict[str, Any]) -> Path:
+    modes = [normal_mode(r + 1, 4.0 + 7 * r, values) for r, values in enumerate(SHAPES)]
+    pyuff.UFF(str(path)).write_sets([*more, *modes], "add")
+    return path
+
+
+def geometry(number: int) -> dict[str, Any]:
+    nothing, zero = [0, 0], [0.0, 0.0]
+    prepare = {15: pyuff.prepare_15, 2411: pyuff.prepare_2411}[number]
+    out: dict[str, Any] = prepare(NODES, nothing, nothing, nothing, [0.0, 1.5], zero, [2.0, 4.0])
+    return out
+
+
+@pytest.mark.parametrize("number", [15, 2411])
+def test_normal_modes_with_geometry(number: int, tmp_path: Path) -> None:
+    modes = read_uff55(write(tmp_path / "modes.uff", geometry(number)))
+    assert modes.measured == ("3X", "3Z", "7X", "7Z")
+    np.testing.assert_allclose(modes.position, [[0.0, 0.0, 2.0], [1.5, 0.0, 4.0]])
+    np.testing.assert_allclose(modes.frequency, [[4.0, 11.0]])
+    np.testing.assert_allclose(modes.damping, [[0.01, 0.02]])
+    place = modes.place("-7z")
+    assert place is not None
+    data = modes.at({"top": place, "low": (0, np.array([0.6, 0, 0.8, 0, 0, 0]))})
+    np.testing.assert_allclose(data.shape, [[[0.2, 0.38], [-0.4, 0.84]]])
+
+
+def test_complex_modes_of_several_sets_are_read_as_they_were_written(tmp_path: Path) -> None:
+    pole = complex(-0.3, 25.0)
+    shape = np.array([1.0, -0.5]) * np.exp(0.7j)
+    write_uff55(
+        tmp_path / "a.uff", ["a", "b"], [[(pole, shape)], [(2 * pole, shape)]], ["1Z", "2X"]
+    )
+    modes = read_uff55(tmp_path / "a.uff")
+    assert (modes.sets, modes.modes, modes.measured) == (("a", "b"), (1,), ("1Z", "2X"))
+    np.testing.assert_allclose(modes.frequency[:, 0], np.abs([pole, 2 * pole]) / (2 * np.pi))
+    np.testing.assert_allclose(modes.damping, 0.3 / abs(pole), rtol=1e-4)
+    z, x = modes.shape[0, 0, 0, 2], modes.shape[0, 0, 1, 0]
+    assert x / z == pytest.approx(-0.5, rel=1e-4)
+
+
+@pytest.mark.parametrize(
+    ("content", "says"),
+    [
+        (b"nothing", "this is no universal file"),
+        (b"    -1\n    15\n    -1\n", r"expected .* modes \(dataset 55\), found datasets 15 only"),
+        (b"    -1\n    55\n", "expected the end of dataset 55"),
+        (b"    -1\n    55\nNONE\n    -1\n", "expected a dataset 55"),
+    ],
+)
+def test_files_without_modes_are_refused(content: bytes, says: str, tmp_path: Path) -> None:
+    (tmp_path / "modes.uff").write_bytes(content)
+    with pytest.raises(InputError, match=says):
+        read_uff55(tmp_path / "modes.uff")
+
+
+def study(folder: Path, sensors: str) -> Path:
+    """Return the three-story study with its modes in a universal file."""
+    write_example("three-story-c0", folder)
+    rows = np.loadtxt(folder / "modes.csv", delimiter=",", skiprows=1, usecols=(2, 4, 5, 6))
+    poles = [complex(-0.01, 2 * np.pi * f) for f in rows[:, 0]]
+    shapes = list(zip(poles, rows[:, 1:].astype(complex), strict=True))
+    write_uff55(folder / "modes.uff", ["a"], [shapes], ["11X", "12X", "13X"])
+    file = folder / "study.toml"
+    data = f'file = "modes.uff"\n{sensors}'
+    file.write_text(
+        file.read_text(encoding="utf-8").replace('file = "modes.csv"', data, 1), encoding="utf-8"
+    )
+    return file
+
+
+PLACES = '[data.sensors]\nfloor1 = "11X"\nfloor2 = { node = 12, direction = "-x" }\nfloor3 = "13x"'
+
+
+def test_a_study_takes_modes_from_a_universal_file(tmp_path: Path) -> None:
+    loaded = load(study(tmp_path, PLACES))
+    plain = tmp_path / "plain"
+    write_example("three-story-c0", plain)
+    shape = load(plain / "study.toml").problem.data.shape[0] * [1, -1, 1]
+    found = loaded.problem.data.shape[0]
+    np.testing.assert_allclose(found / found[:, :1], shape / shape[:, :1], rtol=1e-4)
+    assert any("reversing floor2" in text for text in check(loaded).warnings)
+
+
+@pytest.mark.parametrize(
+    ("sensors", "says"),
+    [
+        ("", "floor1 = node and direction, one of 11X, 12X, 13X"),
+        (PLACES.replace('"11X"', '"11Y"'), "one of 11X, 12X, 13X, found 11 along y"),
+        (PLACES.replace('"11X"', '"14X"'), "floor1: expected one of 11X, 12X, 13X, found '14X'"),
+        (PLACES.replace('"11X"', "11"), "node and direction, such as"),
+        (PLACES.replace("node = 12", "node = 2"), "a node of the test, found 2"),
+        (PLACES.replace('"-x"', '"u"'), "direction must be one of"),
+        (PLACES.replace("floor1", "flor1"), "did you mean 'floor1'"),
+    ],
+)
+def test_sensors_that_the_file_does_not_have(sensors: str, says: str, tmp_path: Path) -> None:
+    with pytest.raises(InputError) as error:
+        load(study(tmp_path, sensors))
+    assert says in str(error.value)
+
+
+def test_sensors_of_a_mesh_are_found_by_coordinates_and_names(tmp_path: Path) -> None:
+    modes = NodalModes(
+        *("modes.uff", ("1",), (1,), np.array([5, 6]), np.array([[0.0, 0, 0], [1, 0, 0]])),
+        *(np.ones((1, 1)), np.ones((1, 1)), np.ones((1, 1, 2, 6))),
+    )
+    assert modes.place("6RZ") is not None
+    assert modes.place("floor1") is None
+    assert modes.place("9X") is None

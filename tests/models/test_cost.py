@@ -1,0 +1,81 @@
+"""Whether a reduced basis is used is decided by operation counts."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+import scipy.sparse
+
+import modefront as mf
+from modefront.models.matrices import MatrixModel
+from modefront.models.reduced.cost import Estimate, estimate
+from modefront.models.reduced.model import ReducedModel
+from modefront.models.reduced.options import SMALLEST
+
+
+def chain(size: int, members: int) -> MatrixModel:
+    """Return a chain of springs of members one after the other."""
+    ends = np.arange(size)
+    terms = {}
+    for j, own in enumerate(np.array_split(ends, members)):
+        B = scipy.sparse.csr_array((np.ones(own.size), (own, own)), shape=(size, size))
+        below = own[own > 0]
+        B -= scipy.sparse.csr_array((np.ones(below.size), (below, below - 1)), shape=(size, size))
+        terms[f"k{j + 1}"] = size**2 * (B.T @ B)
+    mass = {"base": scipy.sparse.eye_array(size)}
+    sensors = {"middle": size // 2, "top": size - 1}
+    return mf.matrices(list(terms), terms, mass, sensors)
+
+
+def problem(model: MatrixModel, reduction: mf.Reduction) -> mf.UpdatingProblem:
+    theta = np.ones(len(model.parameters))
+    modes = model.modes(theta, 3, derivatives=False)
+    data = mf.modal_data(modes.frequency, modes.phi.T, model.sensors)
+    groups = [mf.Group("all", frequency="all", shape="all")]
+    names = model.parameters
+    bounds, nominal = dict.fromkeys(names, (0.5, 2.0)), dict.fromkeys(names, 1.0)
+    return mf.updating_problem(model, data, groups, bounds, nominal, reduction=reduction)
+
+
+@pytest.mark.parametrize(
+    ("size", "members", "reduced"),
+    [
+        (SMALLEST - 1, 2, False),
+        (100, 2, True),
+        (120, 17, False),
+        (400, 2, True),
+        (400, 17, True),
+        (3000, 5, True),
+    ],
+)
+def test_a_basis_is_taken_where_the_estimate_is_less(
+    size: int, members: int, reduced: bool
+) -> None:
+    model = problem(chain(size, members), mf.Reduction()).model
+    assert isinstance(model, ReducedModel) == reduced
+    assert isinstance(problem(chain(size, members), mf.Reduction("off")).model, MatrixModel)
+
+
+def test_the_gain_is_the_ratio_of_both_estimates() -> None:
+    of_none = Estimate(full=1e-3, reduced=1e-3, setup=0.0, evaluations=100.0)
+    assert of_none.gain == pytest.approx(1.0)
+    assert Estimate(1.0, 1e-3, 0.0, 100.0).gain > 100
+    assert Estimate(1e-3, 1e-3, 10.0, 100.0).gain < 0.1
+
+
+def test_larger_models_gain_more() -> None:
+    gains = [estimate(chain(size, 3), 6).gain for size in (200, 2000, 20000)]
+    assert gains == sorted(gains)
+    assert estimate(chain(400, 2), 6).gain > estimate(chain(400, 12), 6).gain
+
+
+def test_a_basis_of_a_dense_model_has_its_modes() -> None:
+    model = chain(150, 3)
+    assert not model.is_sparse
+    reduced = problem(model, mf.Reduction(1e-8)).model
+    assert isinstance(reduced, ReducedModel)
+    theta = np.array([1.3, 0.7, 1.1])
+    one, other = model.modes(theta, 3), reduced.modes(theta, 3)
+    np.testing.assert_allclose(other.lam, one.lam, rtol=1e-3)
+    assert (other.lam >= one.lam * (1 - 1e-9)).all(), "of Rayleigh and Ritz"
+    assert model.sparse().sparse().is_sparse

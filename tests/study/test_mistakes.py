@@ -1,0 +1,257 @@
+"""Mistakes of engineers, each put into a study in which nothing is wrong, and found by a check."""
+
+from __future__ import annotations
+
+import csv
+import re
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+from click.testing import CliRunner
+
+from modefront.cli.main import cli
+from modefront.study.check import Findings, check
+from modefront.study.examples import write_example
+from modefront.study.file import load
+
+CHAIN, FRAME, SETS = "three-story-c0", "three-story-fe-c1", "hammer-test"
+
+Rows = list[dict[str, str]]
+
+
+def spoilt(
+    folder: Path, example: str, *edits: tuple[str, str], data: Callable[[Rows], None] | None = None
+) -> Path:
+    """Write an example with parts of the study file replaced and its data changed."""
+    write_example(example, folder)
+    study = folder / "study.toml"
+    text = study.read_text(encoding="utf-8")
+    for old, new in edits:
+        assert old in text, old
+        text = text.replace(old, new)
+    study.write_text(text, encoding="utf-8")
+    if data is not None:
+        file = folder / ("modes-m0.csv" if example == SETS else "modes.csv")
+        with file.open(encoding="utf-8", newline="") as stream:
+            rows = list(csv.DictReader(stream))
+        data(rows)
+        with file.open("w", encoding="utf-8", newline="") as stream:
+            writer = csv.DictWriter(stream, list(rows[0]))
+            writer.writeheader()
+            writer.writerows(rows)
+    return study
+
+
+def found(study: Path) -> Findings:
+    return check(load(study))
+
+
+def only(study: Path) -> str:
+    """Return the one mistake that is found, in words."""
+    findings = found(study)
+    assert len(findings.mistakes) == 1, findings.warnings
+    return findings.warnings[0]
+
+
+def scaled(column: str, factor: float, where: str = "") -> Callable[[Rows], None]:
+    """Return a change of a column by a factor, in one data set or in all."""
+
+    def change(rows: Rows) -> None:
+        for row in rows:
+            if row["set"] == where or not where:
+                row[column] = repr(factor * float(row[column] or 0.01))
+
+    return change
+
+
+def exchanged(rows: Rows) -> None:
+    for row in rows:
+        row["floor1"], row["floor2"] = row["floor2"], row["floor1"]
+
+
+@pytest.mark.parametrize("example", [CHAIN, FRAME, SETS])
+def test_nothing_is_found_where_nothing_is_wrong(example: str, tmp_path: Path) -> None:
+    assert found(spoilt(tmp_path, example)).mistakes == ()
+
+
+@pytest.mark.parametrize("example", [CHAIN, FRAME])
+def test_rad_per_second(example: str, tmp_path: Path) -> None:
+    said = only(spoilt(tmp_path, example, data=scaled("frequency", 6.2831853)))
+    assert "look like rad/s" in said
+    assert "divide the column 'frequency' by 6.2832" in said
+
+
+@pytest.mark.parametrize(("factor", "unit"), [(1e-6, "MPa"), (1e-9, "GPa"), (1e9, "GPa")])
+def test_units_of_stiffness(factor: float, unit: str, tmp_path: Path) -> None:
+    k = repr(84763.8 * factor)
+    said = only(spoilt(tmp_path, CHAIN, ("84763.8", k)))
+    assert "all measured frequencies are about" in said
+    assert unit in said
+
+
+def test_periods_and_eigenvalues(tmp_path: Path) -> None:
+    def period(rows: Rows) -> None:
+        for row in rows:
+            row["frequency"] = repr(1 / float(row["frequency"]))
+
+    def eigenvalue(rows: Rows) -> None:
+        for row in rows:
+            row["frequency"] = repr((6.2831853 * float(row["frequency"])) ** 2)
+
+    assert "looks like periods in s" in only(spoilt(tmp_path / "a", CHAIN, data=period))
+    assert "looks like eigenvalues" in only(spoilt(tmp_path / "b", CHAIN, data=eigenvalue))
+
+
+@pytest.mark.parametrize("example", [CHAIN, FRAME])
+@pytest.mark.parametrize("sensor", ["floor1", "floor2", "floor3"])
+def test_a_reversed_sensor(example: str, sensor: str, tmp_path: Path) -> None:
+    said = only(spoilt(tmp_path, example, data=scaled(sensor, -1.0)))
+    assert re.search(rf"reversing {sensor} in all data raises MAC \d from 0\.\d\d to 1\.00", said)
+    assert f"check the direction of {sensor}" in said
+
+
+@pytest.mark.parametrize("example", [CHAIN, FRAME])
+def test_exchanged_sensors(example: str, tmp_path: Path) -> None:
+    said = only(spoilt(tmp_path, example, data=exchanged))
+    assert re.search(r"exchanging floor1 and floor2 in all data raises MAC \d from 0", said)
+
+
+def test_sensors_of_one_data_set(tmp_path: Path) -> None:
+    first = tmp_path / "modes-m0.csv"
+    write_example(SETS, tmp_path / "plain")
+    names = load(tmp_path / "plain" / "study.toml").problem.data.sets
+    said = only(spoilt(tmp_path, SETS, data=scaled("floor2", -1.0, names[1])))
+    assert f"reversing floor2 in set {names[1]} raises cross-MAC" in said
+    assert first.exists()
+
+
+def test_a_data_set_in_another_unit_and_one_with_another_frequency(tmp_path: Path) -> None:
+    write_example(SETS, tmp_path / "plain")
+    name = load(tmp_path / "plain" / "study.toml").problem.data.sets[2]
+    said = only(spoilt(tmp_path / "a", SETS, data=scaled("frequency", 6.2831853, name)))
+    assert f"all frequencies of set {name} are 6.28 times" in said
+    assert "rad/s for Hz" in said
+
+    def one(rows: Rows) -> None:
+        (row,) = (row for row in rows if row["set"] == name and row["mode"] == "2")
+        row["frequency"] = repr(1.1 * float(row["frequency"]))
+
+    said = only(spoilt(tmp_path / "b", SETS, data=one))
+    assert "disagree in the frequency of mode 2" in said
+    assert f"sets {name} and" in said
+
+
+def test_modes_that_one_set_numbers_differently(tmp_path: Path) -> None:
+    write_example(SETS, tmp_path / "plain")
+    name = load(tmp_path / "plain" / "study.toml").problem.data.sets[0]
+
+    def renumbered(rows: Rows) -> None:
+        for row in rows:
+            if row["set"] == name:
+                row["mode"] = {"1": "1", "2": "3", "3": "2"}[row["mode"]]
+
+    said = only(spoilt(tmp_path / "a", SETS, data=renumbered))
+    assert f"modes 2 and 3 of set {name} are modes 3 and 2 of" in said
+
+
+def test_directions_that_do_not_match(tmp_path: Path) -> None:
+    said = only(spoilt(tmp_path / "a", FRAME, ('direction = "x" }', 'direction = "y" }')))
+    assert "direction y of floor1, floor2 and floor3 does not match the data: x raises MAC" in said
+    one = ('node = 37, direction = "x"', 'node = 37, direction = "y"')
+    said = only(spoilt(tmp_path / "b", FRAME, one))
+    assert "direction y of floor2 does not match the data: x raises MAC" in said
+
+
+def test_degrees_of_freedom_counted_from_one(tmp_path: Path) -> None:
+    sensors = "sensors = { floor1 = 0, floor2 = 1, floor3 = 2 }"
+
+    def without_third(rows: Rows) -> None:
+        for row in rows:
+            del row["floor3"]
+
+    edit = (sensors, "sensors = { floor1 = 1, floor2 = 2 }")
+    said = only(spoilt(tmp_path / "a", CHAIN, edit, data=without_third))
+    assert "degrees of freedom were counted from 1" in said
+    with pytest.raises(ValueError, match=r"from 0 to 2 .they are counted from 0., found 3"):
+        load(
+            spoilt(
+                tmp_path / "b",
+                CHAIN,
+                (
+                    sensors,
+                    sensors.replace("0, fl", "1, fl")
+                    .replace("= 2 }", "= 3 }")
+                    .replace("floor2 = 1", "floor2 = 2"),
+                ),
+            )
+        )
+
+
+def test_damping_in_percent(tmp_path: Path) -> None:
+    said = only(spoilt(tmp_path, CHAIN, data=scaled("damping", 80.0)))
+    assert "damping of 0.8 to 0.8 looks like percent" in said
+    assert "by 100" in said
+
+
+def test_modes_outside_the_model_and_pairs_far_apart(tmp_path: Path) -> None:
+    def outside(rows: Rows) -> None:
+        rows[2]["frequency"] = "150.0"
+
+    said = only(spoilt(tmp_path / "a", CHAIN, data=outside))
+    assert "measured mode 3 at 150 Hz is outside what the model has: its 3 modes end" in said
+
+    def far(rows: Rows) -> None:
+        rows[1]["frequency"], rows[2]["frequency"] = "15.2", "3.0"
+
+    findings = found(spoilt(tmp_path / "b", CHAIN, data=far))
+    assert any(
+        "measured mode 3 at 3 Hz is paired with model mode 3 at 17.89 Hz" in text
+        and "set window = 1.5 in [pairing]" in text
+        for text in findings.warnings
+    )
+
+
+def test_groups_of_the_mesh_without_elements(tmp_path: Path) -> None:
+    study = spoilt(tmp_path, FRAME)
+    mesh = tmp_path / "building.msh"
+    text = mesh.read_text(encoding="utf-8")
+    text = text.replace("$PhysicalNames\n6\n", '$PhysicalNames\n7\n1 9 "braces"\n')
+    count = int(text.split("$Elements\n")[1].split("\n")[0])
+    text = text.replace(f"$Elements\n{count}\n", f"$Elements\n{count + 1}\n")
+    text = text.replace("$EndElements", f"{count + 1} 1 2 9 9 19 37\n$EndElements")
+    mesh.write_text(text, encoding="utf-8")
+    said = only(study)
+    assert "mesh group 'braces' of 1 line cells has no elements" in said
+    assert '[[model.group]] name = "braces"' in said
+
+
+def test_the_table_sets_nominal_beside_measured_in_80_columns(tmp_path: Path) -> None:
+    study = spoilt(
+        tmp_path, SETS, ('name = "theta2"', 'name = "the stiffness of the second storey"')
+    )
+    text = study.read_text(encoding="utf-8").replace(
+        '"theta2"', '"the stiffness of the second storey"'
+    )
+    study.write_text(text, encoding="utf-8")
+    result = CliRunner().invoke(cli, ["check", "--all", str(study)])
+    assert result.exception is None, result.output
+    lines = result.output.replace(str(tmp_path), "").splitlines()
+    assert max(map(len, lines)) <= 80
+    header = next(line for line in lines if "measured Hz" in line)
+    assert " ".join(header.split()) == "mode measured Hz model Hz error % MAC model mode"
+    assert sum("COMAC" in line for line in lines) >= 2
+    assert any(line.split()[:4] == ["parameter", "f1", "f2", "f3"] for line in lines)
+
+
+def test_parameters_that_act_alike_are_to_be_grouped(tmp_path: Path) -> None:
+    masses = ('stiffness_parameters = ["theta1", "theta2", "theta3"]', "")
+    study = spoilt(tmp_path, CHAIN, masses, ("[[parameter]]", "[[parameter]]"))
+    text = study.read_text(encoding="utf-8").replace(
+        "sensors =",
+        'stiffness_parameters = ["theta1", "theta2", ""]\n'
+        'mass_parameters = ["", "", "theta3"]\nsensors =',
+    )
+    study.write_text(text.replace('frequency = "all"', "frequency = [1]"), encoding="utf-8")
+    advice = found(study).sensitivities.advice
+    assert len(advice) == 3

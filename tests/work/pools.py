@@ -1,0 +1,65 @@
+"""A pool for tests that computes messages in threads, in any order, and loses some."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Sequence
+from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
+from concurrent.futures.process import BrokenProcessPool
+from dataclasses import dataclass, field
+
+from modefront.work import transfer
+from modefront.work.pools import Loss
+from modefront.work.transfer import Message, Reply
+
+
+@dataclass
+class Threads:
+    """Computes messages after delays, in milliseconds, one after another taken in turn.
+
+    The messages with the numbers ``broken`` are lost with all that are under way; from the one
+    numbered ``gone`` on, there is no cluster any more. Every message ``forgets`` shared objects.
+    """
+
+    count: int = 2
+    delays: Sequence[int] = (0,)
+    broken: Sequence[int] = ()
+    gone: int | None = None
+    forgets: bool = False
+    ready: bool = True
+    sent: list[Message] = field(default_factory=list)
+    restarts: int = 0
+    closed: bool = False
+    most: int = 0
+    under_way: set[Future[Reply]] = field(default_factory=set)
+    executor: ThreadPoolExecutor = field(default_factory=lambda: ThreadPoolExecutor(8))
+
+    def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
+        number = len(self.sent)
+        self.sent.append(message)
+        if self.gone is not None and number >= self.gone:
+            raise CancelledError
+        future = self.executor.submit(self._compute, number, message, objects)
+        self.under_way = {x for x in self.under_way if not x.done()} | {future}
+        self.most = max(self.most, len(self.under_way))
+        return future
+
+    def _compute(self, number: int, message: Message, objects: dict[str, bytes]) -> Reply:
+        time.sleep(1e-3 * self.delays[number % len(self.delays)])
+        if number in self.broken:
+            raise BrokenProcessPool
+        if self.forgets and not objects:
+            transfer._OBJECTS.clear()
+        return transfer.work(message, objects)
+
+    def lost(self, error: Exception, /) -> Loss | None:
+        if isinstance(error, CancelledError):
+            return Loss.CLUSTER
+        return Loss.POOL if isinstance(error, BrokenProcessPool) else None
+
+    def restart(self) -> None:
+        self.restarts += 1
+
+    def close(self) -> None:
+        self.closed = True
+        self.executor.shutdown()

@@ -1,0 +1,204 @@
+"""Studies have the same digits on one process, on several, and on a cluster."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, nullcontext, suppress
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+import scipy.io
+import scipy.sparse
+import xarray as xr
+from test_tasks_of_runs import everything, plain, study
+from two_masses import write_study
+
+import modefront as mf
+from modefront.errors import InputError, UnfinishedError
+from modefront.study import session
+from modefront.work import workers as module
+from modefront.work.pools import Cluster, LocalPool, Pool
+from modefront.work.progress import Progress, State
+from modefront.work.workers import Workers
+
+EVOLUTION = "points = 3", 'points = 3\nmethod = "spea2"\npopulation = 6\nevaluations = 18'
+
+
+def evolution(folder: Path) -> mf.Study:
+    return study(folder, EVOLUTION)
+
+
+def reduced(folder: Path) -> mf.Study:
+    """Return a study of a chain of 200 masses in a reduced basis."""
+    n, rng = 200, np.random.default_rng(1)
+    names = ("k1", "k2")
+    for name, own in zip(names, np.split(np.arange(n), 2), strict=True):
+        K = scipy.sparse.lil_array((n, n))
+        for i in own:  # the spring below the mass
+            K[i, i] += 1e4
+            if i:
+                K[i - 1, i - 1] += 1e4
+                K[i, i - 1] -= 1e4
+                K[i - 1, i] -= 1e4
+        scipy.io.mmwrite(folder / f"{name}.mtx", K.tocoo())
+    scipy.io.mmwrite(folder / "M.mtx", scipy.sparse.coo_array(scipy.sparse.eye_array(n)))
+    sensors = [20, 60, 110, 170]
+    x = np.arange(1, n + 1) / (n + 0.5)
+    lines = ["set,mode,frequency,damping," + ",".join(f"s{s}" for s in sensors)]
+    for r in (1, 2):
+        angle = (r - 0.5) * np.pi
+        frequency = 100 / np.pi * np.sin(angle / (2 * n + 1)) * (1 + 0.01 * rng.normal())
+        shape = np.sin(angle * x[sensors]) * (1 + 0.05 * rng.normal(size=4))
+        lines.append(f"1,{r},{frequency},0.01," + ",".join(map(str, shape)))
+    (folder / "modes.csv").write_text("\n".join(lines) + "\n")
+    text = """[study]
+name = "reduced"
+
+[data]
+file = "modes.csv"
+
+[model]
+kind = "matrices"
+reduction = 1e-8
+stiffness = { k1 = "k1.mtx", k2 = "k2.mtx" }
+mass = { base = "M.mtx" }
+sensors = { s20 = 20, s60 = 60, s110 = 110, s170 = 170 }
+
+[pareto]
+points = 4
+
+[search]
+starts = 3
+limit = 4
+evolutions = 0
+"""
+    for name in names:
+        text += f'\n[[parameter]]\nname = "{name}"\nnominal = 1.0\nbounds = [0.5, 2.0]\n'
+    for name, what in (("frequencies", "frequency"), ("shapes", "shape")):
+        text += f'\n[[group]]\nname = "{name}"\n{what} = "all"\n'
+    (folder / "study.toml").write_text(text)
+    return mf.load(folder / "study.toml")
+
+
+@pytest.fixture(autouse=True)
+def _nothing_is_too_small(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Send all tasks to the processes, also the small ones of these studies."""
+    monkeypatch.setattr(module, "TINY", 0.0)
+    monkeypatch.setattr(LocalPool, "ready", True)
+
+
+@pytest.fixture(scope="module")
+def pools() -> Iterator[dict[str, Workers]]:
+    """Return processes that all studies share: two, three, and a cluster of two workers."""
+    distributed: Any = pytest.importorskip("distributed")
+    with ExitStack() as stack:
+        cluster = distributed.LocalCluster(
+            n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50
+        )
+        address = stack.enter_context(cluster).scheduler_address
+        every: dict[str, Pool] = {
+            "2": LocalPool(2),
+            "3": LocalPool(3),
+            "cluster": Cluster(address),
+        }
+        yield {name: stack.enter_context(Workers(pool)) for name, pool in every.items()}
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize(
+    ("of", "names"),
+    [(everything, ["2", "3"]), (reduced, ["3", "cluster"]), (evolution, ["2", "cluster"])],
+)
+def test_results_do_not_depend_on_who_does_the_work(
+    of: Callable[[Path], mf.Study],
+    names: list[str],
+    tmp_path: Path,
+    pools: dict[str, Workers],
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    expected = mf.run(of(tmp_path), tmp_path / "one").dataset
+    files = sorted(x.name for x in (tmp_path / "one").rglob("*.npz"))
+    for name in names:
+        with monkeypatch.context() as patch:
+            patch.setattr(session, "backend", lambda *_, x=pools[name], **__: nullcontext(x))
+            found = mf.run(of(tmp_path), tmp_path / name).dataset
+        xr.testing.assert_identical(found, expected)
+        assert sorted(x.name for x in (tmp_path / name).rglob("*.npz")) == files
+
+
+@pytest.mark.slow
+def test_a_run_whose_scheduler_is_gone_ends_and_a_later_one_goes_on(tmp_path: Path) -> None:
+    distributed: Any = pytest.importorskip("distributed")
+    expected = mf.run(plain(tmp_path), tmp_path / "whole").dataset
+    cluster = distributed.LocalCluster(
+        n_workers=1, threads_per_worker=1, dashboard_address=":0", silence_logs=50
+    )
+
+    def report(state: State) -> None:
+        if state.done == 4:
+            cluster.close()
+
+    folder = tmp_path / "results"
+    progress = Progress(report)
+    with pytest.raises(UnfinishedError, match="the Dask scheduler is gone; what was done is kept"):
+        mf.run(everything(tmp_path), folder, scheduler=cluster.scheduler_address, progress=progress)
+    xr.testing.assert_identical(mf.run(plain(tmp_path), folder).dataset, expected)
+
+
+def test_a_cluster_that_is_none_is_refused_in_words(monkeypatch: pytest.MonkeyPatch) -> None:
+    pytest.importorskip("distributed")
+    monkeypatch.setattr("modefront.work.pools.ANSWER", 0.3)
+    with pytest.raises(InputError, match="--scheduler: expected an address like tcp"):
+        Cluster("nonsense:////")
+    with pytest.raises(UnfinishedError, match=r"no Dask scheduler answers at tcp://127.0.0.1:9"):
+        Cluster("tcp://127.0.0.1:9")
+
+
+def running(group: int) -> list[str]:
+    """Return the processes of a group that have not ended."""
+    found = []
+    for path in Path("/proc").glob("[0-9]*/stat"):
+        with suppress(OSError):
+            state, _, own = path.read_text().rpartition(")")[2].split()[:3]
+            if int(own) == group and state != "Z":
+                found.append(path.parent.name)
+    return found
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")
+@pytest.mark.parametrize("number", [signal.SIGTERM, signal.SIGHUP, signal.SIGINT])
+def test_signals_interrupt_a_run_and_end_its_processes(number: int, tmp_path: Path) -> None:
+    path = write_study(tmp_path, "")
+    path.write_text(path.read_text().replace("points = 3", "points = 300"))
+    heard = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
+    code = f"{heard}; from modefront.cli.main import main; main()"
+    folder = tmp_path / "results"
+    arguments = ["run", path, "-o", folder, "--workers", "2"]
+    with subprocess.Popen(
+        [sys.executable, "-c", code, *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        while process.poll() is None and len(list(folder.rglob("*.npz"))) < 5:
+            time.sleep(0.01)
+        os.killpg(process.pid, number)
+        out, err = process.communicate(timeout=60)
+    assert process.returncode == 130, err
+    assert out == ""
+    assert err.splitlines()[-1].startswith("modefront: interrupted; what was done is kept")
+    assert "Traceback" not in err
+    assert not list(folder.rglob("*.tmp"))
+    for _ in range(500):  # what multiprocessing has started to clean up ends after the others
+        if not running(process.pid):
+            break
+        time.sleep(0.02)
+    assert not running(process.pid)

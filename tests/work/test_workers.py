@@ -1,0 +1,318 @@
+"""Tasks in other processes: the same results in any order, and what happens to lost ones."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from jobs import (
+    Big,
+    chain,
+    deadly,
+    failing,
+    nap,
+    negative,
+    normal,
+    process_of,
+    slow,
+    squares,
+    totals,
+)
+from pools import Threads
+from problems import box, circles
+
+from modefront.errors import Fault, InputError, ModelError, UnfinishedError
+from modefront.solvers.archive import Archive, Archiving
+from modefront.solvers.continuation import simplex
+from modefront.solvers.explore import Descent, Search, explore
+from modefront.solvers.nbi import nbi
+from modefront.solvers.payoff import payoff
+from modefront.solvers.problem import Problem
+from modefront.solvers.scalarisation import weighted
+from modefront.solvers.sqp import Solution
+from modefront.work.backend import InTurn
+from modefront.work.run import Run
+from modefront.work.store import Store
+from modefront.work.task import Executor, Task, Within, seed_sequence
+from modefront.work.workers import QUEUED, Workers, backend
+
+orders = st.lists(st.integers(0, 3), min_size=1, max_size=5)
+
+
+# ---- results do not depend on who computes them ------------------------------------------------
+
+
+@settings(max_examples=25)
+@given(orders, st.integers(1, 4), st.lists(st.integers(0, 40), max_size=12, unique=True))
+def test_results_costs_and_random_numbers_are_those_of_one_after_another(
+    delays: list[int], count: int, numbers: list[int]
+) -> None:
+    tasks: list[Task[Any]] = [*squares(*numbers)]
+    tasks += [Task(("normal", k), normal, (k,), seed_sequence(1, k)) for k in range(3)]
+    tasks += [Task(("chain", k), chain, (k,), has_parts=True) for k in range(2)]
+    alone = Run()
+    expected = alone.run(tasks)
+    with Workers(Threads(count, delays)) as workers:
+        work = Run(backend=workers)
+        results = work.run(tasks, squares(100, 101))
+    for one, other in zip(results, expected, strict=True):
+        np.testing.assert_array_equal(one, other)
+    assert set(work.costs) == set(alone.costs)
+    assert work.total().eigenproblems == alone.total().eigenproblems
+
+
+def searched(problem: Problem, work: Executor) -> list[Solution]:
+    """Return minima of a search and a front between the first two of them."""
+    minima = []
+    for i, w in enumerate(np.eye(2)):
+        task = Task(
+            ("search", i),
+            explore,
+            (problem, Descent(weighted(w)), Search(starts=6, limit=8, evolutions=0)),
+            seed_sequence(0, i),
+            has_parts=True,
+        )
+        minima.append(work.run([task])[0][0])
+    target = payoff(minima, np.ones(2), minima)
+    assert target is not None
+    return [*minima, *nbi(problem, minima, target, simplex(2, 6), work)]
+
+
+@settings(max_examples=8)
+@given(orders, st.integers(2, 3))
+def test_searches_and_fronts_are_those_of_one_after_another(delays: list[int], count: int) -> None:
+    problem = box(circles, [-1, -1], [2, 2])
+    archives = Archive(problem), Archive(problem)
+    expected = searched(problem, Archiving(Run(), archives[0]))
+    with Workers(Threads(count, delays)) as workers:
+        again = searched(problem, Archiving(Run(backend=workers), archives[1]))
+    assert [x.at.theta.tolist() for x in again] == [x.at.theta.tolist() for x in expected]
+    assert [x.evaluations for x in again] == [x.evaluations for x in expected]
+    assert archives[1].theta.tolist() == archives[0].theta.tolist()
+
+
+def test_what_was_computed_ahead_is_taken_where_it_is_asked_for_and_else_forgotten() -> None:
+    pool = Threads(2)
+    with Workers(pool) as workers:
+        work = Within(Run(backend=workers), turn=("turn", 1))
+        assert work.run(squares(1, 2), squares(3, 4)) == [1, 4]
+        sent = len(pool.sent)
+        assert work.run(squares(3), squares(4)) == [9]
+        assert len(pool.sent) <= sent + 1
+        assert work.run([Task(("square", 4), negative, (5,))]) == [-25], "another function"
+        assert not workers._flying
+
+
+def test_short_tasks_are_sent_together_and_long_ones_alone() -> None:
+    pool = Threads(2)
+    with Workers(pool) as workers:
+        work = Run(backend=workers)
+        work.run(squares(*range(200)))
+        assert len(pool.sent) < 60
+        long = Threads(2)
+        with Workers(long) as others:
+            tasks = [Task(("nap", k), time.sleep, (0.03,)) for k in range(4)]
+            Run(backend=others).run(tasks)
+        assert len(long.sent) == 4
+
+
+# ---- shared objects ----------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("forgets", [False, True])
+def test_a_shared_object_is_sent_where_it_is_not_known(forgets: bool) -> None:
+    big = Big(np.ones(10**5))
+    pool = Threads(2, forgets=forgets)
+    with Workers(pool) as workers:
+        work = Run(backend=workers)
+        assert work.run(totals(big)) == [1e5 + k for k in range(6)]
+        assert max(len(message.content) for message in pool.sent) < 10**4
+        big.numbers, big.version = 2 * big.numbers, 1
+        assert work.run(totals(big, 1)) == [2e5 + k for k in range(6)]
+
+
+def test_memory_bounds_how_many_tasks_run_at_a_time() -> None:
+    big = Big(np.ones(3), footprint=4e9)
+    pool = Threads(3, delays=(3,))
+    with Workers(pool, memory=6e9) as workers:
+        assert Run(backend=workers).run(totals(big)) == [3.0 + k for k in range(6)]
+    assert pool.most == 1
+    with Workers(roomy := Threads(3, delays=(3,)), memory=20e9) as workers:
+        Run(backend=workers).run(totals(big))
+    assert 1 < roomy.most <= QUEUED * 3
+
+
+def test_what_cannot_be_sent_is_an_error_of_the_input() -> None:
+    tasks = [Task(("lambda", k), lambda: 1) for k in range(2)]
+    with Workers(Threads()) as workers, pytest.raises(InputError, match="functions of a module"):
+        Run(backend=workers).run(tasks)
+
+
+# ---- errors and losses -------------------------------------------------------------------------
+
+
+def test_the_error_of_a_task_is_raised_and_all_others_are_kept(tmp_path: Path) -> None:
+    fault = Fault("file", "place", "this", "that")
+    tasks = [
+        *squares(1, 2),
+        Task(("wrong", 1), failing, (InputError([fault, fault]),)),
+        Task(("wrong", 2), failing, (ModelError("no modes"),)),
+        *squares(3, 4),
+    ]
+    store = Store(tmp_path)
+    with Workers(Threads(2, (2, 0))) as workers, pytest.raises(InputError) as caught:
+        Run(store, backend=workers).run(tasks)
+    assert caught.value.faults == (fault, fault), "the first one in the order of the tasks"
+    assert str(caught.value) == f"{fault}\n{fault}"
+    assert all(store.has(task) for task in squares(1, 2, 3, 4))
+
+
+@settings(max_examples=20)
+@given(st.integers(0, 12), orders)
+def test_a_lost_process_costs_nothing_but_time(lost: int, delays: list[int]) -> None:
+    pool = Threads(2, delays, broken=(lost,))
+    with Workers(pool) as workers:
+        assert Run(backend=workers).run(squares(*range(30))) == [x * x for x in range(30)]
+    assert pool.restarts == (1 if lost < len(pool.sent) else 0)
+
+
+def test_a_task_that_is_lost_twice_is_named_and_all_others_are_kept(tmp_path: Path) -> None:
+    store = Store(tmp_path)
+    pool = Threads(1, broken=(0, 2))  # the second one is lost with the first
+    tasks = [Task(("nap", k), nap, (k,)) for k in range(4)]
+    text = "task 'nap-0' could not be done: the process that computed it ended, twice"
+    with Workers(pool) as workers, pytest.raises(UnfinishedError, match=text):
+        Run(store, backend=workers).run(tasks)
+    assert [store.has(task) for task in tasks] == [False, True, True, True]
+
+
+def test_a_task_whose_memory_does_not_suffice_is_tried_alone_and_then_named() -> None:
+    tasks = [*squares(1, 2), Task(("greedy",), failing, (MemoryError(),))]
+    text = "task 'greedy' could not be done: its memory does not suffice, twice"
+    with Workers(Threads()) as workers, pytest.raises(UnfinishedError, match=text):
+        Run(backend=workers).run(tasks)
+
+
+def test_without_a_cluster_the_run_ends_with_what_it_has(tmp_path: Path) -> None:
+    store = Store(tmp_path)
+    tasks = [Task(("nap", k), nap, (k,)) for k in range(8)]
+    with (
+        Workers(Threads(2, gone=5)) as workers,
+        pytest.raises(UnfinishedError, match="the Dask scheduler is gone"),
+    ):
+        Run(store, backend=workers).run(tasks)
+    kept = sum(store.has(task) for task in tasks)
+    assert 0 < kept < 8
+    again = Run(store)
+    assert again.run(tasks) == list(range(8))
+    assert again.progress.state.done == 8
+
+
+def test_long_parts_are_kept_until_their_task_is_done(tmp_path: Path) -> None:
+    store = Store(tmp_path)
+    task = Task(("slow",), slow, (str(tmp_path / "calls"),), has_parts=True)
+    with pytest.raises(ZeroDivisionError):
+        Run(store).run([task])
+    assert len(list(tmp_path.glob("*.npz"))) == 1, "the part that took long"
+    again = Run(store)
+    assert again.run([task]) == [7]
+    assert (tmp_path / "calls").read_text() == "xx"
+    assert [path.name[:4] for path in tmp_path.glob("*.npz")] == ["slow"]
+    assert again.total().eigenproblems == 3, "the part counts as it did"
+
+
+# ---- processes ---------------------------------------------------------------------------------
+
+
+@pytest.fixture(scope="module")
+def two() -> Iterator[Workers]:
+    with backend(2) as out:
+        assert isinstance(out, Workers)
+        while not out.pool.ready:
+            time.sleep(0.01)
+        yield out
+
+
+def test_processes_share_the_work_and_are_not_this_one(two: Workers) -> None:
+    found = Run(backend=two).run([Task(("process", k), process_of, (k,)) for k in range(8)])
+    assert os.getpid() not in found
+    assert 1 <= len(set(found)) <= 2
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there is no such signal on Windows")
+def test_a_killed_process_is_replaced_and_its_tasks_are_done_again(
+    two: Workers, tmp_path: Path
+) -> None:
+    marker = str(tmp_path / "marker")
+    tasks = [Task(("deadly", k), deadly, (marker, 1, k)) for k in range(6)]
+    assert Run(backend=two).run(tasks) == list(range(6))
+    (tmp_path / "marker").unlink()
+    tasks = [Task(("deadly", k), deadly, (marker, 9, k), turn=("turn", 2)) for k in range(6)]
+    store = Store(tmp_path)
+    with pytest.raises(UnfinishedError, match="task 'deadly-2-turn-2' could not be done"):
+        Run(store, backend=two).run(tasks)
+    assert [store.has(task) for task in tasks] == [k != 2 for k in range(6)]
+
+
+def test_one_worker_is_the_process_itself_and_other_numbers_are_refused() -> None:
+    with backend(1) as one:
+        assert isinstance(one, InTurn)
+    for wrong in (0, 62, -1):
+        with pytest.raises(InputError, match="workers: expected a whole number"), backend(wrong):
+            pass
+    with pytest.raises(InputError, match="the cluster has its own"), backend(2, "tcp://x:1"):
+        pass
+
+
+ORPHANS = """
+import sys, time
+from jobs import process_of
+from modefront.work.task import Task
+from modefront.work.workers import backend
+if __name__ == "__main__":
+    with backend(2) as work:
+        while not work.pool.ready:
+            time.sleep(0.01)
+        tasks = [Task(("process", k), process_of, (k,)) for k in range(10**4)]
+        for _, done in work.compute(tasks, (), lambda _: None):
+            print(done.result, flush=True)
+"""
+
+
+@pytest.mark.skipif(os.name == "nt", reason="there is no such signal on Windows")
+def test_processes_end_with_the_one_that_started_them(tmp_path: Path) -> None:
+    script = tmp_path / "orphans.py"
+    script.write_text(ORPHANS)
+    path = os.pathsep.join([*sys.path, str(Path(__file__).parent)])
+    with subprocess.Popen(
+        [sys.executable, script],
+        env={**os.environ, "PYTHONPATH": path},
+        stdout=subprocess.PIPE,
+        text=True,
+    ) as parent:
+        assert parent.stdout is not None
+        found = {int(parent.stdout.readline()) for _ in range(8)}
+        parent.kill()
+    for _ in range(500):
+        if not any(map(alive, found)):
+            break
+        time.sleep(0.02)
+    assert not any(map(alive, found))
+
+
+def alive(process: int) -> bool:
+    """Return whether a process runs; one that has ended and is not waited for does not."""
+    try:
+        state = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0]
+    except OSError:
+        return False
+    return state != "Z"
