@@ -38,7 +38,7 @@ def _values(letter: str, count: int = 9) -> str:
 def test_ascii_functions_are_read_with_either_exponent(tmp_path: Path, letter: str) -> None:
     path = tmp_path / "a.uff"
     path.write_text(_ascii58(_values(letter), 9))
-    (one,) = read_uff(path)
+    (one,) = read_uff(path).channels
     assert (one.response, one.reference, one.quantity) == ("3Z", "7Z", "accelerance")
     assert one.frequency == pytest.approx(1 + 0.5 * np.arange(9))
     assert one.H == pytest.approx(-(np.arange(1, 19, 2) + 1j * np.arange(2, 20, 2)))
@@ -52,7 +52,7 @@ def test_binary_functions_are_read(tmp_path: Path) -> None:
     header = f"{58:6d}b{1:6d}{2:6d}{len(lines):12d}{len(body):12d}{0:6d}{0:6d}{0:12d}{0:12d}"
     text = "\n".join(["    -1", header, *lines]) + "\n"
     path.write_bytes(text.encode() + body + b"\n    -1\n")
-    (found,) = read_uff(path)
+    (found,) = read_uff(path).channels
     assert found.quantity == "receptance"
     assert found.H == pytest.approx(-H, rel=1e-6)
 

@@ -46,3 +46,17 @@ def blows(
     noisy = H + level * rms * circular(rng, (count, *H.shape))
     out: Complexes = noisy * (1 + force * circular(rng, (count, H.shape[0], 1, H.shape[2])))
     return out
+
+
+def impact_records(
+    f0: Floats, zeta: Floats, phi: Floats, reference: int, rng: np.random.Generator, level: float
+) -> tuple[Floats, Floats, Floats]:
+    """Return time, force and accelerations of one blow, with noise, before they have died out."""
+    rate, samples, periods = 128.0, 1280, 8
+    f = np.arange(periods * samples // 2 + 1) * rate / (periods * samples)
+    H = accelerance(f, f0, zeta, phi, [reference])[0]
+    force = np.zeros(samples)
+    force[20:23] = rng.uniform(1, 2) * np.array([0.7, 1.0, 0.7])
+    y = np.fft.irfft(H * np.fft.rfft(force, periods * samples), periods * samples)[:, :samples]
+    y = y + level * y.std(axis=1, keepdims=True) * rng.standard_normal(y.shape)
+    return np.arange(samples) / rate, force + level * 0.01 * rng.standard_normal(samples), y

@@ -11,12 +11,11 @@ import numpy as np
 
 from modefront.cli.tables import console, safe, table
 from modefront.data.csv import is_reserved, write_csv
-from modefront.data.modal import ModalData
 from modefront.data.modal_test import ModalTest, read_test
 from modefront.data.uff import write_uff55
 from modefront.errors import Fault, InputError, UnfinishedError
 from modefront.identification.identify import LEAST_LINES, Identification, identify
-from modefront.identification.sets import CombinedModes, combine
+from modefront.identification.sets import CombinedModes, combine, modal_data_of
 
 POOR_FIT = 0.5
 """Residual of a function over its norm from which on it is pointed out."""
@@ -191,13 +190,7 @@ def _write(
     if clashing:
         expected = "names of sensors that are no columns of modal data"
         raise InputError(Fault("sensors", repr(clashing[0]), expected, "a reserved name"))
-    data = ModalData(
-        modes.sets,
-        tuple(range(1, modes.frequency.shape[1] + 1)),
-        modes.sensors,
-        *(modes.frequency, modes.damping, modes.shape, modes.frequency_std, modes.shape_std),
-    )
-    write_csv(output, data, modes.damping_std)
+    write_csv(output, modal_data_of(modes), modes.damping_std)
     return [output, report]
 
 

@@ -7,12 +7,12 @@ same pair again is another blow. Directions with a minus sign turn the function 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from modefront._typing import Bools, Complexes, Floats
-from modefront.data.responses import FrequencyResponses, frequency_responses
+from modefront.data.responses import ORDERS, FrequencyResponses, frequency_responses
 from modefront.errors import Fault, InputError
 
 SAME_LINES = 1e-6
@@ -34,6 +34,7 @@ class Channel:
     H : (lines,) complex
     quantity : what it is; empty where the file does not say
     coherence : (lines,), or None
+    variance : (lines,) of the mean, where it is known, or None
     """
 
     file: str
@@ -44,6 +45,7 @@ class Channel:
     H: Complexes
     quantity: str = ""
     coherence: Floats | None = None
+    variance: Floats | None = None
 
 
 @dataclass(frozen=True)
@@ -74,15 +76,18 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
     blows = max(map(len, groups.values()))
     frequency = channels[0].frequency
     H = np.full((blows, len(references), len(responses), len(frequency)), np.nan, complex)
-    coherence = np.full(H.shape[1:], np.nan)
+    coherence, variance = np.full(H.shape[1:], np.nan), np.full(H.shape[1:], np.nan)
     for (j, i), group in groups.items():
         for b, channel in enumerate(group):
             H[b, j, i] = channel.H
             if channel.coherence is not None:
                 coherence[j, i] = channel.coherence
+            if channel.variance is not None:
+                variance[j, i] = channel.variance
     dead = ~(np.abs(np.nan_to_num(H)) > 0).any(axis=(0, 3))
     H[:, dead] = np.nan
     warnings = _warnings(name, H, frequency, references, responses, groups, dead)
+    warnings += _driving_points(H, frequency, quantity, groups)
     data = frequency_responses(
         frequency,
         H if blows > 1 else H[0],
@@ -90,15 +95,13 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
         references=references,
         responses=responses,
         coherence=coherence if blows == 1 and np.isfinite(coherence).any() else None,
+        variance=variance if blows == 1 and np.isfinite(variance).any() else None,
     )
     return Assembled(data, tuple(warnings))
 
 
 def _turned(channel: Channel) -> Channel:
-    return Channel(
-        *(channel.file, channel.place, channel.response, channel.reference),
-        *(channel.frequency, channel.H, channel.quantity, channel.coherence),
-    )
+    return replace(channel, reference=channel.response, response=channel.reference)
 
 
 def _check_axes(channels: Sequence[Channel]) -> None:
@@ -185,6 +188,28 @@ def _warnings(
                 "functions are: check its unit"
             )
     return out + _reciprocity(name, mean, references, responses)
+
+
+def _driving_points(
+    H: Complexes,
+    frequency: Floats,
+    quantity: str,
+    groups: dict[tuple[int, int], list[Channel]],
+) -> list[str]:
+    """Return where a driving point gives energy back: its mobility has a negative real part."""
+    out = []
+    lines = frequency > 0
+    s = 2j * np.pi * frequency[lines]
+    for (j, i), (first, *_) in groups.items():
+        if first.reference != first.response:
+            continue
+        power = (H[0, j, i, lines] * s ** (1 - ORDERS[quantity])).real
+        if np.isfinite(power).all() and power.sum() < -0.5 * np.abs(power).sum():
+            out.append(
+                f"{first.file}: {first.place}: the driving point has the wrong sign: check the "
+                "directions of hammer and sensor, and the quantity"
+            )
+    return out
 
 
 def _reciprocity(

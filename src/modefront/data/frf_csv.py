@@ -1,7 +1,8 @@
-"""Frequency response functions in CSV.
+"""Frequency response functions in CSV, or the records of a blow.
 
-A column ``frequency`` in Hz, then two columns ``NAME_re`` and ``NAME_im`` for every response, and
-``NAME_coherence`` where there is one. All columns of a file belong to one reference.
+Functions have a column ``frequency`` in Hz, then two columns ``NAME_re`` and ``NAME_im`` for every
+response, and ``NAME_coherence`` where there is one. Records have a column ``time`` in s, a column
+``force``, and a column NAME for every response. All columns of a file belong to one reference.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.data.blows import TIME, Contents, blow_of_columns
 from modefront.data.channels import Channel
 from modefront.data.csv import NUMBER
 from modefront.errors import Fault, InputError, reason, suggestion
@@ -26,12 +28,14 @@ LARGEST = 2 * 10**9
 """Bytes of a file, at most."""
 
 
-def read_frf_csv(path: Path, reference: str) -> list[Channel]:
-    """Return the functions of one file; raises InputError with what is wrong."""
-    header, values = read_numbers(path, "a file of frequency response functions")
+def read_test_csv(path: Path, reference: str) -> Contents:
+    """Return the functions or the blow of one file; raises InputError with what is wrong."""
+    header, values = read_numbers(path, "a file of frequency response functions or records")
+    if TIME in header and FREQUENCY not in header:
+        return Contents(blows=(blow_of_columns(str(path), header, values, reference),))
     names = _names(path, header)
     column = dict(zip(header, values.T, strict=True))
-    return [
+    channels = (
         Channel(
             str(path),
             f"columns {name + REAL!r} and {name + IMAGINARY!r}",
@@ -42,7 +46,8 @@ def read_frf_csv(path: Path, reference: str) -> list[Channel]:
             coherence=column.get(name + COHERENCE),
         )
         for name in names
-    ]
+    )
+    return Contents(tuple(channels))
 
 
 def _names(path: Path, header: Sequence[str]) -> list[str]:

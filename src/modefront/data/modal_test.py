@@ -1,17 +1,21 @@
 """The test file: which files hold the functions of a modal test, and what to do with them.
 
-TOML with the tables ``[test]``, ``[identify]``, ``[sensors]`` and a table ``[[set]]`` for every
-data set. A universal file or a CSV file alone is a test of one set.
+TOML with the tables ``[test]``, ``[identify]``, ``[impact]``, ``[sensors]`` and a table ``[[set]]``
+for every data set. A universal file or a CSV file alone is a test of one set.
 """
 
 from __future__ import annotations
 
+import math
 import tomllib
-from dataclasses import dataclass, field
+from collections.abc import Sequence
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 
+from modefront.data.blows import Contents, Windows, channels_of_blows
 from modefront.data.channels import Assembled, Channel, assemble
-from modefront.data.frf_csv import read_frf_csv
+from modefront.data.frf_csv import read_test_csv
+from modefront.data.impact import ESTIMATORS
 from modefront.data.responses import ORDERS
 from modefront.data.uff import read_uff
 from modefront.errors import Fault, InputError, reason, suggestion
@@ -54,6 +58,7 @@ class ModalTest:
 class _Settings:
     quantity: str = ""
     sensors: dict[str, str] = field(default_factory=dict)
+    windows: Windows | None = None
 
 
 def read_test(path: Path) -> ModalTest:
@@ -62,15 +67,15 @@ def read_test(path: Path) -> ModalTest:
         return _from_toml(path)
     settings = _Settings()
     if is_universal(path):
-        channels = read_uff(path)
+        contents = [read_uff(path)]
     elif path.suffix.lower() == ".csv":
-        channels = read_frf_csv(path, "reference")
+        contents = [read_test_csv(path, "reference")]
         settings = _Settings("accelerance")
     else:
         expected = "a universal file (.uff), a CSV file (.csv) or a test file (.toml)"
         found = "no such file" if not path.exists() else "none of these"
         raise InputError(Fault(str(path), "file", expected, found))
-    assembled = _assembled(channels, path.stem, settings)
+    assembled = _assembled(contents, path.stem, settings)
     if path.suffix.lower() == ".csv":
         note = f"{path}: the file does not say its quantity: taken for accelerance"
         assembled = Assembled(assembled.data, (note, *assembled.warnings))
@@ -94,6 +99,7 @@ def _from_toml(path: Path) -> ModalTest:
     faults: list[Fault] = []
     root = Table(str(path), "", _parsed(path), faults)
     name, settings = _test_table(root)
+    settings = replace(settings, windows=_impact_table(root))
     band, modes = _identify_table(root)
     sets = _set_tables(root, path.parent)
     root.close()
@@ -101,14 +107,13 @@ def _from_toml(path: Path) -> ModalTest:
         raise InputError(faults)
     data_sets = []
     for title, files, references in sets:
-        channels = [
-            channel
+        contents = [
+            _contents(root, path.parent / file, reference)
             for file, reference in zip(files, references, strict=True)
-            for channel in _channels(root, path.parent / file, reference)
         ]
         if faults:
             raise InputError(faults)
-        data_sets.append(DataSet(title, _assembled(channels, title, settings, root)))
+        data_sets.append(DataSet(title, _assembled(contents, title, settings, root)))
     return ModalTest(name, band, modes, tuple(data_sets))
 
 
@@ -155,6 +160,24 @@ def _identify_table(root: Table) -> tuple[tuple[float, float] | None, int | None
     return band, None if modes == "auto" else int(modes)
 
 
+def _impact_table(root: Table) -> Windows | None:
+    table = root.table("impact", default=None)
+    if not table:
+        return None
+    seconds = "a time in s above zero"
+    estimator = table.choice("estimator", ESTIMATORS, "H1")
+    force_window = table.number("force_window", seconds, lambda x: x > 0, None)
+    if table.values.get("exponential") == "none":
+        table.asked.append("exponential")
+        exponential = math.inf
+    else:
+        seconds = "a time constant in s above zero, or 'none'"
+        exponential = table.number("exponential", seconds, lambda x: x > 0, None)
+    windows = Windows(estimator, force_window, exponential)
+    table.close()
+    return windows
+
+
 def _set_tables(root: Table, folder: Path) -> list[tuple[str, list[str], list[str]]]:
     """Return name, files and reference of each file of all data sets."""
     out = []
@@ -182,30 +205,27 @@ def _set_tables(root: Table, folder: Path) -> list[tuple[str, list[str], list[st
     return out
 
 
-def _channels(root: Table, path: Path, reference: str) -> list[Channel]:
+def _contents(root: Table, path: Path, reference: str) -> Contents:
     try:
         if not is_universal(path):
-            return read_frf_csv(path, reference)
-        channels = read_uff(path)
+            return read_test_csv(path, reference)
+        contents = read_uff(path)
     except InputError as error:
         root.faults.extend(error.faults)
-        return []
+        return Contents()
     if not reference:
-        return channels
-    return [_renamed(channel, reference, channel.response) for channel in channels]
-
-
-def _renamed(channel: Channel, reference: str, response: str, sign: int = 1) -> Channel:
-    return Channel(
-        *(channel.file, channel.place, reference, response, channel.frequency, sign * channel.H),
-        *(channel.quantity, channel.coherence),
+        return contents
+    return Contents(
+        tuple(replace(channel, reference=reference) for channel in contents.channels),
+        tuple(replace(blow, reference=reference) for blow in contents.blows),
     )
 
 
 def _assembled(
-    channels: list[Channel], name: str, settings: _Settings, root: Table | None = None
+    contents: Sequence[Contents], name: str, settings: _Settings, root: Table | None = None
 ) -> Assembled:
     """Return one data set with the names of the test file, at the side that has the sensors."""
+    channels, left_out, decay = _functions(contents, name, settings, root)
     responses = {channel.response for channel in channels}
     references = {channel.reference for channel in channels}
     named = settings.sensors
@@ -224,15 +244,35 @@ def _assembled(
             raise InputError(root.faults)
     else:
         turned = len(references) > len(responses) == 1
-    return assemble(
-        [_named(channel, named) for channel in channels], settings.quantity, name, turned
-    )
+    named_channels = [_named(channel, named) for channel in channels]
+    assembled = assemble(named_channels, settings.quantity, name, turned)
+    return Assembled(replace(assembled.data, decay=decay), (*left_out, *assembled.warnings))
 
 
-def _named(one: Channel, names: dict[str, str]) -> Channel:
-    response, first = _name(one.response, names)
-    reference, second = _name(one.reference, names)
-    return _renamed(one, reference, response, first * second)
+def _functions(
+    contents: Sequence[Contents], name: str, settings: _Settings, root: Table | None
+) -> tuple[list[Channel], list[str], float]:
+    """Return the channels of a set, made of blows where it has any, warnings, and the decay."""
+    channels = [channel for content in contents for channel in content.channels]
+    blows = [blow for content in contents for blow in content.blows]
+    windows = settings.windows
+    if root is not None and channels and (blows or windows):
+        place = f"[[set]] {name!r}"
+        expected = "either functions or records of blows" if blows else "records of blows in time"
+        found = (
+            "both" if blows else "frequency response functions, to which [impact] does not apply"
+        )
+        raise InputError(Fault(root.file, place, expected, found))
+    if not blows:
+        return channels, [], 0.0
+    return channels_of_blows(blows, windows or Windows(), settings.quantity)
+
+
+def _named(channel: Channel, names: dict[str, str]) -> Channel:
+    response, response_sign = _name(channel.response, names)
+    reference, reference_sign = _name(channel.reference, names)
+    H = response_sign * reference_sign * channel.H
+    return replace(channel, reference=reference, response=response, H=H)
 
 
 def _name(channel: str, names: dict[str, str]) -> tuple[str, int]:

@@ -39,6 +39,7 @@ class FrequencyResponses:
     variance : (references, responses, lines), E|H - E H|², or None
     scaled : whether ``variance`` is known up to a factor for each function only, as it is from
         coherence where the number of blows is not known
+    decay : what an exponential window added to the decay rate of every pole, in 1/s
     """
 
     frequency: Floats
@@ -48,6 +49,7 @@ class FrequencyResponses:
     responses: tuple[str, ...]
     variance: Floats | None = None
     scaled: bool = False
+    decay: float = 0.0
 
     def __post_init__(self) -> None:
         """Raise ValueError where the arrays do not fit."""
@@ -68,7 +70,11 @@ class FrequencyResponses:
 
     def within(self, low: float, high: float) -> FrequencyResponses:
         """Return the lines of a band in Hz, its limits included, without the line at zero."""
-        kept = (self.frequency >= low) & (self.frequency <= high) & (self.frequency > 0)
+        f = self.frequency
+        return self.lines((f >= low) & (f <= high) & (f > 0))
+
+    def lines(self, kept: Bools) -> FrequencyResponses:
+        """Return the lines that are kept, (lines,)."""
         return replace(
             self,
             frequency=self.frequency[kept],

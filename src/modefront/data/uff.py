@@ -1,4 +1,4 @@
-"""Universal files: frequency response functions from dataset 58, modes into dataset 55.
+"""Universal files: functions or records of blows from dataset 58, modes into dataset 55.
 
 Modes are read in `modefront.data.uff55`.
 
@@ -16,19 +16,23 @@ import re
 import tempfile
 import warnings
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
+from modefront.data.blows import Blow, Contents
 from modefront.data.channels import Channel
 from modefront.errors import Fault, InputError, reason
 from modefront.inputs import read_text_bytes
 
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
+
+FORCES = (9, 13)
+"""Data types of the force of a hammer: reaction force, excitation force."""
 
 QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
 """What the numerator is: displacement, velocity, acceleration."""
@@ -42,7 +46,7 @@ EXPONENT = re.compile(rb"(?<=[0-9.])[Dd](?=[+-]?[0-9])")
 LARGEST = 2 * 10**9
 """Bytes of a universal file, at most."""
 
-WHAT = "a universal file with frequency response functions (dataset 58)"
+WHAT = "a universal file with frequency response functions or records of blows (dataset 58)"
 
 
 @dataclass(frozen=True)
@@ -56,37 +60,92 @@ class Block:
     binary: bool
 
 
-def read_uff(path: Path) -> list[Channel]:
+def read_uff(path: Path) -> Contents:
     """Return the frequency response functions of a universal file, with their coherence.
 
-    Raises InputError where the file holds none, is cut off or cannot be decoded.
+    Where it has none, the records of blows: of the force and of the responses in time. Raises
+    InputError where the file holds neither, is cut off or cannot be decoded.
     """
     file, content = str(path), read_text_bytes(path, WHAT, LARGEST)
-    found = blocks(content, file)
-    functions = [one for one in found if one.number == 58]
+    datasets = blocks(content, file)
+    functions = [block for block in datasets if block.number == 58]
     if not functions:
-        numbers = ", ".join(str(n) for n in dict.fromkeys(one.number for one in found))
+        numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in datasets))
         raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
-    decoded = [_function(content, one, file) for one in functions]
+    decoded = [(block, _function(content, block, file)) for block in functions]
+    kinds = {int(values["func_type"]) for _, values in decoded}
+    if FRF in kinds:
+        return Contents(channels=tuple(_channels(decoded, file)))
+    blows = _blows(decoded, file) if TIME in kinds else []
+    if not blows:
+        expected = (
+            "frequency response functions (type 4), or records in time (type 1) of the excitation "
+            "force and of responses, among the functions of dataset 58"
+        )
+        found = f"functions of type {', '.join(map(str, sorted(kinds)))} only"
+        if TIME in kinds:
+            found += ", none of them a force and its responses"
+        raise InputError(Fault(file, "dataset 58", expected, found))
+    return Contents(blows=tuple(blows))
+
+
+def _channels(decoded: Sequence[tuple[Block, Mapping[str, Any]]], file: str) -> list[Channel]:
     channels, coherences = [], {}
-    for block, values in zip(functions, decoded, strict=True):
+    for block, values in decoded:
         kind = int(values["func_type"])
         if kind == FRF:
             channels.append(_channel(values, block, file))
         elif kind == COHERENCE:
-            one = _channel(values, block, file)
-            coherences[one.reference, one.response] = one.H.real
-    if not channels:
-        kinds = ", ".join(str(n) for n in sorted({int(one["func_type"]) for one in decoded}))
-        expected = "frequency response functions (type 4) among the functions of dataset 58"
-        raise InputError(Fault(file, "dataset 58", expected, f"functions of type {kinds} only"))
+            coherence = _channel(values, block, file)
+            coherences[coherence.reference, coherence.response] = np.abs(coherence.H)
     return [
-        Channel(
-            *(one.file, one.place, one.reference, one.response, one.frequency, one.H),
-            *(one.quantity, coherences.get((one.reference, one.response))),
-        )
-        for one in channels
+        replace(channel, coherence=coherences.get((channel.reference, channel.response)))
+        for channel in channels
     ]
+
+
+def _blows(decoded: Sequence[tuple[Block, Mapping[str, Any]]], file: str) -> list[Blow]:
+    """Return the blows of records in time.
+
+    A blow ends where one of its channels comes again, or another force.
+    """
+    groups: list[dict[str, tuple[Block, Mapping[str, Any]]]] = [{}]
+    for block, values in decoded:
+        if int(values["func_type"]) != TIME:
+            continue
+        is_force = int(values["ordinate_spec_data_type"]) in FORCES
+        key = "" if is_force else _degree_of_freedom(values["rsp_node"], values["rsp_dir"])[0]
+        if key in groups[-1]:
+            groups.append({})
+        groups[-1][key] = block, values
+    return [_blow(group, file) for group in groups if "" in group and len(group) > 1]
+
+
+def _blow(group: Mapping[str, tuple[Block, Mapping[str, Any]]], file: str) -> Blow:
+    block, force = group[""]
+    records, quantities = {}, set()
+    for name, (own_block, values) in group.items():
+        sign = _degree_of_freedom(values["rsp_node"], values["rsp_dir"])[1]
+        records[name] = sign * np.asarray(values["data"], float)
+        if len(records[name]) != len(force["data"]):
+            place = f"line {own_block.line}, dataset 58"
+            expected = f"{len(force['data'])} samples, as the force of line {block.line}"
+            raise InputError(Fault(file, place, expected, str(len(records[name]))))
+        if name:
+            quantities.add(QUANTITIES.get(int(values["ordinate_spec_data_type"]), ""))
+    if len(quantities) > 1:
+        found = ", ".join(sorted(quantity or "others" for quantity in quantities))
+        expected = "responses of one quantity"
+        raise InputError(Fault(file, f"line {block.line}, dataset 58", expected, found))
+    return Blow(
+        file,
+        f"line {block.line}, dataset 58",
+        _degree_of_freedom(force["rsp_node"], force["rsp_dir"])[0],
+        np.asarray(force["x"], float),
+        records.pop(""),
+        records,
+        quantities.pop(),
+    )
 
 
 def blocks(content: bytes, file: str) -> list[Block]:

@@ -3,7 +3,7 @@
 =====================  ================================================================
 step                   module
 =====================  ================================================================
-functions as arrays    `modefront.data.responses`; from impacts in time: `impact`
+functions as arrays    `modefront.data.responses`; from impacts: `modefront.data.impact`
 variance of the data   `noise`
 poles of all orders    `lscf`
 clusters of poles      `stabilisation`

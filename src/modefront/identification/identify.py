@@ -15,7 +15,7 @@ from typing import Literal
 
 import numpy as np
 
-from modefront._typing import Complexes, Floats, Ints
+from modefront._typing import Bools, Complexes, Floats
 from modefront.data.responses import ORDERS, FrequencyResponses
 from modefront.identification import lscf, modal_model, selection
 from modefront.identification.modal_model import Fit, Problem
@@ -38,6 +38,12 @@ Weighting = Literal["given", "scaled", "residuals"]
 LEAST_LINES = 20
 MOST_POLES = 60
 MOST_ORDERS = 25
+CHOICE_LINES = 4096
+"""Lines from which the modes are chosen where there are more lines, those of sharp peaks apart."""
+
+PEAK_WIDTH = 20.0
+"""Half bandwidths on either side of a sharp peak within which all lines are kept."""
+
 PRINCIPAL = 48
 """Principal responses from which the modes are chosen where there are more responses."""
 
@@ -119,6 +125,8 @@ def identify(
     first = variance_from_differences(data) if variance is None else variance
     small, small_variance = _principal(data, first)
     diagram, clusters = _diagram(small, small_variance, orders)
+    kept = _lines_of_choice(small.frequency, diagram)
+    small, small_variance = small.lines(kept), small_variance[..., kept]
     task, omega, _ = modal_model.problem(small, small_variance, 1)
     task, fit = _select(task, omega, diagram, clusters, modes, weighting(small))
     level = modal_model.RESIDUALS.index(task.powers)
@@ -126,22 +134,31 @@ def identify(
     model = fit.model
     start = modal_model.evaluate(task, model.lam, model.L, model.held)
     task = _reweighted(task, start, weighting(data))
-    fit = modal_model.maximise(task, model.lam, model.L)
+    fit = selection.refit(task, start, modal_model.FINE)
     if weighting(data) != "given":
         task = _reweighted(task, fit, weighting(data))
-        fit = modal_model.maximise(task, fit.model.lam, fit.model.L)
+        fit = selection.refit(task, fit, modal_model.FINE)
     return _result(data, task, fit, omega, size, diagram, clusters, modes)
 
 
 def weighting(data: FrequencyResponses) -> Weighting:
-    """Return what the variance is from: given, given up to a factor, or residuals alone."""
+    """Return what the variance is from: given, given up to a factor, or residuals alone.
+
+    Where it is unknown for one of the functions that were measured, it is that of the residuals for
+    all of them, so that none is left out.
+    """
     if data.variance is None:
+        return "residuals"
+    known: Bools = np.any(data.measured & np.isfinite(data.variance), axis=2)
+    if not known[data.measured.any(axis=2)].all():
         return "residuals"
     return "scaled" if data.scaled else "given"
 
 
 def _known_variance(data: FrequencyResponses) -> Floats | None:
-    return None if data.variance is None else fitted_variance(data.variance, data.H)
+    if data.variance is None or weighting(data) == "residuals":
+        return None
+    return fitted_variance(data.variance, data.H)
 
 
 def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
@@ -165,6 +182,23 @@ def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyRes
     return small, variance_from_differences(small)
 
 
+def _lines_of_choice(frequency: Floats, diagram: StabilisationDiagram) -> Bools:
+    """Return the lines from which modes are chosen: every n-th one, and all of sharp peaks.
+
+    Leaving lines out biases nothing, and those between peaks are many that say the same.
+    """
+    stride = -(-len(frequency) // CHOICE_LINES)
+    kept: Bools = np.arange(len(frequency)) % stride == 0
+    if stride == 1:
+        return kept
+    spacing = float(np.median(np.diff(frequency)))
+    for pole in diagram.pole[diagram.stable]:
+        half = max(-pole.real / (2 * np.pi), spacing)
+        if half < PEAK_WIDTH * stride * spacing / 2:
+            kept |= np.abs(frequency - abs(pole) / (2 * np.pi)) < PEAK_WIDTH * half
+    return kept
+
+
 def _diagram(
     data: FrequencyResponses, variance: Floats, orders: Sequence[int] | None
 ) -> tuple[StabilisationDiagram, list[Cluster]]:
@@ -179,8 +213,10 @@ def _diagram(
         orders = sorted(set(np.linspace(2, most, min(MOST_ORDERS, most - 1)).astype(int).tolist()))
     z = lscf.generalised_frequency(omega, omega[0], rate)
     sums = lscf.moments(H, weight, z, max(orders))
-    all_poles = lscf.poles(sums, orders, omega[0], rate)
-    return stabilisation_diagram(all_poles, H, omega, ORDERS[data.quantity])
+    windowed = lscf.poles(sums, orders, omega[0], rate)
+    estimates = [lscf.without_decay(poles, data.decay) for poles in windowed]
+    s: Complexes = np.asarray(1j * omega + data.decay, complex)
+    return stabilisation_diagram(estimates, H, s, ORDERS[data.quantity])
 
 
 def _select(
@@ -194,10 +230,10 @@ def _select(
     """Return the problem, with its residual terms and variance, and the modes that data need."""
     fit = selection.start(task, clusters, omega, modes)
     task = selection.choose_level(task, fit)
-    fit = _again(task, fit)
+    fit = selection.refit(task, fit)
     if kind != "given":
         task = _reweighted(task, fit, kind)
-        fit = _again(task, fit)
+        fit = selection.refit(task, fit)
     if modes is not None:
         return task, fit
     candidates = selection.distinct(diagram.pole) / omega
@@ -209,15 +245,10 @@ def _select(
         fit = more
         if kind != "given":
             task = _reweighted(task, fit, kind)
-            fit = _again(task, fit)
+            fit = selection.refit(task, fit)
     task = selection.choose_level(task, fit)
-    fit = _again(task, fit)
+    fit = selection.refit(task, fit)
     return task, selection.backward(task, fit)
-
-
-def _again(task: Problem, fit: Fit) -> Fit:
-    """Return the fit from the poles of another one, as far as choices need it."""
-    return modal_model.maximise(task, fit.model.lam, fit.model.L, tolerance=modal_model.COARSE)
 
 
 def _reweighted(task: Problem, fit: Fit, kind: Weighting) -> Problem:
@@ -251,14 +282,14 @@ def _result(
 ) -> Identification:
     misfit = residuals(task, fit)
     estimates = mode_estimates(task, fit, misfit, omega)
-    reasons = _reasons(data, task, fit, estimates, diagram, count is not None)
+    reasons = _reasons(data, task, fit, omega, estimates, diagram, count is not None)
     kept = [one for one, why in zip(estimates, reasons, strict=True) if not why]
     rejected = [
         Rejected(float(one.frequency), float(one.damping), why)
         for one, why in zip(estimates, reasons, strict=True)
         if why
     ]
-    rejected += _passed_over(clusters, estimates)
+    rejected += _passed_over(clusters, fit.model.lam * omega)
     synthesised = modal_model.synthesise(task, fit.model) * size
     variance = np.where(
         task.weight > 0, size**2 / np.where(task.weight > 0, task.weight, 1), np.nan
@@ -277,19 +308,31 @@ def _result(
     )
 
 
-def support(diagram: StabilisationDiagram, pole: complex) -> float:
-    """Return the share of the orders, from the first one with this pole, that have it."""
-    near = np.abs(diagram.pole - pole) < np.maximum(0.005 * abs(pole), -0.5 * pole.real)
-    orders: Ints = np.unique(diagram.order[near])
-    if not len(orders):
-        return 0.0
-    return len(orders) / sum(order >= orders[0] for order in diagram.orders)
+def support(diagram: StabilisationDiagram, pole: Complexes, strength: Floats) -> Floats:
+    """Return the share of the orders, from the first one with a mode's pole, that have it.
+
+    ``pole`` and ``strength`` are those of all modes. At each order a pole of the diagram belongs to
+    one mode, the stronger ones first, so that two modes need two poles.
+    """
+    present = np.zeros((len(pole), len(diagram.orders)), bool)
+    reach = np.maximum(0.005 * np.abs(pole), -0.5 * pole.real)
+    for k, order in enumerate(diagram.orders):
+        left = diagram.pole[diagram.order == order]
+        for r in strength.argsort()[::-1]:
+            distance = np.abs(left - pole[r])
+            if distance.min(initial=np.inf) < reach[r]:
+                present[r, k] = True
+                left = np.delete(left, distance.argmin())
+    since = np.maximum.accumulate(present, axis=1).sum(axis=1)
+    out: Floats = present.sum(axis=1) / np.maximum(since, 1)
+    return out
 
 
 def _reasons(
     data: FrequencyResponses,
     task: Problem,
     fit: Fit,
+    omega: float,
     estimates: Sequence[ModeEstimate],
     diagram: StabilisationDiagram,
     given: bool,
@@ -297,11 +340,14 @@ def _reasons(
     """Return why each mode is none; empty where it is one."""
     low, high = data.frequency[0], data.frequency[-1]
     spacing = float(np.median(np.diff(data.frequency)))
-    doubled = selection.doubles(fit.model.lam, fit.model.phi, selection.gains(task, fit))
+    strength = selection.gains(task, fit)
+    doubled = selection.doubles(fit.model.lam, fit.model.phi, strength)
+    shares = support(diagram, fit.model.lam * omega, strength)
     out = []
-    for one, double, seen in zip(estimates, doubled, _visibility(task, fit), strict=True):
+    for one, double, share, seen in zip(
+        estimates, doubled, shares, _visibility(task, fit), strict=True
+    ):
         half = max(one.damping * one.frequency, spacing)
-        share = support(diagram, one.pole)
         why = ""
         if not low <= one.frequency <= high:
             why = "outside the band"
@@ -330,8 +376,8 @@ def _visibility(task: Problem, fit: Fit) -> Floats:
     out = np.zeros(len(model))
     if not len(model):
         return out
-    at = replace(task, s=1j * np.abs(model.lam))
-    E = modal_model.primitives(at, model.lam)[: 2 * len(model)]
+    resonances = replace(task, s=1j * np.abs(model.lam) + task.s[0].real, powers=())
+    E = modal_model.primitives(resonances, model.lam, squares=False)
     a = model.L.T[:, None, :] * model.phi.T[None]  # (references, responses, modes)
     measured = task.weight.any(axis=2)
     for r in range(len(model)):
@@ -341,17 +387,15 @@ def _visibility(task: Problem, fit: Fit) -> Floats:
     return out
 
 
-def _passed_over(clusters: Sequence[Cluster], estimates: Sequence[ModeEstimate]) -> list[Rejected]:
-    """Return the clusters that the likelihood did not need."""
+def _passed_over(clusters: Sequence[Cluster], poles: Complexes) -> list[Rejected]:
+    """Return the clusters that the likelihood did not need, none of the poles being near."""
     out = []
-    for one in clusters:
-        near = any(
-            abs(one.pole - mode.pole) < max(0.02 * abs(one.pole), -mode.pole.real)
-            for mode in estimates
-        )
-        if one.size >= selection.LEAST_ORDERS and not near:
-            frequency = abs(one.pole) / (2 * np.pi)
-            out.append(
-                Rejected(frequency, -one.pole.real / abs(one.pole), "the data do not need it")
+    for cluster in clusters:
+        reach = np.maximum(0.02 * abs(cluster.pole), -poles.real)
+        if cluster.size >= selection.LEAST_ORDERS and not (abs(cluster.pole - poles) < reach).any():
+            frequency, damping = (
+                abs(cluster.pole) / (2 * np.pi),
+                -cluster.pole.real / abs(cluster.pole),
             )
+            out.append(Rejected(frequency, damping, "the data do not need it"))
     return out

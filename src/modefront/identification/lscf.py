@@ -52,6 +52,9 @@ from modefront._typing import Complexes, Floats
 ARC = 0.92
 """Share of the unit circle that the band covers: all of it would join its ends."""
 
+LEAST_DAMPING = 1e-3
+"""Damping ratio of poles that the decay of an exponential window leaves none."""
+
 SINGULAR = 1e-13
 """Relative size of eigenvalues of R that are rounding."""
 
@@ -99,8 +102,10 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
 
     ``H`` is (references, responses, lines) without NaN; ``weight`` (responses, lines).
     """
-    lags = np.arange(-highest, highest + 1)
-    powers = z[:, None] ** lags
+    copies = np.broadcast_to(z[:, None], (len(z), highest))
+    positive: Complexes = np.multiply.accumulate(copies, axis=1)
+    negative = positive[:, ::-1].conj()  # |z| = 1
+    powers: Complexes = np.hstack([negative, np.ones((len(z), 1)), positive])
     first = (weight * H) @ powers
     second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True) @ powers
     return Moments(weight @ powers, first.transpose(1, 0, 2), second)
@@ -109,6 +114,20 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
 def poles(sums: Moments, orders: Iterable[int], shift: float, rate: float) -> list[Poles]:
     """Return the stable poles of each order from the shared sums."""
     return [_poles(sums, p, shift, rate) for p in orders]
+
+
+def without_decay(poles: Poles, decay: float) -> Poles:
+    """Return poles without the decay in 1/s that an exponential window added to them.
+
+    Poles that decay by less than half of that are noise; others that come out unstable get the
+    damping ratio `LEAST_DAMPING`.
+    """
+    if not decay:
+        return poles
+    kept = -poles.value.real > decay / 2
+    value = poles.value[kept]
+    real = np.minimum(value.real + decay, -LEAST_DAMPING * np.abs(value))
+    return Poles(poles.order, real + 1j * value.imag, poles.participation[kept])
 
 
 def _toeplitz(values: Complexes, p: int) -> Complexes:

@@ -48,15 +48,21 @@ LIKELY = 0.5
 LEAST_ORDERS = 3
 TRIES = 2
 MOST_ADDED = 8
+OVERDAMPED = 0.9
+"""Damping ratio from which on a pole and its conjugate are nearly one and the same real pole."""
+
 MOST_EVALUATIONS = 12
 """Evaluations of the model for a candidate on trial."""
 
 
 def noise_level(task: Problem, fit: Fit) -> float:
-    """Return chi^2, the cost over the degrees of freedom; at least 1, the variance of the data."""
+    """Return chi^2, the cost over the degrees of freedom; at least 1, the variance of the data.
+
+    Where the noise of neighbouring lines is correlated, as much less is known.
+    """
     n_out = int(np.sum(task.weight.any(axis=(0, 2))))
     freedom = max(task.count - n_out * fit.inverse.shape[1] - len(fit.gradient), 1)
-    return max(2 * fit.cost / freedom, 1.0)
+    return max(2 * fit.cost / freedom, 1.0) * task.correlation
 
 
 def price(task: Problem) -> float:
@@ -115,6 +121,18 @@ def backward(task: Problem, fit: Fit) -> Fit:
     return fit
 
 
+def refit(task: Problem, fit: Fit, tolerance: float = COARSE) -> Fit:
+    """Return the fit from the poles of another one, without poles that become overdamped.
+
+    These stand for what modes outside the band leave, as the residual terms do, and would make
+    the information of all other parameters singular.
+    """
+    fit = maximise(task, fit.model.lam, fit.model.L, tolerance=tolerance)
+    while (over := -fit.model.lam.real > OVERDAMPED * np.abs(fit.model.lam)).any():
+        fit = maximise(task, fit.model.lam[~over], fit.model.L[~over], tolerance=tolerance)
+    return fit
+
+
 def without(task: Problem, fit: Fit, mode: int) -> Fit:
     """Return the fit that is left without one mode."""
     kept = np.arange(len(fit.model)) != mode
@@ -166,7 +184,7 @@ def _gains(task: Problem, r: Complexes, lam: Complexes) -> tuple[Floats, Complex
 
     Also returns the participation factors of the residues that do so, (poles, references).
     """
-    E = primitives(replace(task, powers=()), lam)[: 2 * len(lam)]
+    E = primitives(replace(task, powers=()), lam, squares=False)
     e, o = E[::2], E[1::2]
     w = task.weight.reshape(-1, len(task.s))
     G = np.empty((len(w), len(lam), 2, 2))

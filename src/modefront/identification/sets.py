@@ -27,6 +27,7 @@ import numpy as np
 from scipy.stats import chi2
 
 from modefront._typing import Floats
+from modefront.data.modal import ModalData
 from modefront.identification.identify import Identification
 from modefront.identification.statistics import ModeEstimate
 
@@ -85,6 +86,16 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
         phi[:, r], phi_std[:, r] = _shapes(phi[:, r], phi_std[:, r])
     f_std, z_std = np.hypot(f_std, spread[:, 0]), np.hypot(z_std, spread[:, 1])
     return CombinedModes(tuple(sets), sensors, f, z, phi, f_std, z_std, phi_std, spread, index)
+
+
+def modal_data_of(modes: CombinedModes) -> ModalData:
+    """Return what studies read: frequencies, damping ratios and real shapes with deviations."""
+    return ModalData(
+        modes.sets,
+        tuple(range(1, modes.frequency.shape[1] + 1)),
+        modes.sensors,
+        *(modes.frequency, modes.damping, modes.shape, modes.frequency_std, modes.shape_std),
+    )
 
 
 def between(x: Floats, std: Floats) -> float:

@@ -100,14 +100,15 @@ class Cluster:
 
 
 def stabilisation_diagram(
-    estimates: Sequence[Poles], H: Complexes, omega: Floats, quantity_order: int
+    estimates: Sequence[Poles], H: Complexes, s: Complexes, quantity_order: int
 ) -> tuple[StabilisationDiagram, list[Cluster]]:
     """Return the diagram of the poles of ascending orders, and its clusters by pole.
 
-    ``H`` is (references, responses, lines) without NaN, at circular frequencies ``omega``.
+    ``H`` is (references, responses, lines) without NaN, at ``s``, which is i omega
+    plus the decay of an exponential window.
     """
     kept = [_usable(poles) for poles in estimates]
-    shapes = [_shapes(poles, H, omega, quantity_order) for poles in kept]
+    shapes = [_shapes(poles, H, s, quantity_order) for poles in kept]
     distance = np.concatenate(
         [np.full(len(kept[0].value), np.inf)]
         + [
@@ -146,13 +147,13 @@ def _usable(poles: Poles) -> Poles:
     return Poles(poles.order, poles.value[good], poles.participation[good])
 
 
-def _shapes(poles: Poles, H: Complexes, omega: Floats, q: int) -> Complexes:
+def _shapes(poles: Poles, H: Complexes, s: Complexes, q: int) -> Complexes:
     """Return shapes of the poles of one order, (poles, responses), by linear least squares."""
     n, n_in = poles.participation.shape
-    s = 1j * omega
-    front = (s / omega[-1]) ** q
-    modal = front * omega[-1] / (s - poles.value[:, None])
-    residual = np.stack([front, front * (omega[-1] / s) ** 2])
+    size = abs(s[-1])
+    front = (s / size) ** q
+    modal = front * size / (s - poles.value[:, None])
+    residual = np.stack([front, front * (size / s) ** 2])
     normal = np.zeros((n + 2 * n_in, n + 2 * n_in), complex)
     right = np.zeros((n + 2 * n_in, H.shape[1]), complex)
     for j in range(n_in):

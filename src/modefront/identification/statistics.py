@@ -73,7 +73,7 @@ class Residuals:
     Attributes
     ----------
     chi2 : weighted sum of squares over the degrees of freedom; 1 where the variance is right
-    widening : 1 + 2 sum of the significant autocorrelations over lines
+    widening : 1 + 2 sum of the significant autocorrelations over lines, or that of the window
     force : (references,) b, variance of the noise of the force channel, relative
     share : (references, responses) norm of the residual over that of the function; NaN where the
         function was not measured
@@ -123,7 +123,8 @@ def residuals(task: Problem, fit: Fit) -> Residuals:
     size = np.where(task.weight > 0, np.abs(task.H) ** 2, 0).sum(axis=2)
     share = np.sqrt((np.abs(r) ** 2).sum(axis=2) / np.where(size > 0, size, np.nan))
     chi2 = 2 * fit.cost / freedom
-    return Residuals(chi2, _widening(task, r), _force(task, H, r), share)
+    widening = max(_widening(task, r), task.correlation)
+    return Residuals(chi2, widening, _force(task, H, r), share)
 
 
 def _widening(task: Problem, r: Complexes) -> float:
@@ -181,7 +182,12 @@ def mode_estimates(
     C, variance = C * residuals.scale, variance * residuals.scale
     variance[:, ~task.weight.any(axis=(0, 2))] = np.nan
     return [
-        _estimate(complex(model.lam[r]), C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2], omega, *rest)
+        _estimate(
+            complex(model.lam[r]),
+            C[2 * r : 2 * r + 2, 2 * r : 2 * r + 2],
+            omega,
+            *rest,
+        )
         for r, rest in enumerate(zip(shapes, np.sqrt(variance), model.L, strict=True))
     ]
 
@@ -240,7 +246,9 @@ def _estimate(
 
 def _inverse(A: Floats) -> Floats:
     """Return the inverse of a symmetric matrix that may be nearly singular: large, not wrong."""
-    scale = 1 / np.sqrt(np.maximum(A.diagonal(), np.finfo(float).tiny))
+    diagonal = A.diagonal()
+    least = 1e-30 * diagonal.max(initial=0.0) + np.finfo(float).tiny
+    scale = 1 / np.sqrt(np.maximum(diagonal, least))
     value, vector = np.linalg.eigh(A * np.outer(scale, scale))
     floored = np.maximum(value, 1e-13)
     out: Floats = ((vector / floored) @ vector.T) * np.outer(scale, scale)

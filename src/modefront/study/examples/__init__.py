@@ -1,4 +1,4 @@
-"""Examples that ``modefront init`` writes: one folder each."""
+"""Examples that ``modefront init`` writes: one folder each, and what is simulated for it."""
 
 from __future__ import annotations
 
@@ -6,6 +6,9 @@ from importlib import resources
 from pathlib import Path
 
 from modefront.errors import Fault, InputError, reason, suggestion
+
+HAMMER_TEST = "hammer-test"
+"""The example of which tests are simulated, and their modes identified, where it is written."""
 
 
 def names() -> list[str]:
@@ -28,9 +31,14 @@ def write_example(name: str, directory: Path) -> list[Path]:
         key=lambda item: item.name,
     )
     targets = [directory / source.name for source in sources]
+    simulated = []
+    if name == HAMMER_TEST:
+        from modefront.study.examples import hammer_test
+
+        simulated = [directory / file for file in hammer_test.files()]
     try:
         directory.mkdir(parents=True, exist_ok=True)
-        existing = [path for path in targets if path.exists() or path.is_symlink()]
+        existing = [path for path in (*targets, *simulated) if path.exists() or path.is_symlink()]
         if existing:
             expected = "a new file, as nothing is overwritten"
             raise InputError(
@@ -38,7 +46,9 @@ def write_example(name: str, directory: Path) -> list[Path]:
             )
         for source, path in zip(sources, targets, strict=True):
             path.write_bytes(source.read_bytes())
+        if simulated:
+            hammer_test.write(directory)
     except OSError as error:
         expected = "a folder that can be written to"
         raise InputError(Fault(str(directory), "folder", expected, reason(error))) from None
-    return targets
+    return sorted([*targets, *simulated])

@@ -11,17 +11,19 @@ H1 is free of bias by noise of the responses, H2 of noise of the force, and Hv, 
 mean, lies between (Rocklin, Crowley & Vold, A comparison of H1, H2, and Hv frequency response
 functions, IMAC III (1985)). The force window keeps the impact and sets the rest to zero. The
 exponential window :math:`e^{-t/\tau}` lets responses die out within the record; as it multiplies
-force and responses alike, every pole is moved by exactly :math:`-1/\tau`, and is moved back after
-the identification (Fladung & Brown, Multiple reference impact testing, IMAC XI (1993)).
+force and responses alike, the functions are exactly those at :math:`s = \mathrm{i}\omega + 1/\tau`,
+which the identification takes into account (Fladung & Brown, Multiple reference impact testing,
+IMAC XI (1993)).
 
-Responses and force that reach a full scale several times are overloads. A second hit is a force
-beyond `SECOND` of the peak after the first impact has ended.
+A record that stays at its greatest value, and gets there by more than the resolution of its
+numbers, is overloaded. A second hit is a push beyond `SECOND` of the peak after the first impact
+has ended.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import Literal
+from dataclasses import dataclass, replace
+from typing import Literal, get_args
 
 import numpy as np
 import scipy.fft
@@ -30,12 +32,13 @@ from modefront._typing import Complexes, Floats
 from modefront.data.responses import FrequencyResponses, frequency_responses
 
 Estimator = Literal["H1", "H2", "Hv"]
+ESTIMATORS: tuple[Estimator, ...] = get_args(Estimator)
 
 SECOND = 0.1
 """Force of a second hit over that of the first."""
 
 CLIPPED = 3
-"""Samples in a row at the greatest value that make an overload."""
+"""Samples in a row at the greatest value that may be an overload."""
 
 TAPER = 0.1
 """Share of the force window over which it falls to zero."""
@@ -49,16 +52,14 @@ class ImpactResponses:
     ----------
     data : the functions, with the variance of their mean from coherence
     coherence : (responses, lines)
-    decay : added to the decay rate of every pole in 1/s, to be taken off what is identified
-    used : (blows,) which blows are in the mean
-    warnings : what is odd about the others
+    left_out : (blows,) why each blow is not in the mean; empty where it is
+    remaining : (responses,) rms at the end of the windowed records over the greatest
     """
 
     data: FrequencyResponses
     coherence: Floats
-    decay: float
-    used: tuple[bool, ...]
-    warnings: tuple[str, ...]
+    left_out: tuple[str, ...]
+    remaining: Floats
 
 
 def impact_responses(
@@ -81,21 +82,28 @@ def impact_responses(
     response : (blows, responses, samples)
     rate : samples per second
     force_window : seconds after the peak beyond which the force is set to zero
-    exponential : time constant tau of the exponential window in seconds
+    exponential : time constant tau of the exponential window in seconds, by default a quarter of
+        the record; infinity is no window, for responses that die out by themselves
 
-    Double hits and overloads are left out and said. Raises ValueError where none is left, where
-    the arrays do not fit, or for an unknown estimator.
+    Double hits and overloads are left out and said. What the exponential window adds to all decay
+    rates is noted in the data, and `identify` takes it off. Raises ValueError where none is left,
+    where the arrays do not fit, or for an unknown estimator.
     """
     force, response = np.asarray(force, float), np.asarray(response, float)
     if force.ndim != 2 or response.ndim != 3 or response.shape[::2] != force.shape:
         expected = "force (blows, samples) and response (blows, responses, samples)"
         raise ValueError(f"expected {expected}, found {force.shape} and {response.shape}")
+    if estimator not in ESTIMATORS:
+        raise ValueError(f"expected estimator 'H1', 'H2' or 'Hv', found {estimator!r}")
     reasons = [_reason(x, y, rate, force_window) for x, y in zip(force, response, strict=True)]
-    warnings = [f"blow {b + 1} is left out: {why}" for b, why in enumerate(reasons) if why]
     used = np.array([not why for why in reasons])
     if not used.any():
-        raise ValueError("expected at least one good blow; " + "; ".join(warnings))
-    X, Y = _spectra(force[used], response[used], rate, force_window, exponential)
+        found = "; ".join(f"blow {b + 1}: {why}" for b, why in enumerate(reasons))
+        raise ValueError(f"expected at least one good blow, found none: {found}")
+    if exponential is None:
+        exponential = force.shape[1] / rate / 4
+    x, y = _windowed(force[used], response[used], rate, force_window, exponential)
+    X, Y = scipy.fft.rfft(x), scipy.fft.rfft(y)
     S_xx = np.sum(np.abs(X) ** 2, axis=0)
     S_yx = np.sum(Y * X[:, None].conj(), axis=0)
     S_yy = np.sum(np.abs(Y) ** 2, axis=0)
@@ -103,10 +111,8 @@ def impact_responses(
         H = _over(S_yx, S_xx)
     elif estimator == "H2":
         H = _over(S_yy, S_yx.conj())
-    elif estimator == "Hv":
-        H = _over(S_yx, np.abs(S_yx)) * np.sqrt(_over(S_yy, S_xx).real)
     else:
-        raise ValueError(f"expected estimator 'H1', 'H2' or 'Hv', found {estimator!r}")
+        H = _over(S_yx, np.abs(S_yx)) * np.sqrt(_over(S_yy, S_xx).real)
     coherence = _over(np.abs(S_yx), S_xx).real * _over(np.abs(S_yx), S_yy).real
     blows = int(used.sum())
     unbiased = np.clip((blows * coherence - 1) / max(blows - 1, 1), 0.0, 1.0)
@@ -119,19 +125,8 @@ def impact_responses(
         coherence=unbiased[None] if blows > 1 else None,
         blows=blows if blows > 1 else None,
     )
-    decay = 1 / exponential if exponential else 0.0
-    return ImpactResponses(data, coherence, decay, tuple(map(bool, used)), tuple(warnings))
-
-
-def without_decay(pole: complex, decay: float) -> tuple[float, float]:
-    """Return frequency in Hz and damping ratio of a pole without the exponential window.
-
-    >>> f, zeta = without_decay(complex(-2.0, 100.0), 1.0)
-    >>> round(f, 4), round(zeta, 4)
-    (15.9163, 0.01)
-    """
-    lam = pole + decay
-    return abs(lam) / (2 * np.pi), -lam.real / abs(lam)
+    data = replace(data, decay=1 / exponential)
+    return ImpactResponses(data, coherence, tuple(reasons), _remaining(y))
 
 
 def _over(a: Complexes | Floats, b: Complexes | Floats) -> Complexes:
@@ -158,31 +153,50 @@ def _reason(x: Floats, y: Floats, rate: float, force_window: float | None) -> st
     end = peak + int(after[0]) if len(after) else len(x)
     if force_window is not None:
         end = max(end, peak + int(force_window * rate))
-    again = np.flatnonzero(size[end:] > SECOND * size[peak])
+    push = x[end:] * np.sign(x[peak])  # a filter that rings after the impact pulls first
+    again = np.flatnonzero(push > SECOND * size[peak])
     if len(again):
         return f"a second hit {(end + again[0] - peak) / rate:.3g} s after the first"
     return ""
 
 
 def _clipped(x: Floats) -> bool:
-    top = np.abs(x) >= np.abs(x).max() * (1 - 1e-9)
-    runs = np.convolve(top, np.ones(CLIPPED), "valid")
-    return bool(np.any(x) and (runs >= CLIPPED).any())
+    """Return whether a record stays at its greatest value, and gets there in a leap.
+
+    Digits of a coarse converter stay at the top of a smooth wave too, one step above the next.
+    """
+    if not np.any(x):
+        return False
+    size = np.abs(x)
+    top = size >= size.max() * (1 - 1e-9)
+    steps = np.abs(np.diff(x))
+    least = steps[steps > 1e-9 * size.max()].min(initial=np.inf)
+    edges = np.flatnonzero(np.diff(np.concatenate([[False], top, [False]]).astype(int)))
+    for start, end in zip(edges[::2], edges[1::2], strict=True):
+        leaps = [steps[start - 1]] if start else []
+        leaps += [steps[end - 1]] if end < len(x) else []
+        if end - start >= CLIPPED and max(leaps, default=0.0) > 2 * least:
+            return True
+    return False
 
 
-def _spectra(
-    force: Floats,
-    response: Floats,
-    rate: float,
-    force_window: float | None,
-    exponential: float | None,
+def _remaining(y: Floats) -> Floats:
+    """Return the rms of the last twentieth of records over the greatest, (responses,)."""
+    size = max(y.shape[-1] // 20, 1)
+    parts = y[..., : y.shape[-1] // size * size].reshape(*y.shape[:2], -1, size)
+    rms = np.sqrt(np.mean(parts**2, axis=(0, 3)))
+    out: Floats = rms[:, -1] / np.maximum(rms.max(axis=1), np.finfo(float).tiny)
+    return out
+
+
+def _windowed(
+    force: Floats, response: Floats, rate: float, force_window: float | None, exponential: float
 ) -> tuple[Floats, Floats]:
-    """Return the spectra of force and responses after the windows."""
-    samples = force.shape[1]
-    t = np.arange(samples) / rate
-    decay = np.exp(-t / exponential) if exponential else np.ones(samples)
+    """Return force and responses after the windows."""
+    t = np.arange(force.shape[1]) / rate
+    decay = np.exp(-t / exponential)
     if force_window is not None:
         peaks = np.abs(force).argmax(axis=1)[:, None] / rate
         past = (t - peaks - force_window * (1 - TAPER)) / (force_window * TAPER)
         force = force * (0.5 + 0.5 * np.cos(np.pi * np.clip(past, 0, 1)))
-    return scipy.fft.rfft(force * decay), scipy.fft.rfft(response * decay)
+    return force * decay, response * decay

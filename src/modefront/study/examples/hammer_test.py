@@ -1,9 +1,10 @@
-"""Writes the hammer tests of the example hammer-test: frequency response functions in CSV.
+"""The hammer tests of the example hammer-test: simulated functions, and the modes they give.
 
 The three-story building as chains M0 and M1 (with the added masses), its stories of stiffness
 theta k0 with `THETA`. The hammer hits the second and the third floor five times each, and again
 in every one of three data sets. The noise of an accelerometer is `RESPONSE_NOISE` of its rms, that
-of the hammer `FORCE_NOISE` of the force; functions are H1 estimates with their coherence.
+of the hammer `FORCE_NOISE` of the force; functions are H1 estimates with their coherence. The modes
+of each model are identified from its test file, as ``modefront identify`` does.
 """
 
 from __future__ import annotations
@@ -12,11 +13,12 @@ from pathlib import Path
 
 import numpy as np
 import scipy.linalg as la
-from numpy.typing import NDArray
 
-Complexes = NDArray[np.complex128]
-
-FOLDER = Path(__file__).parents[1] / "src" / "modefront" / "study" / "examples" / "hammer-test"
+from modefront._typing import Complexes
+from modefront.data.csv import write_csv
+from modefront.data.modal_test import read_test
+from modefront.identification.identify import identify
+from modefront.identification.sets import combine, modal_data_of
 
 THETA = np.array([1.10, 0.95, 1.05])
 MASSES = 22.6 * np.array([1.0, 1.0, 0.76])  # kg
@@ -25,6 +27,7 @@ STIFFNESS = 84763.8  # N/m
 DAMPING = np.array([0.010, 0.012, 0.009])
 LINES = np.arange(1.0, 25.05, 0.1)  # Hz
 BLOWS, SETS, RESPONSE_NOISE, FORCE_NOISE = 5, 3, 0.02, 0.01
+SEED = 2008
 FLOORS = ("floor1", "floor2", "floor3")
 HAMMER = ("floor2", "floor3")
 
@@ -41,15 +44,33 @@ def accelerances(added: float) -> Complexes:
     return out
 
 
-def main() -> None:
-    """Write the files of both models."""
-    rng = np.random.default_rng(2008)
+def files() -> list[str]:
+    """Return the names of the files that `write` writes."""
+    functions = [name for model in ADDED for name, *_ in _tests(model)]
+    return sorted([*functions, *(f"modes-{model}.csv" for model in ADDED)])
+
+
+def write(folder: Path) -> None:
+    """Simulate the tests of both models, and identify their modes, in a folder with test files."""
+    rng = np.random.default_rng(SEED)
     for model, added in ADDED.items():
         H = accelerances(added)
-        for number in range(1, SETS + 1):
-            for j, name in enumerate(HAMMER):
-                path = FOLDER / f"{model}-set{number}-{name}.csv"
-                path.write_text(_measured(H[j], rng), encoding="utf-8")
+        for name, j in _tests(model):
+            (folder / name).write_text(_measured(H[j], rng), encoding="utf-8")
+    for model in ADDED:
+        test = read_test(folder / f"test-{model}.toml")
+        found = [identify(part.assembled.data, test.band, test.modes) for part in test.sets]
+        modes = combine([part.name for part in test.sets], found)
+        write_csv(folder / f"modes-{model}.csv", modal_data_of(modes), modes.damping_std)
+
+
+def _tests(model: str) -> list[tuple[str, int]]:
+    """Return the file and the position of the hammer of every test of a model."""
+    return [
+        (f"{model}-set{number}-{name}.csv", j)
+        for number in range(1, SETS + 1)
+        for j, name in enumerate(HAMMER)
+    ]
 
 
 def _measured(H: Complexes, rng: np.random.Generator) -> str:
@@ -73,7 +94,3 @@ def _measured(H: Complexes, rng: np.random.Generator) -> str:
         for f, row in zip(LINES, np.transpose(columns), strict=True)
     ]
     return "\n".join([",".join(header), *rows]) + "\n"
-
-
-if __name__ == "__main__":
-    main()

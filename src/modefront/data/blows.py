@@ -1,0 +1,176 @@
+"""Records of impacts as files hold them: one blow at a time, made into channels.
+
+A blow is the record of the force and those of the responses over the same time. Blows at the same
+reference, with the same responses, are averaged (`modefront.data.impact`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.data.channels import Channel
+from modefront.data.impact import Estimator, ImpactResponses, impact_responses
+from modefront.errors import Fault, InputError
+
+TIME, FORCE = "time", "force"
+"""Columns of a CSV file with the records of a blow."""
+
+EVEN = 1e-3
+"""Relative difference within which steps of time are even: files hold few digits."""
+
+REMAINING = 0.05
+"""Size of the windowed responses at the end over the greatest from which on leakage is said."""
+
+
+@dataclass(frozen=True)
+class Blow:
+    """The records of one impact.
+
+    Attributes
+    ----------
+    file, place : where they were read
+    reference : where the hammer hits; empty where the file does not say
+    time : (samples,) in s
+    force : (samples,)
+    responses : records by name, (samples,) each
+    quantity : of the functions that responses over force make; empty where the file does not say
+    """
+
+    file: str
+    place: str
+    reference: str
+    time: Floats
+    force: Floats
+    responses: Mapping[str, Floats]
+    quantity: str = ""
+
+
+@dataclass(frozen=True)
+class Windows:
+    """How functions are made of records: estimator, windows in seconds; see `impact_responses`."""
+
+    estimator: Estimator = "H1"
+    force_window: float | None = None
+    exponential: float | None = None
+
+
+@dataclass(frozen=True)
+class Contents:
+    """What a file holds: functions, or the records of blows where there are no functions."""
+
+    channels: tuple[Channel, ...] = ()
+    blows: tuple[Blow, ...] = ()
+
+
+def blow_of_columns(file: str, header: Sequence[str], values: Floats, reference: str) -> Blow:
+    """Return the blow in the columns of a CSV file: time, force, and one for every response."""
+    faults = [
+        Fault(file, f"line 1, column {name!r}", "each column once", "another")
+        for name in dict.fromkeys(header)
+        if list(header).count(name) > 1
+    ]
+    if FORCE not in header:
+        found = "no such column"
+        faults.append(Fault(file, f"line 1, column {FORCE!r}", "the record of the force", found))
+    names = [name for name in header if name not in (TIME, FORCE)]
+    if not names:
+        expected = "columns of at least one response"
+        faults.append(Fault(file, "line 1", expected, ", ".join(header)))
+    if faults:
+        raise InputError(faults)
+    column = dict(zip(header, values.T, strict=True))
+    responses = {name: column[name] for name in names}
+    return Blow(file, "columns", reference, column[TIME], column[FORCE], responses)
+
+
+def channels_of_blows(
+    blows: Sequence[Blow], windows: Windows, quantity: str
+) -> tuple[list[Channel], list[str], float]:
+    """Return the functions of all references, which blows are left out and why, and the decay.
+
+    The decay in 1/s is that of the exponential window.
+
+    ``quantity`` is that of the test file, or empty. Raises InputError where records do not fit, or
+    no blow of a reference is left.
+    """
+    _check_time(blows)
+    groups: dict[tuple[str, tuple[str, ...]], list[Blow]] = {}
+    for blow in blows:
+        groups.setdefault((blow.reference, tuple(blow.responses)), []).append(blow)
+    channels: list[Channel] = []
+    warnings = []
+    for group in groups.values():
+        found = _averaged(group, windows)
+        channels += _channels(group[0], found, quantity)
+        for blow, why in zip(group, found.left_out, strict=True):
+            if why:
+                warnings.append(f"{blow.file}: {blow.place}: the blow is left out: {why}")
+        worst = found.remaining.max()
+        if worst > REMAINING:
+            warnings.append(
+                f"{group[0].file}: responses still have {worst:.0%} of their size at the end of "
+                "the record: expect errors of leakage; [impact] exponential takes a shorter time "
+                "constant"
+            )
+    return channels, warnings, found.data.decay
+
+
+def _check_time(blows: Sequence[Blow]) -> None:
+    first = blows[0].time
+    faults = []
+    for blow in blows:
+        steps = np.diff(blow.time)
+        if len(steps) < 2 or steps.min() <= 0 or np.ptp(steps) > EVEN * steps.mean():
+            faults.append(Fault(blow.file, blow.place, "a time axis of even steps", "another"))
+        elif len(blow.time) != len(first) or abs(np.ptp(blow.time) / np.ptp(first) - 1) > EVEN:
+            expected = f"records of {_extent(first)}, as in {blows[0].file}"
+            faults.append(Fault(blow.file, blow.place, expected, _extent(blow.time)))
+    if faults:
+        raise InputError(faults[:5])
+
+
+def _extent(time: Floats) -> str:
+    return f"{len(time)} samples over {np.ptp(time):.6g} s"
+
+
+def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
+    first = blows[0]
+    names = tuple(first.responses)
+    try:
+        return impact_responses(
+            np.array([blow.force for blow in blows]),
+            np.array([[blow.responses[name] for name in names] for blow in blows]),
+            (len(first.time) - 1) / float(np.ptp(first.time)),
+            estimator=windows.estimator,
+            force_window=windows.force_window,
+            exponential=windows.exponential,
+            responses=names,
+        )
+    except ValueError as error:
+        expected, _, found = str(error).partition(", found none: ")
+        place = f"blows at {first.reference!r}"
+        expected = expected.removeprefix("expected ")
+        raise InputError(Fault(first.file, place, expected, found)) from None
+
+
+def _channels(first: Blow, found: ImpactResponses, quantity: str) -> list[Channel]:
+    data = found.data
+    variance = data.variance
+    return [
+        Channel(
+            first.file,
+            f"response {name!r}",
+            first.reference,
+            name,
+            data.frequency,
+            data.H[0, i],
+            first.quantity or quantity,
+            found.coherence[i] if variance is not None else None,
+            None if variance is None else variance[0, i],
+        )
+        for i, name in enumerate(data.responses)
+    ]

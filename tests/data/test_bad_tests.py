@@ -1,0 +1,129 @@
+"""Files of tests with faults: each has an error or a warning that names it."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from modefront._typing import Complexes, Floats
+from modefront.data.modal_test import read_test
+from modefront.errors import InputError
+from modefront.identification.identify import weighting
+
+F = np.arange(0.1, 20.05, 0.1)
+
+
+def accelerances() -> Complexes:
+    """Return driving-point and transfer accelerances of two modes, (references, responses, f)."""
+    phi = np.array([[0.6, 1.0], [1.0, -0.6]])
+    s, omega = 2j * np.pi * F, 2 * np.pi * np.array([[4.0], [11.0]])
+    G = s**2 / (s**2 + 2 * 0.01 * omega * s + omega**2)
+    out: Complexes = np.einsum("rj,ri,rk->jik", phi, phi, G)
+    return out
+
+
+def uff58(
+    H: Complexes,
+    response: int,
+    reference: int,
+    f: Floats = F,
+    letter: str = "E",
+    kind: int = 4,
+) -> str:
+    """Return an ASCII dataset 58 of complex values at an even abscissa."""
+    numbers = [f"{x:13.5E}".replace("E", letter) for x in H.view(float)]
+    lines = ["".join(numbers[k : k + 6]) for k in range(0, len(numbers), 6)]
+    return "\n".join(
+        [
+            "    -1",
+            "    58",
+            *("NONE", "NONE", "01-Jan-26 00:00:00", "NONE", "NONE"),
+            f"{kind:5d}         0    0         0 NONE      {response:10d}   3"
+            f" NONE      {reference:10d}   3",
+            f"         5{len(f):10d}         1{f[0]:13.5E}{f[1] - f[0]:13.5E}  0.00000E+00",
+            "        18    0    0    0 NONE                 Hz                  ",
+            "        12    0    0    0 NONE                 NONE                ",
+            "         9    0    0    0 NONE                 NONE                ",
+            "         0    0    0    0 NONE                 NONE                ",
+            *lines,
+            "    -1",
+            "",
+        ]
+    )
+
+
+def _all(H: Complexes, letter: str = "E") -> str:
+    return "".join(uff58(H[j, i], i + 1, j + 1, letter=letter) for j in (0, 1) for i in (0, 1))
+
+
+def _changed(j: int, i: int, factor: complex) -> str:
+    H = accelerances()
+    H[j, i] *= factor
+    return _all(H)
+
+
+ERRORS = [
+    pytest.param(_all(accelerances())[:-900], "the end of dataset 58", id="cut-off"),
+    pytest.param("    -1\n    15\n  1 0 0\n    -1\n", "datasets 15 only", id="other-datasets"),
+    pytest.param("a letter to a friend\n", "this is no universal file", id="text"),
+    pytest.param("", "this is no universal file", id="empty"),
+    pytest.param(_changed(0, 1, np.nan), "finite numbers", id="nan"),
+    pytest.param(_all(0 * accelerances()), "only zeros", id="zeros"),
+    pytest.param(
+        uff58(accelerances()[0, 0], 1, 1) + uff58(accelerances()[0, 1], 2, 1, 2 * F),
+        "expected the frequency axis of",
+        id="axes",
+    ),
+    pytest.param(
+        uff58(accelerances()[0, 0], 1, 1) + uff58(accelerances()[0, 1, :99], 2, 1, F[:99]),
+        "expected 200 lines",
+        id="lines",
+    ),
+    pytest.param(uff58(accelerances()[0, 0], 1, 1, kind=2), "functions of type 2", id="spectra"),
+]
+
+WARNINGS = [
+    pytest.param(_changed(0, 1, 0), "only zeros; the channel is left out", id="dead"),
+    pytest.param(_changed(0, 1, -1), "opposite signs", id="sign"),
+    pytest.param(_changed(1, 1, -1), "the driving point has the wrong sign", id="driving-point"),
+    pytest.param(_changed(0, 1, 1000), "check its unit", id="unit"),
+    pytest.param(_changed(0, 1, 0.001), "differ by a factor of 0.001", id="small-unit"),
+    pytest.param(
+        uff58(accelerances()[0, 0], 1, 1, 2 * np.pi * F), "looks like rad/s", id="circular"
+    ),
+]
+
+
+@pytest.mark.parametrize(("content", "message"), ERRORS)
+def test_wrong_files_are_errors(tmp_path: Path, content: str, message: str) -> None:
+    path = tmp_path / "a.uff"
+    path.write_text(content)
+    with pytest.raises(InputError, match=message):
+        read_test(path)
+
+
+@pytest.mark.parametrize(("content", "message"), WARNINGS)
+def test_doubtful_files_have_warnings(tmp_path: Path, content: str, message: str) -> None:
+    path = tmp_path / "a.uff"
+    path.write_text(content)
+    (data_set,) = read_test(path).sets
+    assert message in "\n".join(data_set.assembled.warnings)
+
+
+@pytest.mark.parametrize("letter", ["E", "D", "d"])
+def test_good_files_have_none(tmp_path: Path, letter: str) -> None:
+    path = tmp_path / "a.uff"
+    path.write_text(_all(accelerances(), letter))
+    (data_set,) = read_test(path).sets
+    assert data_set.assembled.warnings == ()
+    assert data_set.assembled.data.H == pytest.approx(accelerances(), rel=1e-4, abs=1e-6)
+
+
+def test_a_pair_that_was_hit_once_is_weighted_too(tmp_path: Path) -> None:
+    H = accelerances()
+    path = tmp_path / "a.uff"
+    path.write_text(_all(H) + uff58(1.01 * H[0, 0], 1, 1))
+    (data_set,) = read_test(path).sets
+    data = data_set.assembled.data
+    assert data.variance is not None
+    assert weighting(data) == "residuals"
