@@ -68,6 +68,7 @@ def results(
         name: "" if attribute.values == "text" else 0 for name, attribute in ATTRIBUTES.items()
     }
     data.attrs |= {"format": FORMAT, "method": "nbi", "study": "a", "version": "1"}
+    data.attrs["reference"] = "optimal-weights"
     return data
 
 
@@ -83,7 +84,7 @@ def two(tmp_path: Path) -> tuple[Path, Path]:
         [[0.0, 3.0], [1.0, 2.0], [3.0, 2.5], [3.0, 0.0]], [[1, 1], [1, 1.2], [9, 9], [1, 2]]
     )
     other = results(
-        [[0.0, 6.0], [2.0, 4.0], [6.0, 0.0], [7.0, -1.0]],
+        [[0.0, 7.0], [2.0, 5.0], [6.0, 1.0], [7.0, 0.0]],
         [[1.4, 5.0], [1.4, 5.0], [1.4, 5.0], [1.4, 5.0]],
         parameters=("k1", "other"),
         piece=[1, 1, 2, 2],
