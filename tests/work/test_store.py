@@ -211,3 +211,15 @@ def test_nothing_that_is_read_is_executed(tmp_path: Path) -> None:
     named: dict[str, Any] = {"head": head, "0": np.array([{"a": 1}], dtype=object)}
     np.savez(path, **named)
     assert store.read(task("one")) is None
+
+
+def test_a_write_that_is_interrupted_leaves_no_file(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def interrupted(_: int) -> None:
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("modefront.work.store.os.fsync", interrupted)
+    with pytest.raises(KeyboardInterrupt):
+        Store(tmp_path).write(Task(("x",), len), 1, Costs())
+    assert not list(tmp_path.iterdir())

@@ -116,17 +116,21 @@ class LocalPool:
     def restart(self) -> None:
         """Start the processes, or others in their place."""
         before = list(_Process.started)
-        with _interrupts_held():  # what is started now never sees any
-            self._executor = ProcessPoolExecutor(self.count, _Context(), _prepare, (self.warm,))
-            # The executor starts a process a task, as long as none of them is idle.
-            self._first, *_ = [self._executor.submit(_started) for _ in range(self.count)]
-        self._processes = [x for x in _Process.started if x not in before]
+        try:
+            with _interrupts_held():  # what is started now never sees any
+                self._executor = ProcessPoolExecutor(self.count, _Context(), _prepare, (self.warm,))
+                # The executor starts a process a task, as long as none of them is idle.
+                self._first, *_ = [self._executor.submit(_started) for _ in range(self.count)]
+                self._processes = [x for x in _Process.started if x not in before]
+        except BaseException:  # an interrupt that was held back
+            self.close()
+            raise
 
     def close(self) -> None:
         """End all processes, whatever they do."""
-        self._executor.shutdown(wait=False, cancel_futures=True)
-        for process in self._processes:
+        for process in self._processes:  # first, so that none of them misses what it starts with
             process.kill()
+        self._executor.shutdown(wait=False, cancel_futures=True)
         for process in self._processes:
             process.join()
             _Process.started.remove(process)
@@ -139,6 +143,8 @@ def _started() -> None:
 def _prepare(warm: str) -> None:
     """Prepare a process: one thread of the BLAS, no interrupts, an end with its parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    if hasattr(signal, "pthread_sigmask"):
+        signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})
     threading.Thread(target=_end_with_parent, daemon=True).start()
     if warm:
         importlib.import_module(warm)
@@ -162,7 +168,8 @@ def _interrupts_held() -> Iterator[None]:
     if not hasattr(signal, "pthread_sigmask"):  # Windows, where the initializer ignores them
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGHUP})
+    held = {signal.SIGINT, signal.SIGHUP, signal.SIGTERM}
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, held)
     try:
         yield
     finally:

@@ -71,11 +71,15 @@ class Store:
         path.parent.mkdir(parents=True, exist_ok=True)
         temporary = path.with_suffix(".tmp")
         named: dict[str, Any] = dict(arrays)
-        with temporary.open("wb") as stream:
-            np.savez(stream, head=np.frombuffer(head.encode(), np.uint8), **named)
-            stream.flush()
-            os.fsync(stream.fileno())
-        temporary.replace(path)
+        try:
+            with temporary.open("wb") as stream:
+                np.savez(stream, head=np.frombuffer(head.encode(), np.uint8), **named)
+                stream.flush()
+                os.fsync(stream.fileno())
+            temporary.replace(path)
+        except BaseException:  # a full disk or an interrupt
+            temporary.unlink(missing_ok=True)
+            raise
 
     def _path(self, task: Task[Any]) -> Path:
         return self.folder / f"{_file_name(task)}.npz"
