@@ -18,6 +18,7 @@ from typing import Any
 
 import numpy as np
 
+from modefront.errors import reason
 from modefront.text import one_line
 
 MOST_OUTPUT = 20_000
@@ -74,9 +75,12 @@ def isolated(function: str, path: Path, seconds: float, memory: int) -> Read:
             raise IsolatedError(f"a file that ends its reader (signal {-done.returncode})")
         if done.returncode:
             raise IsolatedError(one_line(said, 400) or f"status {done.returncode} of the reader")
-        with np.load(Path(folder) / ARRAYS, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
-        return arrays, json.loads((Path(folder) / TEXTS).read_text(encoding="utf-8"))
+        try:
+            with np.load(Path(folder) / ARRAYS, allow_pickle=False) as file:
+                arrays = {name: file[name] for name in file.files}
+            return arrays, json.loads((Path(folder) / TEXTS).read_text(encoding="ascii"))
+        except (OSError, ValueError) as error:
+            raise IsolatedError(f"nothing that can be used: {reason(error)}") from None
 
 
 def main() -> None:
@@ -87,13 +91,13 @@ def main() -> None:
     read = getattr(importlib.import_module(module), name)
     try:
         arrays, texts = read(Path(path))
+        named: Mapping[str, Any] = arrays
+        np.savez(Path(folder) / ARRAYS, allow_pickle=False, **named)
+        (Path(folder) / TEXTS).write_text(json.dumps(texts), encoding="ascii")
     except MemoryError:
         sys.exit(f"a file that takes more than {int(memory) / 1e9:.2g} GB to be read")
     except (Exception, SystemExit) as error:  # what readers raise is not documented
         sys.exit(one_line(error, 400) or type(error).__name__)
-    named: Mapping[str, Any] = arrays
-    np.savez(Path(folder) / ARRAYS, **named)
-    (Path(folder) / TEXTS).write_text(json.dumps(texts), encoding="utf-8")
 
 
 def limit(memory: int) -> None:

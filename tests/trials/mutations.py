@@ -42,6 +42,9 @@ points = 2
 """
 
 MESH = """\
+[study]
+name = "beam"
+
 [data]
 file = "modes.csv"
 
