@@ -30,8 +30,12 @@ CONTRADICTIONS = [
     ("[uncertainty]", "[certainty]", "found 'certainty' (did you mean 'uncertainty'?)"),
     # files
     ("modes.csv", "absent.csv", "absent.csv: file: expected a file of modal data, found no such"),
-    ("modes.csv", "folder.csv", "folder.csv: file: expected CSV in UTF-8, found a folder"),
-    ("modes.csv", "modes.xls", "[data] file: expected a file that ends in .csv, found 'modes.xls'"),
+    ("modes.csv", "folder.csv", "folder.csv: file: expected a file of modal data, found a folder"),
+    (
+        "modes.csv",
+        "modes.xls",
+        "[data] file: expected a file that ends in .csv, .uff or .unv, found 'modes.xls'",
+    ),
     # what is no TOML
     ("[study]", "[study", "file: expected TOML in UTF-8, found ... line "),
     ("seed = 1", "seed =", "file: expected TOML in UTF-8, found ... line "),

@@ -10,6 +10,7 @@ import pytest
 from modefront.errors import InputError
 from modefront.fem.mesh import read_mesh
 from modefront.models.matrices import MatrixModel
+from modefront.models.reduced.model import ReducedModel
 from modefront.study.examples import write_example
 from modefront.study.file import load
 
@@ -34,6 +35,7 @@ def model(folder: Path, sensors: str, columns: str, *edits: tuple[str, str]) -> 
     rows = "\n".join(f"{r},{4.0 * r},{ones}" for r in (1, 2, 3))
     (folder / "modes.csv").write_text(f"mode,frequency,{columns}\n{rows}\n")
     found = load(study).problem.model
+    found = found.full if isinstance(found, ReducedModel) else found
     assert isinstance(found, MatrixModel)
     return found
 

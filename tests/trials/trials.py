@@ -124,7 +124,9 @@ def killed(folder: Path, kills: int, seed: int) -> Outcome:
         return subprocess.Popen(command, stdout=quiet, stderr=subprocess.PIPE)
 
     began = time.monotonic()
-    assert run(folder / "whole").wait() == 0
+    whole_run = run(folder / "whole")
+    whole_run.communicate()
+    assert whole_run.returncode == 0
     whole, duration = _digits(folder / "whole"), time.monotonic() - began
     rng = np.random.default_rng(seed)
     left, number = kills, 0

@@ -55,7 +55,7 @@ def draw(data: xr.Dataset) -> Picture:
     figure = picture(6.4, 1.0 + 0.24 * max(len(rows), 1))
     axes = figure.add_subplot()
     for y, (_, values, std) in enumerate(rows):
-        ratio = np.divide(values, values[best], out=np.full(values.shape, np.nan))
+        ratio = values / values[best] if values[best] else np.full(values.shape, np.nan)
         known = ratio[chosen & np.isfinite(ratio)]
         if not known.size:
             continue

@@ -103,6 +103,10 @@ BESIDE, NEIGHBOURS = 1.5, 2
 """Distance of points of other branches, in steps of the ranges, within which a point is solved
 again from them, and how many of these are tried at most."""
 
+COARSE = 10
+"""Steps along an edge below which parameters may change by more from a point to its neighbour on
+the same branch, in proportion."""
+
 BEHIND = 1e-2
 """Excess of a half-finished search over a point, in units of the ranges, that is not followed."""
 
@@ -431,6 +435,7 @@ def from_other_branches(
     """
     current = list(points)
     span = problem.upper - problem.lower
+    far = JUMP * max(1.0, COARSE / lattice.divisions)
     tried: set[tuple[int, bytes]] = set()
     for turn in range(ROUNDS):
         theta = np.array([point.at.theta for point in current]) / span
@@ -440,7 +445,7 @@ def from_other_branches(
             if not np.isfinite(y[k]).all():
                 continue
             away = np.abs(y - y[k]).max(axis=1)
-            other = (np.abs(theta - theta[k]) > JUMP).any(axis=1)
+            other = (np.abs(theta - theta[k]) > far).any(axis=1)
             beside = np.flatnonzero(other & (away <= BESIDE / lattice.divisions))
             for j in beside[away[beside].argsort(kind="stable")][:NEIGHBOURS].tolist():
                 key = (k, current[j].at.theta.tobytes())

@@ -60,14 +60,14 @@ def _free(target: Payoff, point: Solution) -> Bools:
 def _lowerable(target: Payoff, point: Solution) -> list[Bools]:
     """Return sets of objectives (n,) that may be lower at the same values of the others.
 
-    These are the objectives that no bound holds, together and each alone; and each of the others
-    beside one that nearly vanishes, which may hold the bound without any effect.
+    These are the objectives that no bound holds; and each of the others beside one that nearly
+    vanishes, which may hold the bound without any effect.
     """
     n = target.scale.size
     free = _free(target, point)
     vanishing = VANISHING * target.scale >= point.at.J
     weak = point.beta is not None and point.at.feasible and vanishing.any()
-    alone = np.flatnonzero(~vanishing if weak else free) if weak or free.sum() > 1 else ()
+    alone = np.flatnonzero(~vanishing & ~free if free.sum() == 1 else ~vanishing) if weak else ()
     return [*([free] if free.any() else []), *(np.arange(n) == i for i in alone)]
 
 
@@ -102,7 +102,10 @@ def _lowered(problem: Problem, target: Payoff, start: Solution, lowered: Bools) 
     J, scale = start.at.J, target.scale
     least = int(np.where(lowered, np.inf, J / scale).argmin())
     if start.at.residuals and J[least] <= VANISHING * scale[least]:
-        return _around(problem, Lexicographic(least, scale), start, lowered)
+        order = Lexicographic(least, scale)
+        return (
+            _around(problem, order, start, lowered) if order.is_open(problem, start.at) else start
+        )
     held = np.eye(J.size)[~lowered] / scale
     return solve(problem, Linear(np.where(lowered, 1 / scale, 0.0), held, held @ J), start, _FEW)
 
