@@ -6,19 +6,22 @@ import csv
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
 import numpy as np
 import scipy.io
 import scipy.sparse
 
-from modefront.exports.motion import node_motion
+from modefront._typing import Floats
+from modefront.exports.motion import NodeMotion, node_motion
 from modefront.exports.uff import write_uff
-from modefront.exports.vtu import write_vtu
 from modefront.models.dofs import DofTable, write_dofs
+from modefront.models.geometry import Cells
 from modefront.programs.changes import Change
 from modefront.programs.mesh import ProgramMesh
 from modefront.results.results import ReportedModel
+from modefront.results.vtu import write_grid
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,10 +57,22 @@ def write_model(model: ReportedModel, origin: Origin, folder: Path, modes: int) 
         write_uff(folder / "modes.uff", origin.mesh, motion, shapes.frequency)
         if origin.mesh is None:
             missing.append("modes.vtu: the study names no mesh")
+        elif find_spec("meshio") is None:
+            missing.append("modes.vtu: meshio is not installed: pip install modefront[mesh]")
         else:
-            write_vtu(folder / "modes.vtu", origin.mesh, motion, shapes.frequency)
+            _write_vtu(folder / "modes.vtu", origin.mesh, motion, shapes.frequency)
     (folder / "deck.txt").write_text(_snippet(model, origin.changes), encoding="utf-8")
     return missing
+
+
+def _write_vtu(path: Path, mesh: ProgramMesh, motion: NodeMotion, frequencies: Floats) -> None:
+    """Write nodes, cells and the displacement of every mode, named with its frequency in Hz."""
+    data = {
+        f"mode {k}, {f:.6g} Hz": values[:, :3]
+        for k, (f, values) in enumerate(zip(frequencies, motion.values, strict=True), start=1)
+    }
+    cells = [Cells(x, x, np.searchsorted(mesh.number, rows)) for x, rows in mesh.cells.items()]
+    write_grid(path, mesh.coordinates, cells, {**data, "node": mesh.number})
 
 
 def _parameters(model: ReportedModel, folder: Path) -> None:

@@ -8,27 +8,22 @@ from __future__ import annotations
 
 import contextlib
 import io
+from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.errors import Fault, InputError, ModelError
-from modefront.models.geometry import Geometry
+from modefront.models.geometry import Cells, Geometry
 from modefront.results.shapes import PairedShapes
 
 
 def write_vtu(path: Path, shapes: PairedShapes) -> None:
     """Write nodes, cells and mode shapes, whole or not at all.
 
-    Raises ModelError for a model without geometry, InputError where meshio is missing or the file
-    cannot be written.
+    Raises ModelError for a model without geometry, and what `write_grid` raises.
     """
-    try:
-        import meshio
-    except ImportError:
-        expected = "meshio, which `pip install modefront[mesh]` brings"
-        raise InputError(Fault(str(path), "VTU", expected, "no such package")) from None
     geometry, displacement = shapes.geometry, shapes.displacement
     if geometry is None or displacement is None:
         raise ModelError(
@@ -41,12 +36,27 @@ def write_vtu(path: Path, shapes: PairedShapes) -> None:
     }
     for r, mode in enumerate(shapes.modes):
         vectors[f"mode {mode} measured"] = _at_sensors(geometry, shapes.measured[:, r])
-    groups = sorted({cells.group for cells in geometry.cells})
+    write_grid(path, geometry.nodes, geometry.cells, vectors)
+
+
+def write_grid(
+    path: Path, nodes: Floats, cells: Sequence[Cells], point_data: Mapping[str, Floats | Ints]
+) -> None:
+    """Write nodes (nodes, 3), cells, and data with a row a node, whole or not at all.
+
+    Raises InputError where meshio is missing or the file cannot be written.
+    """
+    try:
+        import meshio
+    except ImportError:
+        expected = "meshio, which `pip install modefront[mesh]` brings"
+        raise InputError(Fault(str(path), "VTU", expected, "no such package")) from None
+    groups = sorted({part.group for part in cells})
     mesh = meshio.Mesh(
-        geometry.nodes,
-        [(cells.type, cells.nodes) for cells in geometry.cells],
-        point_data=vectors,
-        cell_data={"group": [np.full(len(x.nodes), groups.index(x.group)) for x in geometry.cells]},
+        nodes,
+        [(part.type, part.nodes) for part in cells],
+        point_data=dict(point_data),
+        cell_data={"group": [np.full(len(x.nodes), groups.index(x.group)) for x in cells]},
     )
     temporary = path.with_name(f"{path.name}.tmp")
     try:
