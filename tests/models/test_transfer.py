@@ -1,4 +1,4 @@
-"""Models between their ports: dense, sparse and meshed ones, massless and rigid-body motion."""
+"""Models in their load cases: dense, sparse and meshed ones, massless and rigid-body motion."""
 
 from __future__ import annotations
 
@@ -9,9 +9,9 @@ import scipy.sparse
 from modefront import fem
 from modefront._typing import Floats
 from modefront.errors import ModelError
+from modefront.models.load_case import LoadCase, Transfer
 from modefront.models.matrices import MatrixModel, SensorSpec, affine, matrices, select
 from modefront.models.mesh import mesh_model
-from modefront.models.ports import Ports, Transfer
 from modefront.predictions.load_model import modes_reaching
 from modefront.response import ModalSystem, frequency_response
 from modefront.work.costs import Costs
@@ -19,8 +19,8 @@ from modefront.work.costs import Costs
 N = 60
 PLACES: dict[str, SensorSpec] = {"low": 3, "pair": [(40, 0.5), (41, 0.5)]}
 OUTPUTS: dict[str, SensorSpec] = {"top": N - 1, "massless": 20}
-SHAKEN = Ports(({"top": 1.0}, {"top": 1.0, "low": -1.0}, {"massless": 2.0}), base="x")
-PUSHED = Ports(SHAKEN.outputs, ({"top": 1.0}, {"pair": 3.0, "massless": -1.0}))
+SHAKEN = LoadCase(({"top": 1.0}, {"top": 1.0, "low": -1.0}, {"massless": 2.0}), base="x")
+PUSHED = LoadCase(SHAKEN.outputs, ({"top": 1.0}, {"pair": 3.0, "massless": -1.0}))
 THETA = np.array([1.3])
 
 
@@ -61,14 +61,14 @@ def agree(one: Transfer, other: Transfer) -> None:
         assert one.rigid == pytest.approx(other.rigid, rel=1e-12)
 
 
-@pytest.mark.parametrize("ports", [SHAKEN, PUSHED], ids=["base", "forces"])
+@pytest.mark.parametrize("load_case", [SHAKEN, PUSHED], ids=["base", "forces"])
 @pytest.mark.parametrize("grounded", [True, False])
-def test_sparse_and_dense_models_agree(ports: Ports, grounded: bool, costs: Costs) -> None:
+def test_sparse_and_dense_models_agree(load_case: LoadCase, grounded: bool, costs: Costs) -> None:
     dense = spring_chain(grounded=grounded, dense=True)
     sparse = spring_chain(grounded=grounded, dense=False)
-    one = dense.transfer(THETA, 6, ports)
+    one = dense.transfer(THETA, 6, load_case)
     assert costs.eigenproblems == 1
-    other = sparse.transfer(THETA, 6, ports)
+    other = sparse.transfer(THETA, 6, load_case)
     assert costs.eigenproblems == 2
     agree(one, other)
     assert (one.static is None) == (not grounded)
@@ -161,8 +161,8 @@ def test_a_mesh_is_what_its_matrices_are(elements: int) -> None:
         base={"x": spec["x"]},
     )
     outputs = ({"top": 1.0}, {"top": 1.0, "middle": -2.0})
-    for ports in (Ports(outputs, base="x"), Ports(outputs, ({"middle": 5.0},))):
-        one, other = (model.transfer(np.array([1.2]), 5, ports) for model in (mesh, given))
+    for load_case in (LoadCase(outputs, base="x"), LoadCase(outputs, ({"middle": 5.0},))):
+        one, other = (model.transfer(np.array([1.2]), 5, load_case) for model in (mesh, given))
         assert one.modes.lam == pytest.approx(other.modes.lam, rel=1e-8)
         assert one.static == pytest.approx(other.static, rel=1e-7)
         assert products(one) == pytest.approx(products(other), rel=1e-6, abs=1e-9)
@@ -171,7 +171,7 @@ def test_a_mesh_is_what_its_matrices_are(elements: int) -> None:
 def test_static_deflection_of_a_cantilever() -> None:
     """F (3 L x^2 - x^3) / 6EI half-way up; shear adds less than a thousandth."""
     model = cantilever(20)
-    found = model.transfer(np.ones(1), 2, Ports(({"middle": 1.0},), ({"top": 1.0},)))
+    found = model.transfer(np.ones(1), 2, LoadCase(({"middle": 1.0},), ({"top": 1.0},)))
     assert found.static is not None
     inertia, F, L, x = 0.04**3 * 0.03 / 12, 1.0, 2.0, 1.0
     bending = F * (3 * L * x**2 - x**3) / (6 * 210e9 * inertia)

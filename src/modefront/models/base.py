@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Protocol
 
 from modefront._typing import Floats
-from modefront.models.ports import Ports, Transfer
+from modefront.models.load_case import LoadCase, Transfer
 from modefront.modes.result import Modes
 
 
@@ -42,9 +42,9 @@ class Model(Protocol):
     def directions(self) -> tuple[str, ...]:
         """Names of the directions in which the base can move."""
 
-    def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
+    def transfer(self, theta: Floats, count: int, load_case: LoadCase) -> Transfer:
         """Return what the ``count`` lowest modes at ``theta`` are between loads and outputs.
 
-        Raises ModelError where the model has no such modes, KeyError for unknown places or
-        directions.
+        Raises ModelError where the model has no such modes, KeyError for unknown sensors, outputs
+        or directions.
         """

@@ -21,9 +21,9 @@ from modefront._typing import Floats
 from modefront.errors import refuse, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.models.checked_function import CheckedFunction, MatrixFunction, Tangent
+from modefront.models.load_case import LoadCase, Transfer
 from modefront.models.matrices import MatrixModel, SensorSpec, select, weights_of
 from modefront.models.parameters import Parameter
-from modefront.models.ports import Ports, Transfer
 from modefront.modes.result import Modes
 from modefront.options import each_once
 from modefront.work.transfer import shared
@@ -92,9 +92,9 @@ class FunctionModel:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         return self.at(theta, derivatives=derivatives).modes(theta, count, derivatives=derivatives)
 
-    def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
-        """Return the model between ``ports``; see `modefront.models.base.Model`."""
-        return self.at(theta, derivatives=False).transfer(theta, count, ports)
+    def transfer(self, theta: Floats, count: int, load_case: LoadCase) -> Transfer:
+        """Return the model in a load case; see `modefront.models.base.Model`."""
+        return self.at(theta, derivatives=False).transfer(theta, count, load_case)
 
     def at(self, theta: Floats, *, derivatives: bool = True) -> MatrixModel:
         """Return the affine model with the same matrices and first derivatives at ``theta``.

@@ -19,7 +19,7 @@ from modefront.linalg.factorisation import Factorisation, Symbolic
 from modefront.linalg.pencil import Pencil, pencil
 from modefront.linalg.products import gram
 from modefront.models.geometry import Geometry
-from modefront.models.ports import Pattern, Ports, Transfer
+from modefront.models.load_case import LoadCase, NamedWeights, Transfer
 from modefront.models.terms import BASE, above_zero, exponents_of, form_of, term_exponents
 from modefront.modes import dense, full, sparse
 from modefront.modes.result import Modes
@@ -162,13 +162,13 @@ class MatrixModel:
         """Names of the directions in which the base can move."""
         return tuple(self.base)
 
-    def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
-        """Return the model between ``ports``; see `modefront.models.base.Model`."""
-        outputs = self._patterns(ports.outputs)
-        if ports.base is None:
-            loads, rigid = self._patterns(ports.forces), None
+    def transfer(self, theta: Floats, count: int, load_case: LoadCase) -> Transfer:
+        """Return the model in a load case; see `modefront.models.base.Model`."""
+        outputs = self._weights(load_case.outputs)
+        if load_case.base is None:
+            loads, rigid = self._weights(load_case.forces), None
         else:
-            motion = self.base[ports.base][:, None]
+            motion = self.base[load_case.base][:, None]
             loads, rigid = -(self.mass.at(theta) @ motion), gram(outputs, motion)
         solution = self.full_modes(theta, count, loads)
         phi = self.selection @ solution.Phi
@@ -180,11 +180,11 @@ class MatrixModel:
             rigid=rigid,
         )
 
-    def _patterns(self, patterns: Sequence[Pattern]) -> Floats:
-        """Return patterns over places as columns over the degrees of freedom, (N, patterns)."""
-        out = np.zeros((self.size, len(patterns)))
-        for column, pattern in zip(out.T, patterns, strict=True):
-            for name, weight in pattern.items():
+    def _weights(self, sums: Sequence[NamedWeights]) -> Floats:
+        """Return weighted sums of sensors and outputs as columns (N, sums)."""
+        out = np.zeros((self.size, len(sums)))
+        for column, weights in zip(out.T, sums, strict=True):
+            for name, weight in weights.items():
                 if name in self.sensors:
                     row = self.selection[[self.sensors.index(name)]].toarray()[0]
                 else:

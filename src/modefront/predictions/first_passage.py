@@ -40,9 +40,9 @@ from modefront.predictions.load_model import (
     contradictions,
     filled,
     highest_frequency,
+    load_case_of,
     load_faults,
     nominal_system,
-    ports_of,
 )
 from modefront.reliability import (
     METHODS,
@@ -240,8 +240,8 @@ class Passage:
     @property
     def loads(self) -> ModalLoadModel:
         """Load case, outputs, modes and damping."""
-        ports = ports_of(self.response, self.force, self.base)
-        return ModalLoadModel(ports, self.modes, self.damping, static=False)
+        load_case = load_case_of(self.response, self.force, self.base)
+        return ModalLoadModel(load_case, self.modes, self.damping, static=False)
 
     @property
     def places(self) -> tuple[str, ...]:

@@ -19,7 +19,7 @@ from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, ModelError, suggestion, wrong
 from modefront.models.base import Model
-from modefront.models.ports import Pattern, Ports, Transfer
+from modefront.models.load_case import LoadCase, NamedWeights, Transfer
 from modefront.options import Requirement, is_name, is_number, text, whole
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
@@ -39,7 +39,7 @@ ABOVE = 1.1
 NAMED = "the name of a sensor or output, or a table of them with weights that are not zero"
 
 
-def _is_pattern(value: object) -> bool:
+def _is_weights(value: object) -> bool:
     return is_name(value) or (
         isinstance(value, dict)
         and bool(value)
@@ -47,7 +47,7 @@ def _is_pattern(value: object) -> bool:
     )
 
 
-def _pattern(value: Any) -> dict[str, float]:
+def _named_weights(value: Any) -> dict[str, float]:
     """Return weights by the name of a sensor or output."""
     return {value: 1.0} if isinstance(value, str) else {k: float(w) for k, w in value.items()}
 
@@ -61,18 +61,18 @@ def _is_list_of_names(value: object) -> bool:
     )
 
 
-def _is_table_of_patterns(value: object) -> bool:
+def _is_table_of_weights(value: object) -> bool:
     return (
         isinstance(value, dict)
         and bool(value)
-        and all(is_name(key) and _is_pattern(x) for key, x in value.items())
+        and all(is_name(key) and _is_weights(x) for key, x in value.items())
     )
 
 
 def _responses(value: Any) -> dict[str, dict[str, float]]:
     names = [value] if isinstance(value, str) else value
     named = names if isinstance(names, dict) else {name: name for name in names}
-    return {name: _pattern(each) for name, each in named.items()}
+    return {name: _named_weights(each) for name, each in named.items()}
 
 
 def _is_ratio(value: object) -> bool:
@@ -92,7 +92,7 @@ def _damping(value: Any) -> str | float | tuple[float, ...]:
 
 Name = Annotated[str, text("what the prediction is called")]
 
-Force = Annotated[str | Mapping[str, float], Requirement(NAMED, _is_pattern, _pattern)]
+Force = Annotated[str | Mapping[str, float], Requirement(NAMED, _is_weights, _named_weights)]
 """One force; kept as weights by the name of a sensor or output."""
 
 Forces = Annotated[
@@ -100,10 +100,10 @@ Forces = Annotated[
     Requirement(
         f"{NAMED}; or a list of these",
         lambda value: (
-            _is_pattern(value)
-            or (isinstance(value, list) and bool(value) and all(map(_is_pattern, value)))
+            _is_weights(value)
+            or (isinstance(value, list) and bool(value) and all(map(_is_weights, value)))
         ),
-        lambda value: tuple(map(_pattern, value if isinstance(value, list) else [value])),
+        lambda value: tuple(map(_named_weights, value if isinstance(value, list) else [value])),
     ),
 ]
 """Forces that are independent of one another; kept as such weights of each."""
@@ -114,7 +114,7 @@ Response = Annotated[
     str | Sequence[str] | Mapping[str, str | Mapping[str, float]],
     Requirement(
         f"a list of sensors or outputs, or a table, name = {NAMED}",
-        lambda value: is_name(value) or _is_list_of_names(value) or _is_table_of_patterns(value),
+        lambda value: is_name(value) or _is_list_of_names(value) or _is_table_of_weights(value),
         _responses,
     ),
 ]
@@ -138,13 +138,13 @@ class ModalLoadModel:
 
     Attributes
     ----------
-    ports : where it is loaded, and its responses
+    load_case : where it is loaded, and its responses
     modes : number of the lowest modes superposed; None where it is not known yet
     damping : ratio of all modes, or of each, or `MEASURED`
     static : whether the static response of the modes left out is added
     """
 
-    ports: Ports
+    load_case: LoadCase
     modes: int | None
     damping: str | float | Sequence[float]
     static: bool
@@ -152,9 +152,9 @@ class ModalLoadModel:
     @property
     def load(self) -> str:
         """Load case in words."""
-        if self.ports.base is not None:
-            return f"base along {self.ports.base}"
-        return "force at " + ", and at ".join(map(_in_words, self.ports.forces))
+        if self.load_case.base is not None:
+            return f"base along {self.load_case.base}"
+        return "force at " + ", and at ".join(map(_in_words, self.load_case.forces))
 
     @property
     def damped(self) -> str:
@@ -173,7 +173,7 @@ class ModalLoadModel:
         m = count = filled(self.modes, "modes")
         if self.damping == MEASURED:
             count = max(count, modes_needed(problem.pairing, problem.data, problem.model.size))
-        transfer = problem.model.transfer(theta, count, self.ports)
+        transfer = problem.model.transfer(theta, count, self.load_case)
         return ModalSystem(
             omega=np.sqrt(transfer.modes.lam[:m]),
             zeta=self._damping(problem, transfer)[:m],
@@ -208,16 +208,16 @@ def filled(value: T | None, name: str) -> T:
     return value
 
 
-def ports_of(response: Any, forces: Any, base: str | None) -> Ports:
+def load_case_of(response: Any, forces: Any, base: str | None) -> LoadCase:
     """Return loads and outputs from what `Response`, `Forces` and `Base` keep."""
-    return Ports(tuple(response.values()), tuple(forces or ()), base)
+    return LoadCase(tuple(response.values()), tuple(forces or ()), base)
 
 
 def contradictions(loads: ModalLoadModel) -> Iterator[Fault]:
     """Yield options of a load model that contradict one another."""
-    ports, damping = loads.ports, loads.damping
-    if bool(ports.forces) == (ports.base is not None):
-        yield Fault("", "", "either force or base", "both" if ports.forces else "neither")
+    load_case, damping = loads.load_case, loads.damping
+    if bool(load_case.forces) == (load_case.base is not None):
+        yield Fault("", "", "either force or base", "both" if load_case.forces else "neither")
     if isinstance(damping, tuple) and loads.modes not in (None, len(damping)):
         expected = f"a list of {loads.modes}, one a mode"
         yield Fault("", "damping", expected, f"{len(damping)} of them")
@@ -225,15 +225,17 @@ def contradictions(loads: ModalLoadModel) -> Iterator[Fault]:
 
 def load_faults(loads: ModalLoadModel, model: Model, data: ModalData) -> Iterator[Fault]:
     """Yield what a load model takes that the model or the data do not have."""
-    ports, damping = loads.ports, loads.damping
-    for name, patterns in (("force", ports.forces), ("response", ports.outputs)):
-        for place in (place for pattern in patterns for place in pattern):
+    load_case, damping = loads.load_case, loads.damping
+    for name, sums in (("force", load_case.forces), ("response", load_case.outputs)):
+        for place in (place for weights in sums for place in weights):
             if place not in model.places:
                 expected = "the name of a sensor or output of the model"
                 yield Fault("", name, expected, suggestion(place, model.places))
-    if ports.base is not None and ports.base not in model.directions:
+    if load_case.base is not None and load_case.base not in model.directions:
         names = ", ".join(f"'{x}'" for x in model.directions) or "none: the model names no base"
-        yield Fault("", "base", f"one of the directions of the base, {names}", f"'{ports.base}'")
+        yield Fault(
+            "", "base", f"one of the directions of the base, {names}", f"'{load_case.base}'"
+        )
     if loads.modes is not None and loads.modes > model.size:
         yield Fault("", "modes", f"a whole number from 1 to {model.size}", str(loads.modes))
     if isinstance(damping, tuple) and len(damping) > model.size:
@@ -312,8 +314,8 @@ def _more(model: Model, theta: Floats, known: Floats) -> Floats:
     return known
 
 
-def _in_words(pattern: Pattern) -> str:
-    """Return the places of a pattern, with weights that are not 1."""
+def _in_words(weights: NamedWeights) -> str:
+    """Return the names of weights, with the weights that are not 1."""
     return " + ".join(
-        name if weight == 1 else f"{weight:g} {name}" for name, weight in pattern.items()
+        name if weight == 1 else f"{weight:g} {name}" for name, weight in weights.items()
     )

@@ -29,10 +29,10 @@ from modefront.predictions.load_model import (
     contradictions,
     filled,
     highest_frequency,
+    load_case_of,
     load_faults,
     modes_reaching,
     nominal_system,
-    ports_of,
 )
 from modefront.residuals.problem import UpdatingProblem
 from modefront.response import ModalSystem, ResponseQuantity, peaks
@@ -116,8 +116,8 @@ class PeakResponse:
     def loads(self) -> ModalLoadModel:
         """Load case, outputs, modes and damping."""
         forces = () if self.force is None else (self.force,)
-        ports = ports_of(self.response, forces, self.base)
-        return ModalLoadModel(ports, self.modes, self.damping, self.static)
+        load_case = load_case_of(self.response, forces, self.base)
+        return ModalLoadModel(load_case, self.modes, self.damping, self.static)
 
     @property
     def places(self) -> tuple[str, ...]:

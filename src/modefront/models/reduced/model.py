@@ -15,8 +15,8 @@ from modefront._typing import Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
 from modefront.linalg.factorisation import SingularMatrixError
+from modefront.models.load_case import LoadCase, Transfer
 from modefront.models.matrices import MatrixModel
-from modefront.models.ports import Ports, Transfer
 from modefront.models.reduced import completeness
 from modefront.models.reduced.basis import Basis, Snapshot, empty, extended, snapshot
 from modefront.models.reduced.certificate import (
@@ -225,9 +225,9 @@ class ReducedModel:
         """Names of the directions in which the base can move."""
         return self.full.directions
 
-    def transfer(self, theta: Floats, count: int, ports: Ports) -> Transfer:
-        """Return the full model between ``ports``; see `modefront.models.base.Model`."""
-        return self.full.transfer(theta, count, ports)
+    def transfer(self, theta: Floats, count: int, load_case: LoadCase) -> Transfer:
+        """Return the full model in a load case; see `modefront.models.base.Model`."""
+        return self.full.transfer(theta, count, load_case)
 
     @property
     def unused(self) -> tuple[str, ...]:

@@ -1,7 +1,7 @@
-r"""Between where a structure is loaded and where it is looked at: what predictions ask of a model.
+r"""Load cases, and a model from its loads to its outputs: what predictions need of a model.
 
-Loads and outputs are patterns over the degrees of freedom: with the rows :math:`l` of places
-(sensors, or other named sums of degrees of freedom) and their weights,
+Loads and outputs are weighted sums: with the rows :math:`l` of sensors and outputs (named sums of
+degrees of freedom) and their weights,
 
 .. math::
     f = \sum_p w_p\, l_p^T, \qquad f = -M r \ \text{for a moving base}, \qquad
@@ -20,29 +20,29 @@ from dataclasses import dataclass
 from modefront._typing import Floats
 from modefront.modes.result import Modes
 
-Pattern = Mapping[str, float]
-"""Weights by the name of a place: a force of that size, or a term of a sum."""
+NamedWeights = Mapping[str, float]
+"""Weights by the name of a sensor or output: a force of that size, or a term of a sum."""
 
 
 @dataclass(frozen=True)
-class Ports:
+class LoadCase:
     """Loads and outputs of a model: either forces, or one motion of the base.
 
     Attributes
     ----------
-    outputs : weighted sums of places, such as a story drift
-    forces : patterns of force, one an input; none where the base moves
+    outputs : weighted sums of sensors and outputs, such as a storey drift
+    forces : distributions of force, one an input; none where the base moves
     base : the direction in which the base moves, of the model's directions; None for forces
     """
 
-    outputs: tuple[Pattern, ...]
-    forces: tuple[Pattern, ...] = ()
+    outputs: tuple[NamedWeights, ...]
+    forces: tuple[NamedWeights, ...] = ()
     base: str | None = None
 
 
 @dataclass(frozen=True)
 class Transfer:
-    """A model at one theta between its ports, in its lowest modes.
+    """A model at one theta from the loads of a load case to its outputs, in its lowest modes.
 
     Attributes
     ----------
