@@ -62,7 +62,7 @@ def test_a_bound_within_the_scatter_of_a_measured_value(
     noise = Noise(np.array([[-0.2 * (theta - measured)]]), np.array([[[-0.2]]]))
     found = scatter(problem, point_at(problem, [theta]), np.ones(1), given_weights(noise), noise)
     assert found.theta == pytest.approx(0.1 if measured < 1 else 0.0)
-    assert found.doubts == doubts
+    assert found.warnings == doubts
 
 
 @pytest.mark.parametrize(("d", "doubts"), [(0.9, ()), (1.1, (LinearisationWarning.SADDLE,))])
@@ -79,7 +79,7 @@ def test_optimal_weights_hold_a_model_between_close_minima_only(
     point, a = point_at(problem, [0.0]), np.ones(2)
     noise = Noise(np.array([[0.01, 0.0]]), np.array([[[0.01], [0.0]]]))
     found = scatter(problem, point, a / point.at.J, optimal_weights(point, a, noise), noise)
-    assert found.doubts == doubts
+    assert found.warnings == doubts
 
 
 def of_corners(beta: Floats, std: float) -> Scatter:
@@ -123,7 +123,9 @@ def test_points_next_to_a_change_of_the_active_set_are_doubtful() -> None:
     line = [(1 - s) * inside + s * outside for s in steps]
     counts = []
     for std in (1e-6, 0.05, 0.15):
-        doubtful = [LinearisationWarning.SWITCHES in of_corners(beta, std).doubts for beta in line]
+        doubtful = [
+            LinearisationWarning.SWITCHES in of_corners(beta, std).warnings for beta in line
+        ]
         assert not doubtful[0]
         assert not doubtful[-1]
         where = np.flatnonzero(doubtful)
@@ -159,4 +161,4 @@ def test_another_model_that_fits_as_well_is_a_rival(
     own = Scatter(none, np.array([[0.0, std]]), none, np.zeros(2, bool), none.T, ())
     scatters = {"edge-J1": own, "nbi-1": own}
     found = with_neighbours(front, points, scatters, np.ones(2), np.ones(2))
-    assert [one.doubts for one in found.values()] == [doubts, doubts]
+    assert [one.warnings for one in found.values()] == [doubts, doubts]

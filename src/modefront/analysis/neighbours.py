@@ -21,7 +21,7 @@ def with_neighbours(
     a: Floats,
     sizes: Floats,
 ) -> dict[str, Scatter]:
-    """Return the scatter of points with the doubts that their neighbours raise."""
+    """Return the scatter of points with the warnings that their neighbours raise."""
     ends = [end.at.J for gap in front.gaps for end in gap.ends]
     out: dict[str, Scatter] = {}
     for point in in_order(points):
@@ -40,8 +40,8 @@ def with_neighbours(
             (LinearisationWarning.RIVAL, _has_rival(front, point, linearised, a, sizes)),
             (LinearisationWarning.UNSOLVED, not point.solution.converged),
         ]
-        doubts = (*linearised.doubts, *(doubt for doubt, holds in reasons if holds))
-        out[label] = replace(linearised, doubts=doubts)
+        warnings = (*linearised.warnings, *(warning for warning, holds in reasons if holds))
+        out[label] = replace(linearised, warnings=warnings)
     return out
 
 

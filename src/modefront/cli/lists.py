@@ -107,7 +107,7 @@ def print_uncertainty(screen: Screen, data: xr.Dataset) -> None:
             more = [] if doubts is None else [str(doubts.values[i])]
             rows.append([str(label), *(_number(x, ".3g", "") for x in [*J[i], *theta[i]]), *more])
         columns = ["model", *(f"J {g}" for g in groups), *names]
-        screen.table(title, columns + ["doubtful"] * (doubts is not None), rows)
+        screen.table(title, columns + ["warning"] * (doubts is not None), rows)
     if "posterior_std" in data:
         known = True
         modes = data["mode"].values

@@ -149,14 +149,14 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
     theta, J = np.full((m, p, p), np.nan), np.full((m, n, n), np.nan)
     theta_std = np.full((m, p), np.nan)
     predicted = {name: np.full((m, r), np.nan) for name in ("frequency", "mac")}
-    doubts = [""] * m
+    warned = [""] * m
     for i, name in enumerate(labels):
         scatter = analysis.scatter.get(name)
         if scatter is None:
             continue
         theta[i], J[i] = scatter.covariance, scatter.J.T @ scatter.J
         theta_std[i] = _std(scatter.covariance, scatter.free)
-        doubts[i] = ", ".join(doubt.name.lower() for doubt in scatter.doubts)
+        warned[i] = ", ".join(warning.name.lower() for warning in scatter.warnings)
         slopes = analysis.slopes.get(name)
         if slopes is not None:
             for quantity, values in predicted.items():
@@ -168,7 +168,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
         "objective_covariance": J,
         "frequency_std": predicted["frequency"],
         "mac_std": predicted["mac"],
-        "scatter_doubt": doubts,
+        "scatter_doubt": warned,
     }
 
 

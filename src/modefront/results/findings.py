@@ -254,17 +254,17 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
     if missing:
         where = _places(missing, len(labels))
         yield Rank.DOUBTFUL, f"no scatter is known at {where}"
-    for doubt in LinearisationWarning:
-        doubtful = [
+    for warning in LinearisationWarning:
+        warned = [
             name
             for name in labels
-            if name in analysis.scatter and doubt in analysis.scatter[name].doubts
+            if name in analysis.scatter and warning in analysis.scatter[name].warnings
         ]
-        if doubtful:
-            where = _places(doubtful, len(labels))
+        if warned:
+            where = _places(warned, len(labels))
             yield (
                 Rank.DOUBTFUL,
-                f"the linearised scatter may not be valid at {where}: {doubt.value}",
+                f"the linearised scatter may not be valid at {where}: {warning.value}",
             )
 
 

@@ -76,7 +76,7 @@ class Scatter:
     w : (sources, n) changes of the weights of the objectives
     held : (p,) parameters that a bound holds
     free : (p, d) directions that no data determine, orthonormal over the ranges
-    doubts : reasons why the linearisation may not be valid
+    warnings : reasons why the linearisation may not be valid
     """
 
     theta: Floats
@@ -84,7 +84,7 @@ class Scatter:
     w: Floats
     held: Bools
     free: Floats
-    doubts: tuple[LinearisationWarning, ...]
+    warnings: tuple[LinearisationWarning, ...]
 
     @property
     def covariance(self) -> Floats:
@@ -152,7 +152,7 @@ def scatter(
     theta, dw, dtau = x[:, :q] @ B.T, x[:, q : q + n], x[:, q + n :]
     J = noise.J + theta @ evaluation.dJ.T
     slope = (slope + theta @ second + dw @ evaluation.dJ) * span
-    doubts = [
+    warnings = [
         (LinearisationWarning.SADDLE, not _is_minimum(W, c.C @ B, dJ, c)),
         (LinearisationWarning.MEETS, _meets(problem, evaluation.theta, theta, held)),
         (
@@ -164,7 +164,7 @@ def scatter(
             c.bounds is not None and c.bounds.switch(w, dw, theta @ evaluation.dJ.T, dtau),
         ),
     ]
-    why = tuple(doubt for doubt, holds in doubts if holds)
+    why = tuple(warning for warning, holds in warnings if holds)
     return Scatter(theta, J, dw, held, span[:, None] * free, why)
 
 
