@@ -7,10 +7,15 @@ import re
 from collections.abc import Callable
 from pathlib import Path
 
+import numpy as np
 import pytest
 from click.testing import CliRunner
 
+from modefront import Group, UpdatingProblem, chain, modal_data
 from modefront.cli.main import cli
+from modefront.diagnosis.comparison import compare
+from modefront.diagnosis.diagnose import diagnose
+from modefront.diagnosis.opposed import OpposedSensor
 from modefront.study.check import Findings, check
 from modefront.study.examples import write_example
 from modefront.study.file import load
@@ -109,6 +114,25 @@ def test_a_reversed_sensor(example: str, sensor: str, tmp_path: Path) -> None:
     said = only(spoilt(tmp_path, example, data=scaled(sensor, -1.0)))
     assert re.search(rf"reversing {sensor} in all data raises MAC \d from 0\.\d\d to 1\.00", said)
     assert f"check the direction of {sensor}" in said
+
+
+def test_a_reversed_sensor_that_moves_too_little_for_the_mac() -> None:
+    names = [f"k{i + 1}" for i in range(50)]
+    model = chain(names, [1.0] * 50, [1e4] * 50, sensors={f"s{i}": i for i in range(50)})
+    structure = model.modes(np.linspace(0.97, 1.05, 50), 4, derivatives=False)
+    size = np.abs(structure.phi).max(axis=0)
+    noise = 0.1 * size * np.random.default_rng(1).standard_normal(structure.phi.shape)
+    noise[0] /= 20
+    shape = (structure.phi + noise).T
+    first = shape[:, 0].copy()
+    groups = (Group("shapes", shape="all"),)
+    one = np.ones(50)
+    for sign, expected in ((1.0, []), (-1.0, ["s0"])):
+        shape[:, 0] = sign * first
+        data = modal_data(structure.frequency, shape, model.sensors)
+        mistakes = diagnose(compare(UpdatingProblem(model, data, groups, 0.2 * one, 5 * one, one)))
+        assert [x.sensor for x in mistakes if isinstance(x, OpposedSensor)] == expected
+        assert len(mistakes) == len(expected)
 
 
 @pytest.mark.parametrize("example", [CHAIN, FRAME])

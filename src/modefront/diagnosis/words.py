@@ -11,6 +11,7 @@ from modefront.diagnosis.damping import DampingInPercent
 from modefront.diagnosis.diagnose import Finding
 from modefront.diagnosis.explain import WrongPlaces
 from modefront.diagnosis.groups import UnusedGroup
+from modefront.diagnosis.opposed import OpposedSensor
 from modefront.diagnosis.pairs import BeyondCandidates, DistantPair, OutsideModel, UnseenMode
 from modefront.diagnosis.places import DataDirection
 from modefront.diagnosis.sensors import WrongSensors
@@ -123,6 +124,16 @@ def _sensors(found: WrongSensors) -> tuple[str, str]:
             f"check the cables of {', '.join(exchanged)}, and exchange their columns or sensors"
         )
     return what, "; ".join(remedies)
+
+
+def _opposed(found: OpposedSensor) -> tuple[str, str]:
+    return (
+        f"sensor {found.sensor} moves against the model in {found.modes} modes: their signed "
+        f"COMAC is {found.agreement:.2f}, at the median sensor {found.usual:.2f}; it moves too "
+        "little to show in the MAC",
+        f"check the direction of {found.sensor}, and change the sign of its column, or of the "
+        "direction in the model",
+    )
 
 
 def _places(found: WrongPlaces) -> tuple[str, str]:
@@ -269,6 +280,7 @@ _WORDS: Mapping[type, Callable[[Any], tuple[str, str]]] = {
     DataDirection: _data_direction,
     DistantPair: _distant,
     FrequencyFactor: _factor,
+    OpposedSensor: _opposed,
     OtherQuantity: _quantity,
     OutsideModel: _outside,
     SetFactor: _set_factor,
