@@ -129,3 +129,12 @@ def test_every_terminal_shows_names_and_obeys_none(
     assert not {c for c in out if not c.isprintable()} - {"\n"}
     assert "[bold]" in out
     assert r"k\x1b[31m\n1" in out
+
+
+def test_no_model_is_worse_than_the_sentence_on_all_models_says(two: xr.Dataset) -> None:
+    measured = two["measured_frequency"].values
+    frequency = np.where(two["frequency"].values > 0, 1.0104 * measured, np.nan)
+    mac = np.full(frequency.shape, 0.9988)
+    some = two.assign(frequency=(("point", "mode"), frequency), mac=(("point", "mode"), mac))
+    (said,) = [line for line in headlines(some, "there") if "Pareto-optimal models have" in line]
+    assert "within 1.1 % of the measured ones and MAC values of 0.998 or more" in said

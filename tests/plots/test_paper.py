@@ -50,6 +50,17 @@ def test_figures_show_all_studies(building: Results, tmp_path: Path) -> None:
     assert [path.name for path in paths] == [f"{name}.svg" for name in drawn]
 
 
+def test_long_names_of_studies_are_not_cut(building: Results) -> None:
+    names = [f"three-story C{k}, beams and plates M{k}_FE" for k in range(4)]
+    for name, drawn in figures([(each, building.dataset) for each in names]):
+        drawn.canvas.draw()
+        (legend,) = drawn.legends
+        box = legend.get_window_extent()
+        assert 0 <= box.x0, name
+        assert box.x1 <= drawn.bbox.width, name
+        assert [text.get_text() for text in legend.get_texts()][:4] == names
+
+
 def test_results_that_are_no_front_of_two_groups_are_refused(
     building: Results, tmp_path: Path
 ) -> None:

@@ -59,7 +59,7 @@ NO_RESPONSE = '"" 1 true nan [] [1] [""] ["low","low"] {} {a=1} {a={}} {a={top=0
 FRF, PASSAGE = "[[predict.frf]] 1", "[[predict.first_passage]] 1"
 
 KEYS = [
-    Key('name = "two masses"', "[study] name", "a text", True, NO_TEXT),
+    Key('name = "two masses"', "[study] name", "a text of printable characters", True, NO_TEXT),
     Key("seed = 1", "[study] seed", "a whole number from 0", False, NO_WHOLE),
     Key(
         "memory = 2.0",

@@ -114,14 +114,32 @@ def _quality(data: xr.Dataset) -> Iterator[str]:
     of_best = 100 * np.abs(data["frequency"].values[rows] / data["measured_frequency"].values - 1)
     yield (
         f"all {int(chosen.sum())} Pareto-optimal models have frequencies within "
-        f"{_percent(_most(error))} % of the measured ones and MAC values of {_least(mac):.3f} or "
+        f"{_percent(_most(error))} % of the measured ones and MAC values of {_mac(_least(mac))} or "
         f"more; "
-        f"{best} has {_percent(_most(of_best))} % and {_least(data['mac'].values[rows]):.3f}"
+        f"{best} has {_percent(_most(of_best))} % and {_mac(_least(data['mac'].values[rows]))}"
     )
 
 
 def _percent(value: float) -> str:
-    return "0.01" if value < 0.01 else f"{value:.2g}"
+    """Return an error in % with two digits, rounded up: no model has a greater one.
+
+    >>> _percent(1.04), _percent(0.78), _percent(123.4)
+    ('1.1', '0.78', '124')
+    """
+    if not np.isfinite(value) or value < 0.01:
+        return "0.01" if value < 0.01 else f"{value}"
+    decimals = max(1 - int(np.floor(np.log10(value))), 0)
+    up = np.ceil(10**decimals * value * (1 - 1e-12)) / 10**decimals
+    return f"{up:.2g}" if up < 10 else f"{up:.0f}"
+
+
+def _mac(value: float) -> str:
+    """Return a MAC with three digits, rounded down: no model has a smaller one.
+
+    >>> _mac(0.9996), _mac(1.0), _mac(0.812)
+    ('0.999', '1.000', '0.812')
+    """
+    return f"{np.floor(1e3 * value + 1e-9) / 1e3:.3f}"
 
 
 def _most(values: Floats) -> float:

@@ -1,8 +1,8 @@
 """Figures 2 to 7 of the paper, for the studies of the three-story building.
 
 The order and the layout are those of Christodoulou, Ntotsios, Papadimitriou & Panetsos (2008,
-doi:10.1016/j.cma.2008.04.010) as far as its text describes them; a study has a column for each
-structural configuration, and a colour for each class of models:
+doi:10.1016/j.cma.2008.04.010) as far as its text describes them; each study has a colour and a mark
+of its own:
 
 ======  ============================================================================
 figure  what it shows
@@ -227,5 +227,10 @@ def _along(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str) -> N
 
 
 def _legend(figure: Picture, axes: Axes, studies: Studies) -> None:
+    """Put the legend below, in as many columns as are not cut at the borders of the figure."""
     handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower center", ncols=min(len(studies) + 2, 4))
+    for columns in range(min(len(studies) + 2, 4), 0, -1):
+        legend = figure.legend(handles, labels, loc="outside lower center", ncols=columns)
+        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
+            return
+        legend.remove()

@@ -212,10 +212,12 @@ def _most(values: Floats) -> Floats:
 def _percent(value: float) -> str:
     """Return an error in %, as far as anyone wants to know it.
 
-    >>> _percent(2.3e-9), _percent(8.14)
-    ('0.00', '8.1')
+    >>> _percent(2.3e-9), _percent(1.0404), _percent(8.14), _percent(123.4)
+    ('0.00', '1.04', '8.14', '123')
     """
-    return f"{value:.2g}" if value >= 0.01 else "0.00"
+    if value < 0.01:
+        return "0.00"
+    return f"{value:.3g}" if value < 100 else f"{value:.0f}"
 
 
 def _mac(value: float) -> str:

@@ -69,7 +69,7 @@ class Study:
     """
 
     problem: UpdatingProblem
-    name: Annotated[str, text("a text")] = "study"
+    name: Annotated[str, text("a text of printable characters")] = "study"
     seed: Annotated[int, whole(0, 2**63 - 1)] = 0
     pareto: Pareto = field(default_factory=Pareto)
     weighted: Sequence[Weighted] = ()
