@@ -176,7 +176,7 @@ def running(group: int) -> list[str]:
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
 def test_signals_interrupt_a_run_and_end_its_processes(name: str, tmp_path: Path) -> None:
     path = write_study(tmp_path, "")
-    path.write_text(path.read_text().replace("points = 3", "points = 300"))
+    path.write_text(path.read_text().replace("points = 3", "points = 3000"))
     heard = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
     code = f"{heard}; from modefront.cli.main import main; main()"
     folder = tmp_path / "results"

@@ -108,7 +108,7 @@ def _read_header(header: Table | None) -> tuple[str, int]:
     """Return name and seed of the table ``[study]``, what it says of memory being read."""
     if header is None:
         return "", 0
-    name = header.text("name") or ""
+    name = header.text("name", "a text of printable characters") or ""
     seed: int = header.integer("seed", 0, 2**63 - 1, default=0)
     header.close()
     return name, seed

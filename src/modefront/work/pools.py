@@ -93,7 +93,7 @@ class LocalPool:
 
     count: int
     warm: str = ""
-    _processes: Sequence[SpawnProcess] = ()
+    _before: Sequence[SpawnProcess] = ()
     _executor: ProcessPoolExecutor = field(init=False)
     _first: Future[None] = field(init=False)
 
@@ -107,7 +107,8 @@ class LocalPool:
 
     def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
         """Compute a message in one of the processes."""
-        return self._executor.submit(work, message, objects)
+        with _interrupts_held():  # the executor may start a process that it has not needed yet
+            return self._executor.submit(work, message, objects)
 
     def lost(self, error: Exception, /) -> Loss | None:
         """Return that all processes are lost where one has ended: the executor ends the others."""
@@ -115,23 +116,23 @@ class LocalPool:
 
     def restart(self) -> None:
         """Start the processes, or others in their place."""
-        before = list(_Process.started)
+        self._before = list(_Process.started)
         try:
             with _interrupts_held():  # what is started now never sees any
                 self._executor = ProcessPoolExecutor(self.count, _Context(), _prepare, (self.warm,))
                 # The executor starts a process a task, as long as none of them is idle.
                 self._first, *_ = [self._executor.submit(_started) for _ in range(self.count)]
-                self._processes = [x for x in _Process.started if x not in before]
         except BaseException:  # an interrupt that was held back
             self.close()
             raise
 
     def close(self) -> None:
         """End all processes, whatever they do."""
-        for process in self._processes:  # first, so that none of them misses what it starts with
+        processes = [x for x in _Process.started if x not in self._before]
+        for process in processes:  # first, so that none of them misses what it starts with
             process.kill()
         self._executor.shutdown(wait=False, cancel_futures=True)
-        for process in self._processes:
+        for process in processes:
             process.join()
             _Process.started.remove(process)
 
