@@ -77,7 +77,7 @@ def _tightened(problem: Problem, target: Payoff, point: Solution) -> Solution:
     start = end = begin(problem.evaluate(point.at.theta))
     evaluations = point.evaluations + 1
     for lowered in _lowerable(target, point):
-        lower = _lowered(problem, target, end, lowered)
+        lower = _lowered(problem, target, replace(end, evaluations=0), lowered)
         evaluations += lower.evaluations
         if _is_better(target, lower.at.J, end.at.J):
             end = lower
