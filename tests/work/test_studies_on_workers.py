@@ -173,6 +173,21 @@ def running(group: int) -> list[str]:
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")
+def test_processes_of_a_pool_never_see_interrupts_of_the_terminal() -> None:
+    code = """if __name__ == "__main__":
+    import multiprocessing, pathlib, re, signal
+    from modefront.work.pools import LocalPool
+    pool = LocalPool(2)
+    for process in multiprocessing.active_children():
+        text = pathlib.Path(f"/proc/{process.pid}/status").read_text()
+        print(int(re.search(r"SigBlk:\\s*(\\w+)", text)[1], 16) >> signal.SIGINT - 1 & 1)
+    pool.close()
+"""
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "1\n1\n"
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")
 @pytest.mark.parametrize("name", ["SIGTERM", "SIGHUP", "SIGINT"])
 def test_signals_interrupt_a_run_and_end_its_processes(name: str, tmp_path: Path) -> None:
     path = write_study(tmp_path, "")

@@ -19,6 +19,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from enum import Enum
+from multiprocessing import resource_tracker
 from multiprocessing.connection import wait
 from multiprocessing.context import SpawnContext, SpawnProcess
 from typing import Any, ClassVar, Protocol
@@ -164,7 +165,8 @@ def _end_with_parent() -> None:
 def _interrupts_held() -> Iterator[None]:
     """Hold interrupts back until the context ends; processes started in it hold them for good.
 
-    Among these is the one in which `multiprocessing` keeps account of semaphores.
+    Among these is the one in which `multiprocessing` keeps account of semaphores. It is started
+    first, since `multiprocessing` lets interrupts pass once it has started it.
     """
     if not hasattr(signal, "pthread_sigmask"):  # Windows, where the initializer ignores them
         yield
@@ -172,6 +174,8 @@ def _interrupts_held() -> Iterator[None]:
     held = {signal.SIGINT, signal.SIGHUP, signal.SIGTERM}
     before = signal.pthread_sigmask(signal.SIG_BLOCK, held)
     try:
+        resource_tracker.ensure_running()
+        signal.pthread_sigmask(signal.SIG_BLOCK, held)
         yield
     finally:
         signal.pthread_sigmask(signal.SIG_SETMASK, before)
