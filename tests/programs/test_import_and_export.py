@@ -255,6 +255,29 @@ def test_a_model_is_exported(small: Path) -> None:
     _check_shapes(folder, K, M)
 
 
+def test_the_study_of_results_is_found_wherever_it_lies(
+    small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, results = small / "study.toml", tmp_path / "elsewhere" / "deep" / "results"
+    text = study.read_text() + "\n[pareto]\npoints = 2\n[identifiability]\nmodels = 0\n"
+    study.write_text(text + "[search]\nstarts = 1\nlimit = 1\nevolutions = 0\n")
+    assert modefront("run", study, "-o", results).exit_code in (0, 1)
+    found = modefront("export", results, "-o", tmp_path / "a")
+    assert found.exit_code == 0, found.output + str(found.exception)
+    shutil.rmtree(results / "pieces")
+    lost = str(modefront("export", results, "-o", tmp_path / "b").exception)
+    assert "found none: pass --study FILE" in lost
+    monkeypatch.chdir(small)
+    assert modefront("export", results, "-o", tmp_path / "b").exit_code == 0
+    study.write_text(study.read_text().replace("bounds = [0.5, 2.0]", "bounds = [0.5, 1.9]"))
+    changed = str(modefront("export", results, "-o", tmp_path / "c").exception)
+    assert f"'{study}' with other inputs than those of the results: changed since" in changed
+    other = str(modefront("export", results, "--study", study, "-o", tmp_path / "c").exception)
+    assert "other inputs: run it again" in other
+    study.unlink()
+    assert not (tmp_path / "c").exists()
+
+
 def _check_shapes(folder: Path, K: np.ndarray, M: np.ndarray) -> None:
     """The universal file and the VTU file have the nodes, and the modes of K and M."""
     meshio, pyuff = pytest.importorskip("meshio"), pytest.importorskip("pyuff")

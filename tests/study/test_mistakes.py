@@ -53,9 +53,10 @@ def found(study: Path) -> Findings:
 
 
 def only(study: Path) -> str:
-    """Return the one mistake that is found, in words."""
+    """Return the one mistake that is found, in words; nothing that it brings about is said."""
     findings = found(study)
     assert len(findings.mistakes) == 1, findings.warnings
+    assert len(findings.warnings) == 1, findings.warnings
     return findings.warnings[0]
 
 
@@ -106,6 +107,16 @@ def test_periods_and_eigenvalues(tmp_path: Path) -> None:
 
     assert "looks like periods in s" in only(spoilt(tmp_path / "a", CHAIN, data=period))
     assert "looks like eigenvalues" in only(spoilt(tmp_path / "b", CHAIN, data=eigenvalue))
+
+
+def test_what_a_unit_mistake_brings_about_is_not_said(tmp_path: Path) -> None:
+    study = spoilt(tmp_path, SETS, data=scaled("frequency", 6.2831853))
+    said = " ".join(CliRunner().invoke(cli, ["check", "--all", str(study)]).output.split())
+    assert "look like rad/s" in said
+    assert "put this right first: it changes what the data determine" in said
+    assert said.count("warning:") == 1
+    assert "determine this combination" not in said
+    assert "all data together" not in said
 
 
 @pytest.mark.parametrize("example", [CHAIN, FRAME])

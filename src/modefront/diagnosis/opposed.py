@@ -12,12 +12,12 @@ paired model mode to the measured one.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
 
-from modefront._typing import Floats, Ints
-from modefront.diagnosis.comparison import Comparison
+from modefront._typing import Bools, Floats, Ints
 from modefront.diagnosis.measured import Measured
 
 OPPOSED, AGREES = -0.95, 0.8
@@ -32,7 +32,7 @@ LEAST_MODES, LEAST_SENSORS = 3, 6
 CLEAR, SPREAD = 2.0, 2.0
 """Gain over the median residual of the sensors, and modes over which it has to be spread."""
 
-GREAT, NEARLY = 15.0, -0.9
+GREAT, NEARLY = 6.0, -0.9
 """The same gain, beyond which it may come from a single mode, and the value that does then."""
 
 
@@ -54,49 +54,76 @@ class OpposedSensor:
     modes: int
 
 
-def opposed_findings(comparison: Comparison, view: Measured) -> list[OpposedSensor]:
-    """Return the sensors that move against a model that fits at the others."""
-    phi = comparison.phi[:, comparison.pairs.index]
-    mac = comparison.mac[np.arange(phi.shape[1]), comparison.pairs.index]
-    fits = np.flatnonzero(np.nan_to_num(mac) >= FITS)
-    if fits.size < LEAST_MODES:
-        return []
-    psi, model = _scaled(view, phi, fits)
-    along = (psi * model).sum(axis=0)
-    size = np.sqrt((psi**2).sum(axis=0) * (model**2).sum(axis=0))
-    known = size > 0
+def opposed_findings(sensors: Sequence[str], view: Measured, phi: Floats) -> list[OpposedSensor]:
+    """Return the sensors that move against a model that fits at the others.
+
+    ``phi`` (sensors, modes) are the model modes that belong to the measured ones.
+    """
+    evidence = evidence_of(view, phi)
+    known = np.isfinite(evidence.agreement)
     if known.sum() < LEAST_SENSORS:
         return []
-    agreement = np.divide(along, size, out=np.full(along.shape, np.nan), where=known)
-    usual = float(np.median(agreement[known]))
-    residual = float(np.median(((psi - model) ** 2).sum(axis=0)[known]))
-    share = _by_mode(psi * model, len(fits))
-    is_clear = (-4 * along > CLEAR * residual) & (_spread(share) > SPREAD)
-    is_great = -4 * along > GREAT * residual
-    found = ((agreement < OPPOSED) & is_clear) | ((agreement < NEARLY) & is_great)
+    usual = float(np.median(evidence.agreement[known]))
     if usual < AGREES:
         return []
-    names = comparison.data.sensors
     return [
-        OpposedSensor(names[s], float(agreement[s]), usual, int(fits.size))
-        for s in np.flatnonzero(found).tolist()
+        OpposedSensor(sensors[s], float(evidence.agreement[s]), usual, int(evidence.modes[s]))
+        for s in np.flatnonzero(evidence.is_opposed).tolist()
     ]
 
 
-def _scaled(view: Measured, phi: Floats, fits: Ints) -> tuple[Floats, Floats]:
-    """Return measured shapes and model shapes scaled to them, both (sets × modes, sensors)."""
-    seen = view.seen[:, fits]
-    model = np.where(seen, phi[:, fits].T[None], 0.0)
-    psi = view.psi[:, fits]
-    square = (model**2).sum(axis=2, keepdims=True)
-    along = (psi * model).sum(axis=2, keepdims=True)
-    model = model * np.divide(along, square, out=np.zeros(square.shape), where=square > 0)
-    return psi.reshape(-1, psi.shape[2]), model.reshape(-1, psi.shape[2])
+@dataclass(frozen=True, eq=False)
+class Evidence:
+    """How each sensor moves beside a model that is scaled to all other sensors.
+
+    Attributes
+    ----------
+    agreement : (sensors,) c; NaN where too few modes fit
+    gain : (sensors,) decrease of the squared residuals by a reversal, over the median sensor's
+    spread : (sensors,) number of modes over which this is spread
+    modes : (sensors,) number of modes that take part
+    """
+
+    agreement: Floats
+    gain: Floats
+    spread: Floats
+    modes: Ints
+
+    @property
+    def is_opposed(self) -> Bools:
+        """Which sensors are reversed."""
+        c = self.agreement
+        is_clear = (c < OPPOSED) & (self.gain > CLEAR) & (self.spread > SPREAD)
+        return np.asarray(is_clear | ((c < NEARLY) & (self.gain > GREAT)))
 
 
-def _by_mode(values: Floats, modes: int) -> Floats:
-    """Return the sum over the data sets, (modes, sensors)."""
-    return np.asarray(values.reshape(-1, modes, values.shape[1]).sum(axis=0))
+def evidence_of(view: Measured, phi: Floats) -> Evidence:
+    """Return the evidence for and against a reversal of each sensor.
+
+    ``phi`` (sensors, modes) are the model modes that belong to the measured ones. A mode takes part
+    where it fits at all other sensors: a reversed one must not hide itself.
+    """
+    seen = view.seen
+    model = np.where(seen, phi.T[None], 0.0)
+    own = view.psi * model
+    x = own.sum(axis=2, keepdims=True) - own
+    b = (model**2).sum(axis=2, keepdims=True) - model**2
+    a = (view.psi**2).sum(axis=2, keepdims=True) - view.psi**2
+    norm = a * b
+    mac = np.divide(x**2, norm, out=np.zeros(norm.shape), where=norm > 1e-12)
+    fits = seen & (mac >= FITS)
+    beta = np.divide(x, b, out=np.zeros(b.shape), where=fits)
+    psi, model = np.where(fits, view.psi, 0.0), beta * model
+    along = (psi * model).sum(axis=(0, 1))
+    size = np.sqrt((psi**2).sum(axis=(0, 1)) * (model**2).sum(axis=(0, 1)))
+    modes = fits.any(axis=0).sum(axis=0)
+    known = (size > 0) & (modes >= LEAST_MODES)
+    agreement = np.divide(along, size, out=np.full(along.shape, np.nan), where=known)
+    residual = ((psi - model) ** 2).sum(axis=(0, 1))[known]
+    unit = float(np.median(residual)) if residual.size else 0.0
+    gain = -4 * along / unit if unit > 0 else np.where(along < 0, np.inf, 0.0)
+    share = (psi * model).sum(axis=0)
+    return Evidence(agreement, np.where(known, gain, 0.0), _spread(share), modes)
 
 
 def _spread(share: Floats) -> Floats:
