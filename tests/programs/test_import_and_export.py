@@ -27,6 +27,7 @@ from modefront.programs import PROGRAMS
 from modefront.programs.base import JobOptions, whole
 from modefront.programs.mesh import read_mesh
 from modefront.residuals.problem import UpdatingProblem
+from modefront.study.check import check
 from modefront.study.examples import write_example
 from modefront.study.file import load
 
@@ -354,6 +355,13 @@ def test_from_decks_of_calculix_to_true_parameters(tmp_path: Path) -> None:
     sensors = {f"n{n}{d}": f'{{ node = {n}, direction = "{"xyz"[d]}" }}' for n, d in nodes}
     problem = load(add_data(study, sensors, rows)).problem
     assert estimate(problem) == pytest.approx([0.85, 1.15, 1.4, 0.8], rel=2e-4)
+
+
+def test_the_example_leads_to_the_true_parameters_within_its_errors(tmp_path: Path) -> None:
+    write_example("calculix", tmp_path)
+    study = load(tmp_path / "study.toml")
+    assert check(study).warnings == ()
+    assert estimate(study.problem) == pytest.approx([0.85, 1.15, 1.4, 0.8], rel=0.02)
 
 
 @needs_ccx
