@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from modefront import Group, UpdatingProblem, chain, modal_data
+from modefront import Group, ModalData, UpdatingProblem, chain, modal_data
 from modefront.cli.main import cli
 from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.diagnose import diagnose
 from modefront.diagnosis.opposed import OpposedSensor
+from modefront.diagnosis.sets import frequency_findings
+from modefront.diagnosis.words import in_words
 from modefront.study.check import Findings, check
 from modefront.study.examples import write_example
 from modefront.study.file import load
@@ -173,8 +175,35 @@ def test_a_data_set_in_another_unit_and_one_with_another_frequency(tmp_path: Pat
         row["frequency"] = repr(1.1 * float(row["frequency"]))
 
     said = only(spoilt(tmp_path / "b", SETS, data=one))
-    assert "disagree in the frequency of mode 2" in said
-    assert f"sets {name} and" in said
+    assert f"set {name} disagrees with set1 and set2 in the frequency of mode 2" in said
+    assert "14.394 and 13.085 Hz" in said
+    assert f"look at set {name} again" in said
+
+
+@pytest.mark.parametrize("name", ["set1", "set2", "set3"])
+def test_of_three_sets_the_odd_one_is_named(name: str, tmp_path: Path) -> None:
+    def shape(rows: Rows) -> None:
+        (row,) = (row for row in rows if row["set"] == name and row["mode"] == "2")
+        row["floor1"], row["floor2"], row["floor3"] = "0.3", "1.0", "0.9"
+
+    said = only(spoilt(tmp_path / "a", SETS, data=shape))
+    assert f"set {name} disagrees with" in said
+    assert "in the shape of mode 2" in said
+    said = only(spoilt(tmp_path / "b", SETS, data=scaled("frequency", 1.05, name)))
+    assert f"all frequencies of set {name} are +5.0 % off those of" in said
+
+
+def test_of_two_sets_nobody_knows_which_is_wrong() -> None:
+    shape = np.array([[1.0, 2.0, 3.0], [2.0, 1.0, -2.0], [2.0, -3.0, 1.0]])
+    f = np.array([[1.0, 2.0, 3.0], [1.0, 2.4, 3.0]])
+    nothing = np.full(f.shape, np.nan)
+    sensors, shapes = ("a", "b", "c"), np.array([shape, shape])
+    data = ModalData(
+        ("old", "new"), (1, 2, 3), sensors, f, nothing, shapes, nothing, np.full((2, 3, 3), np.nan)
+    )
+    (found,) = frequency_findings(data)
+    assert "sets new and old disagree in the frequency of mode 2" in in_words(found)
+    assert "look at both again" in in_words(found)
 
 
 def test_modes_that_one_set_numbers_differently(tmp_path: Path) -> None:
