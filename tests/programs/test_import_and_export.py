@@ -13,6 +13,7 @@ import click
 import numpy as np
 import pytest
 import scipy.io
+import scipy.linalg
 import scipy.optimize
 import scipy.sparse
 from click.testing import CliRunner, Result
@@ -381,6 +382,78 @@ def test_the_example_holds_what_calculix_writes(tmp_path: Path) -> None:
     moving = motion.values[0, :, :3].any(axis=1)
     assert motion.number[~moving].tolist() == [100, 200, 300, 400, 901], "the supports"
     assert motion.values[0, moving, :3] == pytest.approx(1.0)
+
+
+CANTILEVER = """*NODE, NSET=NALL
+1, 0., 0., 0.
+2, .3, 0., 0.
+3, .7, 0., 0.
+4, 1., 0., 0.
+5, 0., .5, 0.
+6, .3, .5, 0.
+7, .7, .5, 0.
+8, 1., .5, 0.
+500, 1., .2, .2
+*ELEMENT, TYPE=S4, ELSET=PLATE
+1, 1,2,6,5
+2, 2,3,7,6
+3, 3,4,8,7
+*MATERIAL, NAME=STEEL
+*ELASTIC
+2.1E11, 0.3
+*DENSITY
+7800.
+*SHELL SECTION, ELSET=PLATE, MATERIAL=STEEL
+0.01
+*NSET, NSET=EDGE
+4, 8
+*BOUNDARY
+1,1,6
+5,1,6
+"""
+
+
+@needs_ccx
+@pytest.mark.parametrize(
+    ("constraint", "refused"),
+    [
+        ("*EQUATION\n2\n8,3,1.,4,3,-1.\n", {(8, "z")}),
+        (
+            "*RIGID BODY, NSET=EDGE, REF NODE=500\n",
+            {(node, d) for node in (4, 8, 500) for d in "xyz"},
+        ),
+        ("*ELEMENT, TYPE=MASS, ELSET=M\n9, 8\n*MASS, ELSET=M\n2.\n", set()),
+    ],
+)
+def test_sensors_at_nodes_of_shells_that_are_tied(
+    constraint: str, refused: set[tuple[int, str]], tmp_path: Path
+) -> None:
+    deck = CANTILEVER + constraint
+    matrices = "*STEP\n*FREQUENCY, SOLVER=MATRIXSTORAGE\n*END STEP\n"
+    (tmp_path / "a.inp").write_text(deck + matrices)
+    (tmp_path / "b.inp").write_text(
+        deck + "*STEP\n*FREQUENCY\n3\n*NODE PRINT, NSET=NALL\nU\n*END STEP\n"
+    )
+    ccx(tmp_path, "a", "b")
+    job = PROGRAMS["calculix"].read(tmp_path / "a", JobOptions())
+    _, shapes = printed(tmp_path / "b.dat")
+    _, vectors = scipy.linalg.eigh(dense(job.mass), dense(job.stiffness))
+    nodes = (2, 3, 4, 6, 7, 8, 500)
+    places = {}
+    for node, direction in ((n, d) for n in nodes for d in "xyz"):
+        try:
+            places[node, direction] = job.dofs.sensor(node, direction)
+        except LookupError:
+            continue
+    assert refused <= {(n, d) for n in nodes for d in "xyz"} - places.keys()
+    assert {(n, d) for n in (2, 3, 6, 7) for d in "xyz"} <= places.keys()
+    for k in range(3):
+        phi = vectors[:, -1 - k]
+        mine = [sum(w * phi[dof] for dof, w in place) for place in places.values()]
+        right = [shapes[k][node]["xyz".index(direction)] for node, direction in places]
+        assert abs(np.dot(mine, right)) == pytest.approx(
+            np.linalg.norm(mine) * np.linalg.norm(right), rel=1e-3
+        )
 
 
 @needs_ccx
