@@ -95,7 +95,7 @@ def test_searches_and_fronts_are_those_of_one_after_another(delays: list[int], c
     expected = searched(problem, Archiving(Run(), archives[0]))
     with Workers(Threads(count, delays)) as workers:
         again = searched(problem, Archiving(Run(backend=workers), archives[1]))
-    assert [x.at.theta.tolist() for x in again] == [x.at.theta.tolist() for x in expected]
+    assert [x.theta.tolist() for x in again] == [x.theta.tolist() for x in expected]
     assert [x.evaluations for x in again] == [x.evaluations for x in expected]
     assert archives[1].theta.tolist() == archives[0].theta.tolist()
 
