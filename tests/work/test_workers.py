@@ -112,6 +112,13 @@ def test_what_was_computed_ahead_is_taken_where_it_is_asked_for_and_else_forgott
         assert not workers._flying
 
 
+def test_what_is_still_computed_ahead_with_another_function_is_not_waited_for() -> None:
+    with Workers(Threads(2)) as workers:
+        work = Run(backend=workers)
+        assert work.run(squares(1, 2), [Task(("step",), nap, (0.2,))]) == [1, 4]
+        assert work.run([Task(("step",), negative, (5,))], squares(3)) == [-25]
+
+
 def test_short_tasks_are_sent_together_and_long_ones_alone() -> None:
     pool = Threads(2)
     with Workers(pool) as workers:
