@@ -122,6 +122,25 @@ def test_a_list_of_directions_makes_a_sensor_each(small: Path) -> None:
     assert set(found.sensors) == {*single, "pz", "py"} - {"a"}
 
 
+def test_sensors_in_local_axes(small: Path) -> None:
+    file = small / "study.toml"
+    model = load(file).problem.model
+    assert isinstance(model, MatrixModel)
+    before = model.selection.toarray()[model.sensors.index("d")]
+    axes = "axes = [[0, 3, 4], [1, 0, 0]]"
+    text = file.read_text()
+    file.write_text(text.replace("direction = [0, 3, 4]", f'direction = "x", {axes}'))
+    turned = load(file).problem.model
+    assert isinstance(turned, MatrixModel)
+    row = turned.selection.toarray()[turned.sensors.index("d")]
+    assert row == pytest.approx(before)
+    for direction, message in (('"rz"', "x, y or z where axes are given"), ('"x"', "two vectors")):
+        wrong = axes if "rz" in direction else "axes = [[1, 0, 0], [2, 0, 0]]"
+        file.write_text(text.replace("direction = [0, 3, 4]", f"direction = {direction}, {wrong}"))
+        with pytest.raises(InputError, match=message):
+            load(file)
+
+
 LISTED = 'p = { node = 12, direction = ["z", "-y"] }'
 
 
