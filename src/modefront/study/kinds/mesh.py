@@ -47,6 +47,7 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
     structure, outputs = _structure(table, parameters, mesh), _outputs(table)
     table.notes += unused_groups(mesh, (g.name for g in structure.groups), _named_nodes(table))
     if len(table.faults) > before:
+        _look_further(table, structure, mesh)
         return None
     try:
         return mesh_model(structure, parameters, floating=floating, outputs=outputs)
@@ -54,6 +55,29 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
         for message in error.messages:
             table.fault("", "a structure that can be assembled", message)
         return None
+
+
+def _look_further(table: Table, structure: fem.Structure, mesh: Mesh) -> None:
+    """Note what is wrong with sensors and scales, where faults keep the structure from being made.
+
+    Names that other tables give count, faulty or not: of these, the faults are said.
+    """
+    count = len(mesh.nodes)
+    for sensor in structure.sensors:
+        if isinstance(sensor.at, int) and sensor.at >= count:
+            table.fault(f"sensors {sensor.name}", f"nodes from 0 to {count - 1}", str(sensor.at))
+    named = [
+        name
+        for kind in ("group", "spring", "mass")
+        for entry in table.values.get(kind) or ()
+        for name in [entry.get("name")]
+        if isinstance(name, str)
+    ]
+    for parameter in structure.parameters:
+        for name in parameter.of:
+            if name not in named:
+                expected = "the name of a group, spring or mass"
+                table.fault(f"scale {parameter.name} of", expected, suggestion(name, named))
 
 
 def _structure(table: Table, parameters: Sequence[str], mesh: Mesh) -> fem.Structure:
@@ -121,7 +145,8 @@ def _groups(
     for group in model.tables("group", required=True):
         name = group.text("name", "the name of a group of cells")
         kind: Kind | None = group.choice("elements", get_args(Kind))
-        names = tuple(materials)  # none where all are faulty, which is said there
+        declared = model.values.get("material")  # those with faults too, which are said there
+        names = tuple(declared) if isinstance(declared, dict) else ()
         label = group.choice("material", names) if names else group.text("material")
         thickness = offset = section = orientation = None
         if kind == "shell":
