@@ -54,7 +54,7 @@ def test_small_sensors_of_the_steel_bridge_that_are_reversed() -> None:
         shape[..., problem.data.sensors.index(name)] *= -1
         (found,) = diagnose(compare(replace(problem, data=replace(problem.data, shape=shape))))
         assert isinstance(found, OpposedSensor)
-        assert (found.sensor, found.modes) == (name, 5)
+        assert (found.sensors, found.modes) == ((name,), 5)
         assert found.agreement < -0.9 < 0.9 < found.usual
         assert f"sensor {name} moves against the model in 5 modes" in in_words(found)
 

@@ -127,12 +127,20 @@ def _sensors(found: WrongSensors) -> tuple[str, str]:
 
 
 def _opposed(found: OpposedSensor) -> tuple[str, str]:
+    names = " and ".join(found.sensors)
+    numbers = f"{found.agreement:.2f}, at the median sensor {found.usual:.2f}"
+    if len(found.sensors) == 2:
+        return (
+            f"sensors {names} are exchanged, as their difference moves against the model in "
+            f"{found.modes} modes: its signed COMAC is {numbers}; they move too much alike to show "
+            "in the MAC",
+            f"check the cables of {names}, and exchange their columns or sensors",
+        )
     return (
-        f"sensor {found.sensor} moves against the model in {found.modes} modes: their signed "
-        f"COMAC is {found.agreement:.2f}, at the median sensor {found.usual:.2f}; it moves too "
-        "little to show in the MAC",
-        f"check the direction of {found.sensor}, and change the sign of its column, or of the "
-        "direction in the model",
+        f"sensor {names} moves against the model in {found.modes} modes: their signed COMAC is "
+        f"{numbers}; it moves too little to show in the MAC",
+        f"check the direction of {names}, and change the sign of its column, or of the direction "
+        "in the model",
     )
 
 
