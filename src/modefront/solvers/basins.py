@@ -42,9 +42,10 @@ import numpy as np
 from modefront._typing import Bools, Floats, Ints
 from modefront.solvers.archive import Archive
 from modefront.solvers.attainment import Attainment
-from modefront.solvers.continuation import BETTER, JUMP, Simplex, simplex
+from modefront.solvers.continuation import JUMP, Simplex, simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.explore import NEAR, Search
+from modefront.solvers.flat import same
 from modefront.solvers.nbi import Projection
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
@@ -107,8 +108,9 @@ COARSE = 10
 """Steps along an edge below which parameters may change by more from a point to its neighbour on
 the same branch, in proportion."""
 
-BEHIND = 1e-2
-"""Excess of a half-finished search over a point, in units of the ranges, that is not followed."""
+BEHIND, NEARLY = 1e-2, 1e-3
+"""Excess of a half-finished search over a point, in units of the ranges, that is not followed; and
+of one whose steps have become short."""
 
 _ROUGH = Options(step=NEAR / 4, iterations=8)
 
@@ -429,16 +431,18 @@ def from_other_branches(
     lattice: Simplex,
     points: Sequence[Solution],
     work: Executor = IMMEDIATE,
+    before: Sequence[Solution] = (),
 ) -> list[Solution]:
     """Return the points, each solved again from those of other branches that lie beside it.
 
     Where branches meet, the lattice leads along one of them as far as it goes, and the other one
-    may already be better.
+    may already be better. Pairs of points that were so ``before`` are not tried.
     """
     current = list(points)
     span = problem.upper - problem.lower
     far = JUMP * max(1.0, COARSE / lattice.divisions)
-    tried: set[tuple[int, bytes]] = set()
+    kept = [k for k, pair in enumerate(zip(points, before, strict=False)) if same(*pair)]
+    tried = {(k, points[j].theta.tobytes()) for k in kept for j in kept}
     for turn in range(ROUNDS):
         theta = np.array([point.theta for point in current]) / span
         y = np.array([point.J for point in current]) / target.scale
@@ -472,13 +476,13 @@ def from_other_branches(
 def _from_branch(problem: Problem, target: Payoff, point: Solution, start: Solution) -> Solution:
     """Return the programme of a point of the front solved from another point of it.
 
-    It is not solved to the end where it ends behind the point.
+    It is not solved to the end where it ends behind the point, or comes to it.
     """
     beta, programmes = place_of(target, point), programmes_of(problem, target)
     end = replace(solve(problem, programmes.subproblem(beta), start, _ROUGH), beta=beta)
-    J = np.array([end.J, point.J])
-    own, known = place_on_normals(target, beta[None], J)[:, 0]
-    if end.converged or own > known + BEHIND:
+    lead = target.excess(beta, point.J).max() - target.excess(beta, end.J).max()
+    away = np.abs((end.theta - point.theta) / (problem.upper - problem.lower)).max()
+    if lead < -(NEARLY if end.converged else BEHIND) or (end.converged and away < NEAR):
         return end
     again = programmes.solve_again(problem, beta, end)
     return replace(again, evaluations=end.evaluations + again.evaluations)
@@ -564,10 +568,9 @@ def _bottom(problem: Problem, target: Payoff, theta: Floats) -> Solution:
     start = begin(problem.evaluate(theta))
     beta = target.place(start.J)
     end = programmes_of(problem, target).solve_again(problem, beta, start)
-    own, other = place_on_normals(target, beta[None], np.array([end.J, start.J]))
-    if own[0] <= other[0] + BETTER:
-        return end
-    return replace(start, status=Status.STALLED, beta=beta)
+    if target.is_better(beta, start.J, end.J):
+        return replace(start, status=Status.STALLED, beta=beta)
+    return end
 
 
 def _continued(problem: Problem, target: Payoff, points: Sequence[Solution]) -> list[Solution]:
@@ -600,9 +603,7 @@ def _is_better(target: Payoff, solution: Solution, known: Solution) -> bool:
     """Return whether a solution is better than a known one of the same point of the front."""
     if solution.converged != known.converged:
         return solution.converged
-    J = np.array([solution.J, known.J])
-    own, other = place_on_normals(target, place_of(target, known)[None], J)[:, 0]
-    return bool(own < other - BETTER)
+    return target.is_better(place_of(target, known), solution.J, known.J)
 
 
 def _evaluated(problem: Problem, thetas: Floats) -> Models:

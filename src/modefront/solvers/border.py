@@ -35,10 +35,22 @@ _FEW = Options(iterations=40)
 
 
 def without_slack(
-    problem: Problem, target: Payoff, points: Sequence[Solution], work: Executor = IMMEDIATE
+    problem: Problem,
+    target: Payoff,
+    points: Sequence[Solution],
+    work: Executor = IMMEDIATE,
+    before: Sequence[Solution] = (),
 ) -> list[Solution]:
-    """Return the points, those of the border with all other objectives as small as they can be."""
-    doubtful = [k for k, point in enumerate(points) if _lowerable(target, point)]
+    """Return the points, those of the border with all other objectives as small as they can be.
+
+    Points that were so ``before`` are left as they are.
+    """
+    known = {point.theta.tobytes() for point in before}
+    doubtful = [
+        k
+        for k, point in enumerate(points)
+        if point.theta.tobytes() not in known and _lowerable(target, point)
+    ]
     tasks = [
         Task(("front", "nbi", "border", k + 1), _tightened, (problem, target, points[k]))
         for k in doubtful
