@@ -236,6 +236,21 @@ def test_matrix_input_of_abaqus(tmp_path: Path) -> None:
     refused("abaqus", tmp_path / "a", "one step.*a_STIF1.mtx, a_STIF2.mtx")
 
 
+def test_numbers_of_nodes_with_great_gaps(tmp_path: Path) -> None:
+    far = [(node + 900_000_000, direction) for node, direction in labels()]
+    size = len(far) + 1
+    stiffness, mass = np.eye(size), np.zeros((size, size))
+    stiffness[:-1, :-1], mass[:-1, :-1] = K, M
+    write_abaqus(tmp_path / "a", stiffness, mass, [*far, (-4, 1)])
+    job = read("abaqus", tmp_path / "a")
+    order = [
+        far.index(place) if place in far else size - 1
+        for place in zip(job.dofs.node.tolist(), job.dofs.direction.tolist(), strict=True)
+    ]
+    assert order[-1] == size - 1
+    assert dense(job.stiffness) == pytest.approx(stiffness[np.ix_(order, order)])
+
+
 @pytest.mark.parametrize("program", ["abaqus", "nastran"])
 def test_text_that_is_cut_off_at_the_end_of_a_line(tmp_path: Path, program: str) -> None:
     order = np.argsort([node for node, _ in labels()], kind="stable")
