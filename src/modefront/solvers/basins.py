@@ -97,6 +97,10 @@ SPACING = 0.125
 CROWD = 6
 """Points besides the lattice at most, for one step of it."""
 
+WIDE = 0.15
+"""Distance of neighbours on a rugged front of two objectives, in steps of the lattice, over which a
+point is looked for between them."""
+
 OTHERS = 1e-2
 """Weight of the other objectives, in units of the ranges, where the least of one is looked for."""
 
@@ -112,7 +116,7 @@ BEHIND, NEARLY = 1e-2, 1e-3
 """Excess of a half-finished search over a point, in units of the ranges, that is not followed; and
 of one whose steps have become short."""
 
-_ROUGH = Options(step=NEAR / 4, iterations=8)
+_ROUGH, _SHORT = Options(step=NEAR / 4, iterations=8), Options(iterations=60)
 
 
 @record
@@ -422,7 +426,25 @@ class _Between:
         out.sort(key=lambda solution: -float(self.target.place(solution.J)[0]))
         task = Task(("front", "nbi", "along"), _continued, (self.problem, self.target, out))
         (along,) = self.work.run([task])
+        along.extend(self._between_neighbours(along))
         return sorted(along, key=lambda solution: -float(self.target.place(solution.J)[0]))
+
+    def _between_neighbours(self, points: Sequence[Solution]) -> list[Solution]:
+        """Return points of two objectives half-way between optimal neighbours that lie apart."""
+        J = np.array([solution.J for solution in points])
+        optimal = np.flatnonzero(nondominated(J))
+        optimal = optimal[np.argsort(J[optimal, 0], kind="stable")]
+        steps = np.abs(np.diff(J[optimal], axis=0) / self.target.scale).max(axis=1)
+        wide = np.flatnonzero(steps > WIDE / self.lattice.divisions)
+        tasks = [
+            Task(
+                ("front", "nbi", "half-way", int(k) + 1),
+                _half_way,
+                (self.problem, self.target, points[optimal[k]], points[optimal[k + 1]]),
+            )
+            for k in wide
+        ]
+        return [x for x in self.work.run(tasks) if x.converged]
 
 
 def from_other_branches(
@@ -597,6 +619,20 @@ def _continued(problem: Problem, target: Payoff, points: Sequence[Solution]) -> 
             if _is_better(target, solution, out[k]):
                 out[k] = solution
     return out
+
+
+def _half_way(problem: Problem, target: Payoff, first: Solution, second: Solution) -> Solution:
+    """Return the point of the front half-way between two others, from the first or the second."""
+    beta = (target.place(first.J) + target.place(second.J)) / 2
+    programme = programmes_of(problem, target).subproblem(beta)
+    known = np.array([first.J, second.J])
+    evaluations = 0
+    for start in (first, second):
+        end = replace(solve(problem, programme, start, _SHORT), beta=beta)
+        evaluations += end.evaluations
+        if end.converged and not (known <= end.J).all(axis=1).any():
+            return replace(end, evaluations=evaluations)
+    return replace(end, status=Status.STALLED, evaluations=evaluations)
 
 
 def _is_better(target: Payoff, solution: Solution, known: Solution) -> bool:
