@@ -16,8 +16,7 @@ from modefront.programs.changes import read_changes
 from modefront.programs.mesh import read_mesh
 from modefront.results.files import FILE, read_dataset
 from modefront.results.results import Results
-from modefront.study.definition import Study
-from modefront.study.file import load
+from modefront.study.whereabouts import find_study, given_study
 
 
 def run_export(
@@ -30,7 +29,8 @@ def run_export(
     if point not in labels:
         found = suggestion(point, labels)
         raise InputError(Fault(str(directory / FILE), "--point", "the label of a model", found))
-    loaded = _study(directory, study, str(data.attrs["study"]), str(data.attrs["inputs"]))
+    name, digest = (str(data.attrs.get(key, "")) for key in ("study", "inputs"))
+    loaded = given_study(directory, study, digest) if study else find_study(directory, name, digest)
     results = Results(data, loaded.problem)
     model = results.model(point)
     output = output or directory / f"export-{point}"
@@ -50,33 +50,6 @@ def run_export(
         raise InputError(Fault(str(output), "folder", expected, str(error))) from None
     for what in missing:
         click.echo(f"not written: {what}")
-
-
-def _study(directory: Path, given: Path | None, name: str, digest: str) -> Study:
-    """Return the study of results: the given one, or one beside them with the same inputs.
-
-    Raises InputError where there is none, or the given one is another.
-    """
-    folders = dict.fromkeys([directory, directory.absolute().parent, Path()])
-    files = [given] if given else [file for x in folders for file in sorted(x.glob("*.toml"))]
-    for file in files:
-        if given is None and not _is_named(file, name):
-            continue
-        study = load(file)
-        if study.digest == digest:
-            return study
-        if given is not None:
-            expected = f"the study of the results in '{directory}'"
-            raise InputError(Fault(str(file), "study", expected, "other inputs: run it again"))
-    expected = f"the study '{name}', unchanged, beside the results (or --study FILE)"
-    raise InputError(Fault(str(directory), "study", expected, "none"))
-
-
-def _is_named(file: Path, name: str) -> bool:
-    try:
-        return bool(tomllib.loads(file.read_text("utf-8-sig"))["study"]["name"] == name)
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
 
 
 def _origin(file: Path) -> Origin:

@@ -131,13 +131,17 @@ def name_of(direction: int) -> str:
     return DIRECTIONS[direction - 1] if 0 < direction <= len(DIRECTIONS) else str(direction)
 
 
+NOTHING = 1e-12
+"""Component of a unit vector that is the rounding of one turned by a right angle."""
+
+
 def _components(direction: str | Sequence[float]) -> list[tuple[int, float]]:
     if isinstance(direction, str):
         name = direction.removeprefix("-")
         return [(number_of(name), -1.0 if name != direction else 1.0)]
     vector = np.asarray(direction, dtype=float)
     unit = vector / np.linalg.norm(vector)
-    return [(i + 1, float(x)) for i, x in enumerate(unit) if x]
+    return [(i + 1, float(x)) for i, x in enumerate(unit) if abs(x) > NOTHING]
 
 
 def is_direction(value: object) -> bool:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from pathlib import Path
 from typing import BinaryIO
 
@@ -15,6 +16,9 @@ from modefront.programs.base import Entries, wrong
 
 BLOCK = 2**24
 """Bytes that are read at once."""
+
+BARE = re.compile(rb"(\d)([+-]\d{3})$")
+"""An exponent of three digits, as Fortran writes it."""
 
 
 class _Headed(io.RawIOBase):
@@ -86,10 +90,14 @@ def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.
 def fixed_width(text: bytes, width: int) -> Floats:
     """Return numbers of a fixed width that follow each other without separators.
 
-    A ``D`` stands for the ``E`` of an exponent. Raises ValueError where one is no number.
+    A ``D`` stands for the ``E`` of an exponent, which Fortran leaves out before three digits.
+    Raises ValueError where one is no number.
     """
     array = np.frombuffer(text.replace(b"D", b"E").replace(b"d", b"e"), dtype=f"S{width}")
-    out: Floats = array.astype(float)
+    try:
+        out: Floats = array.astype(float)
+    except ValueError:
+        out = np.array([float(BARE.sub(rb"\1E\2", field)) for field in array.tolist()])
     return out
 
 
