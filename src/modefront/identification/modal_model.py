@@ -59,6 +59,7 @@ Mech. Syst. Signal Process. 37 (2013) 422-439, doi:10.1016/j.ymssp.2013.01.001.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -79,6 +80,9 @@ MOST_EVALUATIONS = 40
 
 CHUNK = 1 << 18
 """Numbers in an intermediate array of products."""
+
+PORTION = 1 << 16
+"""Complex numbers in an intermediate array of residuals, which then stay in the cache."""
 
 
 @dataclass(frozen=True)
@@ -222,31 +226,44 @@ def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
     M = gram(task, E)
     first = 2 * len(lam) + len(task.powers)
     T = design(L, len(task.powers))
-    G = np.einsum("jqa,jiqp,jpb->iab", T, M[..., :first, :first], T, optimize=True)
+    TM = T.transpose(0, 2, 1)[:, None] @ M[..., :first, :]  # (references, responses, linear, Q)
+    G = (TM[..., :first] @ T[:, None]).sum(axis=0)
     inverse = _inverse(G)
-    c = np.zeros(G.shape[:2])
-    r = task.H
-    for _ in range(2):  # the second round takes back what the normal equations lost
-        rho = _project(task, E[:first], r)
-        c = c + np.einsum("iab,jqb,jiq->ia", inverse, T, rho, optimize=True)
-        r = task.H - _combined(np.einsum("jqa,ia->jiq", T, c), E[:first])
-    rho = _project(task, E, r)
+    c = _best(inverse, T, _project(task, E[:first], None)[0])
+    rho, cost = _project(task, E, np.einsum("jqa,ia->jiq", T, c))
+    # a second round takes back what the normal equations lost; it is small, so that its changes of
+    # rho and of the cost are exact to rounding
+    lost = _best(inverse, T, rho[..., :first])
+    right = np.einsum("iab,ib->ia", G, lost)
+    c = c + lost
+    rho = rho - (lost[None, :, None] @ TM)[:, :, 0]
     model = _model(lam, L, held, c, len(task.powers))
     K = derivatives(model, E.shape[0])
-    cross = np.einsum("jqa,jiqp,jipk->iak", T, M[..., :first, :], K, optimize=True)
+    cross = (TM @ K).sum(axis=0)
     Z = inverse @ cross
-    direct = np.einsum("jiqk,jiqp,jipl->kl", K, M, K, optimize=True)
     U = _second(model, rho, len(task.powers))
-    information = direct - np.einsum("iak,ial->kl", cross, Z)
+    information = _rows(K).T @ _rows(M @ K) - _rows(cross).T @ _rows(Z)
     return Fit(
         model,
-        float(np.sum(task.weight * np.abs(r) ** 2)),
-        -np.einsum("jiqk,jiq->k", K, rho),
+        cost - float(np.sum(lost * right)),
+        -(rho.reshape(-1) @ _rows(K)),
         information,
-        information + np.einsum("iak,iab,ibl->kl", U, inverse, U, optimize=True),
+        information + _rows(U).T @ _rows(inverse @ U),
         inverse,
         Z,
     )
+
+
+def _rows(values: Floats) -> Floats:
+    """Return a matrix with the last axis as columns, of which there may be none."""
+    return values.reshape(math.prod(values.shape[:-1]), values.shape[-1])
+
+
+def _best(inverse: Floats, T: Floats, rho: Floats) -> Floats:
+    """Return the linear parameters, (responses, linear), from products with the primitives."""
+    right = np.einsum("jqa,jiq->ia", T, rho)
+    out: Floats = (inverse @ right[..., None])[..., 0]
+    return out
 
 
 def synthesise(task: Problem, model: ModalModel) -> Complexes:
@@ -356,10 +373,23 @@ def _products(E: Complexes) -> Iterator[tuple[slice, Floats]]:
         yield slice(start, start + size), products
 
 
-def _project(task: Problem, E: Complexes, r: Complexes) -> Floats:
-    """Return the weighted products of residuals with the primitives."""
-    out: Floats = (task.weight * r).view(float) @ E.view(float).T
-    return out
+def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[Floats, float]:
+    """Return the weighted products of residuals with the primitives, and the cost.
+
+    The residuals are those of combinations of the first primitives, or the data themselves.
+    """
+    H = task.H.reshape(-1, len(task.s))
+    weight = task.weight.reshape(H.shape)
+    rho, cost = np.empty((len(H), len(E))), 0.0
+    C = None if coefficients is None else coefficients.reshape(len(H), -1)
+    rows = max(PORTION // len(task.s), 1)
+    for start in range(0, len(H), rows):
+        part = slice(start, start + rows)
+        r = H[part] if C is None else H[part] - _combined(C[part], E[: C.shape[1]])
+        weighted = weight[part] * r
+        rho[part] = weighted.view(float) @ E.view(float).T
+        cost += float(np.vdot(r, weighted).real)
+    return rho.reshape(*task.weight.shape[:2], -1), cost
 
 
 def _inverse(G: Floats) -> Floats:
