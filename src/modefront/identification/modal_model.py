@@ -171,13 +171,13 @@ def problem(data: FrequencyResponses, variance: Floats, level: int) -> tuple[Pro
     variance is not a positive number have no weight.
     """
     omega = 2 * np.pi * data.frequency[-1]
-    size = float(np.sqrt(np.mean(np.abs(data.H[data.measured]) ** 2)))
-    used = data.measured & np.isfinite(variance) & (variance > 0)
-    weight = np.zeros(data.H.shape)
-    weight[used] = size**2 / variance[used]
+    measured = data.measured
+    power = np.where(measured, data.H.real**2 + data.H.imag**2, 0.0).sum()
+    size = float(np.sqrt(power / np.count_nonzero(measured)))
+    used = measured & np.isfinite(variance) & (variance > 0)
+    weight = np.ascontiguousarray(size**2 / np.where(used, variance, np.inf))
     s = (2j * np.pi * data.frequency + data.decay) / omega
-    H = np.zeros(data.H.shape, complex)
-    H[used] = data.H[used] / size
+    H = np.ascontiguousarray(np.where(used, data.H, 0) / size)
     correlation = windowed_correlation(data.frequency, data.decay)
     order = ORDERS[data.quantity]
     return Problem(s, H, weight, order, RESIDUALS[level], correlation), omega, size

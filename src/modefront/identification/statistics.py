@@ -58,7 +58,7 @@ from modefront.identification.modal_model import (
     primitives,
     synthesise,
 )
-from modefront.identification.shapes import RealShape, real_shape
+from modefront.identification.shapes import TINY, RealShape, real_shape
 
 SIGNIFICANT = 3.0
 """Standard errors beyond which a correlation of the residuals is one."""
@@ -161,7 +161,6 @@ def mode_estimates(
 ) -> list[ModeEstimate]:
     """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
     model = fit.model
-    n_out = model.phi.shape[1]
     shapes = [real_shape(phi) for phi in model.phi]
     inverse = _inverse(fit.information)
     linear, alpha = _own_roots(task, fit, residuals)
@@ -170,11 +169,7 @@ def mode_estimates(
     for r, shape in enumerate(shapes):
         rows = slice(2 * r, 2 * r + 2)
         answer = shape.differential(_as_complex(fit.Z[:, rows] @ inverse))
-        for i in range(n_out):
-            direct = np.zeros((n_out, linear.shape[2]), complex)
-            direct[i] = _as_complex(linear[i, rows][None])[0]
-            change = shape.differential(direct) - answer @ alpha[i]
-            variance[r] += (change**2).sum(axis=1)
+        variance[r] = _shape_variance(shape, _as_complex(linear[:, rows]), answer, alpha)
     for steps, phi in _force_influence(task, fit, residuals.force):
         C = C + steps @ steps.T
         for r, shape in enumerate(shapes):
@@ -190,6 +185,27 @@ def mode_estimates(
         )
         for r, rest in enumerate(zip(shapes, np.sqrt(variance), model.L, strict=True))
     ]
+
+
+def _shape_variance(shape: RealShape, direct: Complexes, answer: Floats, alpha: Floats) -> Floats:
+    r"""Return the variance of a real shape by independent errors of each response, (responses,).
+
+    Errors of response i change its own component by ``direct[i]``, (errors,), and the nonlinear
+    parameters by ``alpha[i]``, (alphas, errors), which change the shape by ``-answer``,
+    (responses, alphas). By the equations of `modefront.identification.shapes`, what i does to
+    component k is :math:`\delta_{ik} a_i - u_k u_i a_i + y_k\,\mathrm{d}\theta_i -
+    \mathrm{answer}_k \alpha_i`: its squares are summed over i at once.
+    """
+    u, y = shape.shape, shape.complex_shape.imag
+    a = shape.turn * direct / shape.norm
+    theta = (u[:, None] * a.imag + y[:, None] * a.real) / max(1 - float(y @ y), TINY)
+    causes = np.concatenate([(u[:, None] * a.real)[:, None], theta[:, None], alpha], axis=1)
+    effects = np.column_stack([-u, y, -answer])
+    flat = causes.transpose(1, 0, 2).reshape(effects.shape[1], -1)
+    common = np.sum((effects @ (flat @ flat.T)) * effects, axis=1)
+    of_itself = np.einsum("ia,iae->ie", effects, causes)
+    out: Floats = common + np.sum((2 * of_itself + a.real) * a.real, axis=1)
+    return np.maximum(out, 0.0)
 
 
 def _as_complex(pairs: Floats) -> Complexes:
