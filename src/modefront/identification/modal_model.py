@@ -68,7 +68,7 @@ import numpy as np
 import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats, Ints
-from modefront.data.responses import ORDERS, FrequencyResponses
+from modefront.data.responses import ORDERS, ForceNoise, FrequencyResponses
 
 RESIDUALS: tuple[tuple[int, ...], ...] = ((), (-2, 0), (-3, -2, 0, 1), (-4, -3, -2, 0, 1, 2))
 """Powers of s of the residual terms, by the number of terms on either side."""
@@ -77,6 +77,8 @@ FINE, COARSE = 1e-5, 1e-2
 """Squared steps in standard deviations that end an iteration: for results, and for choices."""
 
 MOST_EVALUATIONS = 40
+
+TINY = float(np.finfo(float).tiny)
 
 CHUNK = 1 << 18
 """Numbers in an intermediate array of products."""
@@ -96,8 +98,8 @@ class Problem:
     weight : of the shape of ``H``, 1/v, 0 where not measured
     order : q
     powers : powers of s of the residual terms
-    correlation : sum of the correlations of the noise of a line with that of all lines; 1 where
-        lines are independent
+    decay : what an exponential window has decayed by at the end of the record, d T
+    force_noise : noise of the force channel, where it is known; times in the unit of 1 / s
     """
 
     s: Complexes
@@ -105,12 +107,18 @@ class Problem:
     weight: Floats
     order: int
     powers: tuple[int, ...]
-    correlation: float = 1.0
+    decay: float = 0.0
+    force_noise: ForceNoise | None = None
 
     @cached_property
     def count(self) -> int:
         """Number of real equations."""
         return 2 * int(np.count_nonzero(self.weight))
+
+    @property
+    def correlation(self) -> float:
+        """Sum of the correlations of the noise of a line with all lines, x coth x for x = d T."""
+        return self.decay / math.tanh(self.decay) if self.decay else 1.0
 
 
 @dataclass(frozen=True)
@@ -175,28 +183,29 @@ def problem(data: FrequencyResponses, variance: Floats, level: int) -> tuple[Pro
     power = np.where(measured, data.H.real**2 + data.H.imag**2, 0.0).sum()
     size = float(np.sqrt(power / np.count_nonzero(measured)))
     used = measured & np.isfinite(variance) & (variance > 0)
-    weight = np.ascontiguousarray(size**2 / np.where(used, variance, np.inf))
+    weight: Floats = np.ascontiguousarray(size**2 / np.where(used, variance, np.inf))
     s = (2j * np.pi * data.frequency + data.decay) / omega
-    H = np.ascontiguousarray(np.where(used, data.H, 0) / size)
-    correlation = windowed_correlation(data.frequency, data.decay)
-    order = ORDERS[data.quantity]
-    return Problem(s, H, weight, order, RESIDUALS[level], correlation), omega, size
+    H: Complexes = np.ascontiguousarray(np.where(used, data.H, 0) / size)
+    lag = data.decay / float(np.median(np.diff(data.frequency)))
+    order, noise = ORDERS[data.quantity], data.force_noise
+    if noise is not None:
+        noise = replace(noise, times=tuple(t * omega for t in noise.times))
+    return Problem(s, H, weight, order, RESIDUALS[level], lag, noise), omega, size
 
 
-def windowed_correlation(frequency: Floats, decay: float) -> float:
-    r"""Return the sum of the correlations of a line with all others after an exponential window.
+def windowed_correlation(decay: float, lines: int) -> Complexes:
+    r"""Return the correlations of a line with the next ones after an exponential window, (lines,).
 
-    White noise of a record of length T with the window :math:`w = e^{-dt}` has the correlations
-    :math:`\rho_k = \int w^2 e^{-2\pi\mathrm{i}kt/T}\,\mathrm{d}t / \int w^2\,\mathrm{d}t` between
-    lines; their sum is :math:`T d \coth(T d)`.
+    ``decay`` is that of the window over the length T of the record, :math:`x = dT`. White noise of
+    the record has the correlations
 
-    >>> round(windowed_correlation(np.arange(0.0, 9.0, 0.5), 2.0), 3)
-    4.003
+    .. math:: \rho_k = \int_0^T w^2 e^{-2\pi\mathrm{i}kt/T}\,\mathrm{d}t \Big/
+              \int_0^T w^2\,\mathrm{d}t = \frac{1}{1 + \pi\mathrm{i}k/x},\qquad w = e^{-dt}.
+
+    >>> windowed_correlation(2.0, 2).round(3)
+    array([1.   +0.j   , 0.288-0.453j])
     """
-    if not decay:
-        return 1.0
-    x = decay / float(np.median(np.diff(frequency)))
-    return x / float(np.tanh(x))
+    return np.asarray(1 / (1 + 1j * np.pi * np.arange(lines) / max(decay, TINY)), complex)
 
 
 def primitives(task: Problem, lam: Complexes, squares: bool = True) -> Complexes:
@@ -317,12 +326,15 @@ def maximise(
     return replace(fit, evaluations=evaluations, converged=converged)
 
 
-def gram(task: Problem, E: Complexes) -> Floats:
-    """Return the weighted Gram matrices of the primitives, (references, responses, Q, Q)."""
+def gram(task: Problem, E: Complexes, other: Complexes | None = None) -> Floats:
+    """Return the weighted Gram matrices of the primitives, (references, responses, Q, Q).
+
+    With ``other`` it is the symmetric part of the products of the primitives with those.
+    """
     p, q = np.triu_indices(len(E))
     flat = task.weight.reshape(-1, len(task.s))
     out = np.zeros((len(flat), len(p)))
-    for lines, products in _products(E):
+    for lines, products in _products(E, E if other is None else other):
         out += flat[:, lines] @ products.T
     M = np.zeros((len(flat), len(E), len(E)))
     M[:, p, q] = out
@@ -348,29 +360,35 @@ def leverage(task: Problem, fit: Fit) -> Floats:
     p, q = np.triu_indices(len(E))
     coefficients = S[..., p, q] * np.where(p == q, 1.0, 2.0)
     out = np.empty(task.weight.shape)
-    for lines, products in _products(E):
+    for lines, products in _products(E, E):
         out[..., lines] = coefficients @ products
     return task.weight * out / 2
 
 
-def _products(E: Complexes) -> Iterator[tuple[slice, Floats]]:
-    """Yield portions of lines with the real products of all pairs of functions.
+def _products(E: Complexes, other: Complexes) -> Iterator[tuple[slice, Floats]]:
+    """Yield portions of lines with the symmetric real products of all pairs of functions.
 
     Pairs are in the order of ``np.triu_indices``.
     """
     pairs = len(E) * (len(E) + 1) // 2
     size = max(CHUNK // max(pairs, 1), 1)
     for start in range(0, E.shape[1], size):
-        portion = E[:, start : start + size]
-        real, imag = portion.real.copy(), portion.imag.copy()
-        products, scratch = np.empty((pairs, real.shape[1])), np.empty_like(real)
+        lines = slice(start, start + size)
+        a = np.concatenate([E.real[:, lines], E.imag[:, lines]], axis=1)
+        b = np.concatenate([other.real[:, lines], other.imag[:, lines]], axis=1)
+        count = a.shape[1] // 2
+        products, scratch = np.empty((pairs, count)), np.empty_like(a)
         first = 0
         for p in range(len(E)):  # the rows of an upper triangle
             rows = products[first : first + len(E) - p]
-            np.multiply(real[p], real[p:], out=rows)
-            rows += np.multiply(imag[p], imag[p:], out=scratch[p:])
+            both = np.multiply(a[p], b[p:], out=scratch[p:])
+            np.add(both[:, :count], both[:, count:], out=rows)
+            if other is not E:
+                both = np.multiply(b[p], a[p:], out=scratch[p:])
+                rows += both[:, :count] + both[:, count:]
+                rows /= 2
             first += len(rows)
-        yield slice(start, start + size), products
+        yield lines, products
 
 
 def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[Floats, float]:
