@@ -38,7 +38,7 @@ def test_random_starts_find_the_true_concrete_frame(costs: Costs) -> None:
     rng = np.random.default_rng(7)
     for theta in rng.uniform(frame.lower, frame.upper, (6, 12)):
         found = descend(problem, weighted(np.ones(2)), begin(problem.evaluate(theta)))
-        np.testing.assert_allclose(found.at.theta, frame.true, atol=1e-5)
+        np.testing.assert_allclose(found.theta, frame.true, atol=1e-5)
     assert costs.eigenproblems < 6 * 25
 
 

@@ -85,10 +85,10 @@ class DofTable:
         for number, factor in _components(direction):
             chosen = dofs[(self.direction[dofs] == number) & (self.weight[dofs] != 0)]
             if chosen.size == 0:
-                there = {
+                known = {
                     n for n, w in zip(self.direction[dofs], self.weight[dofs], strict=True) if w
                 }
-                names = ", ".join(name_of(n) for n in sorted(there)) or "none, all are held"
+                names = ", ".join(name_of(n) for n in sorted(known)) or "none, all are held"
                 expected = f"a direction in which node {node} can move ({names})"
                 raise LookupError(expected, f"{name_of(number)}, which is held or not in the model")
             for dof in chosen.tolist():

@@ -136,12 +136,10 @@ def memory_of(problem: UpdatingProblem) -> float:
 
 def refuse_too_many(problem: UpdatingProblem, file: str) -> None:
     """Raise InputError where models with so many parameters do not fit into the memory."""
-    need, there = memory_of(problem), available_memory()
-    if need > there:
+    need, free = memory_of(problem), available_memory()
+    if need > free:
         p = len(problem.model.parameters)
-        expected = (
-            f"as many parameters as fit into the {there / 1e9:.3g} GB of memory that are free"
-        )
+        expected = f"as many parameters as fit into the {free / 1e9:.3g} GB of memory that are free"
         found = (
             f"{p}, for which each model keeps {len(problem.groups)} matrices of {p} x {p}, and a "
             f"search some {KEPT} models, {need / 1e9:.3g} GB: let one parameter scale several "

@@ -88,14 +88,14 @@ def _without_copies(
     position = []
     for point in along:
         with np.errstate(invalid="ignore"):  # models that cannot be evaluated have infinite J
-            copies = (np.abs(J[: len(kept)] - point.at.J) <= COPY * target.scale).all(axis=1)
+            copies = (np.abs(J[: len(kept)] - point.J) <= COPY * target.scale).all(axis=1)
         k = int(copies.argmax()) if copies.any() else len(kept)
         position.append(k)
         if k == len(kept):
             kept.append(point)
         elif point.converged and not kept[k].converged:
             kept[k] = point
-        J[k] = kept[k].at.J
+        J[k] = kept[k].J
     places = []
     for first in solved[: len(lattice.counts)]:
         same = (k for k, point in enumerate(along) if point is first or _of_place(point, first))
@@ -115,7 +115,7 @@ def _branches(setting: Setting, front: Along) -> Along:
     """Return a front of two objectives, refined where wanted, with its gaps."""
     problem, target, refined = setting.problem, setting.target, setting.options.refined
     along = front.points
-    optimal = nondominated(np.array([point.at.J for point in along]))
+    optimal = nondominated(np.array([point.J for point in along]))
     known = setting.archive.J
     breaks = gaps(problem, along, optimal, target.scale, setting.work, known=known)
     if refined is None:
@@ -123,7 +123,7 @@ def _branches(setting: Setting, front: Along) -> Along:
     for turn in range(TURNS):
         work = Within(setting.work, turn=("turn", turn + 1))
         along, jumps = refine(problem, target, along, optimal, breaks, refined, work)
-        optimal = nondominated(np.array([point.at.J for point in along]))
+        optimal = nondominated(np.array([point.J for point in along]))
         before = len(breaks)
         breaks = gaps(problem, along, optimal, target.scale, work, jumps, known)
         if len(breaks) == before:

@@ -314,11 +314,11 @@ def _places(table: Table) -> list[fem.Sensor]:
         if (node is None) == (coordinates is None):
             place.fault("", "either node or at", "both" if node is not None else "neither")
             continue
-        at = node if coordinates is None else coordinates
+        position = node if coordinates is None else coordinates
         for ending, direction in directions:
             turned = _turned(place, direction, axes)
             if turned is not None:
-                out.append(fem.Sensor(name + ending, at, turned, tolerance))
+                out.append(fem.Sensor(name + ending, position, turned, tolerance))
     return out
 
 
@@ -326,8 +326,8 @@ def _sensor_directions(place: Table) -> list[tuple[str, Any]]:
     """Return the directions of a sensor, each with what it adds to the name."""
     value = place.values.get("direction")
     if not (isinstance(value, list) and any(isinstance(x, str) for x in value)):
-        one = _direction(place, "direction")
-        return [] if one is None else [("", one)]
+        direction = _direction(place, "direction")
+        return [] if direction is None else [("", direction)]
     known = [sign + name for name in fem.DIRECTIONS for sign in ("", "-")]
     several = place.take(
         "direction",
@@ -335,7 +335,7 @@ def _sensor_directions(place: Table) -> list[tuple[str, Any]]:
         lambda x: all(y in known for y in x) and len({y.removeprefix("-") for y in x}) == len(x),
         ...,
     )
-    return [(one.removeprefix("-"), one) for one in several or ()]
+    return [(direction.removeprefix("-"), direction) for direction in several or ()]
 
 
 def _axes(place: Table) -> Floats | None:

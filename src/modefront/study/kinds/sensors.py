@@ -129,8 +129,8 @@ def _are_directions(value: object) -> bool:
     return (
         isinstance(value, list)
         and bool(value)
-        and all(isinstance(one, str) and is_direction(one) for one in value)
-        and len({one.removeprefix("-") for one in value}) == len(value)
+        and all(isinstance(direction, str) and is_direction(direction) for direction in value)
+        and len({direction.removeprefix("-") for direction in value}) == len(value)
     )
 
 

@@ -89,9 +89,9 @@ def _of_nodes(
         if place is None:
             continue
         found[name] = place
-        own = None if in_space is None else in_space.sensor_directions[s]
-        if own is not None and own.any() and abs(own @ place[1][:3]) < ASKEW:
-            table.notes.append(DataDirection(name, axis_name(own), axis_name(place[1])))
+        axis = None if in_space is None else in_space.sensor_directions[s]
+        if axis is not None and axis.any() and abs(axis @ place[1][:3]) < ASKEW:
+            table.notes.append(DataDirection(name, axis_name(axis), axis_name(place[1])))
     if len(table.faults) > before:
         return None
     for name, (node, direction) in found.items():
