@@ -134,10 +134,10 @@ def identify(
     model = fit.model
     start = modal_model.evaluate(task, model.lam, model.L, model.held)
     task = _reweighted(task, start, weighting(data))
-    fit = selection.refit(task, start, modal_model.FINE)
+    fit = selection.refit(task, start, modal_model.FINE, modal_model.MOST_EVALUATIONS)
     if weighting(data) != "given":
         task = _reweighted(task, fit, weighting(data))
-        fit = selection.refit(task, fit, modal_model.FINE)
+        fit = selection.refit(task, fit, modal_model.FINE, modal_model.MOST_EVALUATIONS)
     return _result(data, task, fit, omega, size, diagram, clusters, modes)
 
 

@@ -83,6 +83,9 @@ TINY = float(np.finfo(float).tiny)
 CHUNK = 1 << 18
 """Numbers in an intermediate array of products."""
 
+FEW = 6
+"""Functions up to which a Gram matrix of each is faster than the products of all pairs."""
+
 PORTION = 1 << 16
 """Complex numbers in an intermediate array of residuals, which then stay in the cache."""
 
@@ -157,6 +160,7 @@ class Fit:
     curvature : (alphas, alphas) with it
     inverse : (responses, linear, linear) inverse of G
     Z : (responses, linear, alphas), -dc/dalpha
+    unlike : (alphas,) share of each column of D, squared, that no linear parameter can make up
     evaluations : number of evaluations of the model
     converged : whether the iteration met its tolerance
     """
@@ -168,6 +172,7 @@ class Fit:
     curvature: Floats
     inverse: Floats
     Z: Floats
+    unlike: Floats
     evaluations: int = 1
     converged: bool = False
 
@@ -251,7 +256,8 @@ def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
     cross = (TM @ K).sum(axis=0)
     Z = inverse @ cross
     U = _second(model, rho, len(task.powers))
-    information = _rows(K).T @ _rows(M @ K) - _rows(cross).T @ _rows(Z)
+    direct = _rows(K).T @ _rows(M @ K)
+    information = direct - _rows(cross).T @ _rows(Z)
     return Fit(
         model,
         cost - float(np.sum(lost * right)),
@@ -260,6 +266,7 @@ def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
         information + _rows(U).T @ _rows(inverse @ U),
         inverse,
         Z,
+        information.diagonal() / np.maximum(direct.diagonal(), TINY),
     )
 
 
@@ -326,20 +333,33 @@ def maximise(
     return replace(fit, evaluations=evaluations, converged=converged)
 
 
-def gram(task: Problem, E: Complexes, other: Complexes | None = None) -> Floats:
-    """Return the weighted Gram matrices of the primitives, (references, responses, Q, Q).
-
-    With ``other`` it is the symmetric part of the products of the primitives with those.
-    """
-    p, q = np.triu_indices(len(E))
+def gram(task: Problem, E: Complexes) -> Floats:
+    """Return the weighted Gram matrices of the primitives, (references, responses, Q, Q)."""
     flat = task.weight.reshape(-1, len(task.s))
+    if len(flat) <= FEW:
+        return _gram_of_few(flat, E).reshape(*task.weight.shape[:2], len(E), len(E))
+    p, q = np.triu_indices(len(E))
     out = np.zeros((len(flat), len(p)))
-    for lines, products in _products(E, E if other is None else other):
+    for lines, products in _products(E):
         out += flat[:, lines] @ products.T
     M = np.zeros((len(flat), len(E), len(E)))
     M[:, p, q] = out
     M[:, q, p] = out
     return M.reshape(*task.weight.shape[:2], len(E), len(E))
+
+
+def _gram_of_few(weight: Floats, E: Complexes) -> Floats:
+    """Return the Gram matrix of each function, (functions, Q, Q), in portions of lines."""
+    M = np.zeros((len(weight), len(E), len(E)))
+    root = np.sqrt(weight).repeat(2, axis=1)
+    parts = E.view(float)
+    size = max(CHUNK // max(len(E), 1), 1)
+    for start in range(0, parts.shape[1], size):
+        lines = slice(start, start + size)
+        for k in range(len(M)):
+            weighted = parts[:, lines] * root[k, lines]
+            M[k] += weighted @ weighted.T
+    return M
 
 
 def leverage(task: Problem, fit: Fit) -> Floats:
@@ -360,35 +380,29 @@ def leverage(task: Problem, fit: Fit) -> Floats:
     p, q = np.triu_indices(len(E))
     coefficients = S[..., p, q] * np.where(p == q, 1.0, 2.0)
     out = np.empty(task.weight.shape)
-    for lines, products in _products(E, E):
+    for lines, products in _products(E):
         out[..., lines] = coefficients @ products
     return task.weight * out / 2
 
 
-def _products(E: Complexes, other: Complexes) -> Iterator[tuple[slice, Floats]]:
-    """Yield portions of lines with the symmetric real products of all pairs of functions.
+def _products(E: Complexes) -> Iterator[tuple[slice, Floats]]:
+    """Yield portions of lines with the real products of all pairs of functions.
 
     Pairs are in the order of ``np.triu_indices``.
     """
     pairs = len(E) * (len(E) + 1) // 2
     size = max(CHUNK // max(pairs, 1), 1)
     for start in range(0, E.shape[1], size):
-        lines = slice(start, start + size)
-        a = np.concatenate([E.real[:, lines], E.imag[:, lines]], axis=1)
-        b = np.concatenate([other.real[:, lines], other.imag[:, lines]], axis=1)
-        count = a.shape[1] // 2
-        products, scratch = np.empty((pairs, count)), np.empty_like(a)
+        portion = E[:, start : start + size]
+        real, imag = portion.real.copy(), portion.imag.copy()
+        products, scratch = np.empty((pairs, real.shape[1])), np.empty_like(real)
         first = 0
         for p in range(len(E)):  # the rows of an upper triangle
             rows = products[first : first + len(E) - p]
-            both = np.multiply(a[p], b[p:], out=scratch[p:])
-            np.add(both[:, :count], both[:, count:], out=rows)
-            if other is not E:
-                both = np.multiply(b[p], a[p:], out=scratch[p:])
-                rows += both[:, :count] + both[:, count:]
-                rows /= 2
+            np.multiply(real[p], real[p:], out=rows)
+            rows += np.multiply(imag[p], imag[p:], out=scratch[p:])
             first += len(rows)
-        yield lines, products
+        yield slice(start, start + size), products
 
 
 def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[Floats, float]:

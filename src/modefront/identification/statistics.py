@@ -166,19 +166,25 @@ def _correlation(task: Problem, r: Complexes) -> Complexes:
     return np.array(out)
 
 
-def correlated(E: Complexes, correlation: Complexes) -> Complexes:
-    r"""Return the primitives after the correlation, :math:`\sum_l \rho_{k-l} E_l`.
+def correlated_gram(task: Problem, E: Complexes, correlation: Complexes) -> Floats:
+    r"""Return Gram matrices for correlated lines, (references, responses, Q, Q).
 
-    >>> correlated(np.array([[1.0, 0.0, 2.0]]), np.array([1.0, 0.5j])).real.round(12) + 0.0
-    array([[1., 0., 2.]])
+    They are :math:`\sum_{kl} \operatorname{Re}(a_{pk}^* \rho_{k-l} a_{ql})` of the weighted
+    primitives :math:`a = \sqrt{w} E`: in time, products of their transforms times that of the
+    correlations, which is the energy of the noise.
     """
     lines, lags = E.shape[1], len(correlation)
     size = scipy.fft.next_fast_len(lines + lags)
     kernel = np.zeros(size, complex)
     kernel[:lags] = correlation
     kernel[size - lags + 1 :] = correlation[:0:-1].conj()
-    out: Complexes = scipy.fft.ifft(scipy.fft.fft(E, size) * scipy.fft.fft(kernel))[:, :lines]
-    return out
+    energy = scipy.fft.fft(kernel).real.repeat(2) / size
+    weight = task.weight.reshape(-1, lines)
+    M = np.empty((len(weight), len(E), len(E)))
+    for k in range(len(M)):
+        a = scipy.fft.fft(np.sqrt(weight[k]) * E, size).view(float)
+        M[k] = (a * energy) @ a.T
+    return M.reshape(*task.weight.shape[:2], len(E), len(E))
 
 
 def _force(task: Problem, H: Complexes, r: Complexes) -> Floats:
@@ -274,8 +280,11 @@ def _own_roots(task: Problem, fit: Fit, residuals: Residuals) -> tuple[Floats, F
             variance = task.force_noise.deviation**2
         share = variance[:, None] * weight * square(H)
         weight = weight * np.maximum(1 - share, 0)
-    after = correlated(E, residuals.correlation) if len(residuals.correlation) > 1 else E
-    M = gram(replace(task, weight=weight), E, after)
+    alone = replace(task, weight=weight)
+    if len(residuals.correlation) > 1:
+        M = correlated_gram(alone, E, residuals.correlation)
+    else:
+        M = gram(alone, E)
     P = np.zeros((*M.shape[:3], 2 * n + X.shape[3]))
     P[:, :, :first, : 2 * n] = np.einsum("jqa,iab->jiqb", T, fit.inverse[:, :, : 2 * n])
     P[..., 2 * n :] = X
