@@ -77,7 +77,14 @@ class Screen:
         """Print a table after an empty line, as `grid` returns it; none without rows."""
         self.show([BLANK, *self.grid(title, columns, rows, keys)] if rows else [])
 
-    def grid(self, title: str, columns: Row, rows: Sequence[Row], keys: int = 1) -> list[Line]:
+    def grid(
+        self,
+        title: str,
+        columns: Row,
+        rows: Sequence[Row],
+        keys: int = 1,
+        part: float = KEY,
+    ) -> list[Line]:
         """Return the lines of a table, in blocks where it is too wide; none without rows.
 
         Parameters
@@ -90,13 +97,14 @@ class Screen:
             Cells; a row of one cell is a heading within the table.
         keys
             Number of columns with names of the rows, which every block repeats.
+        part
+            Greatest part of the width that these take; longer names are broken over lines.
         """
         if not rows:
             return []
         out = self.sentence(title, style="bold") if title else []
-        grid = _Grid(
-            [self.shown(x) for x in columns], [[self.shown(x) for x in row] for row in rows], keys
-        )
+        cells = [[self.shown(x) for x in row] for row in rows]
+        grid = _Grid([self.shown(x) for x in columns], cells, keys, part)
         for number, block in enumerate(grid.blocks(self.width)):
             out += [BLANK] * (number > 0) + block
         return out
@@ -113,10 +121,11 @@ class _Grid:
     columns: list[str]
     rows: list[list[str]]
     keys: int
+    part: float
 
     def blocks(self, width: int) -> Iterator[list[Line]]:
         """Yield the lines of each block, with their styles."""
-        most = max(int(KEY * width) // self.keys, LEAST)
+        most = max(int(self.part * width) // self.keys, LEAST)
         keys = [min(self._width(j), most) for j in range(self.keys)]
         room = width - sum(keys) - GAP * self.keys
         widths = {j: min(self._width(j), room) for j in range(self.keys, len(self.columns))}

@@ -14,11 +14,14 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats, Ints
-from modefront.cli.layout import BLANK, Line, Screen
+from modefront.cli.layout import BLANK, KEY, Line, Screen
 from modefront.fronts.point import Kind
 
 FEWEST = 3
 """Parameters and modes that a table keeps, however long it is."""
+
+EDGES = 6
+"""Parameters and modes that columns of the edges are worth."""
 
 FULL = "modefront show --models"
 """What prints all parameters and modes of these models."""
@@ -33,14 +36,26 @@ class Form:
     every_std : standard deviations of all models, not only of the reference
     beside : MAC beside the errors of frequencies, not in rows of their own
     edges : whether edges have columns, not a line each
+    part : greatest part of the width that names of rows take
     """
 
     every_std: bool = True
     beside: bool = True
     edges: bool = True
+    part: float = KEY
 
 
-FORMS = (Form(), Form(every_std=False), Form(every_std=False, beside=False))
+NARROW = 0.28
+"""Part of the width for names that are broken over lines rather than the table into blocks."""
+
+FORMS = (
+    Form(),
+    Form(every_std=False),
+    Form(every_std=False, part=NARROW),
+    Form(every_std=False, beside=False),
+    Form(every_std=False, beside=False, part=NARROW),
+    Form(every_std=False, edges=False),
+)
 """Forms from the fullest to the shortest."""
 
 
@@ -68,21 +83,29 @@ def models_in(screen: Screen, data: xr.Dataset, most: int) -> list[Line]:
     def table(form: Form, p: int, m: int) -> _Table:
         return _Table(data, form, np.sort(parameters[:p]), np.sort(modes[:m]))
 
-    p, m = parameters.size, modes.size
-    forms = list(FORMS)
-    if table(forms[-1], p, m).blocks(screen) > 1 and data.sizes["group"] > 2:
-        forms.append(Form(every_std=False, edges=False))
-    whole = [table(form, p, m) for form in forms]
-    fitting = [each for each in whole if len(each.lines(screen)) <= most]
-    if fitting:
-        at_once = [each for each in fitting if each.blocks(screen) == 1]
-        return [*at_once, *fitting][0].lines(screen)
-    form = min(whole, key=lambda each: len(each.lines(screen))).form
-    while True:
-        out = table(form, p, m).lines(screen)
-        if len(out) <= most or (p <= FEWEST and m <= FEWEST):
-            return out
-        p, m = (p - 1, m) if p > FEWEST and (p >= m or m <= FEWEST) else (p, m - 1)
+    whole = [table(form, parameters.size, modes.size) for form in FORMS]
+    at_once = [each for each in whole if each.blocks(screen) == 1]
+    for each in (each for some in (at_once, whole) for each in some if each.form.edges):
+        lines = each.lines(screen)
+        if len(lines) <= most:
+            return lines
+    # The table that shows most parameters and modes; columns of the edges are worth a few of them.
+    best, out = -1, table(FORMS[-1], FEWEST, FEWEST).lines(screen)
+    for each in at_once or whole:
+        p, m = parameters.size, modes.size
+        lines = each.lines(screen)
+        while len(lines) > most and (p > FEWEST or m > FEWEST):
+            # Each row that is left out saves a line at least, and names or blocks save more.
+            fewer = max((len(lines) - most) // 6, 1)
+            if p > FEWEST and (p >= m or m <= FEWEST):
+                p = max(p - fewer, FEWEST)
+            else:
+                m = max(m - fewer, FEWEST)
+            lines = table(each.form, p, m).lines(screen)
+        worth = p + m + EDGES * each.form.edges
+        if len(lines) <= most and worth > best:
+            best, out = worth, lines
+    return out
 
 
 class _Table:
@@ -103,7 +126,7 @@ class _Table:
 
     def lines(self, screen: Screen) -> list[Line]:
         """Return the table and what explains it."""
-        out = screen.grid("", self.columns, self.rows)
+        out = screen.grid("", self.columns, self.rows, part=self.form.part)
         if not self.form.edges:
             out += [BLANK, *self._edges(screen)]
         for text in self.notes:
@@ -112,7 +135,7 @@ class _Table:
 
     def blocks(self, screen: Screen) -> int:
         """Return the number of blocks of the table, each of which has one line below its titles."""
-        whole = screen.grid("", self.columns, self.rows)
+        whole = screen.grid("", self.columns, self.rows, part=self.form.part)
         return 1 + sum(line == BLANK for line in whole)
 
     @property
