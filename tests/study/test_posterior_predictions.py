@@ -15,8 +15,8 @@ from two_masses import FRF, QUICK, ZETA, direct, run, write_study
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.cli.remarks import remarks
 from modefront.predictions import Passage, PeakResponse, Prediction
+from modefront.results.remarks import remarks
 from modefront.study.examples import write_example
 from modefront.uncertainty.differences import STEP
 from modefront.uncertainty.prediction import SUMMARY
