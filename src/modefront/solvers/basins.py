@@ -108,6 +108,10 @@ BESIDE, NEIGHBOURS = 1.5, 2
 """Distance of points of other branches, in steps of the ranges, within which a point is solved
 again from them, and how many of these are tried at most."""
 
+ABOVE = 1e-2
+"""Height of a point above the tangent plane of another, in units of the ranges, over twice that of
+the other above its own, from which on they count as points of two branches."""
+
 COARSE = 10
 """Steps along an edge below which parameters may change by more from a point to its neighbour on
 the same branch, in proportion."""
@@ -458,7 +462,10 @@ def from_other_branches(
     """Return the points, each solved again from those of other branches that lie beside it.
 
     Where branches meet, the lattice leads along one of them as far as it goes, and the other one
-    may already be better. Pairs of points that were so ``before`` are not tried.
+    may already be better. A point of another branch is one whose parameters are far, or whose
+    tangent to the front the point lies above by much more than it above the tangent at the point:
+    on one branch both differ in the third order of their distance. Pairs of points that were so
+    ``before`` are not tried.
     """
     current = list(points)
     span = problem.upper - problem.lower
@@ -468,14 +475,19 @@ def from_other_branches(
     for turn in range(ROUNDS):
         theta = np.array([point.theta for point in current]) / span
         y = np.array([point.J for point in current]) / target.scale
+        above = _above_tangents(current, target)
         starts: list[tuple[int, int]] = []
-        for k in range(len(current)):
-            if not np.isfinite(y[k]).all():
-                continue
+        for k in np.flatnonzero(np.isfinite(y).all(axis=1)).tolist():
             away = np.abs(y - y[k]).max(axis=1)
+            near = away <= BESIDE / lattice.divisions
             other = (np.abs(theta - theta[k]) > far).any(axis=1)
-            beside = np.flatnonzero(other & (away <= BESIDE / lattice.divisions))
-            for j in beside[away[beside].argsort(kind="stable")][:NEIGHBOURS].tolist():
+            beside = np.flatnonzero(near & other)
+            below = np.flatnonzero(near & (above[k] > ABOVE + 2 * np.maximum(above[:, k], 0)))
+            chosen = [
+                *beside[away[beside].argsort(kind="stable")][:NEIGHBOURS].tolist(),
+                *below[above[k, below].argsort(kind="stable")][-NEIGHBOURS:].tolist(),
+            ]
+            for j in dict.fromkeys(chosen):
                 key = (k, current[j].theta.tobytes())
                 if key not in tried:
                     tried.add(key)
@@ -493,6 +505,16 @@ def from_other_branches(
             if _is_better(target, end, current[k]):
                 current[k] = end
     return current
+
+
+def _above_tangents(points: Sequence[Solution], target: Payoff) -> Floats:
+    """Return how far each point lies above the tangent plane of the front at each other (k, k)."""
+    y = np.array([point.J for point in points]) / target.scale
+    w = np.nan_to_num([np.maximum(point.weights, 0) * target.scale for point in points])
+    total = w.sum(axis=1, keepdims=True)
+    w = np.divide(w, total, out=np.zeros_like(w), where=total > 0)
+    y = np.where(np.isfinite(y), y, 0.0)
+    return np.asarray(y @ w.T - (w * y).sum(axis=1))
 
 
 def _from_branch(problem: Problem, target: Payoff, point: Solution, start: Solution) -> Solution:
