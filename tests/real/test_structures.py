@@ -12,12 +12,12 @@ import scipy.sparse
 from smu import FOLDER, Structure, frequencies_and_shapes, read
 
 from modefront import ModalData, Pairing
-from modefront.cli.remarks import remarks
 from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.diagnose import diagnose
 from modefront.diagnosis.opposed import OpposedSensor
 from modefront.diagnosis.words import in_words
 from modefront.linalg.affine import SparseAffine
+from modefront.results.remarks import remarks
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import begin
 from modefront.solvers.sqp import solve as descend

@@ -7,9 +7,8 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-import click
-
-from modefront.errors import Fault, InputError, ModelError, UnfinishedError, suggestion
+from modefront.cli.terminal import say
+from modefront.errors import Fault, InputError, ModelError, UnfinishedError, reason, suggestion
 from modefront.exports.model import Origin, matrix_size, write_model
 from modefront.models.dofs import read_dofs
 from modefront.programs.changes import read_changes
@@ -17,6 +16,7 @@ from modefront.programs.mesh import read_mesh
 from modefront.results.files import FILE, read_dataset
 from modefront.results.results import Results
 from modefront.study.whereabouts import find_study, given_study
+from modefront.text import file_name
 
 
 def run_export(
@@ -33,7 +33,7 @@ def run_export(
     loaded = given_study(directory, study, digest) if study else find_study(directory, name, digest)
     results = Results(data, loaded.problem)
     model = results.model(point)
-    output = output or directory / f"export-{point}"
+    output = output or directory / file_name(f"export-{point}")
     try:
         count = min(modes or max(len(model.frequency), 1), matrix_size(model))
         output.mkdir(parents=True, exist_ok=True)
@@ -42,14 +42,14 @@ def run_export(
             files = sorted(Path(name).iterdir())
             for file in files:
                 shutil.move(file, output / file.name)
-                click.echo(f"wrote {output / file.name}")
+                say(f"wrote {output / file.name}")
     except ModelError as error:
         raise UnfinishedError(str(error)) from None
     except OSError as error:
         expected = "a folder that can be written to"
-        raise InputError(Fault(str(output), "folder", expected, str(error))) from None
+        raise InputError(Fault(str(output), "folder", expected, reason(error))) from None
     for what in missing:
-        click.echo(f"not written: {what}")
+        say(f"not written: {what}")
 
 
 def _origin(file: Path) -> Origin:

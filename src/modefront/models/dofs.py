@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
 from modefront.fem.dofs import DIRECTIONS
 from modefront.inputs import file_size
 
@@ -176,7 +176,7 @@ def read_dofs(path: Path) -> DofTable:
         with path.open(encoding="utf-8-sig", newline="") as stream:
             header, *rows = list(csv.reader(stream))
     except (OSError, ValueError, csv.Error) as error:
-        raise _wrong(path, "file", "CSV in UTF-8", str(error)) from None
+        raise _wrong(path, "file", "CSV in UTF-8", reason(error)) from None
     names = tuple(name.strip() for name in header)
     if names not in (COLUMNS, COLUMNS[:2]):
         raise _wrong(path, "header", "node,direction or node,direction,weight", ",".join(names))

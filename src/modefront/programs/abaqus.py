@@ -15,6 +15,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Ints
+from modefront.errors import reason
 from modefront.models.dofs import DofTable, read_dofs
 from modefront.programs.base import (
     DOUBLE,
@@ -210,7 +211,7 @@ def _mesh(path: Path, options: JobOptions, notes: list[str]) -> ProgramMesh | No
     try:
         deck = read_deck(options.deck or path.with_name(job + ".inp"))
     except OSError as error:
-        notes.append(f"without the deck ({error}) there are no coordinates")
+        notes.append(f"without the deck ({reason(error)}) there are no coordinates")
         return None
     if deck.parts:
         notes.append("the deck numbers nodes in parts: coordinates are left out")

@@ -21,6 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Ints
+from modefront.errors import reason
 from modefront.models.dofs import DofTable
 from modefront.programs.base import Entries, Job, JobOptions, Program, existing, upper, wrong
 from modefront.programs.inp import Deck, read_deck
@@ -83,7 +84,9 @@ def _deck(path: Path, notes: list[str]) -> Deck | None:
     try:
         return read_deck(path)
     except OSError as error:
-        notes.append(f"without the deck ({error}) there are no coordinates, and held nodes of")
+        notes.append(
+            f"without the deck ({reason(error)}) there are no coordinates, and held nodes of"
+        )
         notes[-1] += " shells and beams cannot be told from others"
         return None
 

@@ -135,7 +135,9 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], l
                 yield keyword, options, rows
             keyword, options, rows = *_keyword(text), []
             if keyword == "INCLUDE" and options.get("INPUT") and depth < DEEPEST:
-                yield from _blocks(path.parent / options["INPUT"], depth + 1)
+                other = path.parent / options["INPUT"]
+                if other.resolve().is_relative_to(path.parent.resolve()):  # nothing from elsewhere
+                    yield from _blocks(other, depth + 1)
     if keyword:
         yield keyword, options, rows
 

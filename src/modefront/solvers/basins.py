@@ -97,12 +97,20 @@ SPACING = 0.125
 CROWD = 6
 """Points besides the lattice at most, for one step of it."""
 
+WIDE = 0.15
+"""Distance of neighbours on a rugged front of two objectives, in steps of the lattice, over which a
+point is looked for between them."""
+
 OTHERS = 1e-2
 """Weight of the other objectives, in units of the ranges, where the least of one is looked for."""
 
 BESIDE, NEIGHBOURS = 1.5, 2
 """Distance of points of other branches, in steps of the ranges, within which a point is solved
 again from them, and how many of these are tried at most."""
+
+ABOVE = 1e-2
+"""Height of a point above the tangent plane of another, in units of the ranges, over twice that of
+the other above its own, from which on they count as points of two branches."""
 
 COARSE = 10
 """Steps along an edge below which parameters may change by more from a point to its neighbour on
@@ -112,7 +120,7 @@ BEHIND, NEARLY = 1e-2, 1e-3
 """Excess of a half-finished search over a point, in units of the ranges, that is not followed; and
 of one whose steps have become short."""
 
-_ROUGH = Options(step=NEAR / 4, iterations=8)
+_ROUGH, _SHORT = Options(step=NEAR / 4, iterations=8), Options(iterations=60)
 
 
 @record
@@ -422,7 +430,25 @@ class _Between:
         out.sort(key=lambda solution: -float(self.target.place(solution.J)[0]))
         task = Task(("front", "nbi", "along"), _continued, (self.problem, self.target, out))
         (along,) = self.work.run([task])
+        along.extend(self._between_neighbours(along))
         return sorted(along, key=lambda solution: -float(self.target.place(solution.J)[0]))
+
+    def _between_neighbours(self, points: Sequence[Solution]) -> list[Solution]:
+        """Return points of two objectives half-way between optimal neighbours that lie apart."""
+        J = np.array([solution.J for solution in points])
+        optimal = np.flatnonzero(nondominated(J))
+        optimal = optimal[np.argsort(J[optimal, 0], kind="stable")]
+        steps = np.abs(np.diff(J[optimal], axis=0) / self.target.scale).max(axis=1)
+        wide = np.flatnonzero(steps > WIDE / self.lattice.divisions)
+        tasks = [
+            Task(
+                ("front", "nbi", "half-way", int(k) + 1),
+                _half_way,
+                (self.problem, self.target, points[optimal[k]], points[optimal[k + 1]]),
+            )
+            for k in wide
+        ]
+        return [x for x in self.work.run(tasks) if x.converged]
 
 
 def from_other_branches(
@@ -436,7 +462,10 @@ def from_other_branches(
     """Return the points, each solved again from those of other branches that lie beside it.
 
     Where branches meet, the lattice leads along one of them as far as it goes, and the other one
-    may already be better. Pairs of points that were so ``before`` are not tried.
+    may already be better. A point of another branch is one whose parameters are far, or whose
+    tangent to the front the point lies above by much more than it above the tangent at the point:
+    on one branch both differ in the third order of their distance. Pairs of points that were so
+    ``before`` are not tried.
     """
     current = list(points)
     span = problem.upper - problem.lower
@@ -446,14 +475,19 @@ def from_other_branches(
     for turn in range(ROUNDS):
         theta = np.array([point.theta for point in current]) / span
         y = np.array([point.J for point in current]) / target.scale
+        above = _above_tangents(current, target)
         starts: list[tuple[int, int]] = []
-        for k in range(len(current)):
-            if not np.isfinite(y[k]).all():
-                continue
+        for k in np.flatnonzero(np.isfinite(y).all(axis=1)).tolist():
             away = np.abs(y - y[k]).max(axis=1)
+            near = away <= BESIDE / lattice.divisions
             other = (np.abs(theta - theta[k]) > far).any(axis=1)
-            beside = np.flatnonzero(other & (away <= BESIDE / lattice.divisions))
-            for j in beside[away[beside].argsort(kind="stable")][:NEIGHBOURS].tolist():
+            beside = np.flatnonzero(near & other)
+            below = np.flatnonzero(near & (above[k] > ABOVE + 2 * np.maximum(above[:, k], 0)))
+            chosen = [
+                *beside[away[beside].argsort(kind="stable")][:NEIGHBOURS].tolist(),
+                *below[above[k, below].argsort(kind="stable")][-NEIGHBOURS:].tolist(),
+            ]
+            for j in dict.fromkeys(chosen):
                 key = (k, current[j].theta.tobytes())
                 if key not in tried:
                     tried.add(key)
@@ -471,6 +505,16 @@ def from_other_branches(
             if _is_better(target, end, current[k]):
                 current[k] = end
     return current
+
+
+def _above_tangents(points: Sequence[Solution], target: Payoff) -> Floats:
+    """Return how far each point lies above the tangent plane of the front at each other (k, k)."""
+    y = np.array([point.J for point in points]) / target.scale
+    w = np.nan_to_num([np.maximum(point.weights, 0) * target.scale for point in points])
+    total = w.sum(axis=1, keepdims=True)
+    w = np.divide(w, total, out=np.zeros_like(w), where=total > 0)
+    y = np.where(np.isfinite(y), y, 0.0)
+    return np.asarray(y @ w.T - (w * y).sum(axis=1))
 
 
 def _from_branch(problem: Problem, target: Payoff, point: Solution, start: Solution) -> Solution:
@@ -597,6 +641,20 @@ def _continued(problem: Problem, target: Payoff, points: Sequence[Solution]) -> 
             if _is_better(target, solution, out[k]):
                 out[k] = solution
     return out
+
+
+def _half_way(problem: Problem, target: Payoff, first: Solution, second: Solution) -> Solution:
+    """Return the point of the front half-way between two others, from the first or the second."""
+    beta = (target.place(first.J) + target.place(second.J)) / 2
+    programme = programmes_of(problem, target).subproblem(beta)
+    known = np.array([first.J, second.J])
+    evaluations = 0
+    for start in (first, second):
+        end = replace(solve(problem, programme, start, _SHORT), beta=beta)
+        evaluations += end.evaluations
+        if end.converged and not (known <= end.J).all(axis=1).any():
+            return replace(end, evaluations=evaluations)
+    return replace(end, status=Status.STALLED, evaluations=evaluations)
 
 
 def _is_better(target: Payoff, solution: Solution, known: Solution) -> bool:

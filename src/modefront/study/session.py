@@ -320,13 +320,7 @@ def _set_aside(path: Path) -> None:
 
 def _keep_other(path: Path, digest: str) -> None:
     """Set results aside that belong to other inputs."""
-    import xarray as xr
+    from modefront.results.files import written_for
 
-    if path.is_file():
-        try:
-            with xr.open_dataset(path, engine="h5netcdf") as data:
-                same = data.attrs.get("inputs") == digest
-        except (OSError, ValueError, KeyError):
-            same = False
-        if not same:
-            _set_aside(path)
+    if path.is_file() and written_for(path) != digest:
+        _set_aside(path)
