@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -23,7 +24,13 @@ from modefront.diagnosis.sets import (
     numbering_findings,
     shape_findings,
 )
-from modefront.diagnosis.units import FrequencyFactor, OtherQuantity, shifts_tried, unit_finding
+from modefront.diagnosis.units import (
+    FrequencyFactor,
+    OtherQuantity,
+    distance,
+    shifts_tried,
+    unit_finding,
+)
 
 Finding = (
     FrequencyFactor
@@ -49,7 +56,7 @@ def diagnose(comparison: Comparison) -> list[Finding]:
     """
     data = comparison.data
     of_model = comparison.frequency[comparison.pairs.index]
-    factors, data = factor_findings(data, of_model)
+    factors, data = factor_findings(data, partial(distance, comparison))
     numbers, data = numbering_findings(data, of_model)
     in_sets, view = between_sets(comparison, measured(data))
     inside = without_outside(comparison, view)
