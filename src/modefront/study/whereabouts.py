@@ -18,6 +18,9 @@ NOTE = "study"
 LONGEST = 4096
 """Characters of a path that is believed."""
 
+LARGEST = 10**7
+"""Bytes of a study file, at most."""
+
 ABOVE = 3
 """Folders above the results in which a study is looked for."""
 
@@ -98,6 +101,8 @@ def _candidates(results: Path) -> Iterator[Path]:
 
 def _is_named(file: Path, name: str) -> bool:
     try:
+        if not file.is_file() or file.stat().st_size > LARGEST:
+            return False
         return bool(tomllib.loads(file.read_text("utf-8-sig"))["study"]["name"] == name)
     except (OSError, ValueError, KeyError, TypeError):
         return False
