@@ -77,6 +77,7 @@ FINE, COARSE = 1e-5, 1e-2
 """Squared steps in standard deviations that end an iteration: for results, and for choices."""
 
 MOST_EVALUATIONS = 40
+"""Evaluations after which a fit has failed; simulated tests take three to fifteen."""
 
 TINY = float(np.finfo(float).tiny)
 
@@ -472,10 +473,10 @@ def derivatives(model: ModalModel, functions: int) -> Floats:
         e, o = base + 2 * r, base + 2 * r + 1
         K[:, :, e, 2 * r], K[:, :, o, 2 * r] = a[..., r].real, a[..., r].imag
         K[:, :, e, 2 * r + 1], K[:, :, o, 2 * r + 1] = -a[..., r].imag, a[..., r].real
-    for at, (r, j) in enumerate(free, start=n):
+    for k, (r, j) in enumerate(free, start=n):
         phi = model.phi[r]
-        K[j, :, 2 * r, 2 * at], K[j, :, 2 * r + 1, 2 * at] = phi.real, phi.imag
-        K[j, :, 2 * r, 2 * at + 1], K[j, :, 2 * r + 1, 2 * at + 1] = -phi.imag, phi.real
+        K[j, :, 2 * r, 2 * k], K[j, :, 2 * r + 1, 2 * k] = phi.real, phi.imag
+        K[j, :, 2 * r, 2 * k + 1], K[j, :, 2 * r + 1, 2 * k + 1] = -phi.imag, phi.real
     return K
 
 
@@ -494,10 +495,10 @@ def _second(model: ModalModel, rho: Floats, powers: int) -> Floats:
     for r in range(n):
         U[:, 2 * r, 2 * r], U[:, 2 * r + 1, 2 * r] = seen[:, r].real, seen[:, r].imag
         U[:, 2 * r, 2 * r + 1], U[:, 2 * r + 1, 2 * r + 1] = seen[:, r].imag, -seen[:, r].real
-    for at, (r, j) in enumerate(free, start=n):
+    for k, (r, j) in enumerate(free, start=n):
         z = single[j, :, r]
-        U[:, 2 * r, 2 * at], U[:, 2 * r + 1, 2 * at] = z.real, z.imag
-        U[:, 2 * r, 2 * at + 1], U[:, 2 * r + 1, 2 * at + 1] = z.imag, -z.real
+        U[:, 2 * r, 2 * k], U[:, 2 * r + 1, 2 * k] = z.real, z.imag
+        U[:, 2 * r, 2 * k + 1], U[:, 2 * r + 1, 2 * k + 1] = z.imag, -z.real
     return U
 
 
@@ -518,6 +519,6 @@ def _moved(model: ModalModel, step: Floats) -> tuple[Complexes, Complexes]:
     n = len(model)
     lam = model.lam + step[: 2 * n : 2] + 1j * step[1 : 2 * n : 2]
     L = model.L.copy()
-    for at, (r, j) in enumerate(free_factors(model.held, L.shape[1]), start=n):
-        L[r, j] += step[2 * at] + 1j * step[2 * at + 1]
+    for k, (r, j) in enumerate(free_factors(model.held, L.shape[1]), start=n):
+        L[r, j] += step[2 * k] + 1j * step[2 * k + 1]
     return lam, L

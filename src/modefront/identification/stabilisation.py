@@ -217,4 +217,4 @@ def _clusters(diagram: StabilisationDiagram) -> list[Cluster]:
                 len(orders),
             )
         )
-    return sorted(out, key=lambda one: one.pole.imag)
+    return sorted(out, key=lambda cluster: cluster.pole.imag)
