@@ -166,7 +166,7 @@ def weighting(data: FrequencyResponses) -> Weighting:
 def _known_variance(data: FrequencyResponses) -> Floats | None:
     if data.variance is None or weighting(data) == "residuals":
         return None
-    return fitted_variance(data.variance, data.H)
+    return fitted_variance(np.where(data.measured, data.variance, np.nan), data.H)
 
 
 def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
