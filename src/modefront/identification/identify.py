@@ -141,10 +141,11 @@ def identify(
     model = fit.model
     start = modal_model.evaluate(task, model.lam, model.L, model.held)
     task = _reweighted(task, start, weighting(data))
-    fit = selection.refit(task, start, modal_model.FINE, modal_model.MOST_EVALUATIONS)
     if weighting(data) != "given":
+        fit = selection.refit(task, start)
         task = _reweighted(task, fit, weighting(data))
-        fit = selection.refit(task, fit, modal_model.FINE, modal_model.MOST_EVALUATIONS)
+        start = fit
+    fit = selection.refit(task, start, modal_model.FINE, modal_model.MOST_EVALUATIONS)
     solution = _Solution(data, task, fit, omega, size, diagram)
     return _result(solution, clusters, modes is not None)
 
@@ -248,7 +249,7 @@ def _select(
     candidates = selection.distinct(diagram.pole) / omega
     for _ in range(selection.MOST_ADDED):
         fit = selection.backward(task, fit)
-        more = selection.forward(task, fit, candidates)
+        more, candidates = selection.forward(task, fit, candidates)
         if more is fit:
             break
         fit = more

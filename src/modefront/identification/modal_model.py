@@ -73,7 +73,7 @@ from modefront.data.responses import ORDERS, ForceNoise, FrequencyResponses
 RESIDUALS: tuple[tuple[int, ...], ...] = ((), (-2, 0), (-3, -2, 0, 1), (-4, -3, -2, 0, 1, 2))
 """Powers of s of the residual terms, by the number of terms on either side."""
 
-FINE, COARSE = 1e-5, 1e-2
+FINE, COARSE = 1e-4, 1e-2
 """Squared steps in standard deviations that end an iteration: for results, and for choices."""
 
 MOST_EVALUATIONS = 40
@@ -509,10 +509,12 @@ def _step(fit: Fit, damping: float) -> Floats:
     step: Floats = -scale * la.solve(scaled, scale * fit.gradient, assume_a="sym")
     n = len(fit.model)
     sigma, omega = fit.model.lam.real, fit.model.lam.imag
-    # poles stay in the second quadrant, and no step goes beyond the neighbourhood of its pole
-    room = np.concatenate([np.abs(sigma) * 0.7, np.minimum(10 * np.abs(sigma), 0.5 * omega)])
-    taken = np.abs(np.concatenate([step[: 2 * n : 2], step[1 : 2 * n : 2]]))
-    return step * min(1.0, float((room / np.maximum(taken, np.finfo(float).tiny)).min(initial=1.0)))
+    # poles stay in the second quadrant, and none goes beyond its neighbourhood; each for itself,
+    # as one that is drawn to the imaginary axis would hold up all others
+    room = np.empty(2 * n)
+    room[::2], room[1::2] = 0.7 * np.abs(sigma), np.minimum(10 * np.abs(sigma), 0.5 * omega)
+    step[: 2 * n] = np.clip(step[: 2 * n], -room, room)
+    return step
 
 
 def _moved(model: ModalModel, step: Floats) -> tuple[Complexes, Complexes]:

@@ -159,8 +159,12 @@ def without(task: Problem, fit: Fit, mode: int) -> Fit:
     return maximise(task, fit.model.lam[kept], fit.model.L[kept], MOST_EVALUATIONS, COARSE)
 
 
-def forward(task: Problem, fit: Fit, candidates: Complexes) -> Fit:
-    """Return the fit with one more mode where a candidate pays its price, else the same fit."""
+def forward(task: Problem, fit: Fit, candidates: Complexes) -> tuple[Fit, Complexes]:
+    """Return the fit with one more mode where a candidate pays its price, else the same fit.
+
+    Also returns the candidates that are left: one that was added once and does not stay is not
+    added again.
+    """
     r = np.where(task.weight > 0, task.H - synthesise(task, fit.model), 0)
     gain, L = candidate_gains(task, r, candidates)
     level = noise_level(task, fit)
@@ -177,8 +181,8 @@ def forward(task: Problem, fit: Fit, candidates: Complexes) -> Fit:
         trial = maximise(task, np.append(model.lam, lam), L_all, TRIAL_EVALUATIONS, COARSE)
         gained = 2 * (fit.cost - trial.cost) / noise_level(task, trial)
         if gained > price(task) and gains(task, trial).min() > price(task):
-            return trial
-    return fit
+            return trial, candidates[np.abs(candidates - lam) > -lam.real]
+    return fit, candidates
 
 
 def distinct(poles: Complexes) -> Complexes:
