@@ -71,6 +71,7 @@ export interface Front {
   measuredStd: Row;
   ends: Row[];
   macMatrix: Row[][] | null;
+  pairedMode: (number | null)[][] | null;
   modelFrequency: Row[] | null;
   shape: Row[][] | null;
   measuredShape: Row[][] | null;

@@ -33,3 +33,11 @@ export function tick(x: number): string {
   }
   return String(Number(x.toPrecision(6))).replace("-", MINUS);
 }
+
+/** Returns a ratio as one says it: in % where it is small, in powers of ten where it is huge. */
+export function times(ratio: number): string {
+  if (ratio < 2) return `by ${Number((100 * (ratio - 1)).toPrecision(2))} %`;
+  if (ratio < 10) return `by a factor of ${Number(ratio.toPrecision(2))}`;
+  if (ratio < 1e6) return `by a factor of ${Number(ratio.toPrecision(2)).toLocaleString("en")}`;
+  return `by more than ${Math.floor(Math.log10(ratio))} powers of ten`;
+}

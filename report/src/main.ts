@@ -166,26 +166,38 @@ function summary(state: State): HTMLElement {
     const [first, ...rest] = sentences;
     if (first === undefined) continue;
     const isList = sentences.length > 1 || heading !== "";
-    const MOST = 3;
+    const count = shown(sentences);
     const list = (some: string[]): HTMLElement => h("ul", {}, ...some.map((text) => h("li", {}, text)));
     view.append(
       h(
         "div",
         { class: "topic" },
         heading ? h("h3", {}, heading) : null,
-        isList ? list([first, ...rest].slice(0, MOST)) : h("p", {}, first),
-        sentences.length > MOST
+        isList ? list([first, ...rest].slice(0, count)) : h("p", {}, first),
+        sentences.length > count
           ? h(
               "details",
               {},
-              h("summary", {}, `${sentences.length - MOST} more`),
-              list(sentences.slice(MOST)),
+              h("summary", {}, `${sentences.length - count} more`),
+              list(sentences.slice(count)),
             )
           : null,
       ),
     );
   }
   return view;
+}
+
+/** Returns how many sentences of a topic are shown at once: three, fewer long ones. */
+function shown(sentences: string[]): number {
+  const [MOST, LETTERS] = [3, 420];
+  let letters = sentences[0]?.length ?? 0;
+  let count = 1;
+  while (count < Math.min(MOST, sentences.length) && letters + sentences[count].length <= LETTERS) {
+    letters += sentences[count].length;
+    count += 1;
+  }
+  return count;
 }
 
 function colophon(state: State): HTMLElement {

@@ -13,8 +13,8 @@ from rich.console import Console
 import modefront as mf
 from modefront.cli.layout import Screen
 from modefront.cli.lists import LISTS
-from modefront.cli.remarks import headlines, remarks
 from modefront.cli.show import print_results
+from modefront.results.remarks import headlines, remarks
 
 SEARCH = mf.Search(starts=2, limit=3, evolutions=0)
 NAMES = ["k1", "the stiffness of the second story"]
@@ -100,7 +100,7 @@ def test_pairs_that_change_on_a_lattice_are_said_once(three: xr.Dataset) -> None
         "measured mode 1 is paired with different model modes along the front: "
         f"2 at {count}, 1 at {front.size - count} of {front.size} points"
     ]
-    assert said[0] in headlines(changed, "there")
+    assert said[0] in headlines(changed)
 
 
 def test_many_points_are_counted_and_neighbours_joined(two: xr.Dataset) -> None:
@@ -136,5 +136,71 @@ def test_no_model_is_worse_than_the_sentence_on_all_models_says(two: xr.Dataset)
     frequency = np.where(two["frequency"].values > 0, 1.0104 * measured, np.nan)
     mac = np.full(frequency.shape, 0.9988)
     some = two.assign(frequency=(("point", "mode"), frequency), mac=(("point", "mode"), mac))
-    (said,) = [line for line in headlines(some, "there") if "Pareto-optimal models have" in line]
+    (said,) = [line for line in headlines(some) if "Pareto-optimal models have" in line]
     assert "within 1.1 % of the measured ones and MAC values of 0.998 or more" in said
+
+
+def wide(groups: int, parameters: int, modes: int) -> xr.Dataset:
+    """Return results with names of a length and numbers of a size that a chain does not have."""
+    rng = np.random.default_rng(groups + parameters + modes)
+    names = [f"stiffness of storey {j}" for j in range(parameters)]
+    of = [f"group {i} of {groups}" for i in range(groups)]
+    labels = ["nominal", "optimal-weights", *(f"edge-{name}" for name in of)]
+    kinds = ["nominal", "optimal-weights", *["edge"] * groups]
+    n = len(labels)
+    measured = np.sort(rng.uniform(1, 90, modes))
+    theta = rng.uniform(0.3, 4.0, (n, parameters))
+    return xr.Dataset(
+        {
+            "label": ("point", labels),
+            "kind": ("point", kinds),
+            "pareto": ("point", [False] + [True] * (n - 1)),
+            "converged": ("point", [True] * n),
+            "status": ("point", ["converged"] * n),
+            "theta": (("point", "parameter"), theta),
+            "theta_std": (("point", "parameter"), 0.05 * theta),
+            "bounds": (("parameter", "bound"), np.tile([0.2, 5.0], (parameters, 1))),
+            "measured_frequency": ("mode", measured),
+            "frequency": (("point", "mode"), measured * rng.uniform(0.9, 1.1, (n, modes))),
+            "mac": (("point", "mode"), rng.uniform(0.8, 1, (n, modes))),
+            "paired_mode": (("point", "mode"), np.tile(np.arange(1.0, modes + 1), (n, 1))),
+            "error": (("point", "group"), rng.uniform(0.01, 1, (n, groups))),
+            "finding": ("finding", [f"finding {i} " + 30 * "word " for i in range(20)]),
+        },
+        {"parameter": names, "group": of, "mode": np.arange(1, modes + 1)},
+        {
+            "reference": "optimal-weights",
+            "front_is_a_point": False,
+            "version": "0",
+            "method": "nbi",
+            "seed": 0,
+            "study": "s",
+        },
+    )
+
+
+@pytest.mark.parametrize(
+    ("groups", "parameters", "modes"),
+    [(2, 3, 3), (3, 3, 3), (2, 17, 12), (3, 17, 12), (4, 30, 12), (7, 30, 20), (1, 60, 40)],
+)
+def test_the_first_screen_is_a_screen(
+    groups: int, parameters: int, modes: int, capsys: pytest.CaptureFixture[str]
+) -> None:
+    data = wide(groups, parameters, modes)
+    print_results(data)
+    out = capsys.readouterr().out
+    lines = out.splitlines()
+    assert len(lines) <= 50
+    assert max(map(len, lines)) <= 80
+    assert "…" not in out
+    words = " ".join(out.split())
+    assert "all" in words
+    assert "Pareto-optimal models have frequencies within" in words
+    shown = sum(f"stiffness of storey {j} " in words for j in range(parameters))
+    if shown < parameters:
+        left = parameters - shown
+        assert f"{left} more parameter{'s' * (left > 1)} that change" in words
+        assert "modefront show --models" in words
+    print_results(data, ["models"])
+    words = " ".join(capsys.readouterr().out.split())
+    assert all(f"stiffness of storey {j} " in words for j in range(parameters))

@@ -11,7 +11,7 @@ from texts import two_of_each
 
 import modefront as mf
 from modefront._typing import Floats
-from modefront.cli.remarks import remarks
+from modefront.results.remarks import remarks
 
 NAMES = ("k1", "k2", "k3")
 MODEL = mf.chain(NAMES, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=NAMES)
@@ -192,7 +192,7 @@ def test_a_front_that_is_a_point_has_no_scatter_to_speak_of() -> None:
     found = mf.solve(replace(problem_of(), data=data), points=4, search=SEARCH).dataset
     assert found.attrs["front_is_a_point"]
     assert np.isnan(found["theta_std"].values).all()
-    assert any("no scatter is known at" in text for text in found["finding"].values)
+    assert any("no standard deviations are known at" in text for text in found["finding"].values)
 
 
 STUDY = (
@@ -254,9 +254,9 @@ def test_the_scatter_of_three_groups_runs_on_with_the_same_digits(tmp_path: Path
     head, tail = STUDY.split('[[group]]\nname = "shapes"\nshape = "all"\n')
     (tmp_path / "study.toml").write_text(head + THREE + tail)
     first = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / "results").dataset
-    pieces = tmp_path / "results" / "pieces"
-    for piece in [*pieces.rglob("second-derivatives-nbi-*.npz"), *pieces.rglob("bootstrap-*.npz")]:
-        piece.unlink()
+    tasks = tmp_path / "results" / "tasks"
+    for file in [*tasks.rglob("second-derivatives-nbi-*.npz"), *tasks.rglob("bootstrap-*.npz")]:
+        file.unlink()
     again = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / "results").dataset
     assert again.identical(first)
     along = first["front_part"].values == "whole"
@@ -276,14 +276,16 @@ def test_a_study_runs_on_with_the_same_digits_and_shows_all(
     (tmp_path / "study.toml").write_text(text)
     study = mf.load(tmp_path / "study.toml")
     first = mf.run(study, tmp_path / "results").dataset
-    for piece in (tmp_path / "results" / "pieces").rglob("second-derivatives-*.npz"):
-        piece.unlink()
+    for file in (tmp_path / "results" / "tasks").rglob("second-derivatives-*.npz"):
+        file.unlink()
     again = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / "results").dataset
     assert again.identical(first)
     solved = first["kind"].values != "nominal"
     assert np.isfinite(first["theta_std"].values[solved]).all()
     said = first["finding"].values.tolist()
-    assert not any("no scatter is known" in text or "bootstrap" in text for text in said)
+    assert not any(
+        "no standard deviations are known" in text or "bootstrap" in text for text in said
+    )
     assert again.attrs["model_evaluations"] == first.attrs["model_evaluations"]
     print_results(mf.read_results(tmp_path / "results").dataset, list(LISTS))
     out = " ".join(capsys.readouterr().out.split())
@@ -293,7 +295,8 @@ def test_a_study_runs_on_with_the_same_digits_and_shows_all(
         "scatter over data drawn again: standard deviations",
         "posterior around optimal-weights",
         "k1 and k2 can be scaled together: no shape changes",
-        "a curve of models fits shapes equally well (5 of them",
+        "a curve of models fits shapes equally well: k1 from",
+        "(5 models, by",
         "uncertainty of the data is taken from the scatter of the data sets",
     ):
         assert text in out

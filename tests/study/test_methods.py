@@ -205,7 +205,7 @@ def test_scatter_next_to_the_end_of_a_piece_is_doubtful() -> None:
     assert set(doubts) == {"", "ends"}
     named = ", ".join(data["label"].values[near])
     assert any(
-        f"scatter may not be valid at {named}: a branch" in x for x in data["finding"].values
+        f"deviations may not be valid at {named}: a branch" in x for x in data["finding"].values
     )
 
 
@@ -223,10 +223,10 @@ def test_an_interrupted_evolution_goes_on_where_it_stopped(
     interrupt_at(f"front-{method}-100-", monkeypatch)
     with pytest.raises(KeyboardInterrupt):
         mf.run(mf.load(path), tmp_path / "results")
-    before = set((tmp_path / "results" / "pieces").rglob("*.npz"))
+    before = set((tmp_path / "results" / "tasks").rglob("*.npz"))
     assert sum(file.name.startswith(f"front-{method}-") for file in before) == 5
     with counted() as costs:
         assert mf.run(mf.load(path), tmp_path / "results").dataset.identical(whole)
-    new = set((tmp_path / "results" / "pieces").rglob("*.npz")) - before
+    new = set((tmp_path / "results" / "tasks").rglob("*.npz")) - before
     assert sum(file.name.startswith(f"front-{method}-") for file in new) == 5
     assert 5 * 20 <= costs.eigenproblems < whole.attrs["model_evaluations"] - 5 * 20

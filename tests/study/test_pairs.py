@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from modefront import Group, UpdatingProblem, matrices, modal_data, solve, updating_problem
-from modefront.cli.remarks import remarks
+from modefront.results.remarks import remarks
 
 SENSORS = ("a", "b", "c")
 

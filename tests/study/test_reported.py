@@ -13,7 +13,6 @@ import xarray as xr
 import modefront as mf
 from modefront._typing import Floats
 from modefront.analysis import front as analysis
-from modefront.cli.remarks import remarks
 from modefront.cli.show import as_json, print_results
 from modefront.fronts.driver import pareto_front
 from modefront.fronts.methods import nbi
@@ -21,6 +20,7 @@ from modefront.fronts.options import Pareto
 from modefront.fronts.point import Kind, of_kind
 from modefront.identifiability.options import Identifiability
 from modefront.results.assemble import _lattice
+from modefront.results.remarks import remarks
 from modefront.solvers.continuation import Simplex, simplex
 from modefront.solvers.explore import Search
 from modefront.solvers.flat import Identifiable

@@ -18,21 +18,27 @@ export function macView(state: State, tip: Tip): HTMLElement {
     const of = front.macMatrix?.[state.point];
     if (!of) return h("p", { class: "note" }, "These results hold the MAC of the pairs alone.");
     const count = of[0]?.length ?? 0;
-    const paired = front.mac[state.point];
-    const head = h("tr", {}, h("td", {}));
+    const paired = front.pairedMode?.[state.point];
+    const many = count > 5;
+    const head = h("tr", {}, h("td", {}, many ? "model" : ""));
     for (let q = 0; q < count; q++) {
       const f = front.modelFrequency?.[state.point]?.[q];
       head.append(
-        h("th", { scope: "col" }, `model ${q + 1}`, h("small", {}, `${number(f, 3)} Hz`)),
+        h(
+          "th",
+          { scope: "col" },
+          many ? `${q + 1}` : `model ${q + 1}`,
+          h("small", {}, many ? number(f, 3) : `${number(f, 3)} Hz`),
+        ),
       );
     }
     const body = of.map((row, r) => {
-      const cells = row.map((value) => {
+      const cells = row.map((value, q) => {
         const cell = h("td", {}, value === null ? "–" : fixed(value, 2));
         const { background, ink } = mixed(Math.max(0, Math.min(1, value ?? 0)));
         cell.style.background = background;
         cell.style.color = ink;
-        if (value !== null && value === paired[r]) cell.classList.add("paired");
+        if (paired?.[r] === q + 1) cell.classList.add("paired");
         return cell;
       });
       const name = h(
@@ -43,13 +49,15 @@ export function macView(state: State, tip: Tip): HTMLElement {
       );
       return h("tr", {}, name, ...cells);
     });
-    return h(
+    const table = h(
       "table",
-      { class: "matrix" },
+      { class: `matrix${many ? " many" : ""}${count > 9 ? " tiny" : ""}` },
       h("caption", { class: "hidden" }, "MAC of measured and model modes"),
       h("thead", {}, head),
       h("tbody", {}, ...body),
     );
+    if (many) table.style.minWidth = `${80 + 30 * count}px`;
+    return table;
   }
 
   const known = front.modes.map((_, r) => r).filter((r) => front.order.some((i) => front.mac[i][r] !== null));
@@ -64,7 +72,7 @@ export function macView(state: State, tip: Tip): HTMLElement {
       state.forget("mac");
       const chart = along(state, lines, {
         width,
-        height: 240,
+        height: Math.max(240, 60 + 14 * lines.length),
         key: "mac",
         title: "MAC of each mode along the front",
         label: "MAC",

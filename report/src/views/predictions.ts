@@ -2,7 +2,7 @@
 
 import type { Prediction } from "../data";
 import { h, section, sized } from "../dom";
-import { number } from "../format";
+import { number, times } from "../format";
 import type { State } from "../state";
 import { along } from "./along";
 import { bar } from "./mac";
@@ -39,7 +39,7 @@ function panel(state: State, prediction: Prediction, index: number, tip: Tip): H
   const scatter = posterior(prediction, front.reference);
   const words = [
     `over the Pareto-optimal models ${number(low, 3)} to ${number(high, 3)}${unit}`,
-    spread === null ? "" : ` (a factor of ${number(spread, 3)})`,
+    spread === null ? "" : `: they differ ${times(spread)}`,
     scatter ? `; posterior of ${front.label[front.reference]} ${scatter.words}` : "",
   ];
   figure.append(

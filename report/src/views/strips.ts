@@ -34,6 +34,9 @@ interface Options {
 }
 
 const ROW = 40;
+const LINE = 14;
+const LINES = 8; // of a name that is longer than any one reads
+const LETTER = 7.2; // mean width in px
 
 /** Draws the rows and returns them with what brings them up to date. */
 export function strips(
@@ -44,8 +47,12 @@ export function strips(
   const front = state.current;
   const points = front.label.map((_, i) => i);
   const narrow = options.width < 460;
-  const margin = { left: narrow ? 76 : 112, right: narrow ? 92 : 150, top: 8 };
-  const height = margin.top + rows.length * ROW + (options.shared ? 30 : 8);
+  const longest = Math.max(8, ...rows.map((row) => row.name.length));
+  const most = narrow ? 92 : Math.max(112, 0.3 * options.width);
+  const margin = { left: Math.min(most, 20 + LETTER * longest), right: narrow ? 92 : 150, top: 8 };
+  const names = rows.map((row) => wrapped(row.name, Math.floor((margin.left - 16) / LETTER)));
+  const high = Math.max(ROW, ...names.map((lines) => LINE * lines.length + 8));
+  const height = margin.top + rows.length * high + (options.shared ? 30 : 8);
   const span: [number, number] = [margin.left, options.width - margin.right];
   const pool = (some: Strip[]): (number | null)[] =>
     some.flatMap((row) => [
@@ -69,7 +76,7 @@ export function strips(
   const texts: SVGTextElement[] = [];
   const bars: SVGLineElement[] = [];
   const dots: SVGCircleElement[] = [];
-  const middle = (k: number): number => margin.top + k * ROW + ROW / 2;
+  const middle = (k: number): number => margin.top + k * high + high / 2;
 
   rows.forEach((row, k) => {
     const axis = axes[k];
@@ -91,10 +98,13 @@ export function strips(
         );
       }
     }
-    const name = s("text", { class: "name", x: margin.left - 12, y: y + 4, "text-anchor": "end" });
-    const most = narrow ? 9 : 13;
-    name.append(row.name.length > most ? `${row.name.slice(0, most - 1)}…` : row.name);
-    if (row.name.length > most) name.append(s("title", {}, row.name));
+    const first = y + 4 - (LINE / 2) * (names[k].length - 1);
+    const name = s(
+      "text",
+      { class: "name", "text-anchor": "end" },
+      ...names[k].map((line, n) => s("tspan", { x: margin.left - 12, y: first + n * LINE }, line)),
+    );
+    if (names[k].length > 1) name.append(s("title", {}, row.name));
     const text = s("text", { class: "value", x: options.width - 2, y: y + 4, "text-anchor": "end" });
     texts.push(text);
     g.append(name, text);
@@ -158,7 +168,7 @@ export function strips(
   });
 
   if (options.shared) {
-    const y = margin.top + rows.length * ROW;
+    const y = margin.top + rows.length * high;
     for (const t of ticks(axes[0] ?? scale([], span), 64)) {
       svg.append(
         s("text", { class: "tiny", x: axes[0](t), y: y + 12, "text-anchor": "middle" }, tick(t)),
@@ -210,4 +220,22 @@ export function strips(
   };
   update();
   return { svg, update };
+}
+
+/** Returns a text in lines of so many letters: at words where that is possible. */
+function wrapped(text: string, letters: number): string[] {
+  const lines = [""];
+  for (const word of text.split(/\s+/)) {
+    const last = lines[lines.length - 1];
+    const joined = last ? `${last} ${word}` : word;
+    if (joined.length <= letters) {
+      lines[lines.length - 1] = joined;
+      continue;
+    }
+    const pieces = word.match(new RegExp(`.{1,${letters}}`, "gsu")) ?? [""];
+    if (last) lines.push(pieces.shift() ?? "");
+    else lines[lines.length - 1] = pieces.shift() ?? "";
+    lines.push(...pieces);
+  }
+  return lines.length > LINES ? [...lines.slice(0, LINES - 1), "…"] : lines;
 }

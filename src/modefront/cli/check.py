@@ -10,13 +10,13 @@ from rich.console import Console
 from rich.table import Table
 
 from modefront.cli.layout import Screen
-from modefront.cli.remarks import MOST, digest
 from modefront.cli.tables import safe, table
 from modefront.diagnosis.changes import comac
 from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.sensitivity import Sensitivities
 from modefront.diagnosis.words import enumerated
-from modefront.study.check import Findings
+from modefront.results.remarks import MOST, digest
+from modefront.study.check import Findings, spoils
 from modefront.study.definition import Study
 
 WIDTH = 80
@@ -59,11 +59,12 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         f"(relative {findings.derivative_error:.1e})",
     )
     sentences = [*(f"warning: {text}" for text in findings.warnings[: len(findings.mistakes)])]
-    sentences += findings.determined[-1:]
-    sentences += [f"warning: {text}" for text in findings.warnings[len(findings.mistakes) :]]
-    if not findings.mistakes:  # what the data determine is another matter once these are gone
-        sentences += _advice(findings.sensitivities)
-    sentences += findings.determined[:-1]
+    warnings = [f"warning: {text}" for text in findings.warnings[len(findings.mistakes) :]]
+    if spoils(findings.mistakes):
+        sentences += [*warnings, "put this right first: it changes what the data determine"]
+    else:
+        sentences += [*findings.determined[-1:], *warnings]
+        sentences += [*_advice(findings.sensitivities), *findings.determined[:-1]]
     for line in digest(sentences, f"modefront check --all {study.file}", None if every else MOST):
         _say(output, line)
     if not findings.warnings:

@@ -8,7 +8,7 @@ and characters that the terminal's encoding lacks are spelled.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from rich.cells import cell_len, chop_cells
@@ -27,6 +27,11 @@ KEY = 0.45
 """Greatest part of the width that the names of the rows take."""
 
 Row = Sequence[str]
+
+Line = tuple[str, str]
+"""A line with its style."""
+
+BLANK: Line = ("", "")
 
 
 @dataclass(frozen=True)
@@ -53,19 +58,34 @@ class Screen:
 
     def say(self, text: object, start: str = "", style: str = "") -> None:
         """Print a sentence, wrapped at words; further lines are indented as far as its start."""
+        self.show(self.sentence(text, start, style))
+
+    def sentence(self, text: object, start: str = "", style: str = "") -> list[Line]:
+        """Return the lines of a sentence."""
         start = self.shown(start)
         room = max(self.width - cell_len(start), LEAST)
         # Long words, such as paths and commands, are left whole, to be copied.
-        for i, line in enumerate(_wrapped(self.shown(text), room, whole=True)):
-            indent = start if i == 0 else " " * cell_len(start)
-            self._line(f"{indent}{line}", style)
+        lines = _wrapped(self.shown(text), room, whole=True)
+        indent = " " * cell_len(start)
+        return [(f"{indent if i else start}{line}", style) for i, line in enumerate(lines)]
 
     def blank(self) -> None:
         """Print an empty line."""
-        self.console.print()
+        self.show([BLANK])
 
     def table(self, title: str, columns: Row, rows: Sequence[Row], keys: int = 1) -> None:
-        """Print a table, in blocks where it is too wide; nothing for a table without rows.
+        """Print a table after an empty line, as `grid` returns it; none without rows."""
+        self.show([BLANK, *self.grid(title, columns, rows, keys)] if rows else [])
+
+    def grid(
+        self,
+        title: str,
+        columns: Row,
+        rows: Sequence[Row],
+        keys: int = 1,
+        part: float = KEY,
+    ) -> list[Line]:
+        """Return the lines of a table, in blocks where it is too wide; none without rows.
 
         Parameters
         ----------
@@ -77,24 +97,23 @@ class Screen:
             Cells; a row of one cell is a heading within the table.
         keys
             Number of columns with names of the rows, which every block repeats.
+        part
+            Greatest part of the width that these take; longer names are broken over lines.
         """
         if not rows:
-            return
-        self.blank()
-        if title:
-            self.say(title, style="bold")
-        grid = _Grid(
-            [self.shown(x) for x in columns], [[self.shown(x) for x in row] for row in rows], keys
-        )
+            return []
+        out = self.sentence(title, style="bold") if title else []
+        cells = [[self.shown(x) for x in row] for row in rows]
+        grid = _Grid([self.shown(x) for x in columns], cells, keys, part)
         for number, block in enumerate(grid.blocks(self.width)):
-            if number:
-                self.blank()
-            for line, style in block:
-                self._line(line, style)
+            out += [BLANK] * (number > 0) + block
+        return out
 
-    def _line(self, text: str, style: str) -> None:
-        # Text that has no spans is printed as it is; rich would wrap a line of its own accord.
-        self.console.print(Text(self.shown(text.rstrip()), style=style), soft_wrap=True)
+    def show(self, lines: Iterable[Line]) -> None:
+        """Print lines."""
+        for text, style in lines:
+            # Rich wraps lines that have no spans of its own accord.
+            self.console.print(Text(self.shown(text.rstrip()), style=style), soft_wrap=True)
 
 
 @dataclass(frozen=True)
@@ -102,10 +121,11 @@ class _Grid:
     columns: list[str]
     rows: list[list[str]]
     keys: int
+    part: float
 
-    def blocks(self, width: int) -> Iterator[list[tuple[str, str]]]:
+    def blocks(self, width: int) -> Iterator[list[Line]]:
         """Yield the lines of each block, with their styles."""
-        most = max(int(KEY * width) // self.keys, LEAST)
+        most = max(int(self.part * width) // self.keys, LEAST)
         keys = [min(self._width(j), most) for j in range(self.keys)]
         room = width - sum(keys) - GAP * self.keys
         widths = {j: min(self._width(j), room) for j in range(self.keys, len(self.columns))}
@@ -122,7 +142,7 @@ class _Grid:
         cells = [cell_len(row[j]) for row in self.rows if len(row) > 1]
         return max([*cells, *map(cell_len, _parts(self.columns[j])), 1])
 
-    def _block(self, widths: list[int], chosen: list[int], whole: int) -> list[tuple[str, str]]:
+    def _block(self, widths: list[int], chosen: list[int], whole: int) -> list[Line]:
         """Return the lines of the chosen columns, with their styles."""
         order = [*range(self.keys), *chosen]
         titles = [_titled(self.columns[j], width) for j, width in zip(order, widths, strict=True)]

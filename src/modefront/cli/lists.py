@@ -8,8 +8,9 @@ import numpy as np
 import xarray as xr
 
 from modefront.cli.layout import Screen
+from modefront.cli.overview import print_models
 from modefront.cli.predictions import print_predictions
-from modefront.cli.remarks import coverage_in_words, remarks
+from modefront.results.remarks import coverage_in_words, remarks
 
 
 def print_points(screen: Screen, data: xr.Dataset) -> None:
@@ -139,6 +140,7 @@ def print_findings_of(screen: Screen, data: xr.Dataset) -> None:
 
 
 LISTS: Mapping[str, Callable[[Screen, xr.Dataset], None]] = {
+    "models": print_models,
     "points": print_points,
     "minima": print_minima,
     "uncertainty": print_uncertainty,

@@ -105,10 +105,9 @@ def run(
     scheduler: str | None,
 ) -> None:
     """Do the work of STUDY; continue where an interrupted run stopped."""
-    from modefront.cli.certificates import uncertified
     from modefront.cli.progress import progress_bar
     from modefront.cli.show import print_summary, say_estimate
-    from modefront.results.selection import not_converged
+    from modefront.results.selection import not_converged, uncertified
     from modefront.study.estimate import SHORT, estimate
     from modefront.study.file import load
     from modefront.study.session import run as run_study
@@ -151,6 +150,7 @@ def run(
     show_default=True,
     help="Format of the pictures.",
 )
+@click.option("--models", "lists", flag_value="models", multiple=True, help="The main models.")
 @click.option("--points", "lists", flag_value="points", multiple=True, help="All models.")
 @click.option("--minima", "lists", flag_value="minima", multiple=True, help="All minima.")
 @click.option(
@@ -331,7 +331,7 @@ def import_(program: str, base: Path, output: Path, modes: int | None, **given: 
 @click.option(
     "--study",
     type=click.Path(path_type=Path),
-    help="The study of the results  [default: the one beside them]",
+    help="The study of the results  [default: found where it was run]",
 )
 @click.option(
     "-o",

@@ -97,29 +97,26 @@ def print_predictions(screen: Screen, data: xr.Dataset) -> None:
 
 
 def first_predictions(data: xr.Dataset) -> tuple[list[str], list[list[str]]]:
-    """Return columns and rows of a short table of all predictions but those of the modes."""
+    """Return columns and rows of a short table: the main quantity of each prediction."""
     posterior = Posterior(data)
     best = _position(data, str(data.attrs["reference"]))
     rows = []
     for kind in kinds_in(data):
         for name, positions in predictions_of(data, kind):
             for i in positions:
-                for quantity in _quantities(data, kind, name, i):
-                    if not quantity.ranged:
-                        continue
-                    least, greatest, _ = data[f"{quantity.variable}_range"].values[:, i]
-                    value = data[quantity.variable].values[best, i]
-                    rows.append(
-                        [
-                            f"{name}, {quantity.name}",
-                            _number(value, quantity.form),
-                            *posterior.std(quantity),
-                            _number(least, quantity.form),
-                            _number(greatest, quantity.form),
-                        ]
-                    )
+                main = next(x for x in _quantities(data, kind, name, i) if x.ranged)
+                least, greatest, _ = data[f"{main.variable}_range"].values[:, i]
+                value = data[main.variable].values[best, i]
+                rows.append(
+                    [
+                        f"{name}, {main.name}",
+                        _number(value, ".3g"),
+                        *posterior.std(main),
+                        f"{_number(least, '.3g')} to {_number(greatest, '.3g')}",
+                    ]
+                )
     columns = [str(data.attrs["reference"]), *posterior.columns[: posterior.known]]
-    return ["", *columns, "least", "greatest"], rows
+    return ["", *columns, "least to greatest"], rows
 
 
 class Posterior:

@@ -11,18 +11,27 @@ import numpy as np
 import xarray as xr
 from rich.console import Console
 
-from modefront.cli.certificates import cost_lines
-from modefront.cli.layout import Screen
-from modefront.cli.lists import print_lists
-from modefront.cli.overview import print_first_models, print_first_predictions
+from modefront.cli.costs import cost_lines
+from modefront.cli.layout import BLANK, Line, Screen
+from modefront.cli.lists import LISTS, print_lists
+from modefront.cli.overview import models_in, predictions_in
 from modefront.cli.predictions import first_predictions
-from modefront.cli.remarks import headlines, remarks
+from modefront.results.remarks import digest, headlines, remarks
 from modefront.results.selection import front_points
 from modefront.study.estimate import Estimate
 from modefront.work.costs import Costs
 
-FIRST = 8
+HEIGHT = 48
+"""Lines of the first screen, about."""
+
+LONGER, SHORTER = 32, 25
+"""Lines for the table of models, without and with predictions."""
+
+PREDICTIONS = 4
 """Predictions on the first screen."""
+
+LEAST = 8
+"""Lines of the first screen for findings, at least."""
 
 
 def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:
@@ -39,45 +48,61 @@ def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
     """Print what a run has found and what this run of it has cost, in a few lines."""
     screen = Screen.of_output()
     screen.say(f"{data.attrs.get('study', '')}: results in {folder}")
-    screen.say(_front(data), start="  ")
-    for line in [*headlines(data, f"modefront show --findings {folder}"), *cost_lines(costs)]:
+    findings = digest(headlines(data), f"modefront show --findings {folder}")
+    for line in [*_front(data), *findings, *cost_lines(costs)]:
         screen.say(line, start="  ")
     screen.say(f"next: modefront show {folder}")
 
 
-def _front(data: xr.Dataset) -> str:
-    """Return how many points the front has, and what they have cost."""
+def _front(data: xr.Dataset) -> list[str]:
+    """Return how many points the front has."""
     front = front_points(data)
-    total = f"{data.attrs['model_evaluations']} eigenproblems in all"
     if not front.size:
-        return total
+        return []
     optimal = int(data["pareto"].values[front].sum())
-    cost = data.attrs["front_evaluations"] / front.size
-    return (
-        f"{optimal} of {front.size} points of the front are Pareto optimal among these; {total}, "
-        f"{cost:.1f} a point"
-    )
+    many = "all" if optimal == front.size else f"{optimal}"
+    return [
+        f"the front has {front.size} points; {many} of them are Pareto optimal: no known model "
+        "is better in one group and as good in the others"
+    ]
 
 
 def print_results(data: xr.Dataset, lists: Sequence[str] = ()) -> None:
     """Print the first screen of results, or the full lists of these names (`LISTS`)."""
     screen = Screen.of_output()
     attrs = data.attrs
-    screen.say(attrs.get("study") or "results", style="bold")
-    screen.say(f"modefront {attrs['version']}, method {attrs['method']}, seed {attrs['seed']}")
+    title = screen.sentence(attrs.get("study") or "results", style="bold")
+    title += screen.sentence(
+        f"modefront {attrs['version']}, method {attrs['method']}, seed {attrs['seed']}"
+    )
     if lists:
+        screen.show(title)
         print_lists(screen, data, lists)
         return
-    print_first_models(screen, data)
-    if "range" in data.sizes:
-        columns, rows = first_predictions(data)
-        print_first_predictions(screen, rows, columns, FIRST)
-    screen.blank()
-    screen.say(_front(data), start="- ")
-    for line in headlines(data, "modefront show --findings"):
-        screen.say(line, start="- ")
-    screen.blank()
-    screen.say("Full lists: --points, --minima, --uncertainty, --predictions, --findings, --all")
+    predicted = "range" in data.sizes
+    lines = [*title, BLANK, *models_in(screen, data, SHORTER if predicted else LONGER)]
+    if predicted:
+        lines += [BLANK, *predictions_in(screen, *first_predictions(data), PREDICTIONS)]
+    options = [f"--{name}" for name in LISTS if name != "predictions" or predicted]
+    last = screen.sentence(f"full lists: modefront show {' '.join(options)}, or --all")
+    lines.append(BLANK)
+    lines += _findings(screen, data, max(HEIGHT - len(lines) - len(last) - 1, LEAST))
+    screen.show([*lines, BLANK, *last])
+
+
+def _findings(screen: Screen, data: xr.Dataset, most: int) -> list[Line]:
+    """Return the first findings, in ``most`` lines or in those of the first two where more."""
+    sentences = [*_front(data), *headlines(data)]
+    blocks = [screen.sentence(text, start="- ") for text in sentences]
+    if sum(map(len, blocks)) <= most:
+        return [line for block in blocks for line in block]
+    out: list[Line] = []
+    count = 0
+    while count < len(blocks) and (count < 2 or len(out) + len(blocks[count]) < most):
+        out += blocks[count]
+        count += 1
+    *_, more = digest(sentences, "modefront show --findings", count)
+    return [*out, *screen.sentence(more, start="- ")]
 
 
 def as_json(data: xr.Dataset) -> str:

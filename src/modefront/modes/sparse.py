@@ -142,7 +142,8 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
                     return Spectrum(*refined, M, noise, beyond, lower, (below, above))
         wanted, block = 2 * wanted, 2 * block
     raise ModelError(
-        f"the lowest {count} modes could not be told from the next ones, or some were missed"
+        f"the lowest {count} modes could not be told from the next ones, or some were missed: "
+        "stiffnesses may be too far apart (are lengths, sections and E in one set of units?)"
     )
 
 

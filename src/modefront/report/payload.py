@@ -151,6 +151,7 @@ OPTIONAL: Mapping[str, str] = {
     "frequencyStd": "frequency_std",
     "macStd": "mac_std",
     "macMatrix": "mac_matrix",
+    "pairedMode": "paired_mode",
     "modelFrequency": "model_frequency",
     "shape": "shape",
     "measuredShape": "measured_shape",

@@ -202,14 +202,14 @@ def _extent(problem: UpdatingProblem, of: str, manifolds: Sequence[Manifold]) ->
     greatest = max(manifolds, key=lambda greatest: len(greatest.models))
     kind = KINDS.get(greatest.dimension, "manifold")
     spent = f"{greatest.evaluations} eigenproblem{'s' * (greatest.evaluations != 1)}"
-    count = f"{len(greatest.models)} of them, by {spent}, {greatest.extent.value}"
+    count = f"{len(greatest.models)} models, by {spent}, {greatest.extent.value}"
     more = "" if greatest.dimension in KINDS else f" of dimension {greatest.dimension}"
     far = _far(problem, np.array([model.theta for model in greatest.models]))
     if len(manifolds) == 1:
-        return f"a {kind}{more} of models fits {of} equally well ({count}): {far}"
+        return f"a {kind}{more} of models fits {of} equally well: {far} ({count})"
     return (
         f"{len(manifolds)} separate {kind}s{more} of models fit {of} equally well; "
-        f"on the greatest ({count}): {far}"
+        f"on the greatest {far} ({count})"
     )
 
 
@@ -253,7 +253,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
     missing = [name for name in labels if name not in analysis.scatter]
     if missing:
         where = _places(missing, len(labels))
-        yield Rank.DOUBTFUL, f"no scatter is known at {where}"
+        yield Rank.DOUBTFUL, f"no standard deviations are known at {where}"
     for warning in LinearisationWarning:
         warned = [
             name
@@ -264,7 +264,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
             where = _places(warned, len(labels))
             yield (
                 Rank.DOUBTFUL,
-                f"the linearised scatter may not be valid at {where}: {warning.value}",
+                f"standard deviations may not be valid at {where}: {warning.value}",
             )
 
 

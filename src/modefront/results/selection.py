@@ -18,3 +18,10 @@ def not_converged(data: xr.Dataset) -> list[str]:
     """Return the labels of points that should have converged and did not."""
     tried = data["status"].values != "sampled"
     return data["label"].values[~data["converged"].values & tried].tolist()
+
+
+def uncertified(data: xr.Dataset) -> np.ndarray:
+    """Return the labels of models whose eigenvalues do not meet the tolerance."""
+    if "certified" not in data:
+        return np.zeros(0, dtype=str)
+    return np.asarray(data["label"].values[~data["certified"].values])

@@ -114,12 +114,11 @@ class Attainment:
 
     def excess(self, beta: Floats, J: Floats) -> Floats:
         """Return c, shape (n,)."""
-        return self.subproblem(beta).maximised.at(J)
+        return self.target.excess(beta, J)
 
-    def value(self, beta: Floats, J: Floats) -> float:
-        """Return max c + rho sum c."""
-        c = self.excess(beta, J)
-        return float(c.max() + SHARE * c.sum())
+    def is_better(self, beta: Floats, J: Floats, known: Floats) -> bool:
+        """Return whether objectives (n,) solve the programme at beta better than known ones."""
+        return self.target.is_better(beta, J, known)
 
     def solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         """Return the solution at beta, from a start.
@@ -137,8 +136,11 @@ class Attainment:
         theta = np.clip(share @ self.thetas, problem.lower, problem.upper)
         other = self._solve(problem, beta, begin(problem.evaluate(theta)))
         evaluations = solution.evaluations + other.evaluations + 1
-        key = (not solution.converged, self.value(beta, solution.J))
-        better = (not other.converged, self.value(beta, other.J)) < key
+        better = (
+            self.is_better(beta, other.J, solution.J)
+            if other.converged == solution.converged
+            else other.converged
+        )
         return replace(other if better else solution, evaluations=evaluations)
 
     solve_again = solve

@@ -42,9 +42,10 @@ import numpy as np
 from modefront._typing import Bools, Floats, Ints
 from modefront.solvers.archive import Archive
 from modefront.solvers.attainment import Attainment
-from modefront.solvers.continuation import BETTER, JUMP, Simplex, simplex
+from modefront.solvers.continuation import JUMP, Simplex, simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.explore import NEAR, Search
+from modefront.solvers.flat import same
 from modefront.solvers.nbi import Projection
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
@@ -96,6 +97,10 @@ SPACING = 0.125
 CROWD = 6
 """Points besides the lattice at most, for one step of it."""
 
+WIDE = 0.15
+"""Distance of neighbours on a rugged front of two objectives, in steps of the lattice, over which a
+point is looked for between them."""
+
 OTHERS = 1e-2
 """Weight of the other objectives, in units of the ranges, where the least of one is looked for."""
 
@@ -103,14 +108,19 @@ BESIDE, NEIGHBOURS = 1.5, 2
 """Distance of points of other branches, in steps of the ranges, within which a point is solved
 again from them, and how many of these are tried at most."""
 
+ABOVE = 1e-2
+"""Height of a point above the tangent plane of another, in units of the ranges, over twice that of
+the other above its own, from which on they count as points of two branches."""
+
 COARSE = 10
 """Steps along an edge below which parameters may change by more from a point to its neighbour on
 the same branch, in proportion."""
 
-BEHIND = 1e-2
-"""Excess of a half-finished search over a point, in units of the ranges, that is not followed."""
+BEHIND, NEARLY = 1e-2, 1e-3
+"""Excess of a half-finished search over a point, in units of the ranges, that is not followed; and
+of one whose steps have become short."""
 
-_ROUGH = Options(step=NEAR / 4, iterations=8)
+_ROUGH, _SHORT = Options(step=NEAR / 4, iterations=8), Options(iterations=60)
 
 
 @record
@@ -420,7 +430,25 @@ class _Between:
         out.sort(key=lambda solution: -float(self.target.place(solution.J)[0]))
         task = Task(("front", "nbi", "along"), _continued, (self.problem, self.target, out))
         (along,) = self.work.run([task])
+        along.extend(self._between_neighbours(along))
         return sorted(along, key=lambda solution: -float(self.target.place(solution.J)[0]))
+
+    def _between_neighbours(self, points: Sequence[Solution]) -> list[Solution]:
+        """Return points of two objectives half-way between optimal neighbours that lie apart."""
+        J = np.array([solution.J for solution in points])
+        optimal = np.flatnonzero(nondominated(J))
+        optimal = optimal[np.argsort(J[optimal, 0], kind="stable")]
+        steps = np.abs(np.diff(J[optimal], axis=0) / self.target.scale).max(axis=1)
+        wide = np.flatnonzero(steps > WIDE / self.lattice.divisions)
+        tasks = [
+            Task(
+                ("front", "nbi", "half-way", int(k) + 1),
+                _half_way,
+                (self.problem, self.target, points[optimal[k]], points[optimal[k + 1]]),
+            )
+            for k in wide
+        ]
+        return [x for x in self.work.run(tasks) if x.converged]
 
 
 def from_other_branches(
@@ -429,27 +457,37 @@ def from_other_branches(
     lattice: Simplex,
     points: Sequence[Solution],
     work: Executor = IMMEDIATE,
+    before: Sequence[Solution] = (),
 ) -> list[Solution]:
     """Return the points, each solved again from those of other branches that lie beside it.
 
     Where branches meet, the lattice leads along one of them as far as it goes, and the other one
-    may already be better.
+    may already be better. A point of another branch is one whose parameters are far, or whose
+    tangent to the front the point lies above by much more than it above the tangent at the point:
+    on one branch both differ in the third order of their distance. Pairs of points that were so
+    ``before`` are not tried.
     """
     current = list(points)
     span = problem.upper - problem.lower
     far = JUMP * max(1.0, COARSE / lattice.divisions)
-    tried: set[tuple[int, bytes]] = set()
+    kept = [k for k, pair in enumerate(zip(points, before, strict=False)) if same(*pair)]
+    tried = {(k, points[j].theta.tobytes()) for k in kept for j in kept}
     for turn in range(ROUNDS):
         theta = np.array([point.theta for point in current]) / span
         y = np.array([point.J for point in current]) / target.scale
+        above = _above_tangents(current, target)
         starts: list[tuple[int, int]] = []
-        for k in range(len(current)):
-            if not np.isfinite(y[k]).all():
-                continue
+        for k in np.flatnonzero(np.isfinite(y).all(axis=1)).tolist():
             away = np.abs(y - y[k]).max(axis=1)
+            near = away <= BESIDE / lattice.divisions
             other = (np.abs(theta - theta[k]) > far).any(axis=1)
-            beside = np.flatnonzero(other & (away <= BESIDE / lattice.divisions))
-            for j in beside[away[beside].argsort(kind="stable")][:NEIGHBOURS].tolist():
+            beside = np.flatnonzero(near & other)
+            below = np.flatnonzero(near & (above[k] > ABOVE + 2 * np.maximum(above[:, k], 0)))
+            chosen = [
+                *beside[away[beside].argsort(kind="stable")][:NEIGHBOURS].tolist(),
+                *below[above[k, below].argsort(kind="stable")][-NEIGHBOURS:].tolist(),
+            ]
+            for j in dict.fromkeys(chosen):
                 key = (k, current[j].theta.tobytes())
                 if key not in tried:
                     tried.add(key)
@@ -469,16 +507,26 @@ def from_other_branches(
     return current
 
 
+def _above_tangents(points: Sequence[Solution], target: Payoff) -> Floats:
+    """Return how far each point lies above the tangent plane of the front at each other (k, k)."""
+    y = np.array([point.J for point in points]) / target.scale
+    w = np.nan_to_num([np.maximum(point.weights, 0) * target.scale for point in points])
+    total = w.sum(axis=1, keepdims=True)
+    w = np.divide(w, total, out=np.zeros_like(w), where=total > 0)
+    y = np.where(np.isfinite(y), y, 0.0)
+    return np.asarray(y @ w.T - (w * y).sum(axis=1))
+
+
 def _from_branch(problem: Problem, target: Payoff, point: Solution, start: Solution) -> Solution:
     """Return the programme of a point of the front solved from another point of it.
 
-    It is not solved to the end where it ends behind the point.
+    It is not solved to the end where it ends behind the point, or comes to it.
     """
     beta, programmes = place_of(target, point), programmes_of(problem, target)
     end = replace(solve(problem, programmes.subproblem(beta), start, _ROUGH), beta=beta)
-    J = np.array([end.J, point.J])
-    own, known = place_on_normals(target, beta[None], J)[:, 0]
-    if end.converged or own > known + BEHIND:
+    lead = target.excess(beta, point.J).max() - target.excess(beta, end.J).max()
+    away = np.abs((end.theta - point.theta) / (problem.upper - problem.lower)).max()
+    if lead < -(NEARLY if end.converged else BEHIND) or (end.converged and away < NEAR):
         return end
     again = programmes.solve_again(problem, beta, end)
     return replace(again, evaluations=end.evaluations + again.evaluations)
@@ -564,10 +612,9 @@ def _bottom(problem: Problem, target: Payoff, theta: Floats) -> Solution:
     start = begin(problem.evaluate(theta))
     beta = target.place(start.J)
     end = programmes_of(problem, target).solve_again(problem, beta, start)
-    own, other = place_on_normals(target, beta[None], np.array([end.J, start.J]))
-    if own[0] <= other[0] + BETTER:
-        return end
-    return replace(start, status=Status.STALLED, beta=beta)
+    if target.is_better(beta, start.J, end.J):
+        return replace(start, status=Status.STALLED, beta=beta)
+    return end
 
 
 def _continued(problem: Problem, target: Payoff, points: Sequence[Solution]) -> list[Solution]:
@@ -596,13 +643,25 @@ def _continued(problem: Problem, target: Payoff, points: Sequence[Solution]) -> 
     return out
 
 
+def _half_way(problem: Problem, target: Payoff, first: Solution, second: Solution) -> Solution:
+    """Return the point of the front half-way between two others, from the first or the second."""
+    beta = (target.place(first.J) + target.place(second.J)) / 2
+    programme = programmes_of(problem, target).subproblem(beta)
+    known = np.array([first.J, second.J])
+    evaluations = 0
+    for start in (first, second):
+        end = replace(solve(problem, programme, start, _SHORT), beta=beta)
+        evaluations += end.evaluations
+        if end.converged and not (known <= end.J).all(axis=1).any():
+            return replace(end, evaluations=evaluations)
+    return replace(end, status=Status.STALLED, evaluations=evaluations)
+
+
 def _is_better(target: Payoff, solution: Solution, known: Solution) -> bool:
     """Return whether a solution is better than a known one of the same point of the front."""
     if solution.converged != known.converged:
         return solution.converged
-    J = np.array([solution.J, known.J])
-    own, other = place_on_normals(target, place_of(target, known)[None], J)[:, 0]
-    return bool(own < other - BETTER)
+    return target.is_better(place_of(target, known), solution.J, known.J)
 
 
 def _evaluated(problem: Problem, thetas: Floats) -> Models:

@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections import Counter, deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from itertools import combinations, islice
 from math import comb
 from typing import Protocol
@@ -110,12 +109,9 @@ class Programmes(Protocol):
     def solve_again(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         """Return the solution at beta, from another start than that of one that converged."""
 
-    def value(self, beta: Floats, J: Floats) -> float:
-        """Return what is least at the solution, in units of the range of the objectives."""
+    def is_better(self, beta: Floats, J: Floats, known: Floats) -> bool:
+        """Return whether objectives (n,) solve the programme at beta better than known ones."""
 
-
-BETTER = 1e-7
-"""Difference of two values below which the solutions are the same."""
 
 BEYOND, SHARE = 300, 2
 """Points beyond the simplex that are tried at most; of three objectives, where the lattice is not
@@ -361,8 +357,7 @@ class _Continuation:
         """Return whether a solution of a point is better than a known one."""
         if solution.converged != known.converged:
             return solution.converged
-        value = partial(self.programmes.value, self.beta(point))
-        return value(solution.J) < value(known.J) - BETTER
+        return self.programmes.is_better(self.beta(point), solution.J, known.J)
 
 
 def _solve(problem: Problem, programmes: Programmes, beta: Floats, start: Solution) -> Solution:

@@ -90,9 +90,9 @@ class Projection:
         """Return the programme of the point at beta."""
         return self.target.subproblem(beta)
 
-    def value(self, beta: Floats, J: Floats) -> float:
-        """Return -t."""
-        return self.subproblem(beta).value(J)
+    def is_better(self, beta: Floats, J: Floats, known: Floats) -> bool:
+        """Return whether objectives (n,) lie farther along the normal at beta than known ones."""
+        return self.target.is_better(beta, J, known)
 
 
 def programmes(

@@ -30,6 +30,21 @@ _COARSE = Options(step=1e-4, reduction=1e-6, iterations=30)
 """A corner only says how far an objective goes."""
 
 
+BETTER, REST = 1e-7, 1e-4
+"""Differences of the greatest excess over a point of the simplex, and of the sum of all, below
+which two solutions are the same: the others are free where their excess is not the greatest."""
+
+
+def is_less(c: Floats, known: Floats) -> bool:
+    """Return whether an excess (n,) is less than a known one: its greatest, or else its sum.
+
+    >>> is_less(np.array([1.0, 1.0, 0.2]), np.array([1.0, 1.0, 0.3]))
+    True
+    """
+    fall = known.max() - c.max()
+    return bool(fall > BETTER or (fall >= -BETTER and known.sum() - c.sum() > REST))
+
+
 @dataclass(frozen=True)
 class Payoff:
     """The simplex between the edges.
@@ -59,6 +74,15 @@ class Payoff:
         They are in units of the ranges.
         """
         return np.asarray(np.abs((beta - other) @ self.Phi.T).max(axis=-1))
+
+    def excess(self, beta: Floats, J: Floats) -> Floats:
+        """Return how far objectives (n,) lie above a point of the plane, over the normal (n,)."""
+        y = (J - self.utopia) / self.scale
+        return np.asarray((y - self.Phi @ beta) / self.Phi.sum(axis=1))
+
+    def is_better(self, beta: Floats, J: Floats, known: Floats) -> bool:
+        """Return whether objectives exceed a point of the plane by less than known ones."""
+        return is_less(self.excess(beta, J), self.excess(beta, known))
 
     def subproblem(self, beta: Floats) -> Linear:
         """Return the programme of one point of the simplex."""

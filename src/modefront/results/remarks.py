@@ -1,4 +1,7 @@
-"""What is particular about results, in sentences."""
+"""What is particular about results, in sentences, for the terminal and the report.
+
+A sentence begins with a small letter and ends without a full stop.
+"""
 
 from __future__ import annotations
 
@@ -8,15 +11,17 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Floats
-from modefront.cli.certificates import certificate_remarks
 from modefront.fronts.point import Kind
-from modefront.results.selection import front_points, not_converged
+from modefront.results.selection import front_points, not_converged, uncertified
 
 MOST = 10
 """Findings that are printed, at most, unless all are asked for."""
 
 NAMED = 6
 """Points, or runs of them, that are named one by one in a sentence."""
+
+FEW = 2
+"""Modes whose pairs change, and parameters at bounds, that a first screen names one by one."""
 
 POOR = 0.5
 """MAC below which a pair is poor."""
@@ -34,33 +39,62 @@ def digest(findings: Sequence[str], where: str, most: int | None = MOST) -> list
     return [*findings[:most], f"and {rest} more finding{'s' * (rest > 1)}: {where}"]
 
 
-def remarks(data: xr.Dataset, where: str | None = None) -> list[str]:
-    """Return in words what is particular about the results.
-
-    Where it is said ``where`` to see all findings, there are ten of them at most.
-    """
-    out = [*_single(data), *_exact(data), *_iteration(data), *_branches(data), *_spacing(data)]
-    out += [*_not_optimal(data), *certificate_remarks(data), *_poor_pairs(data), *_pairs(data)]
-    out += [*_at_bounds(data), *_failed(data), *_sampled(data)]
-    findings = data["finding"].values.tolist()
-    return [*out, *(findings if where is None else digest(findings, where))]
-
-
-def headlines(data: xr.Dataset, where: str) -> list[str]:
-    """Return what a user should know first: what failed, how good models are, what is open.
-
-    Remarks on the numerics of the optimal weights and on the coverage of the front are left to
-    `remarks` and `coverage_in_words`.
-    """
-    out = [*_failed(data), *_quality(data), *_single(data), *_branches(data), *_spacing(data)]
-    out += [
-        *certificate_remarks(data),
+def remarks(data: xr.Dataset) -> list[str]:
+    """Return in words all that is particular about the results."""
+    return [
+        *quality(data),
+        *single(data),
+        *_exact(data),
+        *_iteration(data),
+        *_branches(data),
+        *_spacing(data),
+        *_not_optimal(data),
+        *_certificates(data),
         *_poor_pairs(data),
         *_pairs(data),
         *_at_bounds(data),
+        *_failed(data),
         *_sampled(data),
+        *data["finding"].values.tolist(),
     ]
-    return [*out, *digest(data["finding"].values.tolist(), where)]
+
+
+def headlines(data: xr.Dataset) -> list[str]:
+    """Return what a user should know first: what failed, how good models are, what is open.
+
+    Details of the branches, of the numerics and of the coverage of the front are left to `remarks`
+    and `coverage_in_words`.
+    """
+    return [
+        *failures(data),
+        *quality(data),
+        *single(data),
+        *_gaps(data),
+        *_poor_pairs(data, FEW),
+        *_changed_pairs(data),
+        *_at_bounds(data, FEW),
+        *data["finding"].values.tolist(),
+    ]
+
+
+def failures(data: xr.Dataset) -> list[str]:
+    """Return which models did not converge, are not accurate, or have no test of convergence."""
+    failed = uncertified(data)
+    above = np.isin(data["label"].values, failed)
+    inaccurate = [f"modes are less accurate than asked for at {places(data, above)}"]
+    return [*_failed(data), *(inaccurate if failed.size else []), *_sampled(data)]
+
+
+def cautions(data: xr.Dataset) -> list[str]:
+    """Return what to beware of, the failures apart."""
+    return [
+        *_branches(data),
+        *_spacing(data),
+        *_not_optimal(data),
+        *_poor_pairs(data, FEW),
+        *_changed_pairs(data),
+        *_at_bounds(data, FEW),
+    ]
 
 
 def coverage_in_words(data: xr.Dataset) -> str:
@@ -102,22 +136,40 @@ def places(data: xr.Dataset, chosen: Bools) -> str:
     return ", ".join(parts)
 
 
-def _quality(data: xr.Dataset) -> Iterator[str]:
-    """Yield how far the Pareto-optimal models are from the data."""
-    chosen = data["pareto"].values
+def quality(data: xr.Dataset) -> Iterator[str]:
+    """Yield how far models are from the data: all Pareto-optimal ones, the reference, the nominal.
+
+    Pareto-optimal are edges and weighted models too: the best models are never left out.
+    """
+    chosen, labels = data["pareto"].values, data["label"].values
     if not chosen.any():
         return
-    error = 100 * np.abs(data["frequency"].values / data["measured_frequency"].values - 1)[chosen]
-    mac = data["mac"].values[chosen]
     best = str(data.attrs["reference"])
-    rows = data["label"].values == best
-    of_best = 100 * np.abs(data["frequency"].values[rows] / data["measured_frequency"].values - 1)
-    yield (
-        f"all {int(chosen.sum())} Pareto-optimal models have frequencies within "
-        f"{_percent(_most(error))} % of the measured ones and MAC values of {_mac(_least(mac))} or "
-        f"more; "
-        f"{best} has {_percent(_most(of_best))} % and {_mac(_least(data['mac'].values[rows]))}"
+    parts = [
+        f"all {int(chosen.sum())} Pareto-optimal models have {_fit(data, chosen, whole=True)}",
+        f"{best} has {_fit(data, labels == best)}",
+    ]
+    nominal = data["kind"].values == Kind.NOMINAL.value
+    if nominal.any() and np.isfinite(data["frequency"].values[nominal]).any():
+        parts.append(f"the nominal model has {_fit(data, nominal)}")
+    yield "; ".join(parts)
+
+
+def _fit(data: xr.Dataset, chosen: Bools, *, whole: bool = False) -> str:
+    """Return the worst error of a frequency and the least MAC of models, in a whole sentence."""
+    f, measured = data["frequency"].values[chosen], data["measured_frequency"].values
+    error = 100 * np.abs(
+        np.divide(f, measured, out=np.full(f.shape, np.nan), where=measured > 0) - 1
     )
+    mac = data["mac"].values[chosen]
+    parts = []
+    if np.isfinite(error).any():
+        within = f"frequencies within {_percent(_most(error))} % of the measured ones"
+        parts.append(within if whole else f"{_percent(_most(error))} %")
+    if np.isfinite(mac).any():
+        least = _mac(_least(mac))
+        parts.append(f"MAC values of {least} or more" if whole else least)
+    return " and ".join(parts) or "nothing that is measured"
 
 
 def _percent(value: float) -> str:
@@ -152,7 +204,8 @@ def _least(values: Floats) -> float:
     return float(known.min()) if known.size else float("nan")
 
 
-def _single(data: xr.Dataset) -> Iterator[str]:
+def single(data: xr.Dataset) -> Iterator[str]:
+    """Yield that the front is one point, where it is."""
     if data.attrs["front_is_a_point"]:
         yield "one model is the best in every group: the front is a single point"
 
@@ -208,6 +261,13 @@ def _branches(data: xr.Dataset) -> Iterator[str]:
             )
 
 
+def _gaps(data: xr.Dataset) -> Iterator[str]:
+    """Yield how many branches the front has, where it has several."""
+    gaps = data.sizes.get("end", 0) // 2
+    if gaps:
+        yield f"the front is not connected: it has {gaps + 1} branches"
+
+
 def _spacing(data: xr.Dataset) -> Iterator[str]:
     """Yield whether neighbours on the front are farther apart than requested."""
     requested = data.attrs.get("refined", np.inf)
@@ -226,14 +286,19 @@ def _not_optimal(data: xr.Dataset) -> Iterator[str]:
         yield f"{places(data, negative)}: no local Pareto optimum (a weight is negative)"
 
 
-def _poor_pairs(data: xr.Dataset) -> Iterator[str]:
-    """Yield which measured modes resemble their model modes poorly."""
-    for r, column in zip(data["mode"].values, data["mac"].values.T, strict=True):
-        poor = column < POOR
-        if poor.any():
+def _poor_pairs(data: xr.Dataset, most: int | None = None) -> Iterator[str]:
+    """Yield which measured modes resemble their model modes poorly; of many, without the places."""
+    poor = data["mac"].values < POOR
+    modes = data["mode"].values
+    if most is not None and poor.any(axis=0).sum() > most:
+        some = ", ".join(str(r) for r in modes[poor.any(axis=0)])
+        yield f"measured modes {some} resemble their model modes poorly (MAC below {POOR})"
+        return
+    for r, column in zip(modes, poor.T, strict=True):
+        if column.any():
             yield (
                 f"measured mode {r} resembles its model mode poorly (MAC below {POOR}) at "
-                f"{places(data, poor)}"
+                f"{places(data, column)}"
             )
 
 
@@ -265,11 +330,27 @@ def _pairs(data: xr.Dataset) -> Iterator[str]:
         )
 
 
-def _at_bounds(data: xr.Dataset) -> Iterator[str]:
-    """Yield which parameters are at a bound, and where."""
+def _changed_pairs(data: xr.Dataset) -> list[str]:
+    """Return which measured modes are paired with different model modes, of many in one line."""
+    found = list(_pairs(data))
+    if len(found) <= FEW:
+        return found
+    paired = data["paired_mode"].values[front_points(data)]
+    changed = [np.unique(column[np.isfinite(column)]).size > 1 for column in paired.T]
+    modes = ", ".join(str(r) for r in data["mode"].values[changed])
+    return [f"measured modes {modes} are paired with different model modes along the front"]
+
+
+def _at_bounds(data: xr.Dataset, most: int | None = None) -> Iterator[str]:
+    """Yield which parameters are at a bound and where, of more than ``most`` only how many."""
     theta, bounds = data["theta"].values, data["bounds"].values
     span = bounds[:, 1] - bounds[:, 0]
     at_bound = (np.abs(theta[:, :, None] - bounds) <= 1e-9 * span[:, None]).any(axis=2)
+    names = data["parameter"].values[at_bound.any(axis=0)].tolist()
+    if most is not None and len(names) > most:
+        some = ", ".join(names[:most])
+        yield f"{len(names)} parameters are at a bound in some models: {some} and others"
+        return
     named = [
         f"{name} ({places(data, column)})"
         for name, column in zip(data["parameter"].values, at_bound.T, strict=True)
@@ -277,6 +358,31 @@ def _at_bounds(data: xr.Dataset) -> Iterator[str]:
     ]
     if named:
         yield f"parameters at a bound: {'; '.join(named)}"
+
+
+def _certificates(data: xr.Dataset) -> Iterator[str]:
+    """Yield how exact the modes of a reduced basis are, and which models miss the tolerance."""
+    attrs = data.attrs
+    if attrs.get("remark"):
+        yield str(attrs["remark"])
+    if "certified" not in data:
+        return
+    worst = float(data["eigenvalue_error"].max())
+    predicted = attrs.get("prediction_eigensolutions", 0)
+    yield (
+        f"reduced basis from {attrs['full_eigensolutions'] - predicted} full eigensolutions "
+        f"and {attrs.get('corrected_eigensolutions', 0)} corrected with their factors: relative "
+        f"errors of eigenvalues up to {worst:.1e} (estimated; tolerance "
+        f"{attrs['eigenvalue_tolerance']:.0e}), of shapes up to "
+        f"{float(data['shape_error'].max()):.1e}"
+    )
+    if predicted:
+        yield f"predictions are not reduced: they took {predicted} full eigensolutions"
+    failed = uncertified(data)
+    if failed.size:
+        yield f"above the tolerance: {', '.join(failed)}"
+        held = data["label"].values[data["certified"].values]
+        yield f"within the tolerance: {', '.join(held) if held.size else 'none'}"
 
 
 def _failed(data: xr.Dataset) -> Iterator[str]:
