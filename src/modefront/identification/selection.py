@@ -64,6 +64,10 @@ equations rounding takes some 1e-8; poles within the band have 0.1 and more."""
 MOST_EVALUATIONS = 20
 """Evaluations of the model for a choice, which need not be at the very maximum."""
 
+CLOSEST = 0.5
+"""Distance of poles over the greater of their half bandwidths below which they are not told apart
+without a difference of shapes."""
+
 TRIAL_EVALUATIONS = 12
 """Evaluations of the model for a candidate on trial."""
 
@@ -173,23 +177,35 @@ def forward(task: Problem, fit: Fit, candidates: Complexes) -> tuple[Fit, Comple
         lam = complex(candidates[candidate])
         if len(tried) == TRIES or 2 * gain[candidate] / level < price(task) / 2:
             break
-        if any(abs(lam - pole) < 0.5 * abs(pole.real) for pole in tried):
+        if any(abs(lam - pole) < CLOSEST * abs(pole.real) for pole in tried):
             continue
         tried.append(lam)
         model = fit.model
         L_all = np.vstack([model.L, L[candidate]])
         trial = maximise(task, np.append(model.lam, lam), L_all, TRIAL_EVALUATIONS, COARSE)
+        if splits(trial.model.lam):
+            continue
         gained = 2 * (fit.cost - trial.cost) / noise_level(task, trial)
         if gained > price(task) and gains(task, trial).min() > price(task):
             return trial, candidates[np.abs(candidates - lam) > -lam.real]
     return fit, candidates
 
 
+def splits(poles: Complexes) -> bool:
+    """Return whether the last pole comes within `CLOSEST` of another one.
+
+    Nonlinearity and leakage make peaks that two poles with nearly opposite residues fit better than
+    one; neither has the shape of the mode then.
+    """
+    width = np.maximum(-poles[:-1].real, -poles[-1].real)
+    return bool((np.abs(poles[:-1] - poles[-1]) < CLOSEST * width).any())
+
+
 def distinct(poles: Complexes) -> Complexes:
     """Return poles of which none lies within half the half bandwidth of another."""
     kept: list[complex] = []
     for pole in sorted(poles, key=lambda pole: pole.real):
-        if all(abs(pole - other) > -0.5 * other.real for other in kept):
+        if all(abs(pole - other) > -CLOSEST * other.real for other in kept):
             kept.append(complex(pole))
     return np.array(kept, complex)
 
@@ -229,7 +245,7 @@ def doubles(poles: Complexes, shapes: Complexes, strength: Floats) -> Bools:
     out = np.zeros(len(poles), bool)
     for r in range(len(poles)):
         for s in np.flatnonzero(strength > strength[r]):
-            near = abs(poles[r] - poles[s]) < 0.5 * max(-poles[r].real, -poles[s].real)
+            near = abs(poles[r] - poles[s]) < CLOSEST * max(-poles[r].real, -poles[s].real)
             inner = np.abs(np.vdot(shapes[r], shapes[s])) ** 2
             mac = inner / (np.sum(np.abs(shapes[r]) ** 2) * np.sum(np.abs(shapes[s]) ** 2))
             out[r] |= bool(near and mac > 0.95)
