@@ -1,5 +1,6 @@
 """Files of frequency response functions, test files, and what is wrong with them."""
 
+import warnings
 from pathlib import Path
 
 import numpy as np
@@ -37,11 +38,12 @@ def _values(letter: str, count: int = 9) -> str:
 @pytest.mark.parametrize("letter", ["E", "D"])
 def test_ascii_functions_are_read_with_either_exponent(tmp_path: Path, letter: str) -> None:
     path = tmp_path / "a.uff"
-    path.write_text(_ascii58(_values(letter), 9))
-    (one,) = read_uff(path).channels
-    assert (one.response, one.reference, one.quantity) == ("3Z", "7Z", "accelerance")
-    assert one.frequency == pytest.approx(1 + 0.5 * np.arange(9))
-    assert one.H == pytest.approx(-(np.arange(1, 19, 2) + 1j * np.arange(2, 20, 2)))
+    text = _ascii58(_values(letter), 9)
+    path.write_text(text.replace("E+0", f"{letter}+0").replace("E-0", f"{letter}-0"))
+    (channel,) = read_uff(path).channels
+    assert (channel.response, channel.reference, channel.quantity) == ("3Z", "7Z", "accelerance")
+    assert channel.frequency == pytest.approx(1 + 0.5 * np.arange(9))
+    assert channel.H == pytest.approx(-(np.arange(1, 19, 2) + 1j * np.arange(2, 20, 2)))
 
 
 def test_binary_functions_are_read(tmp_path: Path) -> None:
@@ -55,6 +57,46 @@ def test_binary_functions_are_read(tmp_path: Path) -> None:
     (found,) = read_uff(path).channels
     assert found.quantity == "receptance"
     assert found.H == pytest.approx(-H, rel=1e-6)
+
+
+@pytest.mark.parametrize("even", [0, 1])
+def test_binary_functions_of_pyuff_are_read_though_it_writes_a_wrong_size(
+    tmp_path: Path, even: int
+) -> None:
+    pyuff = pytest.importorskip("pyuff")
+    path = tmp_path / "b.uff"
+    H = np.exp(1j * np.arange(30.0)) * np.array([[1.0], [2.0]])
+    x = np.arange(30.0) if even else np.arange(30.0) ** 1.01
+    for i, values in enumerate(H):
+        written = pyuff.prepare_58(
+            binary=1,
+            func_type=4,
+            rsp_node=i + 1,
+            rsp_dir=3,
+            ref_node=1,
+            ref_dir=3,
+            data=values,
+            x=x,
+            id1="a",
+            ordinate_spec_data_type=12,
+            orddenom_spec_data_type=13,
+            abscissa_spec_data_type=18,
+            abscissa_spacing=even,
+            ver_num=0,
+            load_case_id=0,
+            abscissa_min=0.0,
+            abscissa_inc=1.0,
+        )
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", ResourceWarning)
+            pyuff.UFF(str(path)).write_sets([written], "add")
+    channels = read_uff(path).channels
+    assert [channel.response for channel in channels] == ["1Z", "2Z"]
+    assert np.array([channel.H for channel in channels]) == pytest.approx(H)
+    assert channels[0].frequency == pytest.approx(x)
+    path.write_bytes(path.read_bytes()[:-20])
+    with pytest.raises(InputError, match="expected the end of dataset 58"):
+        read_uff(path)
 
 
 @pytest.mark.parametrize(

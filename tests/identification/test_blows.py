@@ -106,6 +106,19 @@ def test_records_in_universal_files_are_grouped_into_blows(tmp_path: Path) -> No
     assert modes[0].shape.shape @ three_story_shapes()[0] != pytest.approx(0, abs=0.1)
 
 
+def test_a_dead_response_is_left_out(tmp_path: Path) -> None:
+    files, references = _blows(tmp_path)
+    for file in files:
+        time, force, *y = np.loadtxt(tmp_path / file, delimiter=",", skiprows=1).T
+        y[1] = 0 * y[1]
+        _csv(tmp_path / file, time, force, np.array(y))
+    (data_set,) = read_test(_test_file(tmp_path, files, references, "")).sets
+    assert all("only zeros" in text for text in data_set.assembled.warnings)
+    modes = identify(data_set.assembled.data, (1, 30)).modes
+    assert [mode.frequency for mode in modes] == pytest.approx(THREE_STORY, rel=2e-3)
+    assert np.isnan(modes[0].shape_std[1])
+
+
 def test_blows_that_are_left_out_are_named(tmp_path: Path) -> None:
     files, references = _blows(tmp_path)
     time, force, y = _records(1, 3)

@@ -89,6 +89,18 @@ def test_a_dead_channel_and_gaps_are_left_out() -> None:
     assert np.isfinite(found.modes[0].shape_std[[0, 2]]).all()
 
 
+def test_a_mode_that_drifts_from_blow_to_blow_stays_one_mode() -> None:
+    phi = three_story_shapes()
+    drift = 1 + 0.002 * np.linspace(-1, 1, 5)
+    H = np.mean(
+        [accelerance(F, d * THREE_STORY, THREE_STORY_DAMPING, phi, [1, 2]) for d in drift], axis=0
+    )
+    measured = blows(H, 0.002, np.random.default_rng(0)).mean(axis=0)
+    found = identify(frequency_responses(F, measured), (1, 30))
+    assert [mode.frequency for mode in found.modes] == pytest.approx(THREE_STORY, rel=2e-4)
+    assert all(mode.shape.collinearity > 0.99 for mode in found.modes)
+
+
 def test_noise_alone_has_no_modes() -> None:
     rng = np.random.default_rng(0)
     H = rng.standard_normal((1, 3, 300)) + 1j * rng.standard_normal((1, 3, 300))

@@ -110,6 +110,16 @@ def test_exact_data_give_exact_modes() -> None:
     assert np.abs(synthesise(task, fit.model) * size - data.H).max() < 1e-8 * np.abs(data.H).max()
 
 
+def test_a_pole_on_the_imaginary_axis_does_not_hold_up_the_others() -> None:
+    task, omega, _ = _task()
+    lam, L, _ = _somewhere(omega)
+    alone = maximise(task, lam, L)
+    undamped = np.append(lam, 1.02j - 1e-12)
+    fit = maximise(task, undamped, np.vstack([L, L[:1]]))
+    assert fit.cost < alone.cost * (1 + 1e-6)
+    assert fit.model.lam[:3] == pytest.approx(alone.model.lam, rel=1e-3)
+
+
 @pytest.mark.parametrize("references", [[0], [0, 2]])
 def test_lscf_finds_the_poles_of_exact_data_at_the_first_order_that_holds_them(
     references: list[int],

@@ -41,7 +41,14 @@ AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
 """Directions by their numbers in universal files."""
 
 DELIMITER = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
+END_OF_BINARY = re.compile(rb"\r?\n?[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 EXPONENT = re.compile(rb"(?<=[0-9.])[Dd](?=[+-]?[0-9])")
+
+HEADERS = {55: 9, 58: 13}
+"""Lines before the numbers of a dataset, that of its beginning included."""
+
+RECORD_7 = 8
+"""Line of dataset 58 with the kind and the number of values, first abscissa and increment."""
 
 LARGEST = 2 * 10**9
 """Bytes of a universal file, at most."""
@@ -124,11 +131,11 @@ def _blows(decoded: Sequence[tuple[Block, Mapping[str, Any]]], file: str) -> lis
 def _blow(group: Mapping[str, tuple[Block, Mapping[str, Any]]], file: str) -> Blow:
     block, force = group[""]
     records, quantities = {}, set()
-    for name, (own_block, values) in group.items():
+    for name, (of_record, values) in group.items():
         sign = _degree_of_freedom(values["rsp_node"], values["rsp_dir"])[1]
         records[name] = sign * np.asarray(values["data"], float)
         if len(records[name]) != len(force["data"]):
-            place = f"line {own_block.line}, dataset 58"
+            place = f"line {of_record.line}, dataset 58"
             expected = f"{len(force['data'])} samples, as the force of line {block.line}"
             raise InputError(Fault(file, place, expected, str(len(records[name]))))
         if name:
@@ -151,37 +158,60 @@ def _blow(group: Mapping[str, tuple[Block, Mapping[str, Any]]], file: str) -> Bl
 def blocks(content: bytes, file: str) -> list[Block]:
     """Return the datasets of a universal file; raises InputError for other files and torn ones."""
     out = []
-    at = 0
-    while opening := DELIMITER.search(content, at):
+    after, line, counted = 0, 1, 0
+    while opening := DELIMITER.search(content, after):
         header = re.compile(rb"\r?\n[ ]*([0-9]{1,5})(b?)([^\n]*)").match(content, opening.end())
-        line = content.count(b"\n", 0, opening.start()) + 1
+        line += content.count(b"\n", counted, opening.start())
+        counted = opening.start()
         if not header:
             break
         number, binary = int(header[1]), bool(header[2])
-        start = header.end()
         if binary:
-            start = _after_binary(content, header[3], start)
-        closing = DELIMITER.search(content, start) if start <= len(content) else None
+            closing = _end_of_binary(content, header[3], header.end())
+        else:
+            closing = DELIMITER.search(content, header.end())
         if not closing:
             expected = f"the end of dataset {number}, a line with -1"
             raise InputError(Fault(file, f"line {line}", expected, "the end of the file"))
         out.append(Block(number, line, opening.start(), closing.end(), binary))
-        at = closing.end()
+        after = closing.end()
     if not out:
         expected = "datasets between lines with -1 in columns 5 and 6"
         raise InputError(Fault(file, "file", expected, "none: this is no universal file"))
     return out
 
 
-def _after_binary(content: bytes, header: bytes, start: int) -> int:
-    """Return where the values of a binary dataset end, from what its header says."""
+def _end_of_binary(content: bytes, header: bytes, start: int) -> re.Match[bytes] | None:
+    """Return the end of a binary dataset, which follows on its values; None where there is none.
+
+    The number of bytes in the header is wrong in files of some programs, `pyuff` among them; then
+    it is that of the values that record 7 announces.
+    """
     numbers = header.split()
     lines = int(numbers[2]) if len(numbers) > 3 else 11
-    for _ in range(lines + 1):
+    for number in range(lines + 1):
+        if number == RECORD_7 - 1:
+            record = content[start : content.find(b"\n", start)].split()[:3]
         start = content.find(b"\n", start) + 1
         if not start:
-            return len(content) + 1
-    return start + (int(numbers[3]) if len(numbers) > 3 else 0)
+            return None
+    sizes = [int(numbers[3])] if len(numbers) > 3 else []
+    for size in [*sizes, *_sizes(record)]:
+        if closing := END_OF_BINARY.match(content, start + size):
+            return closing
+    return None
+
+
+def _sizes(record: Sequence[bytes]) -> list[int]:
+    """Return bytes that the values may take, from the first three numbers of record 7."""
+    try:
+        kind, count, even = map(int, record)
+    except ValueError:
+        return []
+    size, values = (8 if kind in (4, 6) else 4), (2 if kind in (5, 6) else 1)
+    if even:
+        return [count * values * size]
+    return [count * (1 + values) * size, count * (4 + values * size)]
 
 
 def _pyuff(file: str) -> ModuleType:
@@ -199,10 +229,7 @@ def decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
     pyuff = _pyuff(file)
     text = content[block.start : block.end] + b"\n"
     if not block.binary:
-        lines = 13 if block.number == 58 else 9 if block.number == 55 else 2
-        head, body = text.split(b"\n", lines)[:lines], text.split(b"\n", lines)[lines:]
-        text = b"\n".join([*head, *(EXPONENT.sub(b"E", part) for part in body)])
-        text = text.replace(b"\r\n", b"\n")
+        text = with_exponents_of_c(text, block.number)
     place = f"line {block.line}, dataset {block.number}"
     with tempfile.TemporaryDirectory() as folder:
         copy = Path(folder) / "one.uff"
@@ -215,6 +242,15 @@ def decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
             expected = f"a dataset {block.number}"
             raise InputError(Fault(file, place, expected, reason(error))) from None
     return values
+
+
+def with_exponents_of_c(text: bytes, number: int) -> bytes:
+    """Return a dataset with the exponents of its numbers written with E, its names unchanged."""
+    lines = HEADERS.get(number, 2)
+    *head, body = text.split(b"\n", lines)
+    if number == 58 and len(head) > RECORD_7:
+        head[RECORD_7] = EXPONENT.sub(b"E", head[RECORD_7])
+    return b"\n".join([*head, EXPONENT.sub(b"E", body)]).replace(b"\r\n", b"\n")
 
 
 def _function(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
@@ -261,8 +297,8 @@ def write_uff55(
     nodes = list(dict.fromkeys(node for node, _ in places))
     names = ", ".join(sensors)[:79]
     written = []
-    for name, found in zip(sets, modes, strict=True):
-        for number, (pole, phi) in enumerate(found, start=1):
+    for name, listed in zip(sets, modes, strict=True):
+        for number, (pole, phi) in enumerate(listed, start=1):
             values = np.zeros((3, len(nodes)), complex)
             for (node, axis), value in zip(places, phi, strict=True):
                 values[axis, nodes.index(node)] = value

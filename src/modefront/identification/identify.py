@@ -36,8 +36,14 @@ from modefront.identification.statistics import (
 Weighting = Literal["given", "scaled", "residuals"]
 
 LEAST_LINES = 20
+"""Lines of a band, at least: a mode with its residual terms has twelve numbers a function."""
+
 MOST_POLES = 60
+"""Poles at the highest order: some seven for each of eight modes, as usual in diagrams."""
+
 MOST_ORDERS = 25
+"""Orders of a diagram; more add no information to clusters of poles."""
+
 CHOICE_LINES = 4096
 """Lines from which the modes are chosen where there are more lines, those of sharp peaks apart."""
 
@@ -64,6 +70,7 @@ LEAST_COLLINEARITY = 0.5
 """Least phase collinearity of a mode."""
 
 SEED = 20080410
+"""Of the random combinations of the singular value decomposition."""
 
 
 @dataclass(frozen=True)
@@ -134,11 +141,13 @@ def identify(
     model = fit.model
     start = modal_model.evaluate(task, model.lam, model.L, model.held)
     task = _reweighted(task, start, weighting(data))
-    fit = selection.refit(task, start, modal_model.FINE, modal_model.MOST_EVALUATIONS)
     if weighting(data) != "given":
+        fit = selection.refit(task, start)
         task = _reweighted(task, fit, weighting(data))
-        fit = selection.refit(task, fit, modal_model.FINE, modal_model.MOST_EVALUATIONS)
-    return _result(data, task, fit, omega, size, diagram, clusters, modes)
+        start = fit
+    fit = selection.refit(task, start, modal_model.FINE, modal_model.MOST_EVALUATIONS)
+    solution = _Solution(data, task, fit, omega, size, diagram)
+    return _result(solution, clusters, modes is not None)
 
 
 def weighting(data: FrequencyResponses) -> Weighting:
@@ -158,7 +167,7 @@ def weighting(data: FrequencyResponses) -> Weighting:
 def _known_variance(data: FrequencyResponses) -> Floats | None:
     if data.variance is None or weighting(data) == "residuals":
         return None
-    return fitted_variance(data.variance, data.H)
+    return fitted_variance(np.where(data.measured, data.variance, np.nan), data.H)
 
 
 def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
@@ -240,7 +249,7 @@ def _select(
     candidates = selection.distinct(diagram.pole) / omega
     for _ in range(selection.MOST_ADDED):
         fit = selection.backward(task, fit)
-        more = selection.forward(task, fit, candidates)
+        more, candidates = selection.forward(task, fit, candidates)
         if more is fit:
             break
         fit = more
@@ -271,38 +280,40 @@ def _reweighted(task: Problem, fit: Fit, kind: Weighting) -> Problem:
     return replace(task, weight=np.where(used, 1 / variance, 0.0))
 
 
-def _result(
-    data: FrequencyResponses,
-    task: Problem,
-    fit: Fit,
-    omega: float,
-    size: float,
-    diagram: StabilisationDiagram,
-    clusters: list[Cluster],
-    count: int | None,
-) -> Identification:
+@dataclass(frozen=True)
+class _Solution:
+    """The last fit to the data, with its units of frequency and of functions."""
+
+    data: FrequencyResponses
+    task: Problem
+    fit: Fit
+    omega: float
+    size: float
+    diagram: StabilisationDiagram
+
+
+def _result(solution: _Solution, clusters: list[Cluster], given: bool) -> Identification:
+    """Return accepted and rejected modes; ``given`` is whether their number is."""
+    task, fit, omega = solution.task, solution.fit, solution.omega
     misfit = residuals(task, fit)
     estimates = mode_estimates(task, fit, misfit, omega)
-    reasons = _reasons(data, task, fit, omega, estimates, diagram, count is not None)
-    kept = [one for one, why in zip(estimates, reasons, strict=True) if not why]
+    reasons = _reasons(solution, estimates, given)
+    kept = [mode for mode, why in zip(estimates, reasons, strict=True) if not why]
     rejected = [
-        Rejected(float(one.frequency), float(one.damping), why)
-        for one, why in zip(estimates, reasons, strict=True)
+        Rejected(float(mode.frequency), float(mode.damping), why)
+        for mode, why in zip(estimates, reasons, strict=True)
         if why
     ]
     rejected += _passed_over(clusters, fit.model.lam * omega)
-    synthesised = modal_model.synthesise(task, fit.model) * size
-    variance = np.where(
-        task.weight > 0, size**2 / np.where(task.weight > 0, task.weight, 1), np.nan
-    )
+    weight = np.where(task.weight > 0, task.weight, np.nan)
     return Identification(
-        data,
-        tuple(sorted(kept, key=lambda one: one.frequency)),
-        tuple(sorted(rejected, key=lambda one: one.frequency)),
-        diagram,
-        synthesised,
+        solution.data,
+        tuple(sorted(kept, key=lambda mode: mode.frequency)),
+        tuple(sorted(rejected, key=lambda pole: pole.frequency)),
+        solution.diagram,
+        modal_model.synthesise(task, fit.model) * solution.size,
         misfit,
-        variance,
+        solution.size**2 / weight,
         fit.evaluations,
         fit.converged,
         modal_model.RESIDUALS.index(task.powers),
@@ -329,42 +340,34 @@ def support(diagram: StabilisationDiagram, pole: Complexes, strength: Floats) ->
     return out
 
 
-def _reasons(
-    data: FrequencyResponses,
-    task: Problem,
-    fit: Fit,
-    omega: float,
-    estimates: Sequence[ModeEstimate],
-    diagram: StabilisationDiagram,
-    given: bool,
-) -> list[str]:
+def _reasons(solution: _Solution, estimates: Sequence[ModeEstimate], given: bool) -> list[str]:
     """Return why each mode is none; empty where it is one."""
-    low, high = data.frequency[0], data.frequency[-1]
-    spacing = float(np.median(np.diff(data.frequency)))
+    task, fit, frequency = solution.task, solution.fit, solution.data.frequency
+    spacing = float(np.median(np.diff(frequency)))
     strength = selection.gains(task, fit)
     doubled = selection.doubles(fit.model.lam, fit.model.phi, strength)
-    shares = support(diagram, fit.model.lam * omega, strength)
+    shares = support(solution.diagram, fit.model.lam * solution.omega, strength)
     out = []
-    for one, double, share, seen in zip(
+    for mode, double, share, seen in zip(
         estimates, doubled, shares, _visibility(task, fit), strict=True
     ):
-        half = max(one.damping * one.frequency, spacing)
+        half = max(mode.damping * mode.frequency, spacing)
         why = ""
-        if not low <= one.frequency <= high:
+        if not frequency[0] <= mode.frequency <= frequency[-1]:
             why = "outside the band"
-        elif one.damping > MOST_DAMPING:
+        elif mode.damping > MOST_DAMPING:
             why = "damped too heavily for a mode"
         elif double:
             why = "doubles a stronger mode of the same shape"
-        elif one.frequency_std > WIDEST * half or one.damping_std > WIDEST * one.damping:
+        elif mode.frequency_std > WIDEST * half or mode.damping_std > WIDEST * mode.damping:
             why = (
-                f"not determined: {one.frequency_std:.2g} Hz, damping {one.damping_std:.2g} "
+                f"not determined: {mode.frequency_std:.2g} Hz, damping {mode.damping_std:.2g} "
                 "standard deviation"
             )
         elif share < SUPPORT and not given:
             why = f"on {share:.0%} of the orders only"
-        elif one.shape.collinearity < LEAST_COLLINEARITY:
-            why = f"its shape has no common phase: phase collinearity {one.shape.collinearity:.2f}"
+        elif mode.shape.collinearity < LEAST_COLLINEARITY:
+            why = f"its shape has no common phase: phase collinearity {mode.shape.collinearity:.2f}"
         elif seen < VISIBLE and not given:
             why = f"at most {seen:.0%} of any function at its own frequency"
         out.append(why)

@@ -37,9 +37,16 @@ HALF_WINDOW = 10
 """Lines on either side of a running median."""
 
 LINES_A_HAT = 30
+"""Lines a hat function, enough for its coefficient to be known within some 20 %."""
+
 MOST_HATS = 16
+"""Hat functions over the band: noise of sensors and amplifiers is smooth."""
+
 MOST_BLOCKS = 600
+"""Blocks of lines that raw values are averaged over before the fit."""
+
 ITERATIONS = 60
+"""Multiplicative steps, after which coefficients change by less than their errors."""
 
 ROUNDING = 1e-14
 """Least variance over the mean square of a function: files hold some seven digits."""

@@ -46,8 +46,14 @@ LIKELY = 0.5
 """Least support of a cluster from which the model starts."""
 
 LEAST_ORDERS = 3
+"""Orders on which a cluster has to be before it is a candidate."""
+
 TRIES = 2
+"""Candidates that are tried before no mode is added."""
+
 MOST_ADDED = 8
+"""Modes that are added to those of the clusters, at most."""
+
 OVERDAMPED = 0.9
 """Damping ratio from which on a pole and its conjugate are nearly one and the same real pole."""
 
@@ -57,6 +63,10 @@ equations rounding takes some 1e-8; poles within the band have 0.1 and more."""
 
 MOST_EVALUATIONS = 20
 """Evaluations of the model for a choice, which need not be at the very maximum."""
+
+CLOSEST = 0.5
+"""Distance of poles over the greater of their half bandwidths below which they are not told apart
+without a difference of shapes."""
 
 TRIAL_EVALUATIONS = 12
 """Evaluations of the model for a candidate on trial."""
@@ -109,12 +119,14 @@ def gains(task: Problem, fit: Fit) -> Floats:
 
 def start(task: Problem, clusters: Sequence[Cluster], omega: float, count: int | None) -> Fit:
     """Return the fit from the likely clusters, or from the best ``count`` of them."""
-    likely = [one for one in clusters if one.support >= LIKELY and one.size >= LEAST_ORDERS]
+    likely = [each for each in clusters if each.support >= LIKELY and each.size >= LEAST_ORDERS]
     if count is not None:
-        likely = sorted(clusters, key=lambda one: -one.support * one.size)[:count]
-    lam = (np.array([one.pole for one in likely], complex) / omega).astype(complex)
+        likely = sorted(clusters, key=lambda cluster: -cluster.support * cluster.size)[:count]
+    lam = (np.array([cluster.pole for cluster in likely], complex) / omega).astype(complex)
     n_in = task.weight.shape[0]
-    L: Complexes = np.array([one.participation for one in likely], complex).reshape(len(lam), n_in)
+    L: Complexes = np.array([cluster.participation for cluster in likely], complex).reshape(
+        len(lam), n_in
+    )
     return maximise(task, lam, L, MOST_EVALUATIONS, COARSE)
 
 
@@ -151,33 +163,49 @@ def without(task: Problem, fit: Fit, mode: int) -> Fit:
     return maximise(task, fit.model.lam[kept], fit.model.L[kept], MOST_EVALUATIONS, COARSE)
 
 
-def forward(task: Problem, fit: Fit, candidates: Complexes) -> Fit:
-    """Return the fit with one more mode where a candidate pays its price, else the same fit."""
+def forward(task: Problem, fit: Fit, candidates: Complexes) -> tuple[Fit, Complexes]:
+    """Return the fit with one more mode where a candidate pays its price, else the same fit.
+
+    Also returns the candidates that are left: one that was added once and does not stay is not
+    added again.
+    """
     r = np.where(task.weight > 0, task.H - synthesise(task, fit.model), 0)
     gain, L = candidate_gains(task, r, candidates)
     level = noise_level(task, fit)
     tried: list[complex] = []
-    for at in gain.argsort()[::-1]:
-        lam = complex(candidates[at])
-        if len(tried) == TRIES or 2 * gain[at] / level < price(task) / 2:
+    for candidate in gain.argsort()[::-1]:
+        lam = complex(candidates[candidate])
+        if len(tried) == TRIES or 2 * gain[candidate] / level < price(task) / 2:
             break
-        if any(abs(lam - one) < 0.5 * abs(one.real) for one in tried):
+        if any(abs(lam - pole) < CLOSEST * abs(pole.real) for pole in tried):
             continue
         tried.append(lam)
         model = fit.model
-        L_all = np.vstack([model.L, L[at]])
+        L_all = np.vstack([model.L, L[candidate]])
         trial = maximise(task, np.append(model.lam, lam), L_all, TRIAL_EVALUATIONS, COARSE)
+        if splits(trial.model.lam):
+            continue
         gained = 2 * (fit.cost - trial.cost) / noise_level(task, trial)
         if gained > price(task) and gains(task, trial).min() > price(task):
-            return trial
-    return fit
+            return trial, candidates[np.abs(candidates - lam) > -lam.real]
+    return fit, candidates
+
+
+def splits(poles: Complexes) -> bool:
+    """Return whether the last pole comes within `CLOSEST` of another one.
+
+    Nonlinearity and leakage make peaks that two poles with nearly opposite residues fit better than
+    one; neither has the shape of the mode then.
+    """
+    width = np.maximum(-poles[:-1].real, -poles[-1].real)
+    return bool((np.abs(poles[:-1] - poles[-1]) < CLOSEST * width).any())
 
 
 def distinct(poles: Complexes) -> Complexes:
     """Return poles of which none lies within half the half bandwidth of another."""
     kept: list[complex] = []
-    for pole in sorted(poles, key=lambda one: one.real):
-        if all(abs(pole - one) > -0.5 * one.real for one in kept):
+    for pole in sorted(poles, key=lambda pole: pole.real):
+        if all(abs(pole - other) > -CLOSEST * other.real for other in kept):
             kept.append(complex(pole))
     return np.array(kept, complex)
 
@@ -185,7 +213,7 @@ def distinct(poles: Complexes) -> Complexes:
 def candidate_gains(task: Problem, r: Complexes, lam: Complexes) -> tuple[Floats, Complexes]:
     """Return gains and participation factors of candidates, in portions of them."""
     size = max(CHUNK // len(task.s), 1)
-    parts = [_gains(task, r, lam[at : at + size]) for at in range(0, len(lam), size)]
+    parts = [_gains(task, r, lam[first : first + size]) for first in range(0, len(lam), size)]
     if not parts:
         return np.zeros(0), np.zeros((0, len(task.weight)), complex)
     return np.concatenate([gain for gain, _ in parts]), np.concatenate([L for _, L in parts])
@@ -217,7 +245,7 @@ def doubles(poles: Complexes, shapes: Complexes, strength: Floats) -> Bools:
     out = np.zeros(len(poles), bool)
     for r in range(len(poles)):
         for s in np.flatnonzero(strength > strength[r]):
-            near = abs(poles[r] - poles[s]) < 0.5 * max(-poles[r].real, -poles[s].real)
+            near = abs(poles[r] - poles[s]) < CLOSEST * max(-poles[r].real, -poles[s].real)
             inner = np.abs(np.vdot(shapes[r], shapes[s])) ** 2
             mac = inner / (np.sum(np.abs(shapes[r]) ** 2) * np.sum(np.abs(shapes[s]) ** 2))
             out[r] |= bool(near and mac > 0.95)

@@ -35,7 +35,10 @@ WIDTH = 5.0
 """Distance within which frequencies may belong to the same mode."""
 
 LEAST_MAC = 0.5
+"""MAC of shapes from which on they may be of the same mode."""
+
 SIGNIFICANT = 0.95
+"""Level of the test of homogeneity; the 5 % that is usual."""
 
 
 @dataclass(frozen=True)
@@ -74,8 +77,8 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
     f, z, f_std, z_std = (np.full((K, R), np.nan) for _ in range(4))
     phi, phi_std = np.full((K, R, len(sensors)), np.nan), np.full((K, R, len(sensors)), np.nan)
     for r, group in enumerate(groups):
-        for k, at in group.items():
-            mode = identifications[k].modes[at]
+        for k, number in group.items():
+            mode = identifications[k].modes[number]
             f[k, r], f_std[k, r] = mode.frequency, mode.frequency_std
             z[k, r], z_std[k, r] = mode.damping, mode.damping_std
             phi[k, r] = _at(mode.shape.shape, identifications[k], sensors)
@@ -128,7 +131,7 @@ def _groups(
     """Return, for every mode of the structure, which mode of each set it is."""
     groups: list[dict[int, int]] = []
     for k, identification in enumerate(identifications):
-        for at, mode in enumerate(identification.modes):
+        for number, mode in enumerate(identification.modes):
             best, most = None, LEAST_MAC
             for group in groups:
                 if k in group:
@@ -139,12 +142,14 @@ def _groups(
                 if mac > most:
                     best, most = group, mac
             if best is None:
-                groups.append({k: at})
+                groups.append({k: number})
             else:
-                best[k] = at
+                best[k] = number
 
     def mean(group: dict[int, int]) -> float:
-        return float(np.mean([identifications[k].modes[at].frequency for k, at in group.items()]))
+        return float(
+            np.mean([identifications[k].modes[number].frequency for k, number in group.items()])
+        )
 
     return sorted(groups, key=mean)
 
@@ -170,11 +175,11 @@ def _agreement(
 
 def _shapes(phi: Floats, std: Floats) -> tuple[Floats, Floats]:
     """Return shapes in the sign of the first set, and deviations with the spread of the sets."""
-    there = np.flatnonzero(np.isfinite(phi).any(axis=1))
-    first = phi[there[0]]
+    having = np.flatnonzero(np.isfinite(phi).any(axis=1))
+    first = phi[having[0]]
     phi = phi.copy()
     scaled, scaled_std, scale = phi.copy(), std.copy(), np.ones(len(phi))
-    for k in there[1:]:
+    for k in having[1:]:
         both = np.isfinite(first) & np.isfinite(phi[k])
         if both.any() and np.any(phi[k][both]):
             factor = float(phi[k][both] @ first[both]) / float(phi[k][both] @ phi[k][both])

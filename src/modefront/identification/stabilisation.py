@@ -41,6 +41,12 @@ from modefront.identification.lscf import Poles
 CUT = 0.02, 0.08
 """Limits of the distance within which poles belong to one cluster."""
 
+SHAPE_LINES = 4096
+"""Lines from which shapes of the diagram are taken where there are more, those at poles apart."""
+
+NEXT = 8
+"""Lines on either side of a pole that its shape is taken from."""
+
 MOST_DAMPING = 0.3
 """Damping ratio from which on a pole is no mode."""
 
@@ -108,7 +114,8 @@ def stabilisation_diagram(
     plus the decay of an exponential window.
     """
     kept = [_usable(poles) for poles in estimates]
-    shapes = [_shapes(poles, H, s, quantity_order) for poles in kept]
+    lines = _lines_of_shapes(s, np.concatenate([poles.value for poles in kept]))
+    shapes = [_shapes(poles, H[..., lines], s[lines], quantity_order) for poles in kept]
     distance = np.concatenate(
         [np.full(len(kept[0].value), np.inf)]
         + [
@@ -145,6 +152,15 @@ def stabilisation_diagram(
 def _usable(poles: Poles) -> Poles:
     good = -poles.value.real < MOST_DAMPING * np.abs(poles.value)
     return Poles(poles.order, poles.value[good], poles.participation[good])
+
+
+def _lines_of_shapes(s: Complexes, pole: Complexes) -> Bools:
+    """Return the lines from which shapes are taken: every n-th one, and those next to poles."""
+    stride = -(-len(s) // SHAPE_LINES)
+    lines: Bools = np.arange(len(s)) % stride == 0
+    nearest = np.searchsorted(s.imag, pole.imag)[:, None] + np.arange(-NEXT, NEXT + 1)
+    lines[np.clip(nearest, 0, len(s) - 1)] = True
+    return lines
 
 
 def _shapes(poles: Poles, H: Complexes, s: Complexes, q: int) -> Complexes:
@@ -217,4 +233,4 @@ def _clusters(diagram: StabilisationDiagram) -> list[Cluster]:
                 len(orders),
             )
         )
-    return sorted(out, key=lambda one: one.pole.imag)
+    return sorted(out, key=lambda cluster: cluster.pole.imag)

@@ -72,6 +72,7 @@ SIGNIFICANT = 3.0
 """Standard errors beyond which a correlation of the residuals is one."""
 
 MOST_LAGS = 60
+"""Lines over which correlations of the residuals are measured."""
 
 MOST_TIMES = 400
 """Samples of the noise of the force; they are taken together where there are more."""
@@ -191,8 +192,8 @@ def _force(task: Problem, H: Complexes, r: Complexes) -> Floats:
     """Return b of each reference; 0 where it is not significant."""
     w = task.weight
     S = np.sum(w * H.conj() * r, axis=1)
-    power, own = w * np.abs(H) ** 2, w**2 * np.abs(H) ** 2 * np.abs(r) ** 2
-    per_line = np.abs(S) ** 2 - own.sum(axis=1)
+    power, squares = w * square(H), w**2 * square(H) * square(r)
+    per_line = square(S) - squares.sum(axis=1)
     below = (power.sum(axis=1) ** 2 - (power**2).sum(axis=1)).sum(axis=1)
     b = per_line.sum(axis=1)
     error = np.sqrt((per_line**2).sum(axis=1))
@@ -208,7 +209,7 @@ def mode_estimates(
     model = fit.model
     shapes = [real_shape(phi) for phi in model.phi]
     inverse = _inverse(fit.information)
-    linear, alpha = _own_roots(task, fit, residuals)
+    linear, alpha = _roots_of_responses(task, fit, residuals)
     C = np.einsum("ka,iae,lb,ibe->kl", inverse, alpha, inverse, alpha, optimize=True)
     variance = np.zeros(model.phi.shape)
     for r, shape in enumerate(shapes):
@@ -260,7 +261,7 @@ def _as_complex(pairs: Floats) -> Complexes:
     return out
 
 
-def _own_roots(task: Problem, fit: Fit, residuals: Residuals) -> tuple[Floats, Floats]:
+def _roots_of_responses(task: Problem, fit: Fit, residuals: Residuals) -> tuple[Floats, Floats]:
     """Return what independent errors of each response do, as roots of their covariance.
 
     (responses, 2 modes, errors): G^-1 Phi^T dy of the shapes; (responses, alphas, errors):
