@@ -182,7 +182,7 @@ def test_words_say_what_was_found_and_what_is_open() -> None:
     assert "Pareto-optimal models have frequencies" in said["How well the best models do"]
     assert "the nominal model has 8.2 %" in said["How well the best models do"]
     assert "k1 from" in said["What the data leave open"]
-    assert "by a factor of" in said["What the data leave open"]
+    assert "differ: peak of hammer: floor1 by" in said["What the data leave open"]
     assert "converged" in said["What to beware of"]
 
 

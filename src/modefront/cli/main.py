@@ -61,7 +61,7 @@ def check(study: Path, every: bool) -> None:
     loaded = load(study)
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
-    say_estimate(estimate(loaded, predictions=False))
+    say_estimate(estimate(loaded))
     if not findings.sound and findings.mistakes:
         raise UnfinishedError(
             "the derivatives cannot be proved before what is warned of first is put right"
@@ -117,8 +117,7 @@ def run(
     expected = estimate(loaded)
     if expected is not None and expected.seconds > SHORT:
         say_estimate(expected, err=True)
-    seconds = expected.seconds / workers if expected else None
-    with progress_bar(loaded.name, seconds) as progress:
+    with progress_bar(loaded.name, expected.stages if expected else {}) as progress:
         data = run_study(
             loaded,
             directory,
