@@ -201,17 +201,32 @@ def in_kilo(case: Case) -> UpdatingProblem:
 
 def _sensor(case: Case) -> int:
     """Return a sensor that matters to the shapes, the others of it being noise."""
+    fit = np.flatnonzero(_share(case) > 0.5)
+    return int(case.rng.choice(fit))
+
+
+def _share(case: Case) -> Floats:
+    """Return the mean square of each sensor in the shapes, over that of all sensors."""
     psi = np.nan_to_num(case.data.shape)
     psi /= np.linalg.norm(psi, axis=2, keepdims=True)
-    share = (psi**2).mean(axis=(0, 1))
-    fit = np.flatnonzero(share > 0.5 / psi.shape[2])
-    return int(case.rng.choice(fit))
+    return np.asarray(psi.shape[2] * (psi**2).mean(axis=(0, 1)))
 
 
 def reversed_in_all(case: Case) -> UpdatingProblem:
     """Return the study with the sign of one sensor reversed in all data sets."""
     shape = case.data.shape.copy()
     shape[:, :, _sensor(case)] *= -1
+    return case.with_data(shape=shape)
+
+
+def small_reversed(case: Case) -> UpdatingProblem | None:
+    """Return the study with a sensor reversed that moves little, but five times the noise."""
+    share = _share(case)
+    little = np.flatnonzero((share < 0.5) & (share > 0.0225))
+    if share.size < 6 or len(case.data.modes) < 3 or not little.size:
+        return None
+    shape = case.data.shape.copy()
+    shape[:, :, int(case.rng.choice(little))] *= -1
     return case.with_data(shape=shape)
 
 
@@ -348,6 +363,7 @@ MISTAKES: dict[str, tuple[Spoil, tuple[str, ...]]] = {
     "unit factor": (in_kilo, ("FrequencyFactor",)),
     "rad/s in one set": (rad_in_one, ("SetFactor",)),
     "sensor reversed in all sets": (reversed_in_all, ("WrongSensors",)),
+    "sensor of small motion reversed": (small_reversed, ("WrongSensors", "OpposedSensor")),
     "sensor reversed in one set": (reversed_in_one, ("WrongSensors",)),
     "sensors exchanged": (exchanged, ("WrongSensors",)),
     "direction of one sensor": (direction_of_one, ("WrongPlaces",)),

@@ -34,7 +34,7 @@ def run(structure: Structure, pairing: Pairing, starts: Floats, *, reduced: bool
             last = weighted_minimum(problem, np.ones(2), theta, 150)
         seconds.append(time.perf_counter() - began)
         costs.append(spent)
-        found.append(bool(np.abs(last.at.theta - structure.true).max() < 1e-3))
+        found.append(bool(np.abs(last.theta - structure.true).max() < 1e-3))
     cost = [spent.model_evaluations for spent in costs]
     print(
         f"pairing by {pairing.method}{', reduced' * reduced}: "

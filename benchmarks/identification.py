@@ -31,8 +31,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront._typing import Complexes, Floats
-from modefront.data.impact import impact_responses
-from modefront.data.responses import FrequencyResponses, frequency_responses
+from modefront.data.impact import Windows, impact_responses
+from modefront.data.responses import FrequencyResponses, frequency_responses, joined
 from modefront.identification.identify import Identification, identify
 
 F = np.arange(0.05, 30.05, 0.05)
@@ -116,13 +116,14 @@ def recorded(structure: Structure, level: float, rng: np.random.Generator) -> Fr
         for x in (force, response):
             rms = np.sqrt(np.mean(x**2, axis=-1, keepdims=True))
             x += level * rms * rng.standard_normal(x.shape)
-        found = impact_responses(force, response, RATE, force_window=0.1)
-        parts.append(found.data)
+        averaged = impact_responses(force, response, RATE, windows=Windows(force_window=0.1))
+        parts.append(averaged.data)
     return replace(
         parts[0],
         H=np.concatenate([part.H for part in parts]),
         variance=np.concatenate([part.variance for part in parts if part.variance is not None]),
         references=tuple(map(str, structure.references)),
+        force_noise=joined([part.force_noise for part in parts]),
     )
 
 

@@ -123,7 +123,7 @@ class Equation:
         says what the best in the others is.
         """
         rng = np.random.default_rng(seed_sequence(SEED, "sample"))
-        thetas = [one.at.theta for one in sample(self.case.problem, rng=rng)]
+        thetas = [one.theta for one in sample(self.case.problem, rng=rng)]
         J = np.array([self.J(theta) for theta in thetas])
         return np.maximum(np.median(J[np.isfinite(J).all(axis=1)], axis=0), np.finfo(float).tiny)
 

@@ -373,10 +373,10 @@ def claimed(front: Front) -> Floats:
 
     A point is called optimal where no model that was evaluated dominates it.
     """
-    J = np.array([point.solution.at.J for point in front.points])
+    J = np.array([point.solution.J for point in front.points])
     optimal = nondominated(np.vstack([J, front.known]), scale=front.scale)
     chosen = [
-        point.solution.at.J
+        point.solution.J
         for point, good in zip(front.points, optimal, strict=False)
         if good and point.solution.converged and point.kind is Kind.FRONT
     ]
@@ -392,7 +392,7 @@ def compare(case: Case, seed: int, populations: tuple[int, ...] = (20, 100)) -> 
         front = pareto_front(case, np.full(case.n, 5.0), Pareto(points=20), seed=seed)
     seconds = time.perf_counter() - started
     spent = costs.eigenproblems
-    J = np.array([point.solution.at.J for point in front.points])
+    J = np.array([point.solution.J for point in front.points])
     others = {
         f"{name}-{size}": volume(evolution(case, method, size, spent, seed), utopia, scale)
         for name, method in (("NSGA-II", NSGA2), ("SMS-EMOA", SMSEMOA))

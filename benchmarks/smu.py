@@ -123,10 +123,10 @@ def weighted_minimum(
         found = solve(problem, weighted(w), found, Options(iterations=iterations))
         if not isinstance(model, ReducedModel):
             return found
-        wanted = np.unique(found.at.quantities["paired_mode"].astype(int) - 1)
-        (certificate,) = model.certify([(found.at.theta, wanted)])
+        wanted = np.unique(found.evaluation.quantities["paired_mode"].astype(int) - 1)
+        (certificate,) = model.certify([(found.theta, wanted)])
         if certificate.eigenvalue.max() <= model.tolerance:
             return found
-        model.take(SnapshotRequest(found.at.theta, model.count))
+        model.take(SnapshotRequest(found.theta, model.count))
         poor = certificate.eigenvalue.max() > POOR
-        found = begin(problem.evaluate(theta if poor else found.at.theta))
+        found = begin(problem.evaluate(theta if poor else found.theta))

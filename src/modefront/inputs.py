@@ -23,6 +23,9 @@ KINDS = (
 )
 """What is no regular file, in words."""
 
+HDF5, USER_BLOCK = b"\x89HDF\r\n\x1a\n", 512
+"""What HDF5 begins with, and the size of the smallest block of the user's before it."""
+
 SAMPLES, SAMPLE = 32, 4096
 """How many parts of a file are looked at for holes, and how long these are."""
 
@@ -84,6 +87,20 @@ def refuse_holes(path: Path, expected: str, size: int) -> None:
             empty += not stream.read(SAMPLE).strip(b"\0")
     if empty > SAMPLES // 2:
         raise _wrong(path, expected, "zeros in most places: a file with holes, or torn")
+
+
+def is_hdf5(path: Path) -> bool:
+    """Return whether a file holds HDF5, at its beginning or after a block of the user's."""
+    with path.open("rb") as stream:
+        start = 0
+        while True:
+            stream.seek(start)
+            found = stream.read(len(HDF5))
+            if len(found) < len(HDF5):
+                return False
+            if found == HDF5:
+                return True
+            start = 2 * start or USER_BLOCK
 
 
 def available_memory() -> int:

@@ -1,18 +1,26 @@
-"""Readers of other packages in a process of their own, with limits on time and memory.
+"""Readers of other packages in processes of their own, with limits on time and memory.
 
 A reader that ends its process, runs without an end, or takes all memory takes only this process
 with it. What it has read comes back as plain arrays and texts in a file that is not unpickled.
+
+A server is started with the first file: it imports what readers need once, and has each file read
+by a fork of itself. Where the system has no forks, it reads one file and ends.
 """
 
 from __future__ import annotations
 
+import atexit
 import importlib
 import json
 import os
+import queue
+import signal
 import subprocess
 import sys
 import tempfile
-from collections.abc import Mapping
+import threading
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,9 +30,15 @@ from modefront.errors import reason
 from modefront.text import one_line
 
 MOST_OUTPUT = 20_000
-"""Characters of what a process prints that are looked at."""
+"""Bytes of what a process prints that are looked at."""
 
-ARRAYS, TEXTS = "arrays.npz", "texts.json"
+GRACE = 30.0
+"""Seconds that a server may take to start and to answer, besides the time for reading."""
+
+CRASHED = 255
+"""Exit status above which a process was ended by the system, on Windows."""
+
+ARRAYS, TEXTS, OUTPUT = "arrays.npz", "texts.json", "output.txt"
 
 Read = tuple[dict[str, np.ndarray[Any, Any]], Any]
 """Arrays by name, and texts and numbers as JSON has them."""
@@ -34,7 +48,9 @@ class IsolatedError(RuntimeError):
     """A reader failed, took too long, or ended its process; the message says which."""
 
 
-def isolated(function: str, path: Path, seconds: float, memory: int) -> Read:
+def isolated(
+    function: str, path: Path, seconds: float, memory: int, arguments: Sequence[str] = ()
+) -> Read:
     """Return what a function reads from a file, called in another process.
 
     Parameters
@@ -45,59 +61,165 @@ def isolated(function: str, path: Path, seconds: float, memory: int) -> Read:
         The file.
     seconds, memory
         Limits; that of memory, in bytes, holds where the system has such limits.
+    arguments
+        Further texts that the function takes.
 
     Raises
     ------
     IsolatedError
         Where nothing was read.
     """
-    with tempfile.TemporaryDirectory(prefix="modefront-") as folder:
-        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
-        environment |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONUTF8": "1"}
-        command = [sys.executable, "-c", "from modefront.isolated import main; main()"]
-        with (Path(folder) / "output").open("w+b") as output:
-            try:
-                done = subprocess.run(
-                    [*command, function, str(path.absolute()), folder, str(memory)],
-                    env=environment,
-                    stdin=subprocess.DEVNULL,
-                    stdout=output,
-                    stderr=subprocess.STDOUT,
-                    timeout=seconds,
-                    check=False,
-                )
-            except subprocess.TimeoutExpired:
-                text = f"nothing within {seconds:.0f} s, after which reading was given up"
-                raise IsolatedError(text) from None
-            output.seek(0)
-            said = output.read(MOST_OUTPUT).decode("utf-8", "replace")
-        if done.returncode < 0:
-            raise IsolatedError(f"a file that ends its reader (signal {-done.returncode})")
-        if done.returncode:
-            raise IsolatedError(one_line(said, 400) or f"status {done.returncode} of the reader")
+    with tempfile.TemporaryDirectory(prefix="modefront-") as name:
+        folder = Path(name)
+        called = [str(path.absolute()), *arguments]
+        status = _SERVER.status([function, called, name, seconds, memory], seconds)
+        said = _beginning(folder / OUTPUT)
+        if status is None or status == -getattr(signal, "SIGALRM", 0):
+            text = f"nothing within {seconds:.0f} s, after which reading was given up"
+            raise IsolatedError(text)
+        if status < 0 or status > CRASHED:
+            raise IsolatedError(f"a file that ends its reader (signal {abs(status)})")
+        if status:
+            raise IsolatedError(one_line(said, 400) or f"status {status} of the reader")
         try:
-            with np.load(Path(folder) / ARRAYS, allow_pickle=False) as file:
-                arrays = {name: file[name] for name in file.files}
-            return arrays, json.loads((Path(folder) / TEXTS).read_text(encoding="ascii"))
+            with np.load(folder / ARRAYS, allow_pickle=False) as file:
+                arrays = {each: file[each] for each in file.files}
+            return arrays, json.loads((folder / TEXTS).read_text(encoding="ascii"))
         except (OSError, ValueError) as error:
             raise IsolatedError(f"nothing that can be used: {reason(error)}") from None
 
 
-def main() -> None:
-    """Read one file for `isolated`, which has started this process."""
-    function, path, folder, memory = sys.argv[1:]
-    limit(int(memory))
-    module, name = function.split(":")
-    read = getattr(importlib.import_module(module), name)
+class _Server:
+    """The process that reads files for this one; it is started when the first file is read."""
+
+    def __init__(self) -> None:
+        self._process: subprocess.Popen[str] | None = None
+        self._owner = 0
+        self._lock = threading.Lock()
+
+    def status(self, request: Sequence[object], seconds: float) -> int | None:
+        """Return how the reading of a file has ended; None where it has not."""
+        with self._lock:
+            process = self._started()
+            assert process.stdin is not None
+            try:
+                with suppress(BrokenPipeError):  # it has ended, and says so below
+                    process.stdin.write(json.dumps(request) + "\n")
+                    process.stdin.flush()
+                line = _line(process, seconds + GRACE)
+            except BaseException:  # an interrupt
+                self.end()
+                raise
+            if line is None:
+                self.end()
+                return None
+            if line:
+                return int(line)
+            code = process.wait()
+            self.end()
+            return code
+
+    def end(self) -> None:
+        """End the process, with what it has started, if this process owns it."""
+        process, self._process = self._process, None
+        if process is None or self._owner != os.getpid():
+            return
+        if hasattr(os, "killpg"):
+            with suppress(OSError):
+                os.killpg(process.pid, signal.SIGKILL)
+        process.kill()
+        with suppress(BrokenPipeError):
+            process.communicate()
+
+    def _started(self) -> subprocess.Popen[str]:
+        if self._process is not None and self._owner == os.getpid():
+            if self._process.poll() is None:
+                return self._process
+            self.end()
+        environment = {**os.environ, "PYTHONPATH": os.pathsep.join(filter(None, sys.path))}
+        environment |= {"OMP_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1", "PYTHONUTF8": "1"}
+        self._process = subprocess.Popen(
+            # -P: nothing is imported from the folder that the user works in
+            [sys.executable, "-P", "-c", "from modefront.isolated import serve; serve()"],
+            env=environment,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            stderr=subprocess.DEVNULL,
+            text=True,
+            start_new_session=True,  # interrupts of the terminal are for this process
+        )
+        self._owner = os.getpid()
+        return self._process
+
+
+_SERVER = _Server()
+atexit.register(_SERVER.end)
+
+
+def _line(process: subprocess.Popen[str], seconds: float) -> str | None:
+    """Return the next line that a process prints, empty where it ends; None after some time."""
+    assert process.stdout is not None
+    lines: queue.Queue[str] = queue.Queue()
+    read: Callable[[], str] = process.stdout.readline
+    threading.Thread(target=lambda: lines.put(read()), daemon=True).start()
     try:
-        arrays, texts = read(Path(path))
+        return lines.get(timeout=seconds)
+    except queue.Empty:
+        return None
+
+
+def _beginning(path: Path) -> str:
+    try:
+        with path.open("rb") as stream:
+            return stream.read(MOST_OUTPUT).decode("utf-8", "replace")
+    except OSError:
+        return ""
+
+
+def serve() -> None:
+    """Have files read, one request a line, until there are no more."""
+    for line in sys.stdin:
+        function, called, folder, seconds, memory = json.loads(line)
+        if not hasattr(os, "fork"):
+            status = _read(function, called, folder, memory)
+            print(status, flush=True)
+            return
+        with suppress(Exception):  # what fails fails again, and is said, below
+            importlib.import_module(function.split(":")[0])
+        child = os.fork()
+        if not child:
+            signal.setitimer(signal.ITIMER_REAL, seconds)
+            os._exit(_read(function, called, folder, memory))
+        print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
+
+
+def _read(function: str, called: Sequence[str], folder: str, memory: int) -> int:
+    """Read one file into a folder, and return the exit status; what is printed goes there."""
+    output = os.open(Path(folder) / OUTPUT, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+    answers = os.dup(1)
+    for stream in (1, 2):
+        os.dup2(output, stream)
+    module, name = function.split(":")
+    path, *arguments = called
+    message = ""
+    try:
+        limit(memory)
+        read = getattr(importlib.import_module(module), name)
+        arrays, texts = read(Path(path), *arguments)
         named: Mapping[str, Any] = arrays
         np.savez(Path(folder) / ARRAYS, allow_pickle=False, **named)
         (Path(folder) / TEXTS).write_text(json.dumps(texts), encoding="ascii")
     except MemoryError:
-        sys.exit(f"a file that takes more than {int(memory) / 1e9:.2g} GB to be read")
+        message = f"a file that takes more than {memory / 1e9:.2g} GB to be read"
     except (Exception, SystemExit) as error:  # what readers raise is not documented
-        sys.exit(one_line(error, 400) or type(error).__name__)
+        message = one_line(reason(error), 400) or type(error).__name__
+    sys.stdout.flush()
+    if message:
+        os.ftruncate(output, 0)
+        os.lseek(output, 0, os.SEEK_SET)
+        os.write(output, message.encode("utf-8", "replace"))
+    os.dup2(answers, 1)
+    return 1 if message else 0
 
 
 def limit(memory: int) -> None:
@@ -108,4 +230,6 @@ def limit(memory: int) -> None:
         return
     resource.setrlimit(resource.RLIMIT_CORE, (0, 0))
     if sys.platform == "linux":  # others count memory that is not taken
-        resource.setrlimit(resource.RLIMIT_AS, (memory, memory))
+        hard = resource.getrlimit(resource.RLIMIT_AS)[1]
+        most = memory if hard == resource.RLIM_INFINITY else min(memory, hard)
+        resource.setrlimit(resource.RLIMIT_AS, (most, most))

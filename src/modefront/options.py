@@ -128,8 +128,8 @@ def _requirement(hint: Any) -> Requirement | None:
     if get_origin(hint) is Literal:
         return one_of(*get_args(hint))
     if get_origin(hint) is Annotated:
-        found = (each for each in get_args(hint)[1:] if isinstance(each, Requirement))
-        return next(found, None)
+        requirements = (each for each in get_args(hint)[1:] if isinstance(each, Requirement))
+        return next(requirements, None)
     if get_origin(hint) in (types.UnionType, typing.Union):
         known = (_requirement(part) for part in get_args(hint))
         return next((each for each in known if each is not None), None)
@@ -142,8 +142,8 @@ def check_fields(record: Any) -> None:
     Raises InputError with everything that is wrong with single fields.
     """
     chosen = options(type(record))
-    found = [option.fault(getattr(record, option.name)) for option in chosen]
-    refuse(fault for fault in found if fault is not None)
+    faults = [option.fault(getattr(record, option.name)) for option in chosen]
+    refuse(fault for fault in faults if fault is not None)
     for option in chosen:
         value = getattr(record, option.name)
         if value is not None:

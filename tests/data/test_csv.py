@@ -153,6 +153,22 @@ def test_decimal_commas_and_columns_left_out(separator: str, tmp_path: Path) -> 
     np.testing.assert_array_equal(data.shape, [[[0.5, -0.2], [-1.5, nan]]])
 
 
+@pytest.mark.parametrize("first", ["sep=;\r\n", "\ufeffsep=;\n", '"sep=;"\n', "SEP=;;;;\n"])
+def test_a_first_line_that_says_the_separator(first: str, tmp_path: Path) -> None:
+    data = read(tmp_path, first + "mode;frequency;low;top\n1;4,5;,5;-0,2\n")
+    np.testing.assert_array_equal(data.frequency, [[4.5]])
+    np.testing.assert_array_equal(data.shape, [[[0.5, -0.2]]])
+    with pytest.raises(InputError, match="line 3, column 'frequency'"):
+        read(tmp_path, first + "mode;frequency;low;top\n1;4.,5;,5;-0,2\n")
+
+
+def test_empty_columns_at_the_end_are_left_out(tmp_path: Path) -> None:
+    data = read(tmp_path, "mode;frequency;low;top;;\n1;4,5;,5;-0,2;;\n2;9;1;1;; ;\n")
+    np.testing.assert_array_equal(data.frequency, [[4.5, 9.0]])
+    with pytest.raises(InputError, match="line 2: expected 4 fields, as in the header, found 6"):
+        read(tmp_path, "mode;frequency;low;top;;\n1;4,5;,5;-0,2;;7\n")
+
+
 @pytest.mark.parametrize(
     ("text", "says"),
     [

@@ -76,6 +76,46 @@ def test_complex_modes_of_several_sets_are_read_as_they_were_written(tmp_path: P
     assert x / z == pytest.approx(-0.5, rel=1e-4)
 
 
+def system(kind: int, label: int = 4) -> dict[str, Any]:
+    """A coordinate system whose x is the y of space, and y its z; its origin is at (0, 0, 1)."""
+    rows = np.array([[0.0, 1, 0], [0, 0, 1], [1, 0, 0], [0, 0, 1]])
+    written: dict[str, Any] = pyuff.prepare_2420(1, "part", [label], [kind], [8], ["local"], [rows])
+    return written
+
+
+def at_point(label: int) -> dict[str, Any]:
+    prepare = pyuff.prepare_2411
+    out: dict[str, Any] = prepare(
+        NODES, [0, 0], [0, label], [0, 0], [0.0, 1.5], [0.0, 2.0], [2.0, 3.0]
+    )
+    return out
+
+
+def test_components_are_along_the_displacement_system_of_their_node(tmp_path: Path) -> None:
+    modes = read_uff55(write(tmp_path / "a.uff", at_point(4), system(0)))
+    assert modes.local(0, np.eye(6)[2]).tolist() == [0, 0, 1, 0, 0, 0]
+    assert modes.local(1, np.eye(6)[1]).tolist() == [1, 0, 0, 0, 0, 0]
+    assert modes.in_space(1, np.eye(6)[0]).tolist() == [0, 1, 0, 0, 0, 0]
+    # Along y of space is along x of node 7, along x of space along its z.
+    data = modes.at(
+        {"y": (1, modes.local(1, np.eye(6)[1])), "x": (1, modes.local(1, np.eye(6)[0]))}
+    )
+    np.testing.assert_allclose(data.shape, [[[1.0, -0.2], [-0.6, 0.4]]])
+
+
+def test_cylindrical_systems_and_those_that_are_not_known(tmp_path: Path) -> None:
+    # Node 7 is at (2, 2) in the plane of the system, so that the radius points along (1, 1).
+    modes = read_uff55(write(tmp_path / "a.uff", at_point(4), system(1)))
+    c = np.sqrt(0.5)
+    np.testing.assert_allclose(modes.axes[1], [[0, c, c], [0, -c, c], [1, 0, 0]], atol=1e-12)
+    spherical = read_uff55(write(tmp_path / "b.uff", at_point(4), system(2)))
+    assert np.isnan(spherical.axes[1]).all()
+    other = read_uff55(write(tmp_path / "c.uff", at_point(5), system(0)))
+    assert np.isnan(other.axes[1]).all()
+    unsaid = read_uff55(write(tmp_path / "d.uff", at_point(5)))
+    np.testing.assert_array_equal(unsaid.axes[1], np.eye(3))
+
+
 @pytest.mark.parametrize(
     ("content", "says"),
     [
@@ -140,7 +180,7 @@ def test_sensors_that_the_file_does_not_have(sensors: str, says: str, tmp_path: 
 def test_sensors_of_a_mesh_are_found_by_coordinates_and_names(tmp_path: Path) -> None:
     modes = NodalModes(
         *("modes.uff", ("1",), (1,), np.array([5, 6]), np.array([[0.0, 0, 0], [1, 0, 0]])),
-        *(np.ones((1, 1)), np.ones((1, 1)), np.ones((1, 1, 2, 6))),
+        *(np.tile(np.eye(3), (2, 1, 1)), np.ones((1, 1)), np.ones((1, 1)), np.ones((1, 1, 2, 6))),
     )
     assert modes.place("6RZ") is not None
     assert modes.place("floor1") is None

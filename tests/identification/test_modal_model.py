@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+import scipy.linalg as la
 from simulation import THREE_STORY, THREE_STORY_DAMPING, accelerance, circular, three_story_shapes
 
 from modefront._typing import Complexes, Ints
@@ -17,7 +18,9 @@ from modefront.identification.modal_model import (
     primitives,
     problem,
     synthesise,
+    windowed_correlation,
 )
+from modefront.identification.statistics import correlated_gram
 
 
 def _task(level: float = 0.01, terms: int = 1) -> tuple[Problem, float, float]:
@@ -121,3 +124,15 @@ def test_lscf_finds_the_poles_of_exact_data_at_the_first_order_that_holds_them(
     for f0, zeta in zip(THREE_STORY, THREE_STORY_DAMPING, strict=True):
         true = 2 * np.pi * f0 * (-zeta + 1j * np.sqrt(1 - zeta**2))
         assert np.abs(found.value - true).min() < 1e-4 * abs(true)
+
+
+def test_correlated_lines_have_the_gram_matrix_of_their_covariance() -> None:
+    task, omega, _ = _task()
+    E = primitives(task, _somewhere(omega)[0])
+    rho = windowed_correlation(3.0, len(task.s))
+    covariance = la.toeplitz(rho, rho.conj())
+    a = np.sqrt(task.weight[1, 2]) * E
+    expected = (a.conj() @ covariance @ a.T).real
+    found = correlated_gram(task, E, rho)[1, 2]
+    size = np.sqrt(np.outer(expected.diagonal(), expected.diagonal()))
+    assert (np.abs(found - expected) < 1e-10 * size).all()

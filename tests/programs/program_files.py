@@ -146,7 +146,12 @@ def write_op4_text(
 
     def values(x: Array) -> None:
         for k in range(0, len(x), per):
-            lines.append("".join(f"{v:{width}.{digits}E}" for v in x[k : k + per]))
+            lines.append("".join(fortran(f"{v:{width}.{digits}E}") for v in x[k : k + per]))
+
+    def fortran(text: str) -> str:
+        """Return a number without the E before an exponent of three digits."""
+        bare = text.replace("E", "") if len(text.split("E")[1]) > 3 else text
+        return bare.strip().rjust(width)
 
     for name, A in matrices.items():
         rows = -len(A) if form == "bigmat" else len(A)

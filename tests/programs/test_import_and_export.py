@@ -13,6 +13,7 @@ import click
 import numpy as np
 import pytest
 import scipy.io
+import scipy.linalg
 import scipy.optimize
 import scipy.sparse
 from click.testing import CliRunner, Result
@@ -27,6 +28,7 @@ from modefront.programs import PROGRAMS
 from modefront.programs.base import JobOptions, whole
 from modefront.programs.mesh import read_mesh
 from modefront.residuals.problem import UpdatingProblem
+from modefront.study.check import check
 from modefront.study.examples import write_example
 from modefront.study.file import load
 
@@ -118,6 +120,25 @@ def test_a_list_of_directions_makes_a_sensor_each(small: Path) -> None:
     data.write_text("\n".join([f"{header},py", *(f"{row}," for row in rows)]))
     found = load(file).problem.model
     assert set(found.sensors) == {*single, "pz", "py"} - {"a"}
+
+
+def test_sensors_in_local_axes(small: Path) -> None:
+    file = small / "study.toml"
+    model = load(file).problem.model
+    assert isinstance(model, MatrixModel)
+    before = model.selection.toarray()[model.sensors.index("d")]
+    axes = "axes = [[0, 3, 4], [1, 0, 0]]"
+    text = file.read_text()
+    file.write_text(text.replace("direction = [0, 3, 4]", f'direction = "x", {axes}'))
+    turned = load(file).problem.model
+    assert isinstance(turned, MatrixModel)
+    row = turned.selection.toarray()[turned.sensors.index("d")]
+    assert row == pytest.approx(before)
+    for direction, message in (('"rz"', "x, y or z where axes are given"), ('"x"', "two vectors")):
+        wrong = axes if "rz" in direction else "axes = [[1, 0, 0], [2, 0, 0]]"
+        file.write_text(text.replace("direction = [0, 3, 4]", f"direction = {direction}, {wrong}"))
+        with pytest.raises(InputError, match=message):
+            load(file)
 
 
 LISTED = 'p = { node = 12, direction = ["z", "-y"] }'
@@ -255,6 +276,29 @@ def test_a_model_is_exported(small: Path) -> None:
     _check_shapes(folder, K, M)
 
 
+def test_the_study_of_results_is_found_wherever_it_lies(
+    small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study, results = small / "study.toml", tmp_path / "elsewhere" / "deep" / "results"
+    text = study.read_text() + "\n[pareto]\npoints = 2\n[identifiability]\nmodels = 0\n"
+    study.write_text(text + "[search]\nstarts = 1\nlimit = 1\nevolutions = 0\n")
+    assert modefront("run", study, "-o", results).exit_code in (0, 1)
+    found = modefront("export", results, "-o", tmp_path / "a")
+    assert found.exit_code == 0, found.output + str(found.exception)
+    shutil.rmtree(results / "pieces")
+    lost = str(modefront("export", results, "-o", tmp_path / "b").exception)
+    assert "found none: pass --study FILE" in lost
+    monkeypatch.chdir(small)
+    assert modefront("export", results, "-o", tmp_path / "b").exit_code == 0
+    study.write_text(study.read_text().replace("bounds = [0.5, 2.0]", "bounds = [0.5, 1.9]"))
+    changed = str(modefront("export", results, "-o", tmp_path / "c").exception)
+    assert f"'{study}' with other inputs than those of the results: changed since" in changed
+    other = str(modefront("export", results, "--study", study, "-o", tmp_path / "c").exception)
+    assert "other inputs: run it again" in other
+    study.unlink()
+    assert not (tmp_path / "c").exists()
+
+
 def _check_shapes(folder: Path, K: np.ndarray, M: np.ndarray) -> None:
     """The universal file and the VTU file have the nodes, and the modes of K and M."""
     meshio, pyuff = pytest.importorskip("meshio"), pytest.importorskip("pyuff")
@@ -333,6 +377,13 @@ def test_from_decks_of_calculix_to_true_parameters(tmp_path: Path) -> None:
     assert estimate(problem) == pytest.approx([0.85, 1.15, 1.4, 0.8], rel=2e-4)
 
 
+def test_the_example_leads_to_the_true_parameters_within_its_errors(tmp_path: Path) -> None:
+    write_example("calculix", tmp_path)
+    study = load(tmp_path / "study.toml")
+    assert check(study).warnings == ()
+    assert estimate(study.problem) == pytest.approx([0.85, 1.15, 1.4, 0.8], rel=0.02)
+
+
 @needs_ccx
 def test_the_example_holds_what_calculix_writes(tmp_path: Path) -> None:
     write_example("calculix", tmp_path)
@@ -350,6 +401,79 @@ def test_the_example_holds_what_calculix_writes(tmp_path: Path) -> None:
     moving = motion.values[0, :, :3].any(axis=1)
     assert motion.number[~moving].tolist() == [100, 200, 300, 400, 901], "the supports"
     assert motion.values[0, moving, :3] == pytest.approx(1.0)
+
+
+CANTILEVER = """*NODE, NSET=NALL
+1, 0., 0., 0.
+2, .3, 0., 0.
+3, .7, 0., 0.
+4, 1., 0., 0.
+5, 0., .5, 0.
+6, .3, .5, 0.
+7, .7, .5, 0.
+8, 1., .5, 0.
+500, 1., .2, .2
+*ELEMENT, TYPE=S4, ELSET=PLATE
+1, 1,2,6,5
+2, 2,3,7,6
+3, 3,4,8,7
+*MATERIAL, NAME=STEEL
+*ELASTIC
+2.1E11, 0.3
+*DENSITY
+7800.
+*SHELL SECTION, ELSET=PLATE, MATERIAL=STEEL
+0.01
+*NSET, NSET=EDGE
+4, 8
+*BOUNDARY
+1,1,6
+5,1,6
+"""
+
+
+@needs_ccx
+@pytest.mark.parametrize(
+    ("constraint", "refused"),
+    [
+        ("*EQUATION\n2\n8,3,1.,4,3,-1.\n", {(8, "z")}),
+        (
+            "*RIGID BODY, NSET=EDGE, REF NODE=500\n",
+            {(node, d) for node in (4, 8, 500) for d in "xyz"},
+        ),
+        ("*ELEMENT, TYPE=MASS, ELSET=M\n9, 8\n*MASS, ELSET=M\n2.\n", set()),
+    ],
+)
+def test_sensors_at_nodes_of_shells_that_are_tied(
+    constraint: str, refused: set[tuple[int, str]], tmp_path: Path
+) -> None:
+    deck = CANTILEVER + constraint
+    matrices = "*STEP\n*FREQUENCY, SOLVER=MATRIXSTORAGE\n*END STEP\n"
+    (tmp_path / "a.inp").write_text(deck + matrices)
+    (tmp_path / "b.inp").write_text(
+        deck + "*STEP\n*FREQUENCY\n3\n*NODE PRINT, NSET=NALL\nU\n*END STEP\n"
+    )
+    ccx(tmp_path, "a", "b")
+    job = PROGRAMS["calculix"].read(tmp_path / "a", JobOptions())
+    _, shapes = printed(tmp_path / "b.dat")
+    _, vectors = scipy.linalg.eigh(dense(job.mass), dense(job.stiffness))
+    nodes = (2, 3, 4, 6, 7, 8, 500)
+    places = {}
+    for node, direction in ((n, d) for n in nodes for d in "xyz"):
+        try:
+            places[node, direction] = job.dofs.sensor(node, direction)
+        except LookupError:
+            continue
+    assert refused <= {(n, d) for n in nodes for d in "xyz"} - places.keys()
+    assert {(n, d) for n in (2, 3, 6, 7) for d in "xyz"} <= places.keys()
+    # Modes of the rigid body about its edge are too close for shapes of seven digits.
+    for k in range(0 if "RIGID" in constraint else 3):
+        phi = vectors[:, -1 - k]
+        mine = [sum(w * phi[dof] for dof, w in place) for place in places.values()]
+        right = [shapes[k][node]["xyz".index(direction)] for node, direction in places]
+        assert abs(np.dot(mine, right)) == pytest.approx(
+            np.linalg.norm(mine) * np.linalg.norm(right), rel=1e-6
+        )
 
 
 @needs_ccx

@@ -81,6 +81,16 @@ def test_output4_as_text(tmp_path: Path, form: str, digits: int, end: str) -> No
     assert job.precision >= 10.0**-digits
 
 
+def test_exponents_of_three_digits_have_no_letter_in_text(tmp_path: Path) -> None:
+    small = K.copy()
+    small[0, 1] = small[1, 0] = 1.5e-105
+    small[3, 4] = small[4, 3] = -2.5e-123
+    write_op4_text(tmp_path / "a.op4", {"KAA": small, "MAA": M}, "bigmat")
+    assert "1.5000000000000000-105" in (tmp_path / "a.op4").read_text()
+    found = dense(read("nastran", tmp_path / "a.op4").stiffness)
+    assert (found[0, 1], found[3, 4]) == (1.5e-105, -2.5e-123)
+
+
 def test_matrices_are_chosen_by_name(tmp_path: Path) -> None:
     write_op4(tmp_path / "a.op4", {"K2": K, "MX": M, "KAA": 2 * K, "MAA": M}, "dense")
     assert_same(read("nastran", tmp_path / "a.op4", JobOptions("k2", "MX")))
@@ -224,6 +234,21 @@ def test_matrix_input_of_abaqus(tmp_path: Path) -> None:
         assert_same(read("abaqus", tmp_path / name))
     write_abaqus(tmp_path / "a", K, M, labels(), step=2)
     refused("abaqus", tmp_path / "a", "one step.*a_STIF1.mtx, a_STIF2.mtx")
+
+
+def test_numbers_of_nodes_with_great_gaps(tmp_path: Path) -> None:
+    far = [(node + 900_000_000, direction) for node, direction in labels()]
+    size = len(far) + 1
+    stiffness, mass = np.eye(size), np.zeros((size, size))
+    stiffness[:-1, :-1], mass[:-1, :-1] = K, M
+    write_abaqus(tmp_path / "a", stiffness, mass, [*far, (-4, 1)])
+    job = read("abaqus", tmp_path / "a")
+    order = [
+        far.index(place) if place in far else size - 1
+        for place in zip(job.dofs.node.tolist(), job.dofs.direction.tolist(), strict=True)
+    ]
+    assert order[-1] == size - 1
+    assert dense(job.stiffness) == pytest.approx(stiffness[np.ix_(order, order)])
 
 
 @pytest.mark.parametrize("program", ["abaqus", "nastran"])

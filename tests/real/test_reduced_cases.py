@@ -22,7 +22,7 @@ def test_the_frame_is_found_from_a_hundred_random_starts(costs: Costs) -> None:
     for _ in range(100):
         start = rng.uniform(structure.lower, structure.upper)
         found = weighted_minimum(problem, np.ones(2), start)
-        assert np.abs(found.at.theta - structure.true).max() < 1e-3
+        assert np.abs(found.theta - structure.true).max() < 1e-3
     assert costs.eigenproblems <= 3
 
 
@@ -39,7 +39,7 @@ def test_models_of_the_bridge_are_the_same_with_and_without_reduction(weight: fl
     assert found.converged
     assert expected.converged
     # Fits this poor ask for more of the derivatives of shapes than of the modes themselves.
-    assert (np.abs(found.at.theta - expected.at.theta) / (full.upper - full.lower)).max() < 1e-3
-    least = w @ full.evaluate(expected.at.theta).J
-    assert w @ full.evaluate(found.at.theta).J == pytest.approx(least, rel=1e-6)
-    assert w @ problem.evaluate(found.at.theta).J == pytest.approx(least, rel=1e-6)
+    assert (np.abs(found.theta - expected.theta) / (full.upper - full.lower)).max() < 1e-3
+    least = w @ full.evaluate(expected.theta).J
+    assert w @ full.evaluate(found.theta).J == pytest.approx(least, rel=1e-6)
+    assert w @ problem.evaluate(found.theta).J == pytest.approx(least, rel=1e-6)

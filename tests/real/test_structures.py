@@ -38,20 +38,23 @@ def test_random_starts_find_the_true_concrete_frame(costs: Costs) -> None:
     rng = np.random.default_rng(7)
     for theta in rng.uniform(frame.lower, frame.upper, (6, 12)):
         found = descend(problem, weighted(np.ones(2)), begin(problem.evaluate(theta)))
-        np.testing.assert_allclose(found.at.theta, frame.true, atol=1e-5)
+        np.testing.assert_allclose(found.theta, frame.true, atol=1e-5)
     assert costs.eigenproblems < 6 * 25
 
 
 def test_small_sensors_of_the_steel_bridge_that_are_reversed() -> None:
-    """Reversing one of 58 sensors changes no MAC by more than 0.002 at ``dof16``."""
+    """Reversing one of 58 sensors changes no MAC by more than 0.002 at ``dof16``.
+
+    At ``dof887`` it lowers MAC 5 from 0.90 to 0.81: a mode must not be left out for that.
+    """
     problem = frequencies_and_shapes(read("steel_bridge_exp"))
     assert diagnose(compare(problem)) == []
-    for name in ("dof16", "dof936", "dof818"):
+    for name in ("dof16", "dof936", "dof818", "dof300", "dof893", "dof887", "dof886", "dof851"):
         shape = problem.data.shape.copy()
         shape[..., problem.data.sensors.index(name)] *= -1
         (found,) = diagnose(compare(replace(problem, data=replace(problem.data, shape=shape))))
         assert isinstance(found, OpposedSensor)
-        assert (found.sensor, found.modes) == (name, 5)
+        assert (found.sensors, found.modes) == ((name,), 5)
         assert found.agreement < -0.9 < 0.9 < found.usual
         assert f"sensor {name} moves against the model in 5 modes" in in_words(found)
 

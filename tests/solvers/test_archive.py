@@ -77,9 +77,9 @@ def test_a_run_that_is_continued_knows_the_same_models(
     assert [x.label for x in again.points] == [x.label for x in whole.points]
     for point, other_point in zip(again.points, whole.points, strict=True):
         one, other = point.solution, other_point.solution
-        assert one.at.theta.tobytes() == other.at.theta.tobytes()
-        assert one.at.J.tobytes() == other.at.J.tobytes()
+        assert one.theta.tobytes() == other.theta.tobytes()
+        assert one.J.tobytes() == other.J.tobytes()
         assert one.status is other.status
     for gap, other_gap in zip(again.gaps, whole.gaps, strict=True):
         for end, other_end in zip(gap.ends, other_gap.ends, strict=True):
-            assert end.at.J.tobytes() == other_end.at.J.tobytes()
+            assert end.J.tobytes() == other_end.J.tobytes()

@@ -25,9 +25,9 @@ def apart(theta: Floats) -> Derivatives:
 
 def solution(problem: Known, theta: list[float], shares: list[float]) -> Solution:
     start = begin(problem.evaluate(np.array(theta)))
-    beta = TARGET.place(start.at.J)
+    beta = TARGET.place(start.J)
     weights = np.array(shares) + SHARE
-    return Solution(start.at, start.learned, weights, 0.0, Status.CONVERGED, 1, beta)
+    return Solution(start.evaluation, start.learned, weights, 0.0, Status.CONVERGED, 1, beta)
 
 
 TARGET = Payoff(np.zeros(3), np.ones(3), np.eye(3))
@@ -37,7 +37,7 @@ def test_objectives_that_no_bound_holds_are_made_small() -> None:
     problem = box(apart, [-1, -1], [2, 1], 3)
     point = solution(problem, [0.5, 0.3], [0.5, 0.5, 0.0])
     (found,) = without_slack(problem, TARGET, [point])
-    assert found.at.J == pytest.approx([0.25, 0.25, 0.0], abs=1e-9)
+    assert found.J == pytest.approx([0.25, 0.25, 0.0], abs=1e-9)
     assert found.evaluations > point.evaluations
     assert found.converged
     assert found.beta is not None

@@ -65,7 +65,7 @@ def regime(key: Key, i: int) -> tuple[bool, float]:
 
 def assert_as_good(key: Key, i: int) -> None:
     """Assert that no model of the independent optimiser is better in the order of the edge."""
-    best, known = found(key, i).at, reference(key, i)
+    best, known = found(key, i).evaluation, reference(key, i)
     least = known.least(i)
     assert best.J[i] <= max(least * (1 + WORSE), known.floor[i])
     own = float(known.others(i, best.J))

@@ -83,7 +83,7 @@ def test_disjoint_curves_are_all_followed_and_none_twice() -> None:
     problem = of(two_circles, [-2, -2], [2, 2])
     minima = explore(problem, Descent(ONE), Search(starts=20), rng=np.random.default_rng(0))
     assert len(minima) > 2
-    found = equivalent_models(problem, ONE, [one.at for one in minima], h=0.03, limit=200)
+    found = equivalent_models(problem, ONE, [one.evaluation for one in minima], h=0.03, limit=200)
     assert [one.extent for one in found] == [Extent.CLOSED] * 2
     sides = [np.sign(thetas(one.models)[:, 0]) for one in found]
     assert sorted(float(side.mean()) for side in sides) == [-1.0, 1.0]
@@ -118,7 +118,7 @@ def test_isolated_minima_are_counted() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
     programme = weighted(np.array([1.0, 0.0]))
     minima = explore(problem, Descent(programme), Search(), rng=np.random.default_rng(0))
-    found = equivalent_models(problem, programme, [one.at for one in minima])
+    found = equivalent_models(problem, programme, [one.evaluation for one in minima])
     assert [one.extent for one in found] == [Extent.ISOLATED] * 4
     assert [one.dimension for one in found] == [0] * 4
 

@@ -63,7 +63,7 @@ def best(J: Floats, cell: float = 0.01) -> Floats:
 
 
 def objectives(front: Front) -> Floats:
-    return np.array([point.solution.at.J for point in front.points])
+    return np.array([point.solution.J for point in front.points])
 
 
 @cache
@@ -84,7 +84,7 @@ def test_a_rugged_front_is_not_behind_an_evolution_with_as_many_evaluations() ->
     utopia, scale = truth.min(axis=0), np.ptp(truth, axis=0)
     J = (objectives(front) - utopia) / scale
     other = evolve_front(problem, "nsga2", 40, spent, np.random.default_rng(0))
-    J_other = (np.array([one.at.J for one in other]) - utopia) / scale
+    J_other = (np.array([one.J for one in other]) - utopia) / scale
     assert hypervolume(J) >= hypervolume(J_other)
     assert hypervolume(J) >= 0.98 * hypervolume((truth - utopia) / scale)
     called = [
@@ -116,12 +116,12 @@ def test_starts_end_where_each_leads_to_a_minimum_of_its_own() -> None:
 
 def test_no_evaluated_model_is_better_than_edges_and_weighted_models() -> None:
     front, _ = rugged()
-    models = {point.label: point.solution.at.J for point in front.points}
+    models = {point.label: point.solution.J for point in front.points}
     least = front.known.sum(axis=1).min()
     assert models["equal-weights"].sum() <= least * (1 + 1e-5)
     for i in range(2):
         assert models[f"edge-J{i + 1}"][i] <= front.known[:, i].min() + 1e-5
-        assert front.edges[i].best.at.J.tolist() == models[f"edge-J{i + 1}"].tolist()
+        assert front.edges[i].best.J.tolist() == models[f"edge-J{i + 1}"].tolist()
 
 
 @pytest.mark.slow
@@ -220,7 +220,7 @@ def test_fronts_of_four_and_five_objectives_whose_edges_coincide(n: int, linear:
     search = Search(starts=2, limit=3, evolutions=0)
     front = pareto_front(problem, np.ones(n), Pareto(points=3), seed=1, search=search)
     along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
-    J = np.array([one.at.J for one in along if one.converged])
+    J = np.array([one.J for one in along if one.converged])
     size = J.sum(axis=1) if linear else np.linalg.norm(J, axis=1)
     assert size == pytest.approx(1, abs=1e-5)
     assert len(J) >= n + n * (n - 1) // 2

@@ -77,14 +77,14 @@ def test_weighted_sums_have_their_minimum(function: Callable[[Floats], Derivativ
     x = 0.75
     assert found.status is Status.CONVERGED
     y = x**2 if function is curved else 0.0
-    assert found.at.theta == pytest.approx([x, y], abs=1e-6)
+    assert found.theta == pytest.approx([x, y], abs=1e-6)
 
 
 def test_bounds_hold_exactly() -> None:
     problem = box(circles, [0.6, 0.5], [2, 2])
     found = solve(problem, weighted(np.array([1.0, 0.1])), begin(problem.evaluate(problem.start)))
     assert found.converged
-    assert found.at.theta.tolist() == [0.6, 0.5]
+    assert found.theta.tolist() == [0.6, 0.5]
 
 
 def test_levels_are_met() -> None:
@@ -92,7 +92,7 @@ def test_levels_are_met() -> None:
     programme = level(1, 0, 0.16, np.ones(2))
     found = solve(problem, programme, begin(problem.evaluate(np.array([0.1, 0.3]))))
     assert found.converged
-    assert found.at.theta == pytest.approx([0.4, 0.16], abs=1e-6)
+    assert found.theta == pytest.approx([0.4, 0.16], abs=1e-6)
     # Its weights are those of the weighted sum with the same solution.
     assert found.weights[0] / found.weights[1] == pytest.approx(0.6 / 0.4, rel=1e-5)
 
@@ -102,7 +102,7 @@ def test_what_was_learned_makes_the_neighbour_cheaper() -> None:
     first = solve(problem, weighted(np.array([1.0, 1.0])), begin(problem.evaluate(problem.start)))
     programme = weighted(np.array([1.0, 1.1]))
     warm = solve(problem, programme, first)
-    cold = solve(problem, programme, begin(first.at))
+    cold = solve(problem, programme, begin(first.evaluation))
     assert warm.converged
     assert warm.evaluations < cold.evaluations
 
@@ -115,7 +115,7 @@ def test_points_without_a_model_are_stepped_back_from() -> None:
     problem = box(hole, [-2, -2], [2, 2])
     found = solve(problem, weighted(np.array([1.0, 1.0])), begin(problem.evaluate(-np.ones(2))))
     assert found.converged
-    assert found.at.theta == pytest.approx([0.5, 0], abs=1e-6)
+    assert found.theta == pytest.approx([0.5, 0], abs=1e-6)
     nowhere = begin(problem.evaluate(np.ones(2)))
     assert solve(problem, weighted(np.ones(2)), nowhere).status is Status.INFEASIBLE
 
@@ -135,7 +135,7 @@ def test_all_minima_are_kept() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
     first = Descent(weighted(np.array([1.0, 0.0])))
     found = explore(problem, first, Search(), rng=np.random.default_rng(0))
-    places = sorted(tuple(np.round(one.at.theta).astype(int).tolist()) for one in found)
+    places = sorted(tuple(np.round(one.theta).astype(int).tolist()) for one in found)
     assert places == [(-1, -2), (-1, 2), (1, -2), (1, 2)]
 
 
@@ -154,7 +154,7 @@ def test_a_start_without_derivatives_is_not_taken_for_a_minimum() -> None:
     search = Search(starts=0, limit=0, evolutions=0)
     descent = Descent(weighted(np.array([1.0, 0.0])))
     found = explore(problem, descent, search, [start], rng=np.random.default_rng(0))
-    places = [np.round(one.at.theta, 3).tolist() for one in found]
+    places = [np.round(one.theta, 3).tolist() for one in found]
     assert [1.0, 2.0] in places
     assert [0.6, 1.6] not in places
 
@@ -179,7 +179,7 @@ def test_searches_are_repeated_exactly_with_the_same_seed() -> None:
         rng = np.random.default_rng(5)
         with counted() as costs:
             found = explore(problem, Descent(weighted(np.ones(2))), Search(), rng=rng)
-        runs.append([*(one.at.theta.tolist() for one in found), costs.eigenproblems])
+        runs.append([*(one.theta.tolist() for one in found), costs.eigenproblems])
     assert runs[0] == runs[1]
 
 
@@ -187,9 +187,9 @@ def test_searches_are_repeated_exactly_with_the_same_seed() -> None:
 
 
 def test_edges_are_lexicographic() -> None:
-    assert edges_of(box(valley, [0.1, 0.1], [3, 3]))[1].at.theta == pytest.approx([1, 1], abs=1e-6)
+    assert edges_of(box(valley, [0.1, 0.1], [3, 3]))[1].theta == pytest.approx([1, 1], abs=1e-6)
     best = edges_of(box(many_minima, [-4, -4], [4, 4]))[0]
-    assert best.at.theta == pytest.approx([1, -2], abs=1e-7)
+    assert best.theta == pytest.approx([1, -2], abs=1e-7)
 
 
 # ---- fronts ----------------------------------------------------------------------------------
@@ -198,7 +198,7 @@ def test_edges_are_lexicographic() -> None:
 @pytest.mark.parametrize("function", [circles, curved])
 def test_the_front_of_two_bowls(function: Callable[[Floats], Derivatives]) -> None:
     front = front_of(box(function, [-2, -2], [2, 2]))
-    J = np.array([one.at.J for one in front])
+    J = np.array([one.J for one in front])
     assert all(one.converged for one in front)
     assert np.sqrt(J).sum(axis=1) == pytest.approx(1, abs=1e-6)
     # The points lie on the normals: J1 - J2 changes by equal steps.
@@ -208,10 +208,10 @@ def test_the_front_of_two_bowls(function: Callable[[Floats], Derivatives]) -> No
 
 def test_a_concave_front_is_covered_evenly() -> None:
     front = front_of(box(concave, [-2, -2], [2, 2]), points=15)
-    J = np.array([one.at.J for one in front])
+    J = np.array([one.J for one in front])
     assert all(one.converged for one in front)
     # On the front x1 = x2 = s: J = 1 - exp(-2 (s -+ c)**2) with |s| <= c.
-    s = np.array([one.at.theta.mean() for one in front])
+    s = np.array([one.theta.mean() for one in front])
     c = 1 / np.sqrt(2)
     assert J == pytest.approx(1 - np.exp(-2 * (s[:, None] - [c, -c]) ** 2), abs=1e-6)
     assert nondominated(J).all()
@@ -222,7 +222,7 @@ def test_a_concave_front_is_covered_evenly() -> None:
 def test_a_disconnected_front_keeps_dominated_points_and_ends_its_pieces() -> None:
     problem = box(disconnected, [0, -1], [0.651, 1])
     front = front_of(problem, points=25)
-    J = np.array([one.at.J for one in front])
+    J = np.array([one.J for one in front])
     optimal = nondominated(J)
     assert not optimal.all()
     assert all(one.converged for one in front)
@@ -234,8 +234,8 @@ def test_a_disconnected_front_keeps_dominated_points_and_ends_its_pieces() -> No
     f = 1 - x - np.sin(4 * np.pi * x) / 4
     hidden = x[np.flatnonzero((f > np.minimum.accumulate(f) + 1e-12) & (x < 0.6))]
     left, right = hidden[0], hidden[-1]
-    assert gap.end.at.J[0] == pytest.approx(left, abs=1e-4)
-    assert gap.start.at.J[0] == pytest.approx(right, abs=1e-4)
+    assert gap.end.J[0] == pytest.approx(left, abs=1e-4)
+    assert gap.start.J[0] == pytest.approx(right, abs=1e-4)
     pieces = branch_numbers(J, optimal, [gap])
     assert set(pieces[optimal]) <= {0, 1, 2}
     assert ((pieces == 1) <= (J[:, 0] <= left + 1e-6)).all()
@@ -249,7 +249,7 @@ def test_the_front_of_three_bowls_is_their_triangle() -> None:
     for one in front:
         # Each point is stationary for the weights that come with it, and none is negative.
         w = one.weights / one.weights.sum()
-        assert one.at.theta == pytest.approx(w[1:], abs=2e-5)
+        assert one.theta == pytest.approx(w[1:], abs=2e-5)
         assert (w > 0).all()
 
 
@@ -290,13 +290,13 @@ class TwoBasins:
         return np.eye(2)[edge]
 
     def solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
-        left = beta[0] > 0.5 and start.at.theta[0] < 0.5
+        left = beta[0] > 0.5 and start.theta[0] < 0.5
         return at_theta(0.1 if left else 0.9)
 
     solve_again = solve
 
-    def value(self, beta: Floats, J: Floats) -> float:
-        return float(J.sum())
+    def is_better(self, beta: Floats, J: Floats, known: Floats) -> bool:
+        return bool(J.sum() < known.sum())
 
 
 def at_theta(theta: float) -> Solution:
@@ -310,7 +310,7 @@ def test_a_point_far_from_its_neighbour_is_solved_from_there_though_the_way_back
     problem = box(circles, [0], [1])
     edges = [at_theta(0.0), at_theta(1.0)]
     points = continuation(problem, TwoBasins(np.ones(2)), edges, simplex(2, 3))
-    assert [one.at.theta[0] for one in points] == [0.0, 0.9, 0.9, 1.0]
+    assert [one.theta[0] for one in points] == [0.0, 0.9, 0.9, 1.0]
 
 
 def test_a_piece_of_the_front_between_the_edges_is_reached_from_its_own_minimum() -> None:
@@ -318,17 +318,17 @@ def test_a_piece_of_the_front_between_the_edges_is_reached_from_its_own_minimum(
     sizes = sizes_of(problem)
     found = [edge(problem, i, sizes, np.random.SeedSequence(i), Search()) for i in range(2)]
     edges = [one.best for one in found if one]
-    assert [round(one.at.theta[1]) for one in edges] == [-1, 1]
+    assert [round(one.theta[1]) for one in edges] == [-1, 1]
     target = payoff(edges, sizes)
     assert target is not None
     alone = nbi(problem, edges, target, simplex(2, 10))
-    assert not any(abs(one.at.theta[1]) < 0.5 for one in alone)
+    assert not any(abs(one.theta[1]) < 0.5 for one in alone)
     minima = [one for each in found if each for one in each.minima]
     front = nbi(problem, edges, target, simplex(2, 10), minima=minima)
-    assert sum(abs(one.at.theta[1]) < 0.5 for one in front) >= 6
-    optimal = nondominated(np.array([one.at.J for one in front]))
+    assert sum(abs(one.theta[1]) < 0.5 for one in front) >= 6
+    optimal = nondominated(np.array([one.J for one in front]))
     assert all(one.converged for one in front)
-    assert sum(optimal[i] for i, one in enumerate(front) if abs(one.at.theta[1]) < 0.5) >= 6
+    assert sum(optimal[i] for i, one in enumerate(front) if abs(one.theta[1]) < 0.5) >= 6
 
 
 @pytest.mark.parametrize(
@@ -357,7 +357,7 @@ def test_fronts_of_three_objectives_are_covered_beyond_the_simplex(
     target = payoff(edges, sizes, minima)
     assert target is not None
     front = nbi(problem, edges, target, simplex(3, 10), minima=minima)
-    J = np.array([one.at.J for one in front]) / target.scale
+    J = np.array([one.J for one in front]) / target.scale
     R = known(np.random.default_rng(0)) / target.scale
     assert igd_plus(J, R) <= beyond
     assert igd_plus(J[:66], R) >= within
@@ -371,14 +371,14 @@ def test_nothing_is_evaluated_where_the_front_ends() -> None:
     corners = [begin(problem.evaluate(np.array(at))) for at in ([0.0, 0.0], [1, 0], [0, 1])]
     target = payoff(corners, np.ones(3))
     assert target is not None
-    programmes = Attainment(target, np.array([one.at.theta for one in corners]))
+    programmes = Attainment(target, np.array([one.theta for one in corners]))
     # Beyond the first corner, J1 = 0 holds the bound: Phi beta = (-0.2, 0.5, 0.5).
     beyond = np.array([1.2, -0.1, -0.1])
     with counted() as costs:
         found = programmes.solve(problem, beyond, corners[0])
     assert costs.eigenproblems == 0
     assert found.status is Status.STALLED
-    assert found.at is corners[0].at
+    assert found.evaluation is corners[0].evaluation
     within = programmes.solve(problem, np.array([0.8, 0.1, 0.1]), corners[0])
     assert within.converged
 
@@ -397,7 +397,7 @@ def test_more_objectives_than_parameters_can_meet_on_a_normal() -> None:
     for one in front:
         w = one.weights / one.weights.sum()
         assert (w > 0).all()
-        assert one.at.theta == pytest.approx(w @ centres, abs=2e-5)
+        assert one.theta == pytest.approx(w @ centres, abs=2e-5)
 
 
 def test_the_second_point_costs_few_evaluations() -> None:
@@ -446,17 +446,17 @@ def test_optimal_weights_are_a_over_J_and_the_iteration_agrees() -> None:
     problem = box(offset, [-2, -2], [2, 2])
     a, sizes = np.array([3.0, 5.0]), sizes_of(problem)
     best = optimal_minima(problem, a, sizes, Search(), [], rng=np.random.default_rng(0))[0]
-    again = solve(problem, weighted(a / best.at.J), begin(best.at))
-    assert again.at.theta == pytest.approx(best.at.theta, abs=1e-6)
+    again = solve(problem, weighted(a / best.J), begin(best.evaluation))
+    assert again.theta == pytest.approx(best.theta, abs=1e-6)
     start = solve(problem, weighted(np.ones(2)), begin(problem.evaluate(problem.start)))
     iterated = iterate_weights(problem, a, sizes, start)
     assert iterated is not None
     assert iterated.converged
-    assert iterated.at.theta == pytest.approx(best.at.theta, abs=1e-5)
+    assert iterated.theta == pytest.approx(best.theta, abs=1e-5)
     programme = LogSum(a)
     for shift in np.random.default_rng(1).normal(scale=1e-3, size=(20, 2)):
-        nearby = problem.evaluate(best.at.theta + shift).J
-        assert programme.value(nearby) >= programme.value(best.at.J)
+        nearby = problem.evaluate(best.theta + shift).J
+        assert programme.value(nearby) >= programme.value(best.J)
 
 
 def test_singular_minima_are_told_from_regular_ones() -> None:
@@ -464,7 +464,7 @@ def test_singular_minima_are_told_from_regular_ones() -> None:
     sizes = sizes_of(problem)
     rng = np.random.default_rng(0)
     found = optimal_minima(problem, np.ones(2), sizes, Search(), [], rng=rng)
-    assert not any(regular(one.at.J, sizes) for one in found)
+    assert not any(regular(one.J, sizes) for one in found)
     exact = begin(problem.evaluate(np.zeros(2)))
     assert iterate_weights(problem, np.ones(2), sizes, exact) is None
 

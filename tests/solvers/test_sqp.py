@@ -167,12 +167,12 @@ def test_the_least_maximum_is_that_of_an_independent_solver(
     found = [solve(problem, programme, begin(problem.evaluate(theta))) for theta in starts]
     assert all(one.converged for one in found)
     assert max(one.evaluations for one in found) <= 20
-    values = [programme.value(one.at.J) + programme.maximised.at(one.at.J).max() for one in found]
+    values = [programme.value(one.J) + programme.maximised.at(one.J).max() for one in found]
     assert min(values) == pytest.approx(minimax(problem, programme), abs=1e-6)
     # The weights are those of a stationary Lagrangian: no parameter within its bounds gains.
     for one in found:
-        slope = one.weights @ one.at.dJ
-        inside = (one.at.theta > problem.lower + 1e-6) & (one.at.theta < problem.upper - 1e-6)
+        slope = one.weights @ one.evaluation.dJ
+        inside = (one.theta > problem.lower + 1e-6) & (one.theta < problem.upper - 1e-6)
         assert slope[inside] == pytest.approx(0, abs=1e-4)
         assert (one.weights > 0).all()
 
@@ -199,7 +199,7 @@ def test_a_maximum_is_found_within_constraints_too() -> None:
     start = begin(problem.evaluate(np.array([0.2, -0.4])))
     found = solve(problem, Both(), start)
     assert found.converged
-    assert found.at.theta == pytest.approx(np.full(2, np.sqrt(0.15)), abs=1e-6)
+    assert found.theta == pytest.approx(np.full(2, np.sqrt(0.15)), abs=1e-6)
 
 
 def test_a_point_between_equal_functions_is_no_minimum_where_the_curvature_is_negative() -> None:
@@ -216,8 +216,8 @@ def test_a_point_between_equal_functions_is_no_minimum_where_the_curvature_is_ne
     programme = Achievement(np.zeros(2), np.eye(2), np.zeros(2))
     found = solve(problem, programme, begin(problem.evaluate(np.zeros(2))))
     assert found.status is Status.CONVERGED
-    assert np.abs(found.at.theta) == pytest.approx([0.0, 1.0], abs=1e-6)
-    assert found.at.J.max() == pytest.approx(-1.0, abs=1e-6)
+    assert np.abs(found.theta) == pytest.approx([0.0, 1.0], abs=1e-6)
+    assert found.J.max() == pytest.approx(-1.0, abs=1e-6)
 
 
 def test_a_maximum_without_learned_second_derivatives() -> None:
@@ -225,4 +225,4 @@ def test_a_maximum_without_learned_second_derivatives() -> None:
     programme = Achievement(np.zeros(3), np.eye(3), np.zeros(3))
     found = solve(problem, programme, begin(problem.evaluate(-np.ones(2))), Options(learn=False))
     assert found.converged
-    assert found.at.theta == pytest.approx([0.5, 0.5], abs=1e-6), "the centre of the circle"
+    assert found.theta == pytest.approx([0.5, 0.5], abs=1e-6), "the centre of the circle"

@@ -24,7 +24,7 @@ def at(J: Sequence[float]) -> Solution:
 
 
 def labels(found: Sequence[Solution]) -> list[list[float]]:
-    return [one.at.J.tolist() for one in found]
+    return [one.J.tolist() for one in found]
 
 
 NONE: Floats = np.zeros((0, 2))
@@ -85,12 +85,12 @@ def test_bounded_weights_have_their_minimum_where_a_grid_has_it(
     grid = [np.array([x, y]) for x in axis for y in axis]
     values = [float(np.array(a) @ np.log(function(theta)[0] + b)) for theta in grid]
     programme = LogSum(np.array(a), np.array(b))
-    value = programme.value(found.at.J)
+    value = programme.value(found.J)
     assert value <= min(values)
     assert value >= min(values) - 0.1
-    w = np.array(a) / (found.at.J + b)
+    w = np.array(a) / (found.J + b)
     assert found.weights == pytest.approx(w)
-    assert w @ found.at.dJ == pytest.approx(np.zeros(2), abs=1e-4)
+    assert w @ found.evaluation.dJ == pytest.approx(np.zeros(2), abs=1e-4)
 
 
 def test_without_a_floor_the_sum_falls_without_bound_and_with_one_it_ends() -> None:
@@ -99,8 +99,8 @@ def test_without_a_floor_the_sum_falls_without_bound_and_with_one_it_ends() -> N
     found = optimal_minima(problem, ONES, ONES, SEARCH, [], rng=np.random.default_rng(0))
     assert found == []
     ends = bounded(circles, (2.0, 1.0), (1e-3, 1e-3))
-    t = float(np.sqrt(ends.at.J[0]))
-    assert t + np.sqrt(ends.at.J[1]) == pytest.approx(1)
+    t = float(np.sqrt(ends.J[0]))
+    assert t + np.sqrt(ends.J[1]) == pytest.approx(1)
     assert 0 < t < 1e-3, "close to the centre of the first, not in it"
     # The derivative of 2 ln (t^2 + b) + ln ((1 - t)^2 + b) vanishes.
     assert 2 * t / (t**2 + 1e-3) == pytest.approx((1 - t) / ((1 - t) ** 2 + 1e-3), rel=1e-3)

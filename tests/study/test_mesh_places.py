@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from modefront.diagnosis.groups import unused_groups
 from modefront.errors import InputError
 from modefront.fem.mesh import read_mesh
 from modefront.models.matrices import MatrixModel
@@ -128,6 +129,27 @@ def test_all_faults_of_a_structure_are_said_at_once(tmp_path: Path) -> None:
         assert sum(part in text for text in found) == 1, (part, found)
 
 
+def test_faults_of_tables_do_not_hide_those_of_sensors_and_scales(tmp_path: Path) -> None:
+    edits = (
+        ('material = "joint"', 'material = "jont"'),
+        ("nu = 0.3, rho = 7850.0 }\njoint", "nu = 0.7, rho = 7850.0 }\njoint"),
+        ('nodes = "base"', 'nodes = "bse"'),
+        ('of = ["story3"]', 'of = ["stroy3"]'),
+    )
+    with pytest.raises(InputError) as error:
+        model(tmp_path, SENSORS.replace("node = 37", "node = 999"), "floor1,floor2,floor3", *edits)
+    text = str(error.value)
+    for part in (
+        "material steel nu: expected Poisson's ratio between -1 and 0.5, found 0.7",
+        "material: expected one of 'steel', 'joint'",
+        "no group or set of nodes named 'bse'",
+        "sensors floor2: expected nodes from 0 to 113, found 999",
+        "scale theta3 of: expected the name of a group, spring or mass, found 'stroy3'",
+    ):
+        assert text.count(part) == 1, part
+    assert len(error.value.faults) == 5
+
+
 def test_groups_of_med_files(tmp_path: Path) -> None:
     points = np.array([[0.0, 0, 0], [1, 0, 0], [2, 0, 0], [2, 1, 0]])
     mesh = meshio.Mesh(
@@ -144,3 +166,7 @@ def test_groups_of_med_files(tmp_path: Path) -> None:
     assert [len(cells) for cells in read.cells_of("members", "beam")] == [3]
     assert read.nodes_of("base").tolist() == [0]
     assert read.nodes_of("all").tolist() == [2, 3]
+    # A group of cells that have elements by another group is no mistake.
+    assert unused_groups(read, (name for name in ["members"]), []) == []
+    (unused,) = unused_groups(read, ["beam"], [])
+    assert (unused.name, unused.cells) == ("members", 3)

@@ -11,11 +11,13 @@ import numpy as np
 import pytest
 from click.testing import CliRunner
 
-from modefront import Group, UpdatingProblem, chain, modal_data
+from modefront import Group, ModalData, UpdatingProblem, chain, modal_data
 from modefront.cli.main import cli
 from modefront.diagnosis.comparison import compare
 from modefront.diagnosis.diagnose import diagnose
 from modefront.diagnosis.opposed import OpposedSensor
+from modefront.diagnosis.sets import frequency_findings
+from modefront.diagnosis.words import in_words
 from modefront.study.check import Findings, check
 from modefront.study.examples import write_example
 from modefront.study.file import load
@@ -53,9 +55,10 @@ def found(study: Path) -> Findings:
 
 
 def only(study: Path) -> str:
-    """Return the one mistake that is found, in words."""
+    """Return the one mistake that is found, in words; nothing that it brings about is said."""
     findings = found(study)
     assert len(findings.mistakes) == 1, findings.warnings
+    assert len(findings.warnings) == 1, findings.warnings
     return findings.warnings[0]
 
 
@@ -108,6 +111,16 @@ def test_periods_and_eigenvalues(tmp_path: Path) -> None:
     assert "looks like eigenvalues" in only(spoilt(tmp_path / "b", CHAIN, data=eigenvalue))
 
 
+def test_what_a_unit_mistake_brings_about_is_not_said(tmp_path: Path) -> None:
+    study = spoilt(tmp_path, SETS, data=scaled("frequency", 6.2831853))
+    said = " ".join(CliRunner().invoke(cli, ["check", "--all", str(study)]).output.split())
+    assert "look like rad/s" in said
+    assert "put this right first: it changes what the data determine" in said
+    assert said.count("warning:") == 1
+    assert "determine this combination" not in said
+    assert "all data together" not in said
+
+
 @pytest.mark.parametrize("example", [CHAIN, FRAME])
 @pytest.mark.parametrize("sensor", ["floor1", "floor2", "floor3"])
 def test_a_reversed_sensor(example: str, sensor: str, tmp_path: Path) -> None:
@@ -127,12 +140,23 @@ def test_a_reversed_sensor_that_moves_too_little_for_the_mac() -> None:
     first = shape[:, 0].copy()
     groups = (Group("shapes", shape="all"),)
     one = np.ones(50)
-    for sign, expected in ((1.0, []), (-1.0, ["s0"])):
+    for sign, expected in ((1.0, []), (-1.0, [("s0",)])):
         shape[:, 0] = sign * first
         data = modal_data(structure.frequency, shape, model.sensors)
         mistakes = diagnose(compare(UpdatingProblem(model, data, groups, 0.2 * one, 5 * one, one)))
-        assert [x.sensor for x in mistakes if isinstance(x, OpposedSensor)] == expected
+        assert [x.sensors for x in mistakes if isinstance(x, OpposedSensor)] == expected
         assert len(mistakes) == len(expected)
+
+
+@pytest.mark.parametrize("pair", [("n3z", "n18z"), ("n7z", "n12z"), ("n8z", "n13z")])
+def test_exchanged_sensors_that_move_nearly_alike(pair: tuple[str, str], tmp_path: Path) -> None:
+    def exchange(rows: Rows) -> None:
+        for row in rows:
+            row[pair[0]], row[pair[1]] = row[pair[1]], row[pair[0]]
+
+    said = only(spoilt(tmp_path, "calculix", data=exchange))
+    assert f"sensors {pair[0]} and {pair[1]} are exchanged" in said
+    assert f"check the cables of {pair[0]} and {pair[1]}" in said
 
 
 @pytest.mark.parametrize("example", [CHAIN, FRAME])
@@ -162,8 +186,35 @@ def test_a_data_set_in_another_unit_and_one_with_another_frequency(tmp_path: Pat
         row["frequency"] = repr(1.1 * float(row["frequency"]))
 
     said = only(spoilt(tmp_path / "b", SETS, data=one))
-    assert "disagree in the frequency of mode 2" in said
-    assert f"sets {name} and" in said
+    assert f"set {name} disagrees with set1 and set2 in the frequency of mode 2" in said
+    assert "14.394 and 13.085 Hz" in said
+    assert f"look at set {name} again" in said
+
+
+@pytest.mark.parametrize("name", ["set1", "set2", "set3"])
+def test_of_three_sets_the_odd_one_is_named(name: str, tmp_path: Path) -> None:
+    def shape(rows: Rows) -> None:
+        (row,) = (row for row in rows if row["set"] == name and row["mode"] == "2")
+        row["floor1"], row["floor2"], row["floor3"] = "0.3", "1.0", "0.9"
+
+    said = only(spoilt(tmp_path / "a", SETS, data=shape))
+    assert f"set {name} disagrees with" in said
+    assert "in the shape of mode 2" in said
+    said = only(spoilt(tmp_path / "b", SETS, data=scaled("frequency", 1.05, name)))
+    assert f"all frequencies of set {name} are +5.0 % off those of" in said
+
+
+def test_of_two_sets_nobody_knows_which_is_wrong() -> None:
+    shape = np.array([[1.0, 2.0, 3.0], [2.0, 1.0, -2.0], [2.0, -3.0, 1.0]])
+    f = np.array([[1.0, 2.0, 3.0], [1.0, 2.4, 3.0]])
+    nothing = np.full(f.shape, np.nan)
+    sensors, shapes = ("a", "b", "c"), np.array([shape, shape])
+    data = ModalData(
+        ("old", "new"), (1, 2, 3), sensors, f, nothing, shapes, nothing, np.full((2, 3, 3), np.nan)
+    )
+    (found,) = frequency_findings(data)
+    assert "sets new and old disagree in the frequency of mode 2" in in_words(found)
+    assert "look at both again" in in_words(found)
 
 
 def test_modes_that_one_set_numbers_differently(tmp_path: Path) -> None:

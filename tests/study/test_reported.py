@@ -121,7 +121,7 @@ def test_no_point_of_three_groups_comes_twice_and_places_tell_where_they_led() -
     front = pareto_front(problem, np.ones(3), Pareto(points=4), search=SEARCH)
     assert front.scale is not None
     along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
-    J = np.array([one.at.J for one in along]) / front.scale
+    J = np.array([one.J for one in along]) / front.scale
     apart = np.abs(J[:, None] - J).max(axis=2) + np.eye(len(J))
     assert (apart > 1e-5).all()
     lattice = _lattice(front)
@@ -130,7 +130,7 @@ def test_no_point_of_three_groups_comes_twice_and_places_tell_where_they_led() -
     assert set(labels) <= {f"nbi-{k + 1}" for k in range(len(along))}
     assert len(set(labels)) < 10, "several places lead to one point"
     # Each edge lies where the others have no part.
-    thetas = {point.label: point.solution.at.theta for point in front.points}
+    thetas = {point.label: point.solution.theta for point in front.points}
     for i in (0, 1, 2):
         label = labels[np.flatnonzero(beta[:, i] == 1)[0]]
         assert thetas[label] == pytest.approx([i, 0.0], abs=1e-4)
@@ -146,15 +146,15 @@ def test_copies_are_merged_and_their_places_kept() -> None:
     lattice: Simplex = simplex(3, 2)
     target = Payoff(np.zeros(3), np.ones(3), 1 - np.eye(3))
     at = [point(1 - beta, beta) for beta in lattice.beta]
-    at[2] = point(at[1].at.J + 5e-6, lattice.beta[2])
-    at[3] = point(at[4].at.J + 2e-5, lattice.beta[3])
+    at[2] = point(at[1].J + 5e-6, lattice.beta[2])
+    at[3] = point(at[4].J + 2e-5, lattice.beta[3])
     at[0] = replace(at[0], status=Status.STALLED)
-    better = point(at[0].at.J - 1e-6, None)
+    better = point(at[0].J - 1e-6, None)
     along = [*at[:5], better]
     found = nbi._without_copies(lattice, at, along, target)
     # The third is a copy of the second, what came last is the first, but converged; the sixth
     # place led to nothing that is left.
-    assert [one.at.J.tolist() for one in found.points] == [
-        one.at.J.tolist() for one in (better, at[1], at[3], at[4])
+    assert [one.J.tolist() for one in found.points] == [
+        one.J.tolist() for one in (better, at[1], at[3], at[4])
     ]
     assert found.places.tolist() == [0, 1, 1, 2, 3, -1]

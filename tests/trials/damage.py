@@ -33,10 +33,7 @@ def damages(data: xr.Dataset) -> Iterator[tuple[str, xr.Dataset]]:
         rest = {name: other for name, other in data.attrs.items() if name != key}
         yield f"attribute {key} is dropped", _with(data, rest)
         for other in ("", "text", "\x1b[31m", -1, 0.5, np.nan, 1e300, np.arange(3), 2**62):
-            yield (
-                f"attribute {name} is {other!r}, not {value!r}",
-                _with(data, {**rest, name: other}),
-            )
+            yield f"attribute {key} is {other!r}, not {value!r}", _with(data, {**rest, key: other})
 
 
 def _with(data: xr.Dataset, attributes: dict[str, object]) -> xr.Dataset:
@@ -63,7 +60,7 @@ def _changed(values: np.ndarray) -> Iterator[tuple[str, np.ndarray]]:
     yield "is an empty text", np.full(shape, "")
     yield "is true", np.full(shape, True)
     yield "is a scalar", np.array(1.0) if shape else np.ones(2)
-    if len(shape) > 1:
+    if len(shape) > 1 and shape[0]:
         yield "is turned", np.moveaxis(values, 0, -1)
         yield "lacks a dimension", values[0]
     if shape and shape[0]:

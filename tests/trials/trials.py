@@ -1,8 +1,8 @@
-"""Trials: inputs that are spoilt by chance, and runs that are killed.
+"""Trials: inputs that are spoilt by chance, results that are damaged, runs that are disturbed.
 
-    python tests/trials/trials.py --inputs 10000 --kills 100 --seed 1
+    python tests/trials/trials.py --inputs 10000 --kills 100 --faults 100 --seed 1
 
-prints how many inputs ended in which way, and what did not end as it should, with its seed.
+prints how each of them ended, and what did not end as it should, with its seed.
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+import re
 import select
 import shutil
 import signal
@@ -18,19 +19,31 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TYPE_CHECKING
 
+import h5py
 import numpy as np
 import xarray as xr
-from mutations import mutated, right_files, run_study
 
-SECONDS = 120.0
+if TYPE_CHECKING:
+    from sources import Case
+
+HERE = Path(__file__).resolve().parent
+
+SECONDS = 180.0
 """Time that a command may take."""
 
 LINES, CHARACTERS = 20, 2000
 """Length of a message, at most."""
+
+OFTEN = 500
+"""Inputs after which is said how many were tried."""
+
+Answer = tuple[int, str, str, int] | str
+"""Status, output, message and length of the message, or how the process ended."""
 
 
 @dataclass
@@ -40,6 +53,12 @@ class Outcome:
     ends: Counter[str] = field(default_factory=Counter)
     wrong: list[str] = field(default_factory=list)
 
+    def take(self, what: str, answer: Answer) -> None:
+        """Count the end of a command, and what is wrong with it."""
+        if text := fault(answer):
+            self.wrong.append(f"{what}: {text[:600]}")
+        self.ends[f"exit {answer[0]}" if not isinstance(answer, str) else "no answer"] += 1
+
 
 class Worker:
     """A process that runs commands in a folder; it is started again where it has ended."""
@@ -48,10 +67,10 @@ class Worker:
         self.folder = folder
         self.process: subprocess.Popen[str] | None = None
 
-    def ask(self, arguments: tuple[str, ...]) -> tuple[int, str, str, int] | str:
-        """Return status, output, message and length of the message, or how the process ended."""
+    def ask(self, arguments: Sequence[str]) -> Answer:
+        """Return how a command ended."""
         if self.process is None or self.process.poll() is not None:
-            command = [sys.executable, str(Path(__file__).with_name("worker.py"))]
+            command = [sys.executable, str(HERE / "worker.py")]
             self.process = subprocess.Popen(
                 command, cwd=self.folder, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True
             )
@@ -75,91 +94,174 @@ class Worker:
             self.process.communicate()
 
 
-def fault(answer: tuple[int, str, str, int] | str) -> str:
+def fault(answer: Answer) -> str:
     """Return what is wrong with the end of a command; nothing where it is as it should be."""
     if isinstance(answer, str):
         return answer
     status, out, err, length = answer
     if status not in (0, 1, 2):
-        return f"status {status}"
+        return f"status {status}: {err}"
     if status and not err:
         return f"status {status} without a message"
     if "error of the program itself" in err or "Traceback" in err:
         return err
     message = [line for line in err.split("\n") if not line.startswith("warning")]
     if status and (length > CHARACTERS + 100 or len(message) > LINES + 1):
-        return f"a message of {length} characters"
+        return f"a message of {length} characters, {len(message)} lines: {err}"
     if not all(line.isprintable() for line in (out + err).split("\n")):
         return "orders to the terminal"
     return "" if "Errno" not in err else err
 
 
-def fuzz(folder: Path, inputs: int, seed: int) -> Outcome:
+def fuzz(folder: Path, cases: Sequence[Case], inputs: int, seed: int) -> Outcome:
     """Spoil files of every format in turn, and run the command that reads each of them."""
-    cases = [*right_files(folder), *run_study(folder)]
+    from mutations import mutated
+
     outcome, worker = Outcome(), Worker(folder)
+    results = folder / "results"
+    shutil.copytree(results, folder / "kept")
     for number in range(inputs):
-        name, arguments = cases[number % len(cases)]
-        path = folder / name
+        case = cases[number % len(cases)]
+        path = folder / case.file
         content = path.read_bytes()
         path.write_bytes(mutated(content, np.random.default_rng([seed, number])))
-        answer = worker.ask(arguments)
-        if text := fault(answer):
-            outcome.wrong.append(f"seed {seed}, input {number}, {name}: {text[:300]}")
-        outcome.ends[text[:40] or f"exit {answer[0]}"] += 1
+        outcome.take(f"seed {seed}, input {number}, {case.file}", worker.ask(case.command))
         path.unlink(missing_ok=True)
         path.write_bytes(content)
+        if case.written:
+            _remove(folder / case.written)
+        if case.command[0] == "run":
+            _remove(results)
+            shutil.copytree(folder / "kept", results)
+        if (number + 1) % OFTEN == 0:
+            print(f"{number + 1} inputs, {len(outcome.wrong)} wrong", file=sys.stderr, flush=True)
     worker.stop()
     return outcome
 
 
-def killed(folder: Path, kills: int, seed: int) -> Outcome:
+def damaged(folder: Path, commands: Sequence[Sequence[str]], every: int, seed: int) -> Outcome:
+    """Damage results in every way, each ``every``-th of them, and run commands on them in turn."""
+    from damage import damages
+
+    outcome, worker = Outcome(), Worker(folder)
+    path = folder / "results" / "results.nc"
+    with xr.open_dataset(path, engine="h5netcdf") as data:
+        whole = data.load()
+    for number, (what, changed) in enumerate(damages(whole)):
+        if (number + seed) % every:
+            continue
+        path.unlink(missing_ok=True)
+        changed.to_netcdf(path, engine="h5netcdf")
+        for command in commands:
+            outcome.take(f"{what}, {' '.join(command)}", worker.ask(command))
+        if (number + 1) % OFTEN == 0:
+            print(f"{number + 1} damages, {len(outcome.wrong)} wrong", file=sys.stderr, flush=True)
+    worker.stop()
+    path.unlink(missing_ok=True)
+    whole.to_netcdf(path, engine="h5netcdf")
+    return outcome
+
+
+def killed(folder: Path, study: str, kills: int, seed: int) -> Outcome:
     """Kill runs at random moments, let each be finished, and compare the digits."""
-    right_files(folder)
-    study, outcome = folder / "K-npy.toml", Outcome()
-
-    def run(results: Path) -> subprocess.Popen[bytes]:
-        command = [sys.executable, "-m", "modefront", "run", str(study), "-o", str(results)]
-        quiet = subprocess.DEVNULL
-        return subprocess.Popen(command, stdout=quiet, stderr=subprocess.PIPE)
-
+    outcome, rng = Outcome(), np.random.default_rng(seed)
     began = time.monotonic()
-    whole_run = run(folder / "whole")
-    whole_run.communicate()
-    assert whole_run.returncode == 0
-    whole, duration = _digits(folder / "whole"), time.monotonic() - began
-    rng = np.random.default_rng(seed)
+    whole, duration = _whole(folder, study), time.monotonic() - began
     left, number = kills, 0
     while left > 0:
         results = folder / f"killed-{number}"
-        for _ in range(3):
-            process = run(results)
+        for _ in range(min(left, 3)):
+            process = _run(folder, study, results)
             try:
-                process.communicate(timeout=float(rng.uniform(0.2, 1.1)) * duration)
+                process.communicate(timeout=float(rng.uniform(0.2, 1.0)) * duration)
                 break
             except subprocess.TimeoutExpired:
                 process.send_signal(signal.SIGKILL)
                 process.communicate()
                 left -= 1
                 outcome.ends["killed"] += 1
-        process = run(results)
-        _, err = process.communicate()
-        if process.returncode or _digits(results) != whole:
-            outcome.wrong.append(f"seed {seed}, run {number}: {err.decode()[:300]}")
-        outcome.ends["finished with the same digits"] += not process.returncode
-        shutil.rmtree(results)
+        _finish(folder, study, results, whole, outcome, f"{study}, seed {seed}, run {number}")
         number += 1
     return outcome
 
 
+def failing(folder: Path, study: str, faults: int, seed: int) -> Outcome:
+    """Let the drive fail at random moments of runs, let each be finished, compare the digits."""
+    kinds = ("full", "read-only", "denied", "broken", "lost", "taken", "long")
+    outcome, rng = Outcome(), np.random.default_rng(seed)
+    whole = _whole(folder, study)
+    for number in range(faults):
+        results = folder / f"failing-{number}"
+        kind = kinds[number % len(kinds)]
+        when = int(rng.integers(1, 60)) if kind != "long" else int(rng.choice([0, 300, 2000, 9000]))
+        what = f"{study}, {kind} at {when}"
+        command = [sys.executable, str(HERE / "faulty.py"), kind, str(when), str(results)]
+        done = subprocess.run(
+            [*command, "run", study, "-o", str(results)],
+            cwd=folder,
+            capture_output=True,
+            timeout=SECONDS,
+            check=False,
+        )
+        err = _messages(done.stderr)
+        outcome.take(what, (done.returncode, "", err, len(err)))
+        taken = Path(f"{results}.taken")
+        if taken.is_dir():
+            _remove(results)
+            taken.rename(results)
+        _finish(folder, study, results, whole, outcome, what)
+    return outcome
+
+
+def _messages(err: bytes) -> str:
+    """Return what a run has printed on standard error but for its progress."""
+    lines = err.decode().split("\n")
+    return "\n".join(x for x in lines if not re.match(r"[^:]*: \d+/\d+ ", x))
+
+
+def _whole(folder: Path, study: str) -> dict[str, bytes]:
+    """Return the digits of a run that is not disturbed."""
+    results = folder / f"whole-{study}"
+    process = _run(folder, study, results)
+    _, err = process.communicate()
+    assert process.returncode == 0, err
+    return _digits(results)
+
+
+def _finish(
+    folder: Path, study: str, results: Path, whole: dict[str, bytes], outcome: Outcome, what: str
+) -> None:
+    """Let a run be finished, compare its digits, and remove it."""
+    process = _run(folder, study, results)
+    _, err = process.communicate()
+    same = process.returncode == 0 and _digits(results) == whole
+    if not same:
+        outcome.wrong.append(f"{what}: {err.decode()[-600:] or 'other digits'}")
+    outcome.ends["finished with the same digits"] += same
+    _remove(results)
+
+
+def _run(folder: Path, study: str, results: Path) -> subprocess.Popen[bytes]:
+    command = [sys.executable, "-m", "modefront", "run", study, "-o", str(results)]
+    quiet = subprocess.DEVNULL
+    return subprocess.Popen(command, cwd=folder, stdout=quiet, stderr=subprocess.PIPE)
+
+
+def _remove(path: Path) -> None:
+    if path.is_dir():
+        shutil.rmtree(path)
+    else:
+        path.unlink(missing_ok=True)
+
+
 def _digits(folder: Path) -> dict[str, bytes]:
     """Return all values of results, bit by bit."""
-    with xr.open_dataset(folder / "results.nc", engine="h5netcdf") as data:
-        return {
-            str(name): value.values.tobytes()
-            for name, value in data.variables.items()
-            if value.dtype.kind in "fiub"
-        }
+    with h5py.File(folder / "results.nc", "r") as data:
+        return {name: value[()].tobytes() for name, value in data.items() if _is_number(value)}
+
+
+def _is_number(value: h5py.Dataset) -> bool:
+    return value.dtype.kind in "fiub"
 
 
 def report(title: str, outcome: Outcome) -> Iterator[str]:
@@ -175,21 +277,35 @@ def main() -> None:
     """Do the trials and print what came out; end with status 1 where something was wrong."""
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("--inputs", type=int, default=10_000)
+    parser.add_argument("--every", type=int, default=1, help="each of so many damages of results")
     parser.add_argument("--kills", type=int, default=100)
+    parser.add_argument("--faults", type=int, default=100)
     parser.add_argument("--seed", type=int, default=1)
     chosen = parser.parse_args()
     os.environ.setdefault("OMP_NUM_THREADS", "1")
+    sys.path += [str(HERE.parent / name) for name in ("study", "programs", "identification")]
+    from sources import READING, RUNS, right_files
+
     wrong = 0
     with tempfile.TemporaryDirectory(prefix="trials-") as name:
-        for title, what, count in (
-            ("inputs", fuzz, chosen.inputs),
-            ("kills", killed, chosen.kills),
-        ):
-            folder = Path(name) / title
-            folder.mkdir()
-            outcome = what(folder, count, chosen.seed)
+        folder = Path(name)
+        cases = right_files(folder)
+
+        def show(title: str, outcome: Outcome) -> None:
+            nonlocal wrong
             wrong += len(outcome.wrong)
-            print("\n".join(report(f"{count} {title}, seed {chosen.seed}", outcome)), flush=True)
+            print("\n".join(report(f"{title}, seed {chosen.seed}", outcome)), flush=True)
+
+        if chosen.inputs:
+            show(f"{chosen.inputs} inputs", fuzz(folder, cases, chosen.inputs, chosen.seed))
+        if chosen.every:
+            show("damaged results", damaged(folder, READING, chosen.every, chosen.seed))
+        for study in RUNS:
+            kills, faults = chosen.kills // len(RUNS), chosen.faults // len(RUNS)
+            if kills:
+                show(f"{kills} kills, {study}", killed(folder, study, kills, chosen.seed))
+            if faults:
+                show(f"{faults} faults, {study}", failing(folder, study, faults, chosen.seed))
     sys.exit(1 if wrong else 0)
 
 

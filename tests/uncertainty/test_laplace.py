@@ -27,7 +27,7 @@ def squares(parts: list[tuple[Floats, Floats]]) -> Derivatives:
 
 
 def found_at(problem: Known, a: Floats) -> tuple[SecondOrder, Posterior]:
-    at = solve(problem, LogSum(a), begin(problem.evaluate(problem.start)), TIGHT).at
+    at = solve(problem, LogSum(a), begin(problem.evaluate(problem.start)), TIGHT).evaluation
     point = second_order(problem, at)
     assert point is not None
     posterior = laplace(problem, point, a)
@@ -45,10 +45,10 @@ def test_one_group_of_linear_residuals_has_students_covariance() -> None:
     A, y = regression(np.random.default_rng(0), 40)
     problem = box(lambda theta: squares([(A @ theta - y, A)]), [-5, -5], [5, 5], 1)
     point, posterior = found_at(problem, np.array([40.0]))
-    expected = point.at.J[0] / 40 * np.linalg.inv(A.T @ A)
+    expected = point.evaluation.J[0] / 40 * np.linalg.inv(A.T @ A)
     assert posterior.covariance == pytest.approx(expected, rel=1e-6)
     # The t distribution with a - 2 degrees of freedom has the greater variance J / (a - 4).
-    t = point.at.J[0] / (40 - 4) * np.linalg.inv(A.T @ A)
+    t = point.evaluation.J[0] / (40 - 4) * np.linalg.inv(A.T @ A)
     assert posterior.covariance == pytest.approx(t, rel=0.11)
 
 
@@ -68,16 +68,23 @@ def test_two_groups_against_integration_over_parameters_and_variances() -> None:
     problem = box(two_groups, [0.5, 0.5], [1.5, 2.0], 2)
     point, posterior = found_at(problem, a)
     std = np.sqrt(np.diag(posterior.covariance))
-    grid = [np.linspace(m - 6 * s, m + 6 * s, 81) for m, s in zip(point.at.theta, std, strict=True)]
+    grid = [
+        np.linspace(m - 6 * s, m + 6 * s, 81)
+        for m, s in zip(point.evaluation.theta, std, strict=True)
+    ]
     ln_s = np.linspace(-2.0, 2.5, 181)
 
     def density(theta: Floats) -> float:
         J = two_groups(theta)[0]
         total = 1.0
         for i in range(2):
-            s = np.exp(ln_s) * point.at.J[i] / a[i]
+            s = np.exp(ln_s) * point.evaluation.J[i] / a[i]
             # p(D | theta, s) p(s) ds with p(s) = 1 / s, as an integral over ln s
-            ln_p = -a[i] / 2 * (np.log(s) + J[i] / (a[i] * s) - np.log(point.at.J[i] / a[i]) - 1)
+            ln_p = (
+                -a[i]
+                / 2
+                * (np.log(s) + J[i] / (a[i] * s) - np.log(point.evaluation.J[i] / a[i]) - 1)
+            )
             total *= scipy.integrate.simpson(np.exp(ln_p), x=ln_s)
         return total
 
@@ -87,15 +94,15 @@ def test_two_groups_against_integration_over_parameters_and_variances() -> None:
     mean = np.array([(p * x).sum(), (p * y).sum()])
     d = np.stack([x - mean[0], y - mean[1]])
     covariance = np.einsum("xy,ixy,jxy->ij", p, d, d)
-    assert mean == pytest.approx(point.at.theta, abs=0.05 * std.max())
+    assert mean == pytest.approx(point.evaluation.theta, abs=0.05 * std.max())
     assert posterior.covariance == pytest.approx(covariance, rel=0.06)
     # ... and of a prediction, by its gradient and by a sample.
-    slope = np.array([[point.at.theta[1], point.at.theta[0]]])
+    slope = np.array([[point.evaluation.theta[1], point.evaluation.theta[0]]])
     product = linear(posterior.covariance, slope)[0, 0]
     exact = (p * (x * y) ** 2).sum() - (p * x * y).sum() ** 2
     assert product == pytest.approx(exact, rel=0.08)
     drawn = sampled(
-        point.at.theta, posterior.covariance, np.prod, np.random.default_rng(0), count=4000
+        point.evaluation.theta, posterior.covariance, np.prod, np.random.default_rng(0), count=4000
     )
     assert drawn.var() == pytest.approx(product, rel=0.08)
 
@@ -108,7 +115,7 @@ def test_what_residuals_do_not_change_keeps_its_prior_and_is_named() -> None:
     (direction,) = posterior.free.T
     assert abs(direction / np.linalg.norm(direction) @ [2, -1]) == pytest.approx(np.sqrt(5))
     variance = np.array([1.0, 2.0]) @ posterior.covariance @ [1.0, 2.0]
-    assert variance == pytest.approx(point.at.J[0] / 40 / (A[:, 0] @ A[:, 0]), rel=1e-6)
+    assert variance == pytest.approx(point.evaluation.J[0] / 40 / (A[:, 0] @ A[:, 0]), rel=1e-6)
 
 
 def test_a_parameter_pressed_against_a_bound_is_given() -> None:
@@ -118,7 +125,7 @@ def test_a_parameter_pressed_against_a_bound_is_given() -> None:
     assert posterior.held.tolist() == [True, False]
     assert posterior.covariance[0].tolist() == [0, 0]
     assert posterior.covariance[1, 1] == pytest.approx(
-        point.at.J[0] / 40 / (A[:, 1] @ A[:, 1]), rel=1e-6
+        point.evaluation.J[0] / 40 / (A[:, 1] @ A[:, 1]), rel=1e-6
     )
 
 

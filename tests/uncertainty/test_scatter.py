@@ -77,11 +77,11 @@ def bent(seed: int, p: int = 3, n: int = 2, rows: int = 5, bend: float = 0.1) ->
 
 def minimum(problem: Known, programme: Scalarisation, theta: Floats) -> Solution:
     found = solve(problem, programme, begin(problem.evaluate(theta)), TIGHT)
-    return solve(problem, programme, begin(found.at), TIGHT)
+    return solve(problem, programme, begin(found.evaluation), TIGHT)
 
 
 def point_of(problem: Known, found: Solution) -> SecondOrder:
-    point = second_order(problem, found.at)
+    point = second_order(problem, found.evaluation)
     assert point is not None
     return point
 
@@ -89,8 +89,8 @@ def point_of(problem: Known, found: Solution) -> SecondOrder:
 def compare(found: Scatter, ahead: list[Solution], behind: list[Solution], by: float) -> None:
     """Assert that a linearisation agrees with solutions of data moved to either side."""
     for m, (one, other) in enumerate(zip(ahead, behind, strict=True)):
-        theta = (one.at.theta - other.at.theta) / (2 * by)
-        J = (one.at.J - other.at.J) / (2 * by)
+        theta = (one.theta - other.theta) / (2 * by)
+        J = (one.J - other.J) / (2 * by)
         assert found.theta[m] == pytest.approx(theta, rel=1e-4, abs=1e-5)
         assert found.J[m] == pytest.approx(J, rel=1e-4, abs=1e-5)
 
@@ -101,7 +101,7 @@ def test_weighted_least_squares_have_their_closed_form(seed: int, n: int) -> Non
     problem = case.problem(-50, 50)
     w = np.random.default_rng(seed + 1).uniform(0.1, 1, n)
     found = minimum(problem, weighted(w), np.zeros(3))
-    point, noise = point_of(problem, found), case.noise(found.at.theta)
+    point, noise = point_of(problem, found), case.noise(found.theta)
     result = scatter(problem, point, w, given_weights(noise), noise)
     A, W = case.A.reshape(-1, 3), np.repeat(w, 5)
     gain = np.linalg.solve(A.T @ (W[:, None] * A), A.T * W)
@@ -116,11 +116,11 @@ def test_optimal_weights_follow_the_data() -> None:
     a = np.array([5.0, 5.0])
     problem = case.problem()
     found = minimum(problem, LogSum(a), np.zeros(3))
-    noise, point = case.noise(found.at.theta), point_of(problem, found)
-    result = scatter(problem, point, a / found.at.J, optimal_weights(point, a, noise), noise)
+    noise, point = case.noise(found.theta), point_of(problem, found)
+    result = scatter(problem, point, a / found.J, optimal_weights(point, a, noise), noise)
 
     def again(source: int, by: float) -> Solution:
-        return minimum(case.moved(source, by).problem(), LogSum(a), found.at.theta)
+        return minimum(case.moved(source, by).problem(), LogSum(a), found.theta)
 
     moved = [[again(m, s * by) for m in range(10)] for s in (1, -1)]
     compare(result, moved[0], moved[1], by)
@@ -131,15 +131,15 @@ def test_a_level_that_moves_with_the_data() -> None:
     first = minimum(case.problem(), weighted(np.array([1.0, 0.0])), np.zeros(3))
 
     def cut(problem: Known) -> Solution:
-        best = minimum(problem, weighted(np.array([1.0, 0.0])), first.at.theta)
-        value = (1 + tolerance) * best.at.J[0]
+        best = minimum(problem, weighted(np.array([1.0, 0.0])), first.theta)
+        value = (1 + tolerance) * best.J[0]
         programme = Linear(np.array([0.0, 1.0]), np.array([[1.0, 0.0]]), np.array([value]))
-        return minimum(problem, programme, best.at.theta + 0.01)
+        return minimum(problem, programme, best.theta + 0.01)
 
     problem = case.problem()
     found = cut(problem)
-    noise, point = case.noise(found.at.theta), point_of(problem, found)
-    dv = (1 + tolerance) * case.noise(first.at.theta).J[:, 0]
+    noise, point = case.noise(found.theta), point_of(problem, found)
+    dv = (1 + tolerance) * case.noise(first.theta).J[:, 0]
     result = scatter(problem, point, found.weights, level(point, 0, dv, noise), noise)
     moved = [[cut(case.moved(m, s * by).problem()) for m in range(10)] for s in (1, -1)]
     compare(result, moved[0], moved[1], by)
@@ -177,16 +177,16 @@ def test_points_of_the_front_follow_their_edges(
             exact: Scalarisation = programmes.subproblem(place)
         else:
             exact = target.subproblem(place)
-        return edges, minimum(problem, exact, found.at.theta)
+        return edges, minimum(problem, exact, found.theta)
 
     problem = case.problem()
     edges, found = solved(problem)
     columns = []
     for i, one in enumerate(edges):
-        noise, point = case.noise(one.at.theta), point_of(problem, one)
+        noise, point = case.noise(one.theta), point_of(problem, one)
         columns.append(scatter(problem, point, np.eye(n)[i], given_weights(noise), noise).J)
-    E, dE = np.array([one.at.J for one in edges]).T, np.stack(columns, axis=2)
-    noise, point = case.noise(found.at.theta), point_of(problem, found)
+    E, dE = np.array([one.J for one in edges]).T, np.stack(columns, axis=2)
+    noise, point = case.noise(found.theta), point_of(problem, found)
     target = between(E, dE)
     if ranges:
         worst = [2, 2, 1]
@@ -201,11 +201,11 @@ def test_points_of_the_front_follow_their_edges(
 
 def test_a_parameter_pressed_against_its_bound_does_not_scatter() -> None:
     case = bent(3, bend=0.0)
-    inside = minimum(case.problem(), weighted(np.ones(2)), np.zeros(3)).at.theta
+    inside = minimum(case.problem(), weighted(np.ones(2)), np.zeros(3)).theta
     upper = np.array([inside[0] - 0.2, 5.0, 5.0])
     problem = replace(case.problem(), upper=upper, start=np.minimum(0, upper - 0.1))
     found = minimum(problem, weighted(np.ones(2)), problem.start)
-    point, noise = point_of(problem, found), case.noise(found.at.theta)
+    point, noise = point_of(problem, found), case.noise(found.theta)
     result = scatter(problem, point, np.ones(2), given_weights(noise), noise)
     assert result.held.tolist() == [True, False, False]
     A = case.A.reshape(-1, 3)[:, 1:]
@@ -222,7 +222,7 @@ def test_what_no_data_determine_is_named_and_left_out() -> None:
     case = replace(case, A=A)
     problem = case.problem()
     found = minimum(problem, weighted(np.ones(2)), np.zeros(3))
-    point, noise = point_of(problem, found), case.noise(found.at.theta)
+    point, noise = point_of(problem, found), case.noise(found.theta)
     result = scatter(problem, point, np.ones(2), given_weights(noise), noise)
     (direction,) = result.free.T
     assert abs(direction / np.linalg.norm(direction) @ [2, -1, 0]) == pytest.approx(np.sqrt(5))

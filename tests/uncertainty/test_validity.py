@@ -78,7 +78,7 @@ def test_optimal_weights_hold_a_model_between_close_minima_only(
     problem = box(bowls, [-2.0], [2.0])
     point, a = point_at(problem, [0.0]), np.ones(2)
     noise = Noise(np.array([[0.01, 0.0]]), np.array([[[0.01], [0.0]]]))
-    found = scatter(problem, point, a / point.at.J, optimal_weights(point, a, noise), noise)
+    found = scatter(problem, point, a / point.evaluation.J, optimal_weights(point, a, noise), noise)
     assert found.warnings == doubts
 
 
@@ -101,7 +101,7 @@ def of_corners(beta: Floats, std: float) -> Scatter:
     edges = [solve(problem, w, begin(problem.evaluate(np.zeros(2)))) for w in weights]
     dE = []
     for edge, w in zip(edges, np.eye(3), strict=True):
-        point, own = point_at(problem, edge.at.theta.tolist()), noise(edge.at.theta)
+        point, own = point_at(problem, edge.theta.tolist()), noise(edge.theta)
         dE.append(scatter(problem, point, w, given_weights(own), own).J)
     target = spanned(edges, (), np.ones(3))
     assert target is not None
@@ -109,8 +109,8 @@ def of_corners(beta: Floats, std: float) -> Scatter:
     assert isinstance(of, Attainment)
     found = of.solve(problem, beta, edges[0])
     assert found.converged
-    E = np.array([edge.at.J for edge in edges]).T
-    point, own = point_at(problem, found.at.theta.tolist()), noise(found.at.theta)
+    E = np.array([edge.J for edge in edges]).T
+    point, own = point_at(problem, found.theta.tolist()), noise(found.theta)
     moving = between(E, np.stack(dE, axis=2))
     w, conditions = boundary(point, found.weights, moving, beta, own)
     return scatter(problem, point, w, conditions, own)
@@ -149,7 +149,7 @@ def test_another_model_that_fits_as_well_is_a_rival(
     """J1 vanishes at (1, -2) and (1, 2), J2 is 20 less at the first: errors of J2 decide."""
     problem = box(many_minima, [-4, -4], [4, 4])
     best, other = (begin(problem.evaluate(np.array([1.0, y]))) for y in (-2.0, 2.0))
-    assert other.at.J - best.at.J == pytest.approx([0, 20])
+    assert other.J - best.J == pytest.approx([0, 20])
     best = replace(best, status=status)
     edges = [Edge(best, [best, other]), Edge(other, [other])]
     front = Front("nbi", [Point(Kind.EDGE, best, "J1")], edges, [], None, (True, False), None, [])

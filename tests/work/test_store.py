@@ -43,7 +43,10 @@ def test_what_is_kept_comes_back_with_what_it_cost(tmp_path: Path) -> None:
     assert costs == COSTS
     assert found.status is Status.STALLED
     for name in ("theta", "J", "dJ", "H"):
-        assert getattr(found.at, name).tobytes() == getattr(solution().at, name).tobytes()
+        assert (
+            getattr(found.evaluation, name).tobytes()
+            == getattr(solution().evaluation, name).tobytes()
+        )
 
 
 ODD: list[tuple[Any, ...]] = [
@@ -82,7 +85,7 @@ def test_keys_have_files_of_their_own_whatever_they_hold(tmp_path: Path) -> None
     for number, key in enumerate(ODD):
         kept = store.read(task(*key))
         assert kept is not None
-        assert kept[0][0].at.J[0] == number
+        assert kept[0][0].J[0] == number
     names = [path.name for path in (tmp_path / "folder").iterdir()]
     assert len({name.lower() for name in names}) == len(ODD), "also where case does not matter"
     assert all(name.isascii() and len(name) < 100 for name in names)
@@ -151,7 +154,7 @@ def test_a_file_with_any_wrong_byte_of_its_directory_counts_as_none(
         damaged[position] = value
         path.write_bytes(damaged)
         kept = store.read(task("one"))
-        assert kept is None or kept[0][0].at.J.tobytes() == solution().at.J.tobytes()
+        assert kept is None or kept[0][0].J.tobytes() == solution().J.tobytes()
 
 
 @settings(max_examples=100)
@@ -167,7 +170,7 @@ def test_a_file_with_wrong_bytes_counts_as_none_or_is_the_same(
     kept = store.read(task("one"))
     if kept is not None:
         assert kept[1] == COSTS
-        assert kept[0][0].at.J.tobytes() == solution().at.J.tobytes()
+        assert kept[0][0].J.tobytes() == solution().J.tobytes()
 
 
 @pytest.mark.parametrize(

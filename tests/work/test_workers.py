@@ -95,7 +95,7 @@ def test_searches_and_fronts_are_those_of_one_after_another(delays: list[int], c
     expected = searched(problem, Archiving(Run(), archives[0]))
     with Workers(Threads(count, delays)) as workers:
         again = searched(problem, Archiving(Run(backend=workers), archives[1]))
-    assert [x.at.theta.tolist() for x in again] == [x.at.theta.tolist() for x in expected]
+    assert [x.theta.tolist() for x in again] == [x.theta.tolist() for x in expected]
     assert [x.evaluations for x in again] == [x.evaluations for x in expected]
     assert archives[1].theta.tolist() == archives[0].theta.tolist()
 
@@ -110,6 +110,13 @@ def test_what_was_computed_ahead_is_taken_where_it_is_asked_for_and_else_forgott
         assert len(pool.sent) <= sent + 1
         assert work.run([Task(("square", 4), negative, (5,))]) == [-25], "another function"
         assert not workers._flying
+
+
+def test_what_is_still_computed_ahead_with_another_function_is_not_waited_for() -> None:
+    with Workers(Threads(2)) as workers:
+        work = Run(backend=workers)
+        assert work.run(squares(1, 2), [Task(("step",), nap, (0.2,))]) == [1, 4]
+        assert work.run([Task(("step",), negative, (5,))], squares(3)) == [-25]
 
 
 def test_short_tasks_are_sent_together_and_long_ones_alone() -> None:

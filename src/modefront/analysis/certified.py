@@ -110,8 +110,11 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
             if not taken.enough or taken.added:
                 continue
         front = _with_errors(problem, model, front, here)
-        needed = {_key(one): one for one in [*_of_the_front(front), *_rivals(problem, front)]}
-        wrong = [one for one in needed.values() if _error(one) > model.tolerance]
+        needed = {
+            _key(solution): solution
+            for solution in [*_of_the_front(front), *_rivals(problem, front)]
+        }
+        wrong = [solution for solution in needed.values() if _error(solution) > model.tolerance]
         if not wrong:
             return front
         worst = _snap(sorted(wrong, key=_error, reverse=True)[:MODELS], 0.0)
@@ -150,7 +153,7 @@ def certificate_values(
     if not isinstance(model, ReducedModel):
         return {}
     eigenvalue, shape = (
-        np.array([x.at.quantities[name] for x in solutions]).reshape(len(solutions), -1)
+        np.array([x.evaluation.quantities[name] for x in solutions]).reshape(len(solutions), -1)
         for name in ERRORS
     )
     return {
@@ -228,13 +231,13 @@ def _take(model: ReducedModel, request: SnapshotRequest) -> SnapshotTaken | None
 def _snap(solutions: Sequence[Solution], enough: float) -> SnapshotRequest:
     """Return the snapshot of some models, of modes up to the last one that is paired."""
     modes = max(int(_paired(solution).max()) + 1 for solution in solutions)
-    return SnapshotRequest(np.array([solution.at.theta for solution in solutions]), modes, enough)
+    return SnapshotRequest(np.array([solution.theta for solution in solutions]), modes, enough)
 
 
 def _farthest(model: ReducedModel, front: Front) -> SnapshotRequest:
     """Return the snapshot of the models that are the farthest from all others."""
     distinct = list({_key(solution): solution for solution in _of_the_front(front)}.values())
-    ranked = sorted(distinct, key=lambda solution: model.distance(solution.at.theta), reverse=True)
+    ranked = sorted(distinct, key=lambda solution: model.distance(solution.theta), reverse=True)
     return _snap(ranked[:MODELS], AIM * model.tolerance)
 
 
@@ -256,12 +259,13 @@ def _with_errors(
     task = Task(("certificate", "front"), _certified, arguments, here=True)
     (kept,) = work.run([task])
     errors = {
-        _key(solution): {name: solution.at.quantities[name] for name in ERRORS} for solution in kept
+        _key(solution): {name: solution.evaluation.quantities[name] for name in ERRORS}
+        for solution in kept
     }
 
     def known(solution: Solution) -> Solution:
-        quantities = {**solution.at.quantities, **errors[_key(solution)]}
-        return replace(solution, at=replace(solution.at, quantities=quantities))
+        quantities = {**solution.evaluation.quantities, **errors[_key(solution)]}
+        return replace(solution, evaluation=replace(solution.evaluation, quantities=quantities))
 
     return replace(
         front,
@@ -291,7 +295,7 @@ def _certified(
     """
     paired = [np.unique(_paired(solution), return_inverse=True) for solution in solutions]
     requests = [
-        (solution.at.theta, modes) for solution, (modes, _) in zip(solutions, paired, strict=True)
+        (solution.theta, modes) for solution, (modes, _) in zip(solutions, paired, strict=True)
     ]
     certificates = model.certify(requests, _lowest(problem))
     out = []
@@ -299,8 +303,10 @@ def _certified(
         errors = (certificate.eigenvalue[place], certificate.shape[place])
         if certificate.known and not _pairs_alike(problem, model, solution, certificate):
             errors = (np.full(place.shape, np.inf), np.ones(place.shape))
-        quantities = {**solution.at.quantities, **dict(zip(ERRORS, errors, strict=True))}
-        out.append(replace(solution, at=replace(solution.at, quantities=quantities)))
+        quantities = {**solution.evaluation.quantities, **dict(zip(ERRORS, errors, strict=True))}
+        out.append(
+            replace(solution, evaluation=replace(solution.evaluation, quantities=quantities))
+        )
     return out
 
 
@@ -313,7 +319,7 @@ def _pairs_alike(
     is known for sure.
     """
     count = _lowest(problem)
-    modes = model.modes(solution.at.theta, count, derivatives=False)
+    modes = model.modes(solution.theta, count, derivatives=False)
     lam, phi = certificate.lam[:count], certificate.phi[:, :count]
     phi = phi * np.where((phi * modes.phi).sum(axis=0) < 0, -1.0, 1.0)
     beyond = 1 / FOUND - 1
@@ -344,8 +350,8 @@ def _rivals(problem: UpdatingProblem, front: Front) -> Iterator[Solution]:
     """Return the minima that might be the best ones, for all that is known of their errors."""
 
     def roots(solution: Solution) -> tuple[Floats, Floats]:
-        margin = problem.margins(*(solution.at.quantities[name] for name in ERRORS))
-        return np.maximum(np.sqrt(solution.at.J) - margin, 0.0), np.sqrt(solution.at.J) + margin
+        margin = problem.margins(*(solution.evaluation.quantities[name] for name in ERRORS))
+        return np.maximum(np.sqrt(solution.J) - margin, 0.0), np.sqrt(solution.J) + margin
 
     for i, edge in enumerate(front.edges):
         most = roots(edge.best)[1][i]
@@ -371,13 +377,13 @@ def _distinct(front: Front) -> list[Solution]:
 
 def _paired(solution: Solution) -> Ints:
     """Return the modes that are paired with measured ones, counted from 0."""
-    return solution.at.quantities["paired_mode"].astype(int) - 1
+    return solution.evaluation.quantities["paired_mode"].astype(int) - 1
 
 
 def _key(solution: Solution) -> bytes:
-    return solution.at.theta.tobytes()
+    return solution.theta.tobytes()
 
 
 def _error(solution: Solution) -> float:
     """Return the greatest error of an eigenvalue."""
-    return float(solution.at.quantities[ERRORS[0]].max())
+    return float(solution.evaluation.quantities[ERRORS[0]].max())

@@ -27,13 +27,13 @@ def coverage(front: Front) -> dict[str, float]:
     reported = [point.solution for point in front.points]
     reported += [solution for edge in front.edges for solution in edge.minima]
     reported += [*front.optimal]
-    J = np.array([solution.at.J for solution in along])
-    everything = np.array([solution.at.J for solution in reported])
+    J = np.array([solution.J for solution in along])
+    everything = np.array([solution.J for solution in reported])
     optimal = nondominated(J)
     Y = (J - utopia) / scale
     R = (everything[nondominated(everything)] - utopia) / scale
     parts = pieces(along, optimal, front.gaps) if front.gaps else []
-    branches = [np.array([(solution.at.J - utopia) / scale for solution in part]) for part in parts]
+    branches = [np.array([(solution.J - utopia) / scale for solution in part]) for part in parts]
     gap = max(
         largest_gap(part[(part <= REFERENCE).all(axis=1)])
         for part in branches or [Y[optimal]]

@@ -185,13 +185,13 @@ def _equivalent_minima(
     a = problem.properties
     sizes = np.ones(a.size) if front.scale is None else front.scale
     for i, (name, edge) in enumerate(zip(problem.objectives, front.edges, strict=True)):
-        level = (1 + TIE) * edge.best.at.J[i] + EXACT * sizes[i]
-        minima = [x.at for x in edge.minima if x.at.J[i] <= level]
+        level = (1 + TIE) * edge.best.J[i] + EXACT * sizes[i]
+        minima = [x.evaluation for x in edge.minima if x.J[i] <= level]
         out.append((name, weighted(np.eye(a.size)[i] / sizes), minima))
     if front.optimal:
         programme = LogSum(a)
-        level = programme.value(front.optimal[0].at.J) + TIE * a.sum()
-        minima = [x.at for x in front.optimal if programme.value(x.at.J) <= level]
+        level = programme.value(front.optimal[0].J) + TIE * a.sum()
+        minima = [x.evaluation for x in front.optimal if programme.value(x.J) <= level]
         out.append((label(Kind.OPTIMAL), programme, minima))
     return out
 
@@ -337,9 +337,9 @@ def _differentiate(
     problem: UpdatingProblem, start: Solution, w: Floats | None, source: Source | None
 ) -> Local | None:
     """Return second derivatives and noise at a point; None where the model is not defined."""
-    evaluation = start.at
+    evaluation = start.evaluation
     if w is not None:
-        evaluation = solve(problem, weighted(w), begin(evaluation)).at
+        evaluation = solve(problem, weighted(w), begin(evaluation)).evaluation
     point = second_order(problem, evaluation)
     if point is None:
         return None

@@ -22,10 +22,10 @@ def with_neighbours(
     sizes: Floats,
 ) -> dict[str, Scatter]:
     """Return the scatter of points with the warnings that their neighbours raise."""
-    ends = [end.at.J for gap in front.gaps for end in gap.ends]
+    ends = [end.J for gap in front.gaps for end in gap.ends]
     out: dict[str, Scatter] = {}
     for point in in_order(points):
-        label, evaluation = point.label, point.solution.at
+        label, evaluation = point.label, point.solution.evaluation
         if label not in scatter:
             continue
         if point.role.kind == "end":
@@ -58,6 +58,6 @@ def _has_rival(
         programme, others = LogSum(a), front.optimal[1:]
     else:
         return False
-    J = point.solution.at.J
+    J = point.solution.J
     changes = scatter.J @ programme.gradient(J)
-    return has_rival(programme.value(J), changes, [programme.value(x.at.J) for x in others])
+    return has_rival(programme.value(J), changes, [programme.value(x.J) for x in others])

@@ -16,7 +16,7 @@ from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.sensitivity import Sensitivities
 from modefront.diagnosis.words import enumerated
 from modefront.results.remarks import MOST, digest
-from modefront.study.check import Findings
+from modefront.study.check import Findings, spoils
 from modefront.study.definition import Study
 
 WIDTH = 80
@@ -59,11 +59,12 @@ def print_findings(study: Study, findings: Findings, *, every: bool = False) -> 
         f"(relative {findings.derivative_error:.1e})",
     )
     sentences = [*(f"warning: {text}" for text in findings.warnings[: len(findings.mistakes)])]
-    sentences += findings.determined[-1:]
-    sentences += [f"warning: {text}" for text in findings.warnings[len(findings.mistakes) :]]
-    if not findings.mistakes:  # what the data determine is another matter once these are gone
-        sentences += _advice(findings.sensitivities)
-    sentences += findings.determined[:-1]
+    warnings = [f"warning: {text}" for text in findings.warnings[len(findings.mistakes) :]]
+    if spoils(findings.mistakes):
+        sentences += [*warnings, "put this right first: it changes what the data determine"]
+    else:
+        sentences += [*findings.determined[-1:], *warnings]
+        sentences += [*_advice(findings.sensitivities), *findings.determined[:-1]]
     for line in digest(sentences, f"modefront check --all {study.file}", None if every else MOST):
         _say(output, line)
     if not findings.warnings:

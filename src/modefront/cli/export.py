@@ -7,17 +7,16 @@ import tempfile
 import tomllib
 from pathlib import Path
 
-import click
-
-from modefront.errors import Fault, InputError, ModelError, UnfinishedError, suggestion
+from modefront.cli.terminal import say
+from modefront.errors import Fault, InputError, ModelError, UnfinishedError, reason, suggestion
 from modefront.exports.model import Origin, matrix_size, write_model
 from modefront.models.dofs import read_dofs
 from modefront.programs.changes import read_changes
 from modefront.programs.mesh import read_mesh
 from modefront.results.files import FILE, read_dataset
 from modefront.results.results import Results
-from modefront.study.definition import Study
-from modefront.study.file import load
+from modefront.study.whereabouts import find_study, given_study
+from modefront.text import file_name
 
 
 def run_export(
@@ -30,10 +29,11 @@ def run_export(
     if point not in labels:
         found = suggestion(point, labels)
         raise InputError(Fault(str(directory / FILE), "--point", "the label of a model", found))
-    loaded = _study(directory, study, str(data.attrs["study"]), str(data.attrs["inputs"]))
+    name, digest = (str(data.attrs.get(key, "")) for key in ("study", "inputs"))
+    loaded = given_study(directory, study, digest) if study else find_study(directory, name, digest)
     results = Results(data, loaded.problem)
     model = results.model(point)
-    output = output or directory / f"export-{point}"
+    output = output or directory / file_name(f"export-{point}")
     try:
         count = min(modes or max(len(model.frequency), 1), matrix_size(model))
         output.mkdir(parents=True, exist_ok=True)
@@ -42,41 +42,14 @@ def run_export(
             files = sorted(Path(name).iterdir())
             for file in files:
                 shutil.move(file, output / file.name)
-                click.echo(f"wrote {output / file.name}")
+                say(f"wrote {output / file.name}")
     except ModelError as error:
         raise UnfinishedError(str(error)) from None
     except OSError as error:
         expected = "a folder that can be written to"
-        raise InputError(Fault(str(output), "folder", expected, str(error))) from None
+        raise InputError(Fault(str(output), "folder", expected, reason(error))) from None
     for what in missing:
-        click.echo(f"not written: {what}")
-
-
-def _study(directory: Path, given: Path | None, name: str, digest: str) -> Study:
-    """Return the study of results: the given one, or one beside them with the same inputs.
-
-    Raises InputError where there is none, or the given one is another.
-    """
-    folders = dict.fromkeys([directory, directory.absolute().parent, Path()])
-    files = [given] if given else [file for x in folders for file in sorted(x.glob("*.toml"))]
-    for file in files:
-        if given is None and not _is_named(file, name):
-            continue
-        study = load(file)
-        if study.digest == digest:
-            return study
-        if given is not None:
-            expected = f"the study of the results in '{directory}'"
-            raise InputError(Fault(str(file), "study", expected, "other inputs: run it again"))
-    expected = f"the study '{name}', unchanged, beside the results (or --study FILE)"
-    raise InputError(Fault(str(directory), "study", expected, "none"))
-
-
-def _is_named(file: Path, name: str) -> bool:
-    try:
-        return bool(tomllib.loads(file.read_text("utf-8-sig"))["study"]["name"] == name)
-    except (OSError, ValueError, KeyError, TypeError):
-        return False
+        say(f"not written: {what}")
 
 
 def _origin(file: Path) -> Origin:

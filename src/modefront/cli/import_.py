@@ -6,8 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-import click
-
+from modefront.cli.terminal import say
 from modefront.errors import Fault, InputError
 from modefront.programs import PROGRAMS
 from modefront.programs.base import JobOptions
@@ -51,29 +50,29 @@ def run_import(
         options,
         modes,
     )
-    imported = read_jobs(request, lambda text: click.echo(text, err=True))
+    imported = read_jobs(request, lambda text: say(text, err=True))
     files = write_study(imported, program, output)
     _print(imported, files, len(given.checks))
 
 
 def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
     terms = imported.terms
-    click.echo(f"{terms.dofs.size} degrees of freedom")
+    say(f"{terms.dofs.size} degrees of freedom")
     for note in imported.notes:
-        click.echo(f"  {note}")
+        say(f"  {note}")
     for term in terms.terms:
-        click.echo(f"{term.name}: {describe(term)}")
+        say(f"{term.name}: {describe(term)}")
     for error in imported.errors:
-        click.echo(f"affine: the run for checking differs by {error:.1e} of the greatest entry")
+        say(f"affine: the run for checking differs by {error:.1e} of the greatest entry")
     if not checks:
-        click.echo("not checked: --check RUN:NAME=VALUE,… compares with one more run")
+        say("not checked: --check RUN:NAME=VALUE,… compares with one more run")
     if imported.frequencies is not None:
         shown = " ".join(f"{f:.5g}" for f in imported.frequencies)
-        click.echo(f"frequencies of the nominal model: {shown} Hz")
-        click.echo("  others than your program prints: are units consistent (N, kg, m; N, t, mm)?")
+        say(f"frequencies of the nominal model: {shown} Hz")
+        say("  others than your program prints: are units consistent (N, kg, m; N, t, mm)?")
     for file in files:
-        click.echo(f"wrote {file}")
-    click.echo(f"next: add [data] and [model.sensors] to {files[-1]}, then modefront check it")
+        say(f"wrote {file}")
+    say(f"next: add [data] and [model.sensors] to {files[-1]}, then modefront check it")
 
 
 def _pair(option: str, text: str, form: str) -> tuple[str, str]:

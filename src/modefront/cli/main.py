@@ -330,7 +330,7 @@ def import_(program: str, base: Path, output: Path, modes: int | None, **given: 
 @click.option(
     "--study",
     type=click.Path(path_type=Path),
-    help="The study of the results  [default: the one beside them]",
+    help="The study of the results  [default: found where it was run]",
 )
 @click.option(
     "-o",

@@ -18,9 +18,9 @@ def prepare() -> None:
             stream.reconfigure(errors=SPELL)
 
 
-def say(text: str) -> None:
-    """Print one line."""
-    print(clean(text))
+def say(text: str, *, err: bool = False) -> None:
+    """Print one line, on standard error where that is wanted."""
+    print(clean(text), file=sys.stderr if err else sys.stdout)
 
 
 def complain(text: str) -> None:

@@ -13,7 +13,8 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.channels import Channel
-from modefront.data.impact import Estimator, ImpactResponses, impact_responses
+from modefront.data.impact import ImpactResponses, Windows, impact_responses
+from modefront.data.responses import ForceNoise
 from modefront.errors import Fault, InputError
 
 TIME, FORCE = "time", "force"
@@ -50,15 +51,6 @@ class Blow:
 
 
 @dataclass(frozen=True)
-class Windows:
-    """How functions are made of records: estimator, windows in seconds; see `impact_responses`."""
-
-    estimator: Estimator = "H1"
-    force_window: float | None = None
-    exponential: float | None = None
-
-
-@dataclass(frozen=True)
 class Contents:
     """What a file holds: functions, or the records of blows where there are no functions."""
 
@@ -87,12 +79,26 @@ def blow_of_columns(file: str, header: Sequence[str], values: Floats, reference:
     return Blow(file, "columns", reference, column[TIME], column[FORCE], responses)
 
 
-def channels_of_blows(
-    blows: Sequence[Blow], windows: Windows, quantity: str
-) -> tuple[list[Channel], list[str], float]:
-    """Return the functions of all references, which blows are left out and why, and the decay.
+@dataclass(frozen=True)
+class Averaged:
+    """Functions of all blows of a data set.
 
-    The decay in 1/s is that of the exponential window.
+    Attributes
+    ----------
+    channels : the functions
+    warnings : which blows are left out and why, and what has not died out
+    decay : that of the exponential window in 1/s
+    force_noise : that of each reference; None where a reference was hit for several measurements
+    """
+
+    channels: tuple[Channel, ...]
+    warnings: tuple[str, ...]
+    decay: float
+    force_noise: Mapping[str, ForceNoise | None]
+
+
+def averaged_blows(blows: Sequence[Blow], windows: Windows, quantity: str) -> Averaged:
+    """Return the functions of all references.
 
     ``quantity`` is that of the test file, or empty. Raises InputError where records do not fit, or
     no blow of a reference is left.
@@ -103,20 +109,22 @@ def channels_of_blows(
         groups.setdefault((blow.reference, tuple(blow.responses)), []).append(blow)
     channels: list[Channel] = []
     warnings = []
-    for group in groups.values():
-        found = _averaged(group, windows)
-        channels += _channels(group[0], found, quantity)
-        for blow, why in zip(group, found.left_out, strict=True):
+    noise: dict[str, ForceNoise | None] = {}
+    for (reference, _), group in groups.items():
+        result = _averaged(group, windows)
+        channels += _channels(group[0], result, quantity)
+        noise[reference] = None if reference in noise else result.data.force_noise
+        for blow, why in zip(group, result.left_out, strict=True):
             if why:
                 warnings.append(f"{blow.file}: {blow.place}: the blow is left out: {why}")
-        worst = found.remaining.max()
+        worst = result.remaining.max()
         if worst > REMAINING:
             warnings.append(
                 f"{group[0].file}: responses still have {worst:.0%} of their size at the end of "
                 "the record: expect errors of leakage; [impact] exponential takes a shorter time "
                 "constant"
             )
-    return channels, warnings, found.data.decay
+    return Averaged(tuple(channels), tuple(warnings), result.data.decay, noise)
 
 
 def _check_time(blows: Sequence[Blow]) -> None:
@@ -145,9 +153,7 @@ def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
             np.array([blow.force for blow in blows]),
             np.array([[blow.responses[name] for name in names] for blow in blows]),
             (len(first.time) - 1) / float(np.ptp(first.time)),
-            estimator=windows.estimator,
-            force_window=windows.force_window,
-            exponential=windows.exponential,
+            windows=windows,
             responses=names,
         )
     except ValueError as error:
@@ -157,8 +163,8 @@ def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
         raise InputError(Fault(first.file, place, expected, found)) from None
 
 
-def _channels(first: Blow, found: ImpactResponses, quantity: str) -> list[Channel]:
-    data = found.data
+def _channels(first: Blow, averaged: ImpactResponses, quantity: str) -> list[Channel]:
+    data = averaged.data
     variance = data.variance
     return [
         Channel(
@@ -169,7 +175,7 @@ def _channels(first: Blow, found: ImpactResponses, quantity: str) -> list[Channe
             data.frequency,
             data.H[0, i],
             first.quantity or quantity,
-            found.coherence[i] if variance is not None else None,
+            averaged.coherence[i] if variance is not None else None,
             None if variance is None else variance[0, i],
         )
         for i, name in enumerate(data.responses)

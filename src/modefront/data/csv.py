@@ -5,8 +5,9 @@ An empty field is not measured. The columns ``set`` and ``damping`` may be left 
 deviations, where known, are in columns of the same name with ``_std`` behind it; that of damping
 is checked, and used by nothing so far.
 
-Columns are separated by commas, semicolons or tabs, whichever the header has most of. Where they
-are not separated by commas, numbers may have decimal commas, as spreadsheets write them.
+Columns are separated by commas, semicolons or tabs, whichever the header has most of, or as a
+line ``sep=;`` before it says. Where they are not separated by commas, numbers may have decimal
+commas, as spreadsheets write them. Empty columns without names at the end are left out.
 """
 
 from __future__ import annotations
@@ -52,6 +53,9 @@ FIELDS = re.compile(
     rf"[ \t]*(?:{NUMBER.pattern})?[ \t]*(?:\n[ \t]*(?:{NUMBER.pattern})?[ \t]*)*", re.IGNORECASE
 )
 """Numbers and empty fields, one a line."""
+
+SEPARATOR_LINE = re.compile(r'"?sep=(?P<separator>[,;\t])"?[,;\t \r\n]*', re.IGNORECASE)
+"""First line by which spreadsheets say what separates the columns."""
 
 MODE = re.compile("[0-9]{1,9}")
 
@@ -107,19 +111,21 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
     """
     path, file = Path(path), str(path)
     with _reader(path) as rows:
-        header = [field.strip() for field in next(rows, (1, []))[1]]
+        first, fields = next(rows, (1, []))
+        header = "\0".join(map(str.strip, fields)).rstrip("\0").split("\0") if fields else []
+        rows = _trimmed(rows, len(header))
         if not header:
             raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
         if len(header) > MOST_COLUMNS:
             expected = f"up to {MOST_COLUMNS} columns"
-            raise InputError(Fault(file, "line 1", expected, str(len(header))))
+            raise InputError(Fault(file, f"line {first}", expected, str(len(header))))
         if sensors is None:
             sensors = [
                 name
                 for name in dict.fromkeys(header)
                 if name.isprintable() and name and not is_reserved(name, set(header))
             ]
-        faults = [_fault(file, 1, *found) for found in _header_faults(header, sensors)]
+        faults = [_fault(file, first, *found) for found in _header_faults(header, sensors)]
         if faults:
             raise InputError(faults)
         parts: list[_Rows] = []
@@ -189,13 +195,13 @@ def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
     try:
         refuse_holes(path, expected, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:
-            separator = _separator(stream)
+            separator, before = _separator(stream)
             reader = csv.reader(stream, delimiter=separator, strict=True, skipinitialspace=True)
-            rows = ((reader.line_num, row) for row in reader if any(map(str.strip, row)))
+            rows = ((before + reader.line_num, row) for row in reader if any(map(str.strip, row)))
             try:
                 yield rows if separator == "," else _with_points(rows)
             except csv.Error as error:
-                place = f"line {reader.line_num}"
+                place = f"line {before + reader.line_num}"
                 raise InputError(Fault(str(path), place, "CSV", reason(error))) from None
     except InputError:
         raise
@@ -203,13 +209,27 @@ def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
         raise InputError(Fault(str(path), "file", "CSV in UTF-8", reason(error))) from None
 
 
-def _separator(stream: TextIO) -> str:
-    """Return what separates the columns of a file, and go back to its beginning."""
-    first = stream.readline(LONGEST_LINE)
+def _separator(stream: TextIO) -> tuple[str, int]:
+    """Return what separates the columns of a file, and how many lines before the header say it.
+
+    The stream is left at the first line that counts.
+    """
+    lines, first = 1, stream.readline(LONGEST_LINE)
     while first and not first.strip(SEPARATORS + " \r\n"):
-        first = stream.readline(LONGEST_LINE)
+        lines, first = lines + 1, stream.readline(LONGEST_LINE)
+    said = SEPARATOR_LINE.fullmatch(first)
+    if said:
+        return said["separator"], lines
     stream.seek(0)
-    return max(SEPARATORS, key=first.count)
+    return max(SEPARATORS, key=first.count), 0
+
+
+def _trimmed(rows: Iterator[tuple[int, list[str]]], width: int) -> Iterator[tuple[int, list[str]]]:
+    """Yield the rows without empty fields beyond the last column that has a name."""
+    for number, row in rows:
+        if len(row) > width and not any(map(str.strip, row[width:])):
+            row = row[:width]
+        yield number, row
 
 
 def _with_points(rows: Iterator[tuple[int, list[str]]]) -> Iterator[tuple[int, list[str]]]:

@@ -28,8 +28,8 @@ from typing import Literal, get_args
 import numpy as np
 import scipy.fft
 
-from modefront._typing import Complexes, Floats
-from modefront.data.responses import FrequencyResponses, frequency_responses
+from modefront._typing import Bools, Complexes, Floats
+from modefront.data.responses import ForceNoise, FrequencyResponses, frequency_responses
 
 Estimator = Literal["H1", "H2", "Hv"]
 ESTIMATORS: tuple[Estimator, ...] = get_args(Estimator)
@@ -44,13 +44,51 @@ TAPER = 0.1
 """Share of the force window over which it falls to zero."""
 
 
+LEAST_SHARE = 1e-4
+"""Energy of the window of the force over the greatest, from which on its noise counts."""
+
+
+@dataclass(frozen=True)
+class Windows:
+    """How functions are made of records.
+
+    Attributes
+    ----------
+    estimator : H1, H2 or Hv
+    force_window : seconds after the peak beyond which the force is set to zero, or None
+    exponential : time constant tau of the exponential window in seconds, by default a quarter of
+        the record; infinity is no window, for responses that die out by themselves
+    """
+
+    estimator: Estimator = "H1"
+    force_window: float | None = None
+    exponential: float | None = None
+
+    def __post_init__(self) -> None:
+        """Raise ValueError for an unknown estimator."""
+        if self.estimator not in ESTIMATORS:
+            raise ValueError(f"expected estimator 'H1', 'H2' or 'Hv', found {self.estimator!r}")
+
+    def of_force(self, force: Floats, t: Floats) -> Floats:
+        """Return the force window of every blow, (blows, samples)."""
+        if self.force_window is None:
+            return np.ones(force.shape)
+        peaks = t[np.abs(force).argmax(axis=1)][:, None]
+        past = (t - peaks - self.force_window * (1 - TAPER)) / (self.force_window * TAPER)
+        return 0.5 + 0.5 * np.cos(np.pi * np.clip(past, 0, 1))
+
+    def decay(self, t: Floats) -> float:
+        """Return the decay rate of the exponential window for records over times ``t``."""
+        return 1 / (len(t) * t[1] / 4 if self.exponential is None else self.exponential)
+
+
 @dataclass(frozen=True)
 class ImpactResponses:
     """Functions from impacts.
 
     Attributes
     ----------
-    data : the functions, with the variance of their mean from coherence
+    data : the functions, with the variance of their mean from the scatter of the blows
     coherence : (responses, lines)
     left_out : (blows,) why each blow is not in the mean; empty where it is
     remaining : (responses,) rms at the end of the windowed records over the greatest
@@ -67,11 +105,7 @@ def impact_responses(
     response: Floats,
     rate: float,
     quantity: str = "accelerance",
-    *,
-    estimator: Estimator = "H1",
-    force_window: float | None = None,
-    exponential: float | None = None,
-    reference: str = "1",
+    windows: Windows | None = None,
     responses: tuple[str, ...] | None = None,
 ) -> ImpactResponses:
     """Return the functions of one reference from several blows.
@@ -81,29 +115,53 @@ def impact_responses(
     force : (blows, samples)
     response : (blows, responses, samples)
     rate : samples per second
-    force_window : seconds after the peak beyond which the force is set to zero
-    exponential : time constant tau of the exponential window in seconds, by default a quarter of
-        the record; infinity is no window, for responses that die out by themselves
+    quantity : what responses over force are
+    windows : estimator and windows
+    responses : names
 
     Double hits and overloads are left out and said. What the exponential window adds to all decay
-    rates is noted in the data, and `identify` takes it off. Raises ValueError where none is left,
-    where the arrays do not fit, or for an unknown estimator.
+    rates is noted in the data, and `identify` takes it off. Raises ValueError where no blow is
+    left, or where the arrays do not fit.
     """
+    windows = windows or Windows()
     force, response = np.asarray(force, float), np.asarray(response, float)
     if force.ndim != 2 or response.ndim != 3 or response.shape[::2] != force.shape:
         expected = "force (blows, samples) and response (blows, responses, samples)"
         raise ValueError(f"expected {expected}, found {force.shape} and {response.shape}")
-    if estimator not in ESTIMATORS:
-        raise ValueError(f"expected estimator 'H1', 'H2' or 'Hv', found {estimator!r}")
+    reasons, used = _good_blows(force, response, rate, windows.force_window)
+    force, response = force[used], response[used]
+    t = np.arange(force.shape[1]) / rate
+    decay = windows.decay(t)
+    window = windows.of_force(force, t) * np.exp(-decay * t)
+    y = response * np.exp(-decay * t)
+    X, Y = scipy.fft.rfft(force * window), scipy.fft.rfft(y)
+    H, coherence = _estimates(X, Y, windows.estimator)
+    data = frequency_responses(
+        scipy.fft.rfftfreq(force.shape[1], 1 / rate),
+        H,
+        quantity,
+        responses=responses,
+        variance=_variance(H, X, Y)[None] if len(X) > 1 else None,
+    )
+    noise = _force_noise(force, window, X, t)
+    data = replace(data, decay=decay, force_noise=noise)
+    return ImpactResponses(data, coherence, reasons, _remaining(y))
+
+
+def _good_blows(
+    force: Floats, response: Floats, rate: float, force_window: float | None
+) -> tuple[tuple[str, ...], Bools]:
+    """Return why each blow is left out, and which ones are not; raise ValueError for none."""
     reasons = [_reason(x, y, rate, force_window) for x, y in zip(force, response, strict=True)]
     used = np.array([not why for why in reasons])
     if not used.any():
-        found = "; ".join(f"blow {b + 1}: {why}" for b, why in enumerate(reasons))
-        raise ValueError(f"expected at least one good blow, found none: {found}")
-    if exponential is None:
-        exponential = force.shape[1] / rate / 4
-    x, y = _windowed(force[used], response[used], rate, force_window, exponential)
-    X, Y = scipy.fft.rfft(x), scipy.fft.rfft(y)
+        faults = "; ".join(f"blow {b + 1}: {why}" for b, why in enumerate(reasons))
+        raise ValueError(f"expected at least one good blow, found none: {faults}")
+    return tuple(reasons), used
+
+
+def _estimates(X: Complexes, Y: Complexes, estimator: Estimator) -> tuple[Complexes, Floats]:
+    """Return the functions and the coherence, (responses, lines), of spectra of all blows."""
     S_xx = np.sum(np.abs(X) ** 2, axis=0)
     S_yx = np.sum(Y * X[:, None].conj(), axis=0)
     S_yy = np.sum(np.abs(Y) ** 2, axis=0)
@@ -113,24 +171,45 @@ def impact_responses(
         H = _over(S_yy, S_yx.conj())
     else:
         H = _over(S_yx, np.abs(S_yx)) * np.sqrt(_over(S_yy, S_xx).real)
-    coherence = _over(np.abs(S_yx), S_xx).real * _over(np.abs(S_yx), S_yy).real
-    blows = int(used.sum())
-    unbiased = np.clip((blows * coherence - 1) / max(blows - 1, 1), 0.0, 1.0)
-    data = frequency_responses(
-        scipy.fft.rfftfreq(force.shape[1], 1 / rate),
-        H,
-        quantity,
-        references=(reference,),
-        responses=responses,
-        coherence=unbiased[None] if blows > 1 else None,
-        blows=blows if blows > 1 else None,
-    )
-    data = replace(data, decay=1 / exponential)
-    return ImpactResponses(data, coherence, tuple(reasons), _remaining(y))
+    coherence: Floats = _over(np.abs(S_yx), S_xx).real * _over(np.abs(S_yx), S_yy).real
+    return H, coherence
+
+
+def _variance(H: Complexes, X: Complexes, Y: Complexes) -> Floats:
+    r"""Return the variance of the functions from the scatter of the blows, (responses, lines).
+
+    With :math:`e_b = Y_b - H X_b` and :math:`h_b = |X_b|^2 / S_{xx}`, it is
+    :math:`\sum_b |X_b e_b|^2 / (1 - h_b) / S_{xx}^2`, also where hard blows have more noise than
+    soft ones (MacKinnon & White, J. Econom. 29 (1985) 305-325, doi:10.1016/0304-4076(85)90158-7:
+    HC2); coherence knows one level of noise only.
+    """
+    power = np.abs(X) ** 2
+    share = _over(power, np.sum(power, axis=0)).real[:, None]
+    e = np.abs(Y - H * X[:, None]) ** 2
+    left = np.maximum(1 - share, np.finfo(float).eps)
+    out: Floats = _over(np.sum(share * e / left, axis=0), np.sum(power, axis=0)).real
+    return out
+
+
+def _force_noise(force: Floats, window: Floats, X: Complexes, t: Floats) -> ForceNoise:
+    """Return what noise of the force channel does to the functions, from samples after impacts.
+
+    The second half of the records has no force; its scatter is the noise.
+    """
+    quiet = force[:, force.shape[1] // 2 :]
+    level = np.mean((quiet - quiet.mean(axis=1, keepdims=True)) ** 2, axis=1)
+    energy = window**2
+    power = np.abs(X) ** 2
+    of_blows = (level * energy.sum(axis=1))[:, None]
+    variance = _over(np.sum(power * of_blows, axis=0), np.sum(power, axis=0) ** 2).real
+    kept = energy[0] > LEAST_SHARE * energy[0].max()
+    times = t[kept] - t[np.abs(force[0]).argmax()]
+    share = energy[0, kept] / energy[0, kept].sum()
+    return ForceNoise(np.sqrt(np.nan_to_num(variance))[None], (times,), (share,))
 
 
 def _over(a: Complexes | Floats, b: Complexes | Floats) -> Complexes:
-    """Return a / b, NaN where b is no more than rounding of its greatest value."""
+    """Return a / b, NaN where the power b is no more than rounding of its greatest value."""
     good = np.abs(b) > 1e-24 * np.abs(b).max(initial=0.0)
     out: Complexes = np.where(good, a / np.where(good, b, 1.0), np.nan).astype(complex)
     return out
@@ -187,16 +266,3 @@ def _remaining(y: Floats) -> Floats:
     rms = np.sqrt(np.mean(parts**2, axis=(0, 3)))
     out: Floats = rms[:, -1] / np.maximum(rms.max(axis=1), np.finfo(float).tiny)
     return out
-
-
-def _windowed(
-    force: Floats, response: Floats, rate: float, force_window: float | None, exponential: float
-) -> tuple[Floats, Floats]:
-    """Return force and responses after the windows."""
-    t = np.arange(force.shape[1]) / rate
-    decay = np.exp(-t / exponential)
-    if force_window is not None:
-        peaks = np.abs(force).argmax(axis=1)[:, None] / rate
-        past = (t - peaks - force_window * (1 - TAPER)) / (force_window * TAPER)
-        force = force * (0.5 + 0.5 * np.cos(np.pi * np.clip(past, 0, 1)))
-    return force * decay, response * decay

@@ -12,11 +12,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
-from modefront.data.blows import Contents, Windows, channels_of_blows
+from modefront.data.blows import Averaged, Contents, averaged_blows
 from modefront.data.channels import Assembled, Channel, assemble
 from modefront.data.frf_csv import read_test_csv
-from modefront.data.impact import ESTIMATORS
-from modefront.data.responses import ORDERS
+from modefront.data.impact import ESTIMATORS, Windows
+from modefront.data.responses import ORDERS, joined
 from modefront.data.uff import read_uff
 from modefront.errors import Fault, InputError, reason, suggestion
 from modefront.inputs import read_text_bytes
@@ -225,7 +225,8 @@ def _assembled(
     contents: Sequence[Contents], name: str, settings: _Settings, root: Table | None = None
 ) -> Assembled:
     """Return one data set with the names of the test file, at the side that has the sensors."""
-    channels, left_out, decay = _functions(contents, name, settings, root)
+    averaged = _functions(contents, name, settings, root)
+    channels = averaged.channels
     responses = {channel.response for channel in channels}
     references = {channel.reference for channel in channels}
     named = settings.sensors
@@ -246,14 +247,19 @@ def _assembled(
         turned = len(references) > len(responses) == 1
     named_channels = [_named(channel, named) for channel in channels]
     assembled = assemble(named_channels, settings.quantity, name, turned)
-    return Assembled(replace(assembled.data, decay=decay), (*left_out, *assembled.warnings))
+    noise = {_name(label, named)[0]: each for label, each in averaged.force_noise.items()}
+    known = None
+    if not turned:  # else each point of the hammer, now a response, has noise of its own
+        known = joined([noise.get(label) for label in assembled.data.references])
+    data = replace(assembled.data, decay=averaged.decay, force_noise=known)
+    return Assembled(data, (*averaged.warnings, *assembled.warnings))
 
 
 def _functions(
     contents: Sequence[Contents], name: str, settings: _Settings, root: Table | None
-) -> tuple[list[Channel], list[str], float]:
-    """Return the channels of a set, made of blows where it has any, warnings, and the decay."""
-    channels = [channel for content in contents for channel in content.channels]
+) -> Averaged:
+    """Return the channels of a set, made of blows where it has any."""
+    channels = tuple(channel for content in contents for channel in content.channels)
     blows = [blow for content in contents for blow in content.blows]
     windows = settings.windows
     if root is not None and channels and (blows or windows):
@@ -264,8 +270,8 @@ def _functions(
         )
         raise InputError(Fault(root.file, place, expected, found))
     if not blows:
-        return channels, [], 0.0
-    return channels_of_blows(blows, windows or Windows(), settings.quantity)
+        return Averaged(channels, (), 0.0, {})
+    return averaged_blows(blows, windows or Windows(), settings.quantity)
 
 
 def _named(channel: Channel, names: dict[str, str]) -> Channel:

@@ -16,6 +16,7 @@ symbol                      meaning
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -24,6 +25,43 @@ from modefront._typing import Bools, Complexes, Floats
 
 ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2}
 """How often the displacement is differentiated in each quantity."""
+
+
+@dataclass(frozen=True)
+class ForceNoise:
+    r"""Noise of the force channel, the same for all responses of a reference.
+
+    The functions of reference j are multiplied by :math:`1 - \varepsilon_j(f)` with
+
+    .. math:: E[\varepsilon_j(f)\,\varepsilon_j^*(f')] = \sigma_j(f)\,\sigma_j(f')
+              \sum_m p_{jm} e^{-2\pi\mathrm{i}(f - f') t_{jm}},\qquad \sum_m p_{jm} = 1:
+
+    where a force window is short, the errors are smooth over frequency.
+
+    Attributes
+    ----------
+    deviation : (references, lines) sigma
+    times : (samples,) of each reference, t in s from the impact
+    share : (samples,) of each reference, p
+    """
+
+    deviation: Floats
+    times: tuple[Floats, ...]
+    share: tuple[Floats, ...]
+
+    def lines(self, kept: Bools) -> ForceNoise:
+        """Return the lines that are kept, (lines,)."""
+        return replace(self, deviation=self.deviation[:, kept])
+
+
+def joined(parts: Sequence[ForceNoise | None]) -> ForceNoise | None:
+    """Return the noise of all references; None where that of one is not known."""
+    known = [part for part in parts if part is not None]
+    if not known or len(known) < len(parts):
+        return None
+    times = tuple(t for part in known for t in part.times)
+    share = tuple(p for part in known for p in part.share)
+    return ForceNoise(np.concatenate([part.deviation for part in known]), times, share)
 
 
 @dataclass(frozen=True)
@@ -40,6 +78,7 @@ class FrequencyResponses:
     scaled : whether ``variance`` is known up to a factor for each function only, as it is from
         coherence where the number of blows is not known
     decay : what an exponential window added to the decay rate of every pole, in 1/s
+    force_noise : noise of the force channel, where it is known
     """
 
     frequency: Floats
@@ -50,6 +89,7 @@ class FrequencyResponses:
     variance: Floats | None = None
     scaled: bool = False
     decay: float = 0.0
+    force_noise: ForceNoise | None = None
 
     def __post_init__(self) -> None:
         """Raise ValueError where the arrays do not fit."""
@@ -80,6 +120,7 @@ class FrequencyResponses:
             frequency=self.frequency[kept],
             H=self.H[..., kept],
             variance=None if self.variance is None else self.variance[..., kept],
+            force_noise=None if self.force_noise is None else self.force_noise.lines(kept),
         )
 
 

@@ -1,5 +1,8 @@
 r"""Modes of a test from a universal file: dataset 55, with the geometry of datasets 15 and 2411.
 
+Components are along the axes of the displacement system of their node. Dataset 2420 holds these
+systems: three rows of axes and one of the origin; without it, all are those of the file.
+
 Dataset 55 holds one shape at all nodes: of a normal mode (analysis type 2) with its frequency and
 damping, or of a complex one (3 and 7) with its eigenvalue :math:`\lambda`,
 
@@ -31,9 +34,17 @@ SUFFIXES = (".uff", ".unv", ".uf")
 
 GEOMETRY = (15, 2411)
 
+SYSTEMS = 2420
+"""Dataset of coordinate systems."""
+
+CARTESIAN, CYLINDRICAL = 0, 1
+
 WHAT = "a universal file with modes (dataset 55)"
 
 NORMAL, COMPLEX = 2, (3, 7)
+
+ALONG = 1e-6
+"""Component of a unit vector, below which it is the rounding of the axes in a file."""
 
 NAMES = tuple(AXES.values())
 """Directions in the order of the components."""
@@ -49,6 +60,7 @@ class NodalModes:
     sets, modes : names of the data sets, numbers of the modes
     nodes : (nodes,) their numbers
     position : (nodes, 3) coordinates; NaN where the file has none
+    axes : (nodes, 3, 3) axes of the components, in rows; NaN where the file does not tell them
     frequency, damping : (sets, modes) in Hz, and ratios; NaN where none
     shape : (sets, modes, nodes, 6) components along X, Y, Z, RX, RY and RZ; NaN if not measured
     """
@@ -58,9 +70,20 @@ class NodalModes:
     modes: tuple[int, ...]
     nodes: Ints
     position: Floats
+    axes: Floats
     frequency: Floats
     damping: Floats
     shape: Floats
+
+    def local(self, node: int, direction: Floats) -> Floats:
+        """Return a direction (6,) of space along the axes of a node, by position."""
+        out = np.concatenate([self.axes[node] @ half for half in (direction[:3], direction[3:])])
+        return np.asarray(np.where(np.abs(out) > ALONG, out, 0.0))
+
+    def in_space(self, node: int, direction: Floats) -> Floats:
+        """Return a direction (6,) along the axes of a node, by position, in space."""
+        halves = (direction[:3], direction[3:])
+        return np.concatenate([half @ self.axes[node] for half in halves])
 
     @property
     def measured(self) -> tuple[str, ...]:
@@ -125,7 +148,8 @@ def read_uff55(path: Path) -> NodalModes:
         raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
     rows = [_mode(decode(content, one, file), one, file) for one in shapes]
     geometry = [decode(content, one, file) for one in found if one.number in GEOMETRY]
-    return _assembled(file, rows, _positions(geometry))
+    systems = [decode(content, one, file) for one in found if one.number == SYSTEMS]
+    return _assembled(file, rows, _positions(geometry), _axes(geometry, systems))
 
 
 @dataclass(frozen=True, eq=False)
@@ -192,7 +216,50 @@ def _positions(geometry: Sequence[Mapping[str, Any]]) -> dict[int, Floats]:
     return out
 
 
-def _assembled(file: str, rows: Sequence[_Mode], positions: Mapping[int, Floats]) -> NodalModes:
+def _axes(
+    geometry: Sequence[Mapping[str, Any]], systems: Sequence[Mapping[str, Any]]
+) -> dict[int, Floats]:
+    """Return the axes (3, 3) of nodes with a displacement system; NaN where it is not known.
+
+    Where no dataset 2420 says what the systems are, they are those of the file.
+    """
+    known = {
+        int(label): (int(kind), np.asarray(matrix, float))
+        for values in systems
+        for label, kind, matrix in zip(
+            *(values[key] for key in ("CS_sys_labels", "CS_types", "CS_matrices")), strict=True
+        )
+    }
+    out: dict[int, Floats] = {}
+    for values in geometry if known else ():
+        for node, label in zip(values["node_nums"], values["disp_cs"], strict=True):
+            if int(label) != 0:
+                point = _positions([values])[int(node)]
+                out[int(node)] = _axes_at(point, known.get(int(label)))
+    return out
+
+
+def _axes_at(point: Floats, system: tuple[int, Floats] | None) -> Floats:
+    """Return the axes (3, 3) of a coordinate system at a point; NaN where they are not known."""
+    if system is None or system[0] not in (CARTESIAN, CYLINDRICAL):
+        return np.full((3, 3), np.nan)
+    kind, matrix = system
+    axes, origin = matrix[:3], matrix[3]
+    axes = axes / np.linalg.norm(axes, axis=1, keepdims=True)
+    if kind == CARTESIAN:
+        return np.asarray(axes)
+    x, y, _ = axes @ (point - origin)
+    radius = float(np.hypot(x, y))
+    c, s = (x / radius, y / radius) if radius > 0 else (1.0, 0.0)
+    return np.asarray(np.array([[c, s, 0.0], [-s, c, 0.0], [0.0, 0.0, 1.0]]) @ axes)
+
+
+def _assembled(
+    file: str,
+    rows: Sequence[_Mode],
+    positions: Mapping[int, Floats],
+    axes: Mapping[int, Floats],
+) -> NodalModes:
     """Return all modes as arrays; modes of the same number are those of a further data set."""
     placed: dict[tuple[str, int], _Mode] = {}
     for position, row in enumerate(rows):
@@ -217,4 +284,5 @@ def _assembled(file: str, rows: Sequence[_Mode], positions: Mapping[int, Floats]
     for values in shape:
         values[:, ~(np.nan_to_num(values) != 0).any(axis=0)] = np.nan
     places = np.array([positions.get(int(node), np.full(3, np.nan)) for node in nodes])
-    return NodalModes(file, sets, modes, nodes, places, frequency, damping, shape)
+    own = np.array([axes.get(int(node), np.eye(3)) for node in nodes])
+    return NodalModes(file, sets, modes, nodes, places, own, frequency, damping, shape)

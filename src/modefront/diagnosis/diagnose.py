@@ -8,7 +8,7 @@ import numpy as np
 
 from modefront.diagnosis.comparison import Comparison, with_data
 from modefront.diagnosis.damping import DampingInPercent, damping_findings
-from modefront.diagnosis.explain import WrongPlaces, explained, finding_of
+from modefront.diagnosis.explain import WrongPlaces, explained, finding_of, pairs_of
 from modefront.diagnosis.measured import measured
 from modefront.diagnosis.opposed import OpposedSensor, opposed_findings
 from modefront.diagnosis.pairs import OutsideModel, PairFinding, pair_findings, without_outside
@@ -60,7 +60,9 @@ def diagnose(comparison: Comparison) -> list[Finding]:
     if isinstance(unit, FrequencyFactor):
         shift = float(np.log(unit.factor))
     out: list[Finding] = [*factors, *numbers, *([unit] if unit else []), *in_sets]
-    out += [sensors] if sensors else opposed_findings(comparison, inside)
+    out += [sensors] if sensors else []
+    paired = best.phi[:, pairs_of(comparison, best)]
+    out += opposed_findings(comparison.data.sensors, best.view, paired)
     out += [*frequency_findings(data), *shape_findings(data, view), *damping_findings(data)]
     if not isinstance(unit, OtherQuantity):
         # Shapes in which sensors of single data sets are put right.

@@ -13,7 +13,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.diagnosis.changes import Change, applied
 from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.fit import Fit
@@ -188,6 +188,13 @@ def _is_better(new: Fit | None, old: Fit | None, count: int) -> bool:
     return left < PROVED * before and gained > LEAST * count
 
 
+def pairs_of(comparison: Comparison, found: Explanation) -> Ints:
+    """Return the model mode of each measured mode under an explanation, (modes,)."""
+    mac = mac_values(found.view.psi, found.view.seen, found.phi)
+    logs = found.view.log_frequency
+    return assigned(pair_costs(mac, logs, comparison.log_frequency, found.shift))[0]
+
+
 def finding_of(
     comparison: Comparison, view: Measured, found: Explanation
 ) -> WrongSensors | WrongPlaces | None:
@@ -195,8 +202,7 @@ def finding_of(
     if found.is_plain:
         return None
     mac = mac_values(found.view.psi, found.view.seen, found.phi)
-    logs = found.view.log_frequency
-    index, _ = assigned(pair_costs(mac, logs, comparison.log_frequency, found.shift))
+    index = pairs_of(comparison, found)
     rows = np.arange(index.size)
     before, after = mac_values(view.psi, view.seen, comparison.phi)[rows, index], mac[rows, index]
     if found.relocation is None:

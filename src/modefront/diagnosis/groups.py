@@ -29,11 +29,12 @@ def unused_groups(mesh: Mesh, elements: Iterable[str], nodes: Iterable[str]) -> 
 
     A group that shares all of its cells with those that have elements is another name for them.
     """
-    used = {*elements, *nodes}
+    with_elements = set(elements)
+    used = with_elements.union(nodes)
     made = {
         tuple(sorted(cell))
         for block in mesh.blocks
-        if block.group in set(elements)
+        if block.group in with_elements
         for cell in block.cells.tolist()
     }
     out: dict[str, UnusedGroup] = {}

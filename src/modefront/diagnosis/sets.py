@@ -31,6 +31,9 @@ FACTOR = float(np.log(1.5))
 RENUMBERED = 0.3
 """Cost that another numbering has to save for each mode, of 2 at most."""
 
+ODD = 2.0
+"""Distance of the farthest set from the others, over that of the next, to be the odd one."""
+
 CROSS_MAC, SCATTER = 0.85, 6.0
 """Cross-MAC below which shapes disagree, and 1 - MAC over that of the other modes."""
 
@@ -59,14 +62,15 @@ class SetFrequency:
     Attributes
     ----------
     mode : measured mode
-    set, other : the data sets
-    frequency, other_frequency : in Hz
+    set : a data set; of three and more, the one that all others contradict, if there is one
+    others : the data set that it disagrees with, or all others
+    frequency, other_frequency : in Hz; of several others, their median
     scatter : relative scatter that was expected
     """
 
     mode: int
     set: str
-    other: str
+    others: tuple[str, ...]
     frequency: float
     other_frequency: float
     scatter: float
@@ -96,15 +100,16 @@ class SetShape:
     Attributes
     ----------
     mode : measured mode
-    set, other : the data sets
-    mac : their cross-MAC
+    set : a data set; of three and more, the one that all others contradict, if there is one
+    others : the data set that it disagrees with, or all others
+    mac : their cross-MAC; of several others, the best
     resembles : mode of the other set that it resembles instead; 0 for none
     other_mac : cross-MAC with that one
     """
 
     mode: int
     set: str
-    other: str
+    others: tuple[str, ...]
     mac: float
     resembles: int
     other_mac: float
@@ -154,36 +159,77 @@ def _distance(f: Floats, of_model: Floats) -> float:
 
 
 def frequency_findings(data: ModalData) -> list[SetFactor | SetFrequency]:
-    """Return the frequencies in which pairs of data sets disagree; of a mode, the worst pair."""
+    """Return the data sets of which all frequencies are shifted, and single ones that disagree."""
+    shifts, data = _shifts(data)
     worst: dict[int, tuple[float, SetFrequency]] = {}
-    out: list[SetFactor | SetFrequency] = []
-    for k, first in enumerate(data.sets):
+    for k in range(len(data.sets)):
         for j in range(k):
-            shift, found = _between(data, j, k)
-            if shift:
-                out.append(SetFactor(first, data.sets[j], float(np.exp(shift)), ""))
-            for size, finding in found:
+            for size, finding in _between(data, j, k):
                 if finding.mode not in worst or size > worst[finding.mode][0]:
                     worst[finding.mode] = size, finding
-    return [*out, *(finding for _, (_, finding) in sorted(worst.items()))]
+    return [*shifts, *(_odd_frequency(data, finding) for _, (_, finding) in sorted(worst.items()))]
 
 
-def _between(data: ModalData, j: int, k: int) -> tuple[float, list[tuple[float, SetFrequency]]]:
-    """Return the common shift of two sets, 0 for none, and the modes in which they disagree."""
+def _shifts(data: ModalData) -> tuple[list[SetFactor], ModalData]:
+    """Return the sets of which all frequencies are shifted, the most first, and data without."""
+    out: list[SetFactor] = []
+    f, count = data.frequency.copy(), len(data.sets)
+    for _ in range(count - 1):
+        # Of two sets nobody can say which of them is shifted.
+        found = [(_shift(data, f, k), k) for k in range(1 if count == 2 else 0, count)]
+        value, k = max(found, key=lambda each: abs(each[0]))
+        if value == 0:
+            break
+        others = [name for i, name in enumerate(data.sets) if i != k]
+        out.append(SetFactor(data.sets[k], " and ".join(others[:2]), float(np.exp(value)), ""))
+        f[k] /= np.exp(value)
+    return out, replace(data, frequency=f) if out else data
+
+
+def _shift(data: ModalData, f: Floats, k: int) -> float:
+    """Return the logarithm of the common shift of frequencies f of set k; 0 for none."""
+    difference = _ratio_to_others(f, k)
+    if difference.size < 3:
+        return 0.0
+    middle = float(np.median(difference))
+    spread = float(np.median(np.abs(difference - middle)))
+    relative = np.nan_to_num(data.frequency_std / f)
+    known = np.isfinite(f)
+    sigma = float(np.sqrt(2) * np.median(relative[known])) if known.any() else 0.0
+    least, share = SHIFTED
+    is_shifted = abs(middle) > max(least, KNOWN * sigma) and spread < share * abs(middle)
+    return middle if is_shifted else 0.0
+
+
+def _odd_frequency(data: ModalData, found: SetFrequency) -> SetFrequency:
+    """Return the finding with the one set that all others contradict, where there is one."""
+    r = data.modes.index(found.mode)
+    known = np.flatnonzero(np.isfinite(data.frequency[:, r]))
+    if known.size < 3:
+        return found
+    logs = np.log(data.frequency[known, r])
+    away = np.abs(logs - np.median(logs))
+    order = np.argsort(away)
+    if away[order[-1]] < ODD * away[order[-2]]:
+        return found
+    k = int(known[order[-1]])
+    others = [int(j) for j in known if j != k]
+    return replace(
+        found,
+        set=data.sets[k],
+        others=tuple(data.sets[j] for j in others),
+        frequency=float(data.frequency[k, r]),
+        other_frequency=float(np.median(data.frequency[others, r])),
+    )
+
+
+def _between(data: ModalData, j: int, k: int) -> list[tuple[float, SetFrequency]]:
+    """Return the modes in which two sets disagree, with the difference over its limit."""
     f, std = data.frequency, np.nan_to_num(data.frequency_std)
     known = np.isfinite(f[j]) & np.isfinite(f[k])
     rows = np.flatnonzero(known)
     difference = np.log(f[k, rows] / f[j, rows])
     sigma = np.hypot(std[k, rows] / f[k, rows], std[j, rows] / f[j, rows])
-    middle = float(np.median(difference)) if rows.size else 0.0
-    spread = float(np.median(np.abs(difference - middle))) if rows.size else 0.0
-    least, share = SHIFTED
-    shifted = (
-        rows.size > 2
-        and abs(middle) > max(least, KNOWN * float(np.median(sigma)))
-        and spread < share * abs(middle)
-    )
-    difference = difference - middle if shifted else difference
     found = []
     for i, r in enumerate(rows.tolist()):
         if sigma[i] > 0:
@@ -194,11 +240,11 @@ def _between(data: ModalData, j: int, k: int) -> tuple[float, list[tuple[float, 
             limit = max(UNKNOWN * scatter, LEAST_UNKNOWN)
         if abs(difference[i]) > limit:
             finding = SetFrequency(
-                *(data.modes[r], data.sets[k], data.sets[j]),
+                *(data.modes[r], data.sets[k], (data.sets[j],)),
                 *(float(f[k, r]), float(f[j, r]), scatter),
             )
             found.append((abs(float(difference[i])) / limit, finding))
-    return middle if shifted else 0.0, found
+    return found
 
 
 def numbering_findings(data: ModalData, of_model: Floats) -> tuple[list[SetNumbers], ModalData]:
@@ -274,9 +320,15 @@ def _renumbered(data: ModalData, k: int, index: Ints) -> ModalData:
 
 
 def shape_findings(data: ModalData, view: Measured) -> list[SetShape]:
-    """Return the modes of which the shapes of two data sets disagree; of a mode, the worst pair."""
+    """Return the modes of which the shapes of two data sets disagree; of a mode, the worst pair.
+
+    Of three sets and more, the one that all others contradict comes first.
+    """
     worst: dict[int, SetShape] = {}
+    count = len(data.sets)
+    away = np.full((len(data.modes), count, count), np.nan)
     for k, j, mac in _cross(view):
+        away[:, k, j] = away[:, j, k] = 1 - np.diag(mac)
         for r, mode in enumerate(data.modes):
             value = mac[r, r]
             others = np.delete(np.diag(mac), r)
@@ -288,12 +340,32 @@ def shape_findings(data: ModalData, view: Measured) -> list[SetShape]:
             best = int(np.argmax(elsewhere))
             is_other = elsewhere[best] > 0.8
             finding = SetShape(
-                *(mode, data.sets[k], data.sets[j], float(value)),
+                *(mode, data.sets[k], (data.sets[j],), float(value)),
                 *(data.modes[best] if is_other else 0, float(elsewhere[best])),
             )
             if mode not in worst or value < worst[mode].mac:
                 worst[mode] = finding
-    return [worst[mode] for mode in sorted(worst)]
+    return [_odd_shape(data, away[data.modes.index(m)], worst[m]) for m in sorted(worst)]
+
+
+def _odd_shape(data: ModalData, away: Floats, found: SetShape) -> SetShape:
+    """Return the finding with the one set that all others contradict, where there is one.
+
+    ``away`` (sets, sets) is 1 - MAC. The odd set is far from the nearest of the others.
+    """
+    known = np.flatnonzero(np.isfinite(away).any(axis=1))
+    if known.size < 3:
+        return found
+    nearest = np.nanmin(away[np.ix_(known, known)], axis=1)
+    order = np.argsort(nearest)
+    k = int(known[order[-1]])
+    others = tuple(data.sets[j] for j in known if np.isfinite(away[k, j]))
+    if nearest[order[-1]] < ODD * nearest[order[-2]] or len(others) < 2:
+        return found
+    odd, mac = data.sets[k], float(np.nanmax(1 - away[k]))
+    if odd == found.set:
+        return replace(found, others=others, mac=mac)
+    return replace(found, set=odd, others=others, mac=mac, resembles=0)
 
 
 def _cross(view: Measured) -> Iterator[tuple[int, int, Floats]]:

@@ -127,12 +127,20 @@ def _sensors(found: WrongSensors) -> tuple[str, str]:
 
 
 def _opposed(found: OpposedSensor) -> tuple[str, str]:
+    names = " and ".join(found.sensors)
+    numbers = f"{found.agreement:.2f}, at the median sensor {found.usual:.2f}"
+    if len(found.sensors) == 2:
+        return (
+            f"sensors {names} are exchanged, as their difference moves against the model in "
+            f"{found.modes} modes: its signed COMAC is {numbers}; they move too much alike to show "
+            "in the MAC",
+            f"check the cables of {names}, and exchange their columns or sensors",
+        )
     return (
-        f"sensor {found.sensor} moves against the model in {found.modes} modes: their signed "
-        f"COMAC is {found.agreement:.2f}, at the median sensor {found.usual:.2f}; it moves too "
-        "little to show in the MAC",
-        f"check the direction of {found.sensor}, and change the sign of its column, or of the "
-        "direction in the model",
+        f"sensor {names} moves against the model in {found.modes} modes: their signed COMAC is "
+        f"{numbers}; it moves too little to show in the MAC",
+        f"check the direction of {names}, and change the sign of its column, or of the direction "
+        "in the model",
     )
 
 
@@ -170,11 +178,24 @@ def _set_factor(found: SetFactor) -> tuple[str, str]:
 def _set_frequency(found: SetFrequency) -> tuple[str, str]:
     percent = 100 * (found.frequency / found.other_frequency - 1)
     return (
-        f"sets {found.set} and {found.other} disagree in the frequency of mode {found.mode}: "
+        f"{_disagree(found.set, found.others)} in the frequency of mode {found.mode}: "
         f"{found.frequency:.5g} and {found.other_frequency:.5g} Hz, {percent:+.1f} %, where "
         f"{100 * found.scatter:.2g} % is their scatter",
-        "look at both again, or leave out the worse value",
+        _look_again(found.set, found.others, "value"),
     )
+
+
+def _disagree(odd: str, others: Sequence[str]) -> str:
+    """Return which sets disagree; where there are several others, it is the odd one."""
+    if len(others) == 1:
+        return f"sets {odd} and {others[0]} disagree"
+    return f"set {odd} disagrees with {enumerated(others, 3)}"
+
+
+def _look_again(odd: str, others: Sequence[str], thing: str) -> str:
+    if len(others) == 1:
+        return f"look at both again, or leave out the worse {thing}"
+    return f"look at set {odd} again, or leave out its {thing}"
 
 
 def _set_numbers(found: SetNumbers) -> tuple[str, str]:
@@ -187,16 +208,17 @@ def _set_numbers(found: SetNumbers) -> tuple[str, str]:
 
 
 def _set_shape(found: SetShape) -> tuple[str, str]:
+    others = enumerated(found.others, 3)
     what = (
-        f"sets {found.set} and {found.other} disagree in the shape of mode {found.mode}: "
+        f"{_disagree(found.set, found.others)} in the shape of mode {found.mode}: "
         f"cross-MAC {found.mac:.2f}"
     )
     if found.resembles:
         return (
-            f"{what}, but {found.other_mac:.2f} with mode {found.resembles} of {found.other}",
-            f"number the modes of set {found.set} like those of {found.other}",
+            f"{what}, but {found.other_mac:.2f} with mode {found.resembles} of {others}",
+            f"number the modes of set {found.set} like those of {others}",
         )
-    return what, "look at both again, or leave out the worse shape"
+    return what, _look_again(found.set, found.others, "shape")
 
 
 def _damping(found: DampingInPercent) -> tuple[str, str]:

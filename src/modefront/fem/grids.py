@@ -53,8 +53,8 @@ def tetrahedra(X: Floats, bricks: Ints) -> tuple[Floats, Ints]:
     corners = bricks[:, KUHN].reshape(-1, 4)
     i, j = np.array(TETRAHEDRON_EDGES).T
     ends = np.sort(np.stack([corners[:, i], corners[:, j]], -1), -1)
-    edges, at = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
-    middle = len(X) + at.reshape(len(corners), 6)
+    edges, edge = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
+    middle = len(X) + edge.reshape(len(corners), 6)
     return np.concatenate([X, X[edges].mean(1)]), np.concatenate([corners, middle], 1)
 
 

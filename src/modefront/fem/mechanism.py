@@ -100,10 +100,10 @@ def rigid_bodies(X: Floats, elements: Sequence[Block], exists: Bools) -> Bodies:
     solid = np.concatenate(solid_pairs)
     in_solid = np.zeros(nodes, dtype=bool)
     in_solid[solid[:, 0]] = True
-    own = exists.any(1) & (exists[:, 3:].any(1) | ~in_solid)
+    turns = exists.any(1) & (exists[:, 3:].any(1) | ~in_solid)
     incidence = np.concatenate(
         [
-            np.stack([np.flatnonzero(own), label[:nodes][own]], 1),
+            np.stack([np.flatnonzero(turns), label[:nodes][turns]], 1),
             np.unique(np.stack([solid[:, 0], label[solid[:, 1]]], 1), axis=0),
         ]
     )
@@ -283,11 +283,11 @@ def _describe(
         message += f". The structure falls into {parts} parts that nothing connects"
     others = np.flatnonzero((bodies.home >= 0) & ~np.isin(bodies.home, moving))
     if len(others):
-        distance, at = KDTree(X[others]).query(X[nodes])
+        distance, first = KDTree(X[others]).query(X[nodes])
         near = np.flatnonzero(distance <= 1e-6 * np.ptp(X, axis=0).max())
         if len(near):
             message += (
-                f". Nodes {nodes[near[0]]} and {others[at[near[0]]]} are at the same place but"
+                f". Nodes {nodes[near[0]]} and {others[first[near[0]]]} are at the same place but"
                 " not the same node: merge them"
             )
     return message

@@ -161,12 +161,12 @@ def condense_links(
     row, column = np.divmod(wanted, n)
     slot = np.searchsorted(wanted, keys)
     mirror = np.searchsorted(wanted, column * n + row)
-    at = np.searchsorted(merged, wanted)
+    places = np.searchsorted(merged, wanted)
     condensed = np.zeros((len(data), len(merged)))
     for out, term in zip(condensed, data, strict=True):
         out[stays] = term[~linked]
         added = np.bincount(slot, weights=weight * term[linked][source], minlength=len(wanted))
         # The two halves were summed in different orders: make them equal to the last digit.
-        out[at] += (added + added[mirror]) / 2
+        out[places] += (added + added[mirror]) / 2
     indptr = np.searchsorted(merged, np.arange(n + 1, dtype=np.int64) * n)
     return Pattern(indptr, merged % n), condensed

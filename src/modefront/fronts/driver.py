@@ -131,7 +131,7 @@ class _Run:
             Point(Kind.EDGE, x, name)
             for name, x in zip(self.problem.objectives, bests, strict=True)
         ]
-        least = np.array([edge.best.at.J[i] for i, edge in enumerate(edges)])
+        least = np.array([edge.best.J[i] for i, edge in enumerate(edges)])
         return Front(
             method,
             points + models,
@@ -215,7 +215,7 @@ class _Run:
         """
         out = []
         for i, (name, known) in enumerate(zip(self.problem.objectives, edges, strict=True)):
-            if not Lexicographic(i, sizes).is_open(self.problem, known.best.at):
+            if not Lexicographic(i, sizes).is_open(self.problem, known.best.evaluation):
                 out.append(known)
                 continue
             arguments = (self.problem, i, sizes, list(models))
@@ -303,7 +303,7 @@ class _Run:
         for i, (name, known) in enumerate(zip(self.problem.objectives, edges, strict=True)):
             order = Lexicographic(i, sizes)
             J = archive.J
-            ahead = [k for k, row in enumerate(J) if order.clearly_better(row, known.best.at.J)]
+            ahead = [k for k, row in enumerate(J) if order.clearly_better(row, known.best.J)]
             if not ahead:
                 out.append(known)
                 continue
@@ -311,7 +311,7 @@ class _Run:
             arguments = (self.problem, i, sizes, archive.theta[first])
             (minima,) = work.run([Task(("edge", name, "archive"), _refined_again, arguments)])
             refined = ordered(self.problem, i, sizes, [*known.minima, *minima])
-            better = refined and order.better(refined.best.at.J, known.best.at.J)
+            better = refined and order.better(refined.best.J, known.best.J)
             out.append(refined if refined and better else known)
         return out
 
@@ -325,11 +325,11 @@ class _Run:
             descent, known = _descent(w, sizes), model.solution
             J = archive.J
             first = int((J @ w).argmin())
-            if J[first] @ w < known.at.J @ w and not descent.equal(J[first], known.at.J):
+            if J[first] @ w < known.J @ w and not descent.equal(J[first], known.J):
                 key = ("weights", model.kind.value, model.name, "archive")
                 arguments = (self.problem, descent, archive.theta[first])
                 (descended,) = self.work.run([Task(key, _descended, arguments)])
-                if descent.value(descended.at.J) < descent.value(known.at.J):
+                if descent.value(descended.J) < descent.value(known.J):
                     model = replace(model, solution=descended)
             out.append(model)
         return out
@@ -383,7 +383,7 @@ class _Run:
 def _are_near(edges: Sequence[Solution], others: Sequence[Solution], target: Payoff) -> bool:
     """Return whether a front between edges is that between others."""
     pairs = zip(edges, others, strict=True)
-    moved = [np.abs(x.at.J - other.at.J) / target.scale for x, other in pairs]
+    moved = [np.abs(x.J - other.J) / target.scale for x, other in pairs]
     return bool(np.max(moved) < ALIKE)
 
 
@@ -392,7 +392,7 @@ def _descent(w: Floats, sizes: Floats) -> Descent:
 
 
 def _evaluated_again(problem: Problem, solutions: Sequence[Solution]) -> list[Solution]:
-    return [replace(x, at=problem.evaluate(x.at.theta)) for x in solutions]
+    return [replace(x, evaluation=problem.evaluate(x.theta)) for x in solutions]
 
 
 def _descended(problem: Problem, descent: Descent, theta: Floats) -> Solution:

@@ -84,16 +84,18 @@ def free_in_words(
 ) -> list[str]:
     """Return the combinations that are not determined, each as text; see `summary`."""
     scale = scale or _relative(len(names))
-    free = np.array([one.direction for one in combinations if one.share <= NONE]).T
+    free = np.array(
+        [combination.direction for combination in combinations if combination.share <= NONE]
+    ).T
     free[list(idle)] = 0.0
     lam, V = np.linalg.eigh(free.T @ free)
     kept = free @ V[:, lam > 0.5]  # parameters without effect are directions of their own
     if not kept.size:
         return []
-    whole = [one.change / scale.unit for one in scale.scalings]
+    whole = [combination.change / scale.unit for combination in scale.scalings]
     whole.append(scale.theta / scale.unit)
-    shares = np.array([one.share for one in combinations])
-    V = np.array([one.direction for one in combinations])
+    shares = np.array([combination.share for combination in combinations])
+    V = np.array([combination.direction for combination in combinations])
 
     def holds(v: Floats) -> bool:
         return bool(np.linalg.norm(shares * (V @ v)) <= 3 * NONE * np.linalg.norm(v))

@@ -134,10 +134,10 @@ def identify(
     model = fit.model
     start = modal_model.evaluate(task, model.lam, model.L, model.held)
     task = _reweighted(task, start, weighting(data))
-    fit = selection.refit(task, start, modal_model.FINE)
+    fit = selection.refit(task, start, modal_model.FINE, modal_model.MOST_EVALUATIONS)
     if weighting(data) != "given":
         task = _reweighted(task, fit, weighting(data))
-        fit = selection.refit(task, fit, modal_model.FINE)
+        fit = selection.refit(task, fit, modal_model.FINE, modal_model.MOST_EVALUATIONS)
     return _result(data, task, fit, omega, size, diagram, clusters, modes)
 
 
@@ -171,12 +171,13 @@ def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyRes
         return data, variance
     level = np.sqrt(np.nanmedian(variance, axis=(0, 2)))
     level = np.where(np.isfinite(level) & (level > 0), level, np.inf)
-    H = (np.where(data.measured, data.H, 0) / level[:, None]).transpose(0, 2, 1)
-    flat = H.reshape(-1, n_out)
-    draws = np.random.default_rng(SEED).standard_normal((n_out, PRINCIPAL + 10))
+    H = (np.where(data.measured, data.H, 0) / level[:, None]).transpose(1, 0, 2)
+    # real combinations, as complex ones would have other residues at poles of negative frequency
+    flat = np.ascontiguousarray(H).reshape(n_out, -1).view(float)
+    draws = np.random.default_rng(SEED).standard_normal((flat.shape[1], PRINCIPAL + 10))
     basis = np.linalg.qr(flat @ draws)[0]
-    V = np.linalg.svd(basis.conj().T @ flat, full_matrices=False)[2][:PRINCIPAL]
-    principal = (flat @ V.conj().T).reshape(n_in, lines, PRINCIPAL).transpose(0, 2, 1)
+    U = basis @ np.linalg.svd(basis.T @ flat, full_matrices=False)[0][:, :PRINCIPAL]
+    principal = (U.T @ flat).view(complex).reshape(PRINCIPAL, n_in, lines).transpose(1, 0, 2)
     names = tuple(f"principal {i + 1}" for i in range(PRINCIPAL))
     small = replace(data, H=principal, responses=names, variance=None)
     return small, variance_from_differences(small)

@@ -55,6 +55,9 @@ ARC = 0.92
 LEAST_DAMPING = 1e-3
 """Damping ratio of poles that the decay of an exponential window leaves none."""
 
+PORTION = 1 << 11
+"""Lines of which the powers of z are held at once."""
+
 SINGULAR = 1e-13
 """Relative size of eigenvalues of R that are rounding."""
 
@@ -102,13 +105,32 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
 
     ``H`` is (references, responses, lines) without NaN; ``weight`` (responses, lines).
     """
-    copies = np.broadcast_to(z[:, None], (len(z), highest))
-    positive: Complexes = np.multiply.accumulate(copies, axis=1)
-    negative = positive[:, ::-1].conj()  # |z| = 1
-    powers: Complexes = np.hstack([negative, np.ones((len(z), 1)), positive])
-    first = (weight * H) @ powers
-    second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True) @ powers
-    return Moments(weight @ powers, first.transpose(1, 0, 2), second)
+    n_in, n_out, lines = H.shape
+    weighted = (weight * H).transpose(1, 0, 2).reshape(-1, lines)
+    second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True).reshape(-1, lines)
+    values = np.concatenate([weight, weighted, weighted.conj(), second])
+    sums = np.zeros((len(values), highest + 1), complex)
+    for start in range(0, lines, PORTION):
+        part = slice(start, start + PORTION)
+        powers = np.ones((len(z[part]), highest + 1), complex)
+        powers[:, 1:] = z[part, None]
+        sums += values[:, part] @ np.multiply.accumulate(powers, axis=1)
+    of_weight, of_first, of_conjugate, of_second = np.split(
+        sums, np.cumsum([n_out, n_out * n_in, n_out * n_in])
+    )
+    # |z| = 1, so that sums of values with z^-m are conjugate to those of conjugate values with z^m
+    square = of_second.reshape(n_in, n_in, -1)
+    return Moments(
+        _both(of_weight, of_weight),
+        _both(of_first, of_conjugate).reshape(n_out, n_in, -1),
+        _both(square, square.transpose(1, 0, 2)),
+    )
+
+
+def _both(positive: Complexes, conjugate: Complexes) -> Complexes:
+    """Return sums for lags of both signs from those of lags of positive sign."""
+    out: Complexes = np.concatenate([conjugate[..., :0:-1].conj(), positive], axis=-1)
+    return out
 
 
 def poles(sums: Moments, orders: Iterable[int], shift: float, rate: float) -> list[Poles]:

@@ -59,6 +59,7 @@ Mech. Syst. Signal Process. 37 (2013) 422-439, doi:10.1016/j.ymssp.2013.01.001.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
@@ -67,7 +68,7 @@ import numpy as np
 import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats, Ints
-from modefront.data.responses import ORDERS, FrequencyResponses
+from modefront.data.responses import ORDERS, ForceNoise, FrequencyResponses
 
 RESIDUALS: tuple[tuple[int, ...], ...] = ((), (-2, 0), (-3, -2, 0, 1), (-4, -3, -2, 0, 1, 2))
 """Powers of s of the residual terms, by the number of terms on either side."""
@@ -77,8 +78,16 @@ FINE, COARSE = 1e-5, 1e-2
 
 MOST_EVALUATIONS = 40
 
+TINY = float(np.finfo(float).tiny)
+
 CHUNK = 1 << 18
 """Numbers in an intermediate array of products."""
+
+FEW = 6
+"""Functions up to which a Gram matrix of each is faster than the products of all pairs."""
+
+PORTION = 1 << 16
+"""Complex numbers in an intermediate array of residuals, which then stay in the cache."""
 
 
 @dataclass(frozen=True)
@@ -92,8 +101,8 @@ class Problem:
     weight : of the shape of ``H``, 1/v, 0 where not measured
     order : q
     powers : powers of s of the residual terms
-    correlation : sum of the correlations of the noise of a line with that of all lines; 1 where
-        lines are independent
+    decay : what an exponential window has decayed by at the end of the record, d T
+    force_noise : noise of the force channel, where it is known; times in the unit of 1 / s
     """
 
     s: Complexes
@@ -101,12 +110,18 @@ class Problem:
     weight: Floats
     order: int
     powers: tuple[int, ...]
-    correlation: float = 1.0
+    decay: float = 0.0
+    force_noise: ForceNoise | None = None
 
     @cached_property
     def count(self) -> int:
         """Number of real equations."""
         return 2 * int(np.count_nonzero(self.weight))
+
+    @property
+    def correlation(self) -> float:
+        """Sum of the correlations of the noise of a line with all lines, x coth x for x = d T."""
+        return self.decay / math.tanh(self.decay) if self.decay else 1.0
 
 
 @dataclass(frozen=True)
@@ -145,6 +160,7 @@ class Fit:
     curvature : (alphas, alphas) with it
     inverse : (responses, linear, linear) inverse of G
     Z : (responses, linear, alphas), -dc/dalpha
+    unlike : (alphas,) share of each column of D, squared, that no linear parameter can make up
     evaluations : number of evaluations of the model
     converged : whether the iteration met its tolerance
     """
@@ -156,6 +172,7 @@ class Fit:
     curvature: Floats
     inverse: Floats
     Z: Floats
+    unlike: Floats
     evaluations: int = 1
     converged: bool = False
 
@@ -167,32 +184,33 @@ def problem(data: FrequencyResponses, variance: Floats, level: int) -> tuple[Pro
     variance is not a positive number have no weight.
     """
     omega = 2 * np.pi * data.frequency[-1]
-    size = float(np.sqrt(np.mean(np.abs(data.H[data.measured]) ** 2)))
-    used = data.measured & np.isfinite(variance) & (variance > 0)
-    weight = np.zeros(data.H.shape)
-    weight[used] = size**2 / variance[used]
+    measured = data.measured
+    power = np.where(measured, data.H.real**2 + data.H.imag**2, 0.0).sum()
+    size = float(np.sqrt(power / np.count_nonzero(measured)))
+    used = measured & np.isfinite(variance) & (variance > 0)
+    weight: Floats = np.ascontiguousarray(size**2 / np.where(used, variance, np.inf))
     s = (2j * np.pi * data.frequency + data.decay) / omega
-    H = np.zeros(data.H.shape, complex)
-    H[used] = data.H[used] / size
-    correlation = windowed_correlation(data.frequency, data.decay)
-    order = ORDERS[data.quantity]
-    return Problem(s, H, weight, order, RESIDUALS[level], correlation), omega, size
+    H: Complexes = np.ascontiguousarray(np.where(used, data.H, 0) / size)
+    lag = data.decay / float(np.median(np.diff(data.frequency)))
+    order, noise = ORDERS[data.quantity], data.force_noise
+    if noise is not None:
+        noise = replace(noise, times=tuple(t * omega for t in noise.times))
+    return Problem(s, H, weight, order, RESIDUALS[level], lag, noise), omega, size
 
 
-def windowed_correlation(frequency: Floats, decay: float) -> float:
-    r"""Return the sum of the correlations of a line with all others after an exponential window.
+def windowed_correlation(decay: float, lines: int) -> Complexes:
+    r"""Return the correlations of a line with the next ones after an exponential window, (lines,).
 
-    White noise of a record of length T with the window :math:`w = e^{-dt}` has the correlations
-    :math:`\rho_k = \int w^2 e^{-2\pi\mathrm{i}kt/T}\,\mathrm{d}t / \int w^2\,\mathrm{d}t` between
-    lines; their sum is :math:`T d \coth(T d)`.
+    ``decay`` is that of the window over the length T of the record, :math:`x = dT`. White noise of
+    the record has the correlations
 
-    >>> round(windowed_correlation(np.arange(0.0, 9.0, 0.5), 2.0), 3)
-    4.003
+    .. math:: \rho_k = \int_0^T w^2 e^{-2\pi\mathrm{i}kt/T}\,\mathrm{d}t \Big/
+              \int_0^T w^2\,\mathrm{d}t = \frac{1}{1 + \pi\mathrm{i}k/x},\qquad w = e^{-dt}.
+
+    >>> windowed_correlation(2.0, 2).round(3)
+    array([1.   +0.j   , 0.288-0.453j])
     """
-    if not decay:
-        return 1.0
-    x = decay / float(np.median(np.diff(frequency)))
-    return x / float(np.tanh(x))
+    return np.asarray(1 / (1 + 1j * np.pi * np.arange(lines) / max(decay, TINY)), complex)
 
 
 def primitives(task: Problem, lam: Complexes, squares: bool = True) -> Complexes:
@@ -222,31 +240,46 @@ def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
     M = gram(task, E)
     first = 2 * len(lam) + len(task.powers)
     T = design(L, len(task.powers))
-    G = np.einsum("jqa,jiqp,jpb->iab", T, M[..., :first, :first], T, optimize=True)
+    TM = T.transpose(0, 2, 1)[:, None] @ M[..., :first, :]  # (references, responses, linear, Q)
+    G = (TM[..., :first] @ T[:, None]).sum(axis=0)
     inverse = _inverse(G)
-    c = np.zeros(G.shape[:2])
-    r = task.H
-    for _ in range(2):  # the second round takes back what the normal equations lost
-        rho = _project(task, E[:first], r)
-        c = c + np.einsum("iab,jqb,jiq->ia", inverse, T, rho, optimize=True)
-        r = task.H - _combined(np.einsum("jqa,ia->jiq", T, c), E[:first])
-    rho = _project(task, E, r)
+    c = _best(inverse, T, _project(task, E[:first], None)[0])
+    rho, cost = _project(task, E, np.einsum("jqa,ia->jiq", T, c))
+    # a second round takes back what the normal equations lost; it is small, so that its changes of
+    # rho and of the cost are exact to rounding
+    lost = _best(inverse, T, rho[..., :first])
+    right = np.einsum("iab,ib->ia", G, lost)
+    c = c + lost
+    rho = rho - (lost[None, :, None] @ TM)[:, :, 0]
     model = _model(lam, L, held, c, len(task.powers))
     K = derivatives(model, E.shape[0])
-    cross = np.einsum("jqa,jiqp,jipk->iak", T, M[..., :first, :], K, optimize=True)
+    cross = (TM @ K).sum(axis=0)
     Z = inverse @ cross
-    direct = np.einsum("jiqk,jiqp,jipl->kl", K, M, K, optimize=True)
     U = _second(model, rho, len(task.powers))
-    information = direct - np.einsum("iak,ial->kl", cross, Z)
+    direct = _rows(K).T @ _rows(M @ K)
+    information = direct - _rows(cross).T @ _rows(Z)
     return Fit(
         model,
-        float(np.sum(task.weight * np.abs(r) ** 2)),
-        -np.einsum("jiqk,jiq->k", K, rho),
+        cost - float(np.sum(lost * right)),
+        -(rho.reshape(-1) @ _rows(K)),
         information,
-        information + np.einsum("iak,iab,ibl->kl", U, inverse, U, optimize=True),
+        information + _rows(U).T @ _rows(inverse @ U),
         inverse,
         Z,
+        information.diagonal() / np.maximum(direct.diagonal(), TINY),
     )
+
+
+def _rows(values: Floats) -> Floats:
+    """Return a matrix with the last axis as columns, of which there may be none."""
+    return values.reshape(math.prod(values.shape[:-1]), values.shape[-1])
+
+
+def _best(inverse: Floats, T: Floats, rho: Floats) -> Floats:
+    """Return the linear parameters, (responses, linear), from products with the primitives."""
+    right = np.einsum("jqa,jiq->ia", T, rho)
+    out: Floats = (inverse @ right[..., None])[..., 0]
+    return out
 
 
 def synthesise(task: Problem, model: ModalModel) -> Complexes:
@@ -302,8 +335,10 @@ def maximise(
 
 def gram(task: Problem, E: Complexes) -> Floats:
     """Return the weighted Gram matrices of the primitives, (references, responses, Q, Q)."""
-    p, q = np.triu_indices(len(E))
     flat = task.weight.reshape(-1, len(task.s))
+    if len(flat) <= FEW:
+        return _gram_of_few(flat, E).reshape(*task.weight.shape[:2], len(E), len(E))
+    p, q = np.triu_indices(len(E))
     out = np.zeros((len(flat), len(p)))
     for lines, products in _products(E):
         out += flat[:, lines] @ products.T
@@ -311,6 +346,20 @@ def gram(task: Problem, E: Complexes) -> Floats:
     M[:, p, q] = out
     M[:, q, p] = out
     return M.reshape(*task.weight.shape[:2], len(E), len(E))
+
+
+def _gram_of_few(weight: Floats, E: Complexes) -> Floats:
+    """Return the Gram matrix of each function, (functions, Q, Q), in portions of lines."""
+    M = np.zeros((len(weight), len(E), len(E)))
+    root = np.sqrt(weight).repeat(2, axis=1)
+    parts = E.view(float)
+    size = max(CHUNK // max(len(E), 1), 1)
+    for start in range(0, parts.shape[1], size):
+        lines = slice(start, start + size)
+        for k in range(len(M)):
+            weighted = parts[:, lines] * root[k, lines]
+            M[k] += weighted @ weighted.T
+    return M
 
 
 def leverage(task: Problem, fit: Fit) -> Floats:
@@ -356,10 +405,23 @@ def _products(E: Complexes) -> Iterator[tuple[slice, Floats]]:
         yield slice(start, start + size), products
 
 
-def _project(task: Problem, E: Complexes, r: Complexes) -> Floats:
-    """Return the weighted products of residuals with the primitives."""
-    out: Floats = (task.weight * r).view(float) @ E.view(float).T
-    return out
+def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[Floats, float]:
+    """Return the weighted products of residuals with the primitives, and the cost.
+
+    The residuals are those of combinations of the first primitives, or the data themselves.
+    """
+    H = task.H.reshape(-1, len(task.s))
+    weight = task.weight.reshape(H.shape)
+    rho, cost = np.empty((len(H), len(E))), 0.0
+    C = None if coefficients is None else coefficients.reshape(len(H), -1)
+    rows = max(PORTION // len(task.s), 1)
+    for start in range(0, len(H), rows):
+        part = slice(start, start + rows)
+        r = H[part] if C is None else H[part] - _combined(C[part], E[: C.shape[1]])
+        weighted = weight[part] * r
+        rho[part] = weighted.view(float) @ E.view(float).T
+        cost += float(np.vdot(r, weighted).real)
+    return rho.reshape(*task.weight.shape[:2], -1), cost
 
 
 def _inverse(G: Floats) -> Floats:

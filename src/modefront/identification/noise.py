@@ -23,7 +23,7 @@ no smooth function passes, made robust by running medians.
 from __future__ import annotations
 
 import numpy as np
-from scipy.ndimage import median_filter
+from numpy.lib.stride_tricks import sliding_window_view
 
 from modefront._typing import Complexes, Floats
 from modefront.data.responses import FrequencyResponses
@@ -45,20 +45,36 @@ ROUNDING = 1e-14
 """Least variance over the mean square of a function: files hold some seven digits."""
 
 
+def square(values: Complexes) -> Floats:
+    """Return squared absolute values; without their roots that takes a third of the time."""
+    return values.real**2 + values.imag**2
+
+
 def variance_from_differences(data: FrequencyResponses) -> Floats:
     """Return the variance that neighbouring lines show, of the shape of ``H``; NaN stays."""
-    H = np.where(data.measured, data.H, 0)
+    measured = data.measured
+    H = np.where(measured, data.H, 0)
     lines = H.shape[-1]
-    power = np.mean(np.abs(H) ** 2, axis=-1, keepdims=True)
+    power = np.mean(square(H), axis=-1, keepdims=True)
     if lines <= len(DIFFERENCE):
-        return np.where(data.measured, np.maximum(1e-4 * power, np.finfo(float).tiny), np.nan)
+        return np.where(measured, np.maximum(1e-4 * power, np.finfo(float).tiny), np.nan)
     kernel = DIFFERENCE / np.sqrt(np.sum(DIFFERENCE**2))
     passed = sum(c * H[..., k : lines - len(kernel) + 1 + k] for k, c in enumerate(kernel))
-    raw = np.pad(np.abs(np.asarray(passed)) ** 2, [(0, 0), (0, 0), (2, 2)], mode="edge")
-    size = min(2 * HALF_WINDOW + 1, lines)
-    smooth = median_filter(raw, size=(1, 1, size), mode="nearest") / MEDIAN
+    raw = np.pad(square(np.asarray(passed)), [(0, 0), (0, 0), (2, 2)], mode="edge")
+    smooth = _running_median(raw) / MEDIAN
     floor = np.maximum(ROUNDING * power, 1e-3 * np.median(smooth, axis=-1, keepdims=True))
-    return np.where(data.measured, np.maximum(smooth, floor + np.finfo(float).tiny), np.nan)
+    return np.where(measured, np.maximum(smooth, floor + np.finfo(float).tiny), np.nan)
+
+
+def _running_median(values: Floats) -> Floats:
+    """Return running medians along the last axis, linear between windows that half overlap."""
+    lines = values.shape[-1]
+    width = [(0, 0)] * (values.ndim - 1) + [(HALF_WINDOW, 3 * HALF_WINDOW)]
+    windows = sliding_window_view(np.pad(values, width, mode="edge"), 2 * HALF_WINDOW + 1, axis=-1)
+    knots = np.median(windows[..., ::HALF_WINDOW, :], axis=-1)
+    before, past = np.divmod(np.arange(lines), HALF_WINDOW)
+    out: Floats = knots[..., before]
+    return out + (knots[..., before + 1] - out) * (past / HALF_WINDOW)
 
 
 def fitted_variance(raw: Floats, H: Complexes) -> Floats:
@@ -69,7 +85,7 @@ def fitted_variance(raw: Floats, H: Complexes) -> Floats:
     """
     lines = raw.shape[-1]
     flat = raw.reshape(-1, lines)
-    power = np.abs(np.nan_to_num(H.reshape(-1, lines))) ** 2
+    power = np.nan_to_num(square(H.reshape(-1, lines)))
     hats = _hats(lines)
     known = np.isfinite(flat)
     blocks = np.linspace(0, lines, min(lines, MOST_BLOCKS) + 1).astype(int)[:-1]

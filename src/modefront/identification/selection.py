@@ -51,7 +51,14 @@ MOST_ADDED = 8
 OVERDAMPED = 0.9
 """Damping ratio from which on a pole and its conjugate are nearly one and the same real pole."""
 
-MOST_EVALUATIONS = 12
+LEAST_UNLIKE = 1e-6
+"""Least squared share of the derivative by a pole that no residual term can make up. In the normal
+equations rounding takes some 1e-8; poles within the band have 0.1 and more."""
+
+MOST_EVALUATIONS = 20
+"""Evaluations of the model for a choice, which need not be at the very maximum."""
+
+TRIAL_EVALUATIONS = 12
 """Evaluations of the model for a candidate on trial."""
 
 
@@ -108,7 +115,7 @@ def start(task: Problem, clusters: Sequence[Cluster], omega: float, count: int |
     lam = (np.array([one.pole for one in likely], complex) / omega).astype(complex)
     n_in = task.weight.shape[0]
     L: Complexes = np.array([one.participation for one in likely], complex).reshape(len(lam), n_in)
-    return maximise(task, lam, L, tolerance=COARSE)
+    return maximise(task, lam, L, MOST_EVALUATIONS, COARSE)
 
 
 def backward(task: Problem, fit: Fit) -> Fit:
@@ -121,22 +128,27 @@ def backward(task: Problem, fit: Fit) -> Fit:
     return fit
 
 
-def refit(task: Problem, fit: Fit, tolerance: float = COARSE) -> Fit:
-    """Return the fit from the poles of another one, without poles that become overdamped.
+def refit(task: Problem, fit: Fit, tolerance: float = COARSE, most: int = MOST_EVALUATIONS) -> Fit:
+    """Return the fit from the poles of another one, without poles that are residual terms.
 
-    These stand for what modes outside the band leave, as the residual terms do, and would make
-    the information of all other parameters singular.
+    Poles that become overdamped, and those of which changes are changes of the residual terms,
+    stand for what modes outside the band leave. They would make the information of all other
+    parameters singular.
     """
-    fit = maximise(task, fit.model.lam, fit.model.L, tolerance=tolerance)
-    while (over := -fit.model.lam.real > OVERDAMPED * np.abs(fit.model.lam)).any():
-        fit = maximise(task, fit.model.lam[~over], fit.model.L[~over], tolerance=tolerance)
-    return fit
+    while True:
+        fit = maximise(task, fit.model.lam, fit.model.L, most, tolerance)
+        lam = fit.model.lam
+        over = -lam.real > OVERDAMPED * np.abs(lam)
+        over |= fit.unlike[: 2 * len(lam)].reshape(-1, 2).min(axis=1, initial=1.0) < LEAST_UNLIKE
+        if not over.any():
+            return fit
+        fit = replace(fit, model=replace(fit.model, lam=lam[~over], L=fit.model.L[~over]))
 
 
 def without(task: Problem, fit: Fit, mode: int) -> Fit:
     """Return the fit that is left without one mode."""
     kept = np.arange(len(fit.model)) != mode
-    return maximise(task, fit.model.lam[kept], fit.model.L[kept], tolerance=COARSE)
+    return maximise(task, fit.model.lam[kept], fit.model.L[kept], MOST_EVALUATIONS, COARSE)
 
 
 def forward(task: Problem, fit: Fit, candidates: Complexes) -> Fit:
@@ -154,7 +166,7 @@ def forward(task: Problem, fit: Fit, candidates: Complexes) -> Fit:
         tried.append(lam)
         model = fit.model
         L_all = np.vstack([model.L, L[at]])
-        trial = maximise(task, np.append(model.lam, lam), L_all, MOST_EVALUATIONS, COARSE)
+        trial = maximise(task, np.append(model.lam, lam), L_all, TRIAL_EVALUATIONS, COARSE)
         gained = 2 * (fit.cost - trial.cost) / noise_level(task, trial)
         if gained > price(task) and gains(task, trial).min() > price(task):
             return trial

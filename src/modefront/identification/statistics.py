@@ -16,8 +16,9 @@ Two things that are common in tests break the independence, and are measured on 
 
 *Noise of the force channel* is the same for all responses of one reference,
 :math:`\delta H_{ji} = -H_{ji}\,\varepsilon_j`: it does not average out over responses. Its
-variance :math:`b_j` is taken out of that of the single functions. It is estimated from products
-of *different* responses, which noise of the responses does not enter,
+variance :math:`b_j` is taken out of that of the single functions. Records of impacts tell it, and
+its correlation over frequency (`modefront.data.responses.ForceNoise`). Otherwise it is estimated
+from products of *different* responses, which noise of the responses does not enter,
 
 .. math:: b_j = \frac{\sum_k (|S_{jk}|^2 - \sum_i w^2|H|^2|r|^2)}
           {\sum_k \bigl((\sum_i w|H|^2)^2 - \sum_i w^2|H|^4\bigr)},\qquad
@@ -26,8 +27,11 @@ of *different* responses, which noise of the responses does not enter,
 and what it adds to the covariance follows from the two equations above.
 
 *Neighbouring lines* are correlated where windows or zero padding widened them. With the
-autocorrelation :math:`\rho_d` of the weighted residuals over lines, as far as it is significant,
-covariances are multiplied by :math:`1 + 2\sum_d \operatorname{Re}\rho_d`.
+correlations :math:`\rho_d` of lines at a distance d – those of the exponential window, or those of
+the weighted residuals as far as they are significant – the products :math:`\Phi^T\delta y` have the
+covariance :math:`\tfrac12\sum_{kl}\operatorname{Re}(\Phi_k^* \rho_{k-l} \Phi_l)`. In time,
+:math:`\rho` is the energy of the noise: an exponential window leaves most of it at the beginning of
+the record, where all that is known of heavily damped modes is.
 
 Where the residuals are greater than the variance that was given, the model does not explain all
 of the data: covariances are multiplied by :math:`\chi^2` over the degrees of freedom, if that is
@@ -46,8 +50,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 
 import numpy as np
+import scipy.fft
 
 from modefront._typing import Complexes, Floats
+from modefront.data.responses import ForceNoise
 from modefront.identification.modal_model import (
     CHUNK,
     Fit,
@@ -57,13 +63,21 @@ from modefront.identification.modal_model import (
     gram,
     primitives,
     synthesise,
+    windowed_correlation,
 )
-from modefront.identification.shapes import RealShape, real_shape
+from modefront.identification.noise import square
+from modefront.identification.shapes import TINY, RealShape, real_shape
 
 SIGNIFICANT = 3.0
 """Standard errors beyond which a correlation of the residuals is one."""
 
 MOST_LAGS = 60
+
+MOST_TIMES = 400
+"""Samples of the noise of the force; they are taken together where there are more."""
+
+TOGETHER = 50
+"""Samples of the noise of the force whose effects are computed at once."""
 
 
 @dataclass(frozen=True)
@@ -73,21 +87,21 @@ class Residuals:
     Attributes
     ----------
     chi2 : weighted sum of squares over the degrees of freedom; 1 where the variance is right
-    widening : 1 + 2 sum of the significant autocorrelations over lines, or that of the window
+    correlation : (lags,) of a line with the next ones
     force : (references,) b, variance of the noise of the force channel, relative
     share : (references, responses) norm of the residual over that of the function; NaN where the
         function was not measured
     """
 
     chi2: float
-    widening: float
+    correlation: Complexes
     force: Floats
     share: Floats
 
     @property
-    def scale(self) -> float:
-        """Factor on all covariances."""
-        return max(self.chi2, 1.0) * self.widening
+    def widening(self) -> float:
+        """Factor on the variance of what is the mean of many lines, by their correlation."""
+        return float(1 + 2 * self.correlation[1:].real.sum())
 
 
 @dataclass(frozen=True)
@@ -123,23 +137,54 @@ def residuals(task: Problem, fit: Fit) -> Residuals:
     size = np.where(task.weight > 0, np.abs(task.H) ** 2, 0).sum(axis=2)
     share = np.sqrt((np.abs(r) ** 2).sum(axis=2) / np.where(size > 0, size, np.nan))
     chi2 = 2 * fit.cost / freedom
-    widening = max(_widening(task, r), task.correlation)
-    return Residuals(chi2, widening, _force(task, H, r), share)
+    force = _known_force(task.force_noise) if task.force_noise else _force(task, H, r)
+    return Residuals(chi2, _correlation(task, r), force, share)
 
 
-def _widening(task: Problem, r: Complexes) -> float:
+def _known_force(noise: ForceNoise) -> Floats:
+    """Return the mean variance of the noise of the force channel, relative, (references,)."""
+    out: Floats = np.mean(noise.deviation**2, axis=1)
+    return out
+
+
+def _correlation(task: Problem, r: Complexes) -> Complexes:
+    """Return the correlations of a line with the next ones: those of the window, or measured.
+
+    Measured ones count as long as they are significant.
+    """
+    if task.decay:
+        return windowed_correlation(task.decay, len(task.s))
     e = np.sqrt(task.weight) * r
-    total = float(np.sum(np.abs(e) ** 2))
-    out = 1.0
-    if total == 0:
-        return out
+    total = max(float(np.sum(square(e))), TINY)
+    out = [1.0 + 0.0j]
     for lag in range(1, min(MOST_LAGS, len(task.s) // 10) + 1):
         both = (task.weight[..., lag:] > 0) & (task.weight[..., :-lag] > 0)
-        rho = float(np.sum((e[..., lag:] * e[..., :-lag].conj()).real)) / total
-        if rho < SIGNIFICANT / np.sqrt(2 * max(int(both.sum()), 1)):
+        rho = complex(np.vdot(e[..., :-lag], e[..., lag:])) / total
+        if rho.real < SIGNIFICANT / np.sqrt(2 * max(int(both.sum()), 1)):
             break
-        out += 2 * rho
-    return out
+        out.append(rho)
+    return np.array(out)
+
+
+def correlated_gram(task: Problem, E: Complexes, correlation: Complexes) -> Floats:
+    r"""Return Gram matrices for correlated lines, (references, responses, Q, Q).
+
+    They are :math:`\sum_{kl} \operatorname{Re}(a_{pk}^* \rho_{k-l} a_{ql})` of the weighted
+    primitives :math:`a = \sqrt{w} E`: in time, products of their transforms times that of the
+    correlations, which is the energy of the noise.
+    """
+    lines, lags = E.shape[1], len(correlation)
+    size = scipy.fft.next_fast_len(lines + lags)
+    kernel = np.zeros(size, complex)
+    kernel[:lags] = correlation
+    kernel[size - lags + 1 :] = correlation[:0:-1].conj()
+    energy = scipy.fft.fft(kernel).real.repeat(2) / size
+    weight = task.weight.reshape(-1, lines)
+    M = np.empty((len(weight), len(E), len(E)))
+    for k in range(len(M)):
+        a = scipy.fft.fft(np.sqrt(weight[k]) * E, size).view(float)
+        M[k] = (a * energy) @ a.T
+    return M.reshape(*task.weight.shape[:2], len(E), len(E))
 
 
 def _force(task: Problem, H: Complexes, r: Complexes) -> Floats:
@@ -161,7 +206,6 @@ def mode_estimates(
 ) -> list[ModeEstimate]:
     """Return all modes of a fit with standard deviations; ``omega`` is the unit of the poles."""
     model = fit.model
-    n_out = model.phi.shape[1]
     shapes = [real_shape(phi) for phi in model.phi]
     inverse = _inverse(fit.information)
     linear, alpha = _own_roots(task, fit, residuals)
@@ -170,16 +214,13 @@ def mode_estimates(
     for r, shape in enumerate(shapes):
         rows = slice(2 * r, 2 * r + 2)
         answer = shape.differential(_as_complex(fit.Z[:, rows] @ inverse))
-        for i in range(n_out):
-            direct = np.zeros((n_out, linear.shape[2]), complex)
-            direct[i] = _as_complex(linear[i, rows][None])[0]
-            change = shape.differential(direct) - answer @ alpha[i]
-            variance[r] += (change**2).sum(axis=1)
+        variance[r] = _shape_variance(shape, _as_complex(linear[:, rows]), answer, alpha)
     for steps, phi in _force_influence(task, fit, residuals.force):
         C = C + steps @ steps.T
         for r, shape in enumerate(shapes):
             variance[r] += (shape.differential(phi[:, r]) ** 2).sum(axis=1)
-    C, variance = C * residuals.scale, variance * residuals.scale
+    scale = max(residuals.chi2, 1.0)
+    C, variance = C * scale, variance * scale
     variance[:, ~task.weight.any(axis=(0, 2))] = np.nan
     return [
         _estimate(
@@ -190,6 +231,27 @@ def mode_estimates(
         )
         for r, rest in enumerate(zip(shapes, np.sqrt(variance), model.L, strict=True))
     ]
+
+
+def _shape_variance(shape: RealShape, direct: Complexes, answer: Floats, alpha: Floats) -> Floats:
+    r"""Return the variance of a real shape by independent errors of each response, (responses,).
+
+    Errors of response i change its own component by ``direct[i]``, (errors,), and the nonlinear
+    parameters by ``alpha[i]``, (alphas, errors), which change the shape by ``-answer``,
+    (responses, alphas). By the equations of `modefront.identification.shapes`, what i does to
+    component k is :math:`\delta_{ik} a_i - u_k u_i a_i + y_k\,\mathrm{d}\theta_i -
+    \mathrm{answer}_k \alpha_i`: its squares are summed over i at once.
+    """
+    u, y = shape.shape, shape.complex_shape.imag
+    a = shape.turn * direct / shape.norm
+    theta = (u[:, None] * a.imag + y[:, None] * a.real) / max(1 - float(y @ y), TINY)
+    causes = np.concatenate([(u[:, None] * a.real)[:, None], theta[:, None], alpha], axis=1)
+    effects = np.column_stack([-u, y, -answer])
+    flat = causes.transpose(1, 0, 2).reshape(effects.shape[1], -1)
+    common = np.sum((effects @ (flat @ flat.T)) * effects, axis=1)
+    of_itself = np.einsum("ia,iae->ie", effects, causes)
+    out: Floats = common + np.sum((2 * of_itself + a.real) * a.real, axis=1)
+    return np.maximum(out, 0.0)
 
 
 def _as_complex(pairs: Floats) -> Complexes:
@@ -213,9 +275,16 @@ def _own_roots(task: Problem, fit: Fit, residuals: Residuals) -> tuple[Floats, F
     weight = task.weight
     if residuals.force.any():
         H = synthesise(task, model)
-        share = residuals.force[:, None, None] * weight * np.abs(H) ** 2
+        variance = residuals.force[:, None]
+        if task.force_noise:
+            variance = task.force_noise.deviation**2
+        share = variance[:, None] * weight * square(H)
         weight = weight * np.maximum(1 - share, 0)
-    M = gram(replace(task, weight=weight), E)
+    alone = replace(task, weight=weight)
+    if len(residuals.correlation) > 1:
+        M = correlated_gram(alone, E, residuals.correlation)
+    else:
+        M = gram(alone, E)
     P = np.zeros((*M.shape[:3], 2 * n + X.shape[3]))
     P[:, :, :first, : 2 * n] = np.einsum("jqa,iab->jiqb", T, fit.inverse[:, :, : 2 * n])
     P[..., 2 * n :] = X
@@ -266,16 +335,46 @@ def _force_influence(task: Problem, fit: Fit, force: Floats) -> Iterator[tuple[F
     first = T.shape[1]
     H = synthesise(task, fit.model)
     inverse = _inverse(fit.information)
-    portion = max(CHUNK // max(4 * n * H.shape[1], 1), 1)
-    for j in np.flatnonzero(force):
+    for j in np.flatnonzero(force).tolist():
         X = K[j].copy()
         X[:, :first] -= T[j] @ fit.Z
-        deviation = np.sqrt(force[j] / 2)
-        for start in range(0, len(task.s), portion):
-            lines = slice(start, start + portion)
-            y = task.weight[j, :, lines] * H[j, :, lines] * deviation
-            seen = E[:, lines].conj() * y[:, None, :]
-            alpha = inverse @ np.einsum("iqa,iqk->ak", X, seen, optimize=True)
-            c = fit.inverse[:, : 2 * n] @ (T[j].T @ seen[:, :first]) - fit.Z[:, : 2 * n] @ alpha
+        for y in _force_products(task, E, H[j], j, force[j]):
+            alpha = inverse @ np.einsum("iqa,iqk->ak", X, y, optimize=True)
+            c = fit.inverse[:, : 2 * n] @ (T[j].T @ y[:, :first]) - fit.Z[:, : 2 * n] @ alpha
             parts = np.concatenate([c.real, c.imag], axis=2)
             yield np.hstack([alpha.real, alpha.imag]), parts[:, ::2] + 1j * parts[:, 1::2]
+
+
+def _force_products(
+    task: Problem, E: Complexes, H: Complexes, j: int, b: float
+) -> Iterator[Complexes]:
+    """Yield products of the primitives with what errors of force j do, (responses, Q, errors).
+
+    Errors are independent at every line or, where the noise is known in time, at every sample;
+    samples closer than lines of the band can tell apart are taken together.
+    """
+    weighted = task.weight[j] * H
+    noise = task.force_noise
+    if noise is None:
+        portion = max(CHUNK // max(weighted.shape[0] * len(E), 1), 1)
+        for start in range(0, len(task.s), portion):
+            lines = slice(start, start + portion)
+            yield E[:, lines].conj() * (np.sqrt(b / 2) * weighted[:, None, lines])
+        return
+    f = task.s.imag
+    times, share = _merged(noise.times[j], noise.share[j], np.pi / (f[-1] - f[0]))
+    for start in range(0, len(times), TOGETHER):
+        part = slice(start, start + TOGETHER)
+        error = noise.deviation[j][:, None] * np.exp(-1j * np.outer(f, times[part]))
+        error = error * np.sqrt(share[part] / 2)
+        yield (weighted[:, None] * E.conj()) @ error
+
+
+def _merged(times: Floats, share: Floats, step: float) -> tuple[Floats, Floats]:
+    """Return the middle and the share of samples that lie within steps of time, `MOST_TIMES`."""
+    step = max(step, float(np.ptp(times)) / MOST_TIMES)
+    bins = np.floor((times - times.min()) / step).astype(int)
+    total: Floats = np.bincount(bins, share).astype(float)
+    kept = total > 0
+    middle = np.bincount(bins, share * times)[kept] / total[kept]
+    return middle, total[kept]

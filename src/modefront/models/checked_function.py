@@ -120,8 +120,8 @@ class CheckedFunction:
             ahead = theta.copy()
             ahead[i] += h
             moved = self.at(ahead, known[0].matrix.shape[0], derivatives=False)
-            for what, there, here in zip(("K", "M"), moved, known, strict=True):
-                difference = (there.matrix - here.matrix) / (ahead[i] - theta[i])
+            for what, shifted, here in zip(("K", "M"), moved, known, strict=True):
+                difference = (shifted.matrix - here.matrix) / (ahead[i] - theta[i])
                 found = _wrong_entry(here.matrix, here.slopes[i], difference, span[i])
                 if found:
                     expected = (

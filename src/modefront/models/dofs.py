@@ -12,7 +12,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
 from modefront.fem.dofs import DIRECTIONS
 from modefront.inputs import file_size
 
@@ -85,10 +85,10 @@ class DofTable:
         for number, factor in _components(direction):
             chosen = dofs[(self.direction[dofs] == number) & (self.weight[dofs] != 0)]
             if chosen.size == 0:
-                there = {
+                known = {
                     n for n, w in zip(self.direction[dofs], self.weight[dofs], strict=True) if w
                 }
-                names = ", ".join(name_of(n) for n in sorted(there)) or "none, all are held"
+                names = ", ".join(name_of(n) for n in sorted(known)) or "none, all are held"
                 expected = f"a direction in which node {node} can move ({names})"
                 raise LookupError(expected, f"{name_of(number)}, which is held or not in the model")
             for dof in chosen.tolist():
@@ -131,13 +131,17 @@ def name_of(direction: int) -> str:
     return DIRECTIONS[direction - 1] if 0 < direction <= len(DIRECTIONS) else str(direction)
 
 
+NOTHING = 1e-12
+"""Component of a unit vector that is the rounding of one turned by a right angle."""
+
+
 def _components(direction: str | Sequence[float]) -> list[tuple[int, float]]:
     if isinstance(direction, str):
         name = direction.removeprefix("-")
         return [(number_of(name), -1.0 if name != direction else 1.0)]
     vector = np.asarray(direction, dtype=float)
     unit = vector / np.linalg.norm(vector)
-    return [(i + 1, float(x)) for i, x in enumerate(unit) if x]
+    return [(i + 1, float(x)) for i, x in enumerate(unit) if abs(x) > NOTHING]
 
 
 def is_direction(value: object) -> bool:
@@ -172,7 +176,7 @@ def read_dofs(path: Path) -> DofTable:
         with path.open(encoding="utf-8-sig", newline="") as stream:
             header, *rows = list(csv.reader(stream))
     except (OSError, ValueError, csv.Error) as error:
-        raise _wrong(path, "file", "CSV in UTF-8", str(error)) from None
+        raise _wrong(path, "file", "CSV in UTF-8", reason(error)) from None
     names = tuple(name.strip() for name in header)
     if names not in (COLUMNS, COLUMNS[:2]):
         raise _wrong(path, "header", "node,direction or node,direction,weight", ",".join(names))

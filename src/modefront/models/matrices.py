@@ -116,7 +116,9 @@ class MatrixModel:
     def unused(self) -> tuple[str, ...]:
         """Names of parameters on which neither matrix depends."""
         used = self.stiffness.used | self.mass.used
-        return tuple(name for name, one in zip(self.parameters, used, strict=True) if not one)
+        return tuple(
+            name for name, has_effect in zip(self.parameters, used, strict=True) if not has_effect
+        )
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""

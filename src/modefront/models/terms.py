@@ -38,10 +38,10 @@ def exponents_of(term: str, parameters: Sequence[str]) -> Floats | None:
         if factor in ("*", "/"):
             sign = 1.0 if factor == "*" else -1.0
             continue
-        found = _factor(factor, parameters)
-        if found is None:
+        powers = _factor(factor, parameters)
+        if powers is None:
             return None
-        name, power = found
+        name, power = powers
         if name:
             out[list(parameters).index(name)] += sign * power
     return out if out.any() else None
@@ -73,10 +73,10 @@ def term_exponents(terms: Sequence[str], parameters: Sequence[str]) -> Floats:
     """
     out = np.zeros((len(terms), len(parameters)))
     for row, term in enumerate(terms):
-        found = exponents_of(term, parameters)
-        if found is None:
+        exponents = exponents_of(term, parameters)
+        if exponents is None:
             raise ValueError(f"expected {form_of(term)}, found {term!r}")
-        out[row] = found
+        out[row] = exponents
     return out
 
 

@@ -162,10 +162,10 @@ def _orthonormal(
     """
     AW = times(A, W)
     squares, U = np.linalg.eigh(gram(W, AW))
-    there = squares > max(least**2, 1e-28 * squares.max(initial=0.0))
-    there[: squares.size - min(squares.size, squares.size if most is None else most)] = False
-    size = np.sqrt(squares[there])
-    U = U[:, there]
+    large = squares > max(least**2, 1e-28 * squares.max(initial=0.0))
+    large[: squares.size - min(squares.size, squares.size if most is None else most)] = False
+    size = np.sqrt(squares[large])
+    U = U[:, large]
     return combine(W, U / size), combine(AW, U / size), size[:, None] * U.T
 
 

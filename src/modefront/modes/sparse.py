@@ -106,14 +106,14 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
         lam, X = 1 / ritz.mu[:finite] + below.sigma, ritz.X[:, :known] / np.sqrt(ritz.mu[:known])
         refines = True
         if known < count and ritz.complete:
-            there = _finite(pencil, K, M, lam)
-            if there <= known:
+            existing = _finite(pencil, K, M, lam)
+            if existing <= known:
                 raise ModelError(
                     f"{count} modes asked for, but only {known} have a finite frequency"
                 )
             if pencil.size > ALL_AT_ONCE:
                 raise ModelError(
-                    f"{count} modes asked for, of {there} that have a finite frequency, but the "
+                    f"{count} modes asked for, of {existing} that have a finite frequency, but the "
                     f"eigensolver loses those beyond {known}: ask for fewer modes"
                 )
             # The basis has lost those that are too small beside the greatest: solved all at once.
@@ -142,7 +142,8 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
                     return Spectrum(*refined, M, noise, beyond, lower, (below, above))
         wanted, block = 2 * wanted, 2 * block
     raise ModelError(
-        f"the lowest {count} modes could not be told from the next ones, or some were missed"
+        f"the lowest {count} modes could not be told from the next ones, or some were missed: "
+        "stiffnesses may be too far apart (are lengths, sections and E in one set of units?)"
     )
 
 

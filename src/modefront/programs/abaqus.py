@@ -15,6 +15,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Ints
+from modefront.errors import reason
 from modefront.models.dofs import DofTable, read_dofs
 from modefront.programs.base import (
     DOUBLE,
@@ -37,6 +38,9 @@ HELD = 0.9e36
 
 SLOTS = 32
 """More than the greatest number of a direction."""
+
+SPARSE = 10**8
+"""Slots beyond the number of entries from which on numbers of nodes have great gaps."""
 
 ADVICE = "*MATRIX GENERATE, STIFFNESS, MASS with *MATRIX OUTPUT, STIFFNESS, MASS writes them"
 
@@ -110,22 +114,32 @@ def _common(
     stiffness: tuple[Ints, ...], mass: tuple[Ints, ...]
 ) -> tuple[DofTable, list[tuple[Ints, Ints]]]:
     """Return the table of all labels, nodes made by the program last, and rows and columns."""
-    lowest = min(int(node.min()) for part in (stiffness, mass) for node in (part[0], part[2]))
-    highest = max(int(node.max()) for part in (stiffness, mass) for node in (part[0], part[2]))
+    number = [[part[0], part[2]] for part in (stiffness, mass)]
+    lowest = min(int(node.min()) for pair in number for node in pair)
+    highest = max(int(node.max()) for pair in number for node in pair)
+    names: Ints | None = None
+    if (highest - lowest) * SLOTS > SPARSE + sum(node.size for pair in number for node in pair):
+        # Numbers with great gaps: nodes are counted instead.
+        names = np.unique(np.concatenate([np.unique(node) for pair in number for node in pair]))
+        number = [[np.searchsorted(names, node) for node in pair] for pair in number]
+        lowest, highest = 0, names.size - 1
     keys = [
-        [(node.astype(np.int64) - lowest) * SLOTS + direction for node, direction in pairs]
-        for part in (stiffness, mass)
-        for pairs in [((part[0], part[1]), (part[2], part[3]))]
+        [
+            (node.astype(np.int64) - lowest) * SLOTS + direction
+            for node, direction in zip(pair, (part[1], part[3]), strict=True)
+        ]
+        for pair, part in zip(number, (stiffness, mass), strict=True)
     ]
     there = np.zeros((highest - lowest + 1) * SLOTS, bool)
     for pair in keys:
         for key in pair:
             there[key] = True
     used = np.flatnonzero(there)
-    used = np.concatenate([used[used // SLOTS + lowest > 0], used[used // SLOTS + lowest <= 0]])
+    node = used // SLOTS + lowest if names is None else names[used // SLOTS]
+    order = np.argsort(node <= 0, kind="stable")
+    used, node, direction = used[order], node[order], (used % SLOTS)[order]
     place = np.zeros(there.size, np.int32)
     place[used] = np.arange(used.size)
-    node, direction = used // SLOTS + lowest, used % SLOTS
     tables = [(place[row], place[column]) for row, column in keys]
     return DofTable(node, direction, (node > 0).astype(float)), tables
 
@@ -197,7 +211,7 @@ def _mesh(path: Path, options: JobOptions, notes: list[str]) -> ProgramMesh | No
     try:
         deck = read_deck(options.deck or path.with_name(job + ".inp"))
     except OSError as error:
-        notes.append(f"without the deck ({error}) there are no coordinates")
+        notes.append(f"without the deck ({reason(error)}) there are no coordinates")
         return None
     if deck.parts:
         notes.append("the deck numbers nodes in parts: coordinates are left out")

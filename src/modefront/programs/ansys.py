@@ -212,7 +212,10 @@ def _mapping(path: Path) -> DofTable:
 
 def _maps(nod2bcs: Path, back: Path) -> DofTable:
     """Return the table of the maps NOD2BCS (equations, nodal values) and BACK (nodes)."""
-    nodes: Ints = matrix_market(back, square=False).toarray().ravel().astype(np.intp)
+    listed = matrix_market(back, square=False)
+    if listed.nnz < np.prod(listed.shape, dtype=float):
+        raise wrong(back, "a node in every row", f"{listed.nnz} in {listed.shape}")
+    nodes: Ints = listed.toarray().ravel().astype(np.intp)
     picked = matrix_market(nod2bcs, square=False)
     per_node = picked.shape[1] // max(nodes.size, 1)
     if picked.shape[1] != per_node * nodes.size or picked.nnz < picked.shape[0]:

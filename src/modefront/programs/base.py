@@ -10,7 +10,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
 from modefront.inputs import file_size
 from modefront.models.dofs import DofTable
 from modefront.programs.mesh import ProgramMesh
@@ -87,6 +87,15 @@ class Program:
     name: str
     read: Callable[[Path, JobOptions], Job]
     eliminates: bool = False
+
+    def job(self, path: Path, options: JobOptions) -> Job:
+        """Return a job; raises InputError where its files cannot be read, whatever the cause."""
+        try:
+            return self.read(path, options)
+        except InputError:
+            raise
+        except Exception as error:  # damaged files fail in more ways than can be listed
+            raise wrong(path, f"a job of {self.name}", reason(error)) from None
 
 
 @dataclass(frozen=True, eq=False)

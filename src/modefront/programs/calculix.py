@@ -14,12 +14,14 @@ modes) moves with the model, and belongs to no node.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
+from modefront._typing import Ints
+from modefront.errors import reason
 from modefront.models.dofs import DofTable
 from modefront.programs.base import Entries, Job, JobOptions, Program, existing, upper, wrong
 from modefront.programs.inp import Deck, read_deck
@@ -82,7 +84,9 @@ def _deck(path: Path, notes: list[str]) -> Deck | None:
     try:
         return read_deck(path)
     except OSError as error:
-        notes.append(f"without the deck ({error}) there are no coordinates, and held nodes of")
+        notes.append(
+            f"without the deck ({reason(error)}) there are no coordinates, and held nodes of"
+        )
         notes[-1] += " shells and beams cannot be told from others"
         return None
 
@@ -98,31 +102,62 @@ def _table(labels: DofTable, deck: Deck | None) -> DofTable:
     if deck is not None:
         node[~np.isin(node, deck.mesh.number)] *= -1
     weight = np.zeros(node.size)
-    own = _own_blocks(labels, deck)
+    own, leading = _own_blocks(labels, deck)
     order = np.lexsort((direction, labels.node))
     keys = np.column_stack([labels.node, direction])[order]
     starts = np.flatnonzero(np.append(True, (keys[1:] != keys[:-1]).any(axis=1)))
     groups = np.split(order, starts[1:])
+    parts = [_own_first(group, own.get(int(labels.node[group[0]]))) for group in groups]
     most: dict[int, int] = {}
-    for group in groups:
+    for group, (_, made) in zip(groups, parts, strict=True):
         number = int(labels.node[group[0]])
-        most[number] = max(most.get(number, 0), group.size)
-    for group in groups:
+        most[number] = max(most.get(number, 0), made.size)
+    follow = _followers(labels, deck, own, most, leading)
+    for group, (itself, made) in zip(groups, parts, strict=True):
         number, along = int(labels.node[group[0]]), int(direction[group[0]])
         held = deck is not None and (number, along) in deck.held
-        if held or node[group[0]] < 0:
+        if held or node[group[0]] < 0 or number in follow:
             continue
-        if number in own:
-            first, last = own[number]
-            group = group[(group >= first) & (group < last)]
-        elif group.size < most[number]:
-            continue  # the program eliminated one of them: the mean of all is held
-        weight[group] = 1.0 / max(group.size, 1)
+        if itself.size:
+            weight[itself] = 1.0 / itself.size
+        elif made.size == most[number]:  # else the program eliminated one: the mean of all is held
+            weight[made] = 1.0 / made.size
     return DofTable(node, direction, weight)
 
 
-def _own_blocks(labels: DofTable, deck: Deck | None) -> dict[int, tuple[int, int]]:
+def _own_first(group: Ints, block: tuple[int, int] | None) -> tuple[Ints, Ints]:
+    """Return those of the degrees of freedom of a node that are its own, and all others."""
+    if block is None:
+        return group[:0], group
+    own = (group >= block[0]) & (group < block[1])
+    return group[own], group[~own]
+
+
+def _followers(
+    labels: DofTable,
+    deck: Deck | None,
+    own: Mapping[int, tuple[int, int]],
+    most: Mapping[int, int],
+    leading: int,
+) -> set[int]:
+    """Return the nodes of shells and beams that follow a rigid body, and its reference nodes.
+
+    The program eliminates all but one of the nodes that it makes of such a node. What is left does
+    not tell how the node moves, nor does the motion that it prints for the reference node agree
+    with that of its degrees of freedom. ``leading`` degrees of freedom are of nodes themselves.
+    """
+    if deck is None:
+        return set()
+    single = {n for n in deck.expanded - deck.others - own.keys() if most.get(n) == 1}
+    behind = set(labels.node[leading:].tolist())
+    out = single & (behind | deck.rigid)
+    return out | deck.references if out else out
+
+
+def _own_blocks(labels: DofTable, deck: Deck | None) -> tuple[dict[int, tuple[int, int]], int]:
     """Return the degrees of freedom (first, one behind the last) of nodes that move themselves.
+
+    The second value is the number of degrees of freedom at the beginning whose nodes ascend.
 
     The program numbers the nodes of the deck before those that it makes of them. So the first block
     of a node whose other blocks follow later is the node itself.
@@ -143,7 +178,7 @@ def _own_blocks(labels: DofTable, deck: Deck | None) -> dict[int, tuple[int, int
         attached = deck is not None and number in deck.others and places[0] == leading - 1
         if apart or attached:
             out[number] = blocks[places[0]][1:]
-    return out
+    return out, blocks[leading - 1][2] if leading else 0
 
 
 def _ascending(numbers: Iterable[int]) -> int:

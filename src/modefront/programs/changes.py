@@ -11,7 +11,7 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
 from modefront.inputs import file_size
 
 NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
@@ -130,4 +130,4 @@ def read_changes(path: Path) -> list[Change]:
             for each in json.loads(path.read_text(encoding="utf-8"))
         ]
     except (OSError, ValueError, TypeError, KeyError) as error:
-        raise InputError(Fault(str(path), "file", "changes of a deck", str(error))) from None
+        raise InputError(Fault(str(path), "file", "changes of a deck", reason(error))) from None

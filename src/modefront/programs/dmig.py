@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats, Ints
+from modefront.errors import reason
 from modefront.programs.base import wrong
 from modefront.programs.text import fixed_width
 
@@ -69,7 +70,7 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
     try:
         values = _numbers(texts)
     except ValueError as error:
-        raise wrong(path, "numbers in the fourth field", str(error)) from None
+        raise wrong(path, "numbers in the fourth field", reason(error)) from None
     precision = 10.0 ** -_digits(texts)
     numbers = {name: k for k, name in enumerate(dict.fromkeys(names))}
     kind = np.array([numbers[name] for name in names])[owner]
@@ -118,7 +119,7 @@ def _whole(path: Path, fields: list[np.ndarray]) -> Ints:
     try:
         numbers = [fixed_width(text.tobytes(), FIELD) for text in fields]
     except ValueError as error:
-        raise wrong(path, "nodes and components in fields of 16", str(error)) from None
+        raise wrong(path, "nodes and components in fields of 16", reason(error)) from None
     return np.column_stack(numbers).astype(np.intp)
 
 

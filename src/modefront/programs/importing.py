@@ -14,7 +14,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.errors import Fault, InputError, ModelError, refuse, suggestion
+from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion
 from modefront.fem.dofs import DIRECTIONS
 from modefront.models.dofs import number_of, write_dofs
 from modefront.models.matrices import MatrixModel, matrices
@@ -104,18 +104,18 @@ def read_jobs(request: Request, progress: Callable[[str], None] = lambda _: None
     terms = _term_names(names, request.functions)
     values = _values(request, names)
     progress(f"reading {request.nominal}")
-    nominal = request.program.read(request.nominal, request.options)
+    nominal = request.program.job(request.nominal, request.options)
     differences = Differences(nominal, names, terms)
     for (_, path), theta in zip(request.runs, values, strict=True):
         progress(f"reading {path}")
-        job = request.program.read(path, request.options)
+        job = request.program.job(path, request.options)
         differences.add(Run(str(path), job, theta))
     found = differences.terms()
     errors = []
     for path, given in request.checks:
         progress(f"checking with {path}")
         theta = np.array([given.get(name, 1.0) for name in names])
-        job = request.program.read(path, request.options)
+        job = request.program.job(path, request.options)
         errors.append(differences.check(found, Run(str(path), job, theta)))
     notes = list(nominal.notes)
     if request.program.eliminates:
@@ -273,7 +273,7 @@ def write_study(imported: Imported, program: str, directory: Path) -> list[Path]
             return [Path(shutil.move(file, directory / file.name)) for file in files]
     except OSError as error:
         expected = "a folder that can be written to"
-        raise InputError(Fault(str(directory), "folder", expected, str(error))) from None
+        raise InputError(Fault(str(directory), "folder", expected, reason(error))) from None
 
 
 def _write_matrices(terms: Terms, folder: Path) -> dict[Quantity, dict[str, str]]:

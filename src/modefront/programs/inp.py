@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
@@ -43,6 +43,8 @@ class Deck:
     held : node and direction, from 1, of every support
     expanded : nodes of elements that CalculiX makes solids of
     others : nodes of all other elements
+    rigid : nodes of rigid bodies, as far as sets of nodes list them
+    references : reference nodes of rigid bodies and couplings
     parts : whether nodes are numbered in parts, so that their numbers are not those of matrices
     """
 
@@ -50,6 +52,8 @@ class Deck:
     held: frozenset[tuple[int, int]]
     expanded: frozenset[int]
     others: frozenset[int]
+    rigid: frozenset[int]
+    references: frozenset[int]
     parts: bool
 
 
@@ -63,6 +67,8 @@ class _Content:
     held: list[tuple[str, int, int]] = field(default_factory=list)
     expanded: set[int] = field(default_factory=set)
     others: set[int] = field(default_factory=set)
+    bodies: list[str] = field(default_factory=list)
+    references: list[str] = field(default_factory=list)
     parts: bool = False
 
 
@@ -83,17 +89,29 @@ def read_deck(path: Path) -> Deck:
             _add_set(content, options, rows)
         elif keyword == "BOUNDARY":
             _boundary(content, rows)
+        elif keyword in ("RIGID BODY", "COUPLING"):
+            content.bodies.append(options.get("NSET", ""))
+            content.references += [options.get(name, "") for name in ("REF NODE", "ROT NODE")]
         elif keyword in ("PART", "INSTANCE"):
             content.parts = True
-    held = set()
-    for name, first, last in content.held:
-        nodes = [int(name)] if name.isdigit() else content.sets.get(name.upper(), [])
-        held |= {(node, direction) for node in nodes for direction in range(first, last + 1)}
+
+    def nodes_of(names: Iterable[str]) -> Iterator[int]:
+        for name in names:
+            yield from [int(name)] if name.isdigit() else content.sets.get(name.upper(), [])
+
+    held = {
+        (node, direction)
+        for name, first, last in content.held
+        for node in nodes_of([name])
+        for direction in range(first, last + 1)
+    }
     return Deck(
         mesh_of(content.nodes, content.cells),
         frozenset(held),
         frozenset(content.expanded),
         frozenset(content.others),
+        frozenset(nodes_of(content.bodies)),
+        frozenset(nodes_of(content.references)),
         content.parts,
     )
 
@@ -117,7 +135,9 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], l
                 yield keyword, options, rows
             keyword, options, rows = *_keyword(text), []
             if keyword == "INCLUDE" and options.get("INPUT") and depth < DEEPEST:
-                yield from _blocks(path.parent / options["INPUT"], depth + 1)
+                other = path.parent / options["INPUT"]
+                if other.resolve().is_relative_to(path.parent.resolve()):  # nothing from elsewhere
+                    yield from _blocks(other, depth + 1)
     if keyword:
         yield keyword, options, rows
 

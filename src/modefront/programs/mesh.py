@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.errors import Fault, InputError
+from modefront.errors import Fault, InputError, reason
 from modefront.inputs import file_size
 
 CORNERS: Mapping[str, int] = {
@@ -81,5 +81,5 @@ def read_mesh(path: Path) -> ProgramMesh:
             raise ValueError("arrays that do not belong together")
         return ProgramMesh(number.astype(np.intp), coordinates.astype(float), cells)
     except Exception as error:  # what NumPy raises for a damaged file is not documented
-        found = str(error) or type(error).__name__
+        found = reason(error)
     raise InputError(Fault(str(path), "file", "nodes and elements (mesh.npz)", found))

@@ -14,6 +14,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Bools, Ints
+from modefront.errors import reason
 from modefront.models.dofs import DofTable, read_dofs
 from modefront.programs.base import (
     DOUBLE,
@@ -92,7 +93,7 @@ def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
         except FileNotFoundError:
             continue
         except OSError as error:
-            raise wrong(deck, "a deck that can be read", str(error)) from None
+            raise wrong(deck, "a deck that can be read", reason(error)) from None
     if options.deck:
         raise wrong(options.deck, "a deck", "no such file")
     notes.append(f"there is no deck ({path.stem}.dat or .bdf), and so there are no coordinates")

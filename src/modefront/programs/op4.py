@@ -22,6 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.errors import reason
 from modefront.programs.base import Entries, wrong
 from modefront.programs.text import fixed_width
 
@@ -358,6 +359,6 @@ def _values(path: Path, lines: _Lines, at: Ints, per_line: Ints, width: int) -> 
             try:
                 numbers = fixed_width(text.tobytes(), width)
             except ValueError as error:
-                raise wrong(path, f"numbers of {width} characters", str(error)) from None
+                raise wrong(path, f"numbers of {width} characters", reason(error)) from None
             out[place[part][:, None] + np.arange(count)] = numbers.reshape(-1, count)
     return out

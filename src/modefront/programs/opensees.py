@@ -13,7 +13,9 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse
 
+from modefront.errors import InputError, reason
 from modefront.models.dofs import read_dofs
+from modefront.models.formats.scipy_npz import SCIPY_NPZ
 from modefront.programs.base import (
     DOUBLE,
     Entries,
@@ -53,12 +55,11 @@ def _matrix(path: Path) -> scipy.sparse.coo_array:
     if path.suffix == ".mtx":
         return matrix_market(path)
     try:
-        with path.open("rb") as stream:
-            matrix = scipy.sparse.load_npz(stream)
-        if matrix.format in ("csr", "csc", "bsr"):
-            matrix.check_format(full_check=True)
-    except Exception as error:  # what NumPy raises for a damaged file is not documented
-        raise wrong(path, "a sparse matrix of SciPy", str(error) or type(error).__name__) from None
+        matrix = SCIPY_NPZ.read(path, None)
+    except InputError:
+        raise
+    except Exception as error:  # what is raised for a damaged file is not documented
+        raise wrong(path, "a sparse matrix of SciPy", reason(error)) from None
     if matrix.dtype.kind not in "biuf":
         raise wrong(path, "real numbers", str(matrix.dtype))
     return scipy.sparse.coo_array(matrix).astype(float)
@@ -79,7 +80,9 @@ def _mesh(path: Path) -> ProgramMesh | None:
             if kind:
                 cells.setdefault(kind, []).append([int(x) for x in row[1:]])
     except (ValueError, IndexError) as error:
-        raise wrong(nodes, "rows node,x,y,z (and element,node,… of elements)", str(error)) from None
+        raise wrong(
+            nodes, "rows node,x,y,z (and element,node,… of elements)", reason(error)
+        ) from None
     return mesh_of(points, cells)
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import re
 from pathlib import Path
 from typing import BinaryIO
 
@@ -11,10 +12,15 @@ import scipy.io
 import scipy.sparse
 
 from modefront._typing import Floats
+from modefront.errors import InputError, reason
+from modefront.models.formats.matrix_market import NUMERIC, read_entries
 from modefront.programs.base import Entries, wrong
 
 BLOCK = 2**24
 """Bytes that are read at once."""
+
+BARE = re.compile(rb"(\d)([+-]\d{3})$")
+"""An exponent of three digits, as Fortran writes it."""
 
 
 class _Headed(io.RawIOBase):
@@ -42,6 +48,8 @@ def coordinates(path: Path, size: int, *, skip: int = 0) -> Entries:
     with path.open("rb") as file:
         file.seek(skip)
         while block := file.read(BLOCK):
+            if other := block.translate(None, NUMERIC):  # at some bytes the reader crashes
+                raise wrong(path, "numbers", f"the byte {other[:1]!r}")
             count += block.count(b"\n")
             end = block[-1:]
         if end != b"\n":
@@ -52,7 +60,7 @@ def coordinates(path: Path, size: int, *, skip: int = 0) -> Entries:
             matrix = scipy.io.mmread(_Headed(head, file))
         except (ValueError, OverflowError) as error:
             expected = f"lines 'row column value' with rows and columns from 1 to {size}"
-            raise wrong(path, expected, str(error)) from None
+            raise wrong(path, expected, reason(error)) from None
     return Entries(matrix.row, matrix.col, matrix.data)
 
 
@@ -79,17 +87,21 @@ def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.
         )
     except (ValueError, OSError, OverflowError) as error:
         expected = f"{len(kinds)} numbers in every line"
-        raise wrong(path, expected, " ".join(str(error).split())) from None
+        raise wrong(path, expected, reason(error)) from None
     return [table[k].to_numpy() for k in range(len(kinds))]
 
 
 def fixed_width(text: bytes, width: int) -> Floats:
     """Return numbers of a fixed width that follow each other without separators.
 
-    A ``D`` stands for the ``E`` of an exponent. Raises ValueError where one is no number.
+    A ``D`` stands for the ``E`` of an exponent, which Fortran leaves out before three digits.
+    Raises ValueError where one is no number.
     """
     array = np.frombuffer(text.replace(b"D", b"E").replace(b"d", b"e"), dtype=f"S{width}")
-    out: Floats = array.astype(float)
+    try:
+        out: Floats = array.astype(float)
+    except ValueError:
+        out = np.array([float(BARE.sub(rb"\1E\2", field)) for field in array.tolist()])
     return out
 
 
@@ -99,11 +111,11 @@ def matrix_market(path: Path, *, square: bool = True) -> scipy.sparse.coo_array:
     Raises InputError for a file that is none, is not ``square``, or holds complex numbers.
     """
     try:
-        matrix = scipy.sparse.coo_array(scipy.io.mmread(path))
+        matrix = scipy.sparse.coo_array(read_entries(path, square=square))
     except (ValueError, OSError, OverflowError) as error:
-        raise wrong(path, "a Matrix Market file", str(error)) from None
+        if isinstance(error, InputError):
+            raise
+        raise wrong(path, "a Matrix Market file", reason(error)) from None
     if matrix.dtype.kind not in "biuf":
         raise wrong(path, "real numbers", str(matrix.dtype))
-    if square and matrix.shape[0] != matrix.shape[1]:
-        raise wrong(path, "a square matrix", " x ".join(map(str, matrix.shape)))
     return matrix.astype(float)

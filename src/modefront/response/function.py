@@ -72,8 +72,8 @@ def frequency_response(
         a system that does not say how its outputs move with the base.
 
     """
-    at = no_negative("omega", real_array("omega", omega, (None,), "frequencies"), "frequency")
-    return derivatives(system, at.astype(np.complex128), quantity)[0]
+    lines = no_negative("omega", real_array("omega", omega, (None,), "frequencies"), "frequency")
+    return derivatives(system, lines.astype(np.complex128), quantity)[0]
 
 
 def derivatives(
@@ -84,9 +84,9 @@ def derivatives(
     # ω_r² - ω² as a product: exact to rounding next to the mode, where the difference is small.
     d = (system.omega - w) * (system.omega + w) + 2j * system.zeta * system.omega * w
     if np.any(d == 0):
-        at, mode = (int(i) for i in np.argwhere(d == 0)[0])
+        line, mode = (int(i) for i in np.argwhere(d == 0)[0])
         expected = "no frequency on that of an undamped mode, where the response is unbounded"
-        found = f"{omega[at].real} rad/s with zeta[{mode}] = {system.zeta[mode]}"
+        found = f"{omega[line].real} rad/s with zeta[{mode}] = {system.zeta[mode]}"
         raise wrong("omega", expected, found)
     d1 = -2 * w + 2j * system.zeta * system.omega
     modal = (1 / d, -d1 / d**2, 2 * d1**2 / d**3 + 2 / d**2)

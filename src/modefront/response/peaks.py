@@ -111,8 +111,8 @@ def peaks(
     # The modes are natural breaks: with one at the end of an interval, its width is soon found.
     inside = pair.omega[(pair.omega > low) & (pair.omega < high)]
     breaks = np.unique(np.concatenate([[low], inside, [high]]))
-    found = np.concatenate([_zeros(slope, a, b) for a, b in pairwise(breaks.tolist())])
-    zeros = _polish(slope, found, low, high)
+    roots = np.concatenate([_zeros(slope, a, b) for a, b in pairwise(breaks.tolist())])
+    zeros = _polish(slope, roots, low, high)
     at_peak = zeros[slope.both(zeros)[1] < 0]
     values = derivatives(pair, at_peak.astype(np.complex128), quantity)[0][:, 0, 0]
     return tuple(

@@ -24,8 +24,8 @@ class Slope:
 
     def both(self, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
         """Return g and g'."""
-        at = omega.astype(np.complex128)
-        t, t1, t2 = (value[:, 0, 0] for value in derivatives(self.pair, at, self.quantity))
+        s = omega.astype(np.complex128)
+        t, t1, t2 = (value[:, 0, 0] for value in derivatives(self.pair, s, self.quantity))
         return 2 * (t.conj() * t1).real, 2 * (abs(t1) ** 2 + (t.conj() * t2).real)
 
     def rounding(self, omega: FloatArray, g1: FloatArray) -> FloatArray:
@@ -33,16 +33,16 @@ class Slope:
 
         Modes that cancel leave a small T that is no more accurate than they are.
         """
-        one = self.pair
-        load = np.concatenate([abs(one.input), abs(one.residual_flexibility())])[:, 0]
-        shape = np.append(abs(one.output[0]), 1.0)
+        pair = self.pair
+        load = np.concatenate([abs(pair.input), abs(pair.residual_flexibility())])[:, 0]
+        shape = np.append(abs(pair.output[0]), 1.0)
         w = omega[:, None]
-        d = (one.omega - w) * (one.omega + w) + 2j * one.zeta * one.omega * w
+        d = (pair.omega - w) * (pair.omega + w) + 2j * pair.zeta * pair.omega * w
         inverse = np.hstack([1 / abs(d), np.ones_like(w)])
-        inverse1 = np.hstack([2 * (w + one.zeta * one.omega) / abs(d) ** 2, np.zeros_like(w)])
+        inverse1 = np.hstack([2 * (w + pair.zeta * pair.omega) / abs(d) ** 2, np.zeros_like(w)])
         alpha, alpha1 = inverse @ (shape * load), inverse1 @ (shape * load)
         s = self.quantity.order
-        rigid = 0.0 if one.rigid is None else abs(one.rigid[0, 0])
+        rigid = 0.0 if pair.rigid is None else abs(pair.rigid[0, 0])
         t = omega**s * alpha + rigid
         t1 = omega**s * alpha1 + s * omega ** max(s - 1, 0) * alpha
         size: FloatArray = 8 * np.finfo(float).eps * (t * t1 + omega * abs(g1))

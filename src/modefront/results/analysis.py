@@ -57,7 +57,7 @@ def determinations(problem: UpdatingProblem, front: Front) -> list[Determination
     groups = problem.groups
     out = []
     for point in [front.reference, *of_kind(front.points, Kind.EDGE)]:
-        evaluation = point.solution.at
+        evaluation = point.solution.evaluation
         weights = optimal_weights(problem.properties, evaluation.J)
         scale = scale_at(problem, evaluation.theta)
         idle = without_effect(problem, evaluation, scale)
@@ -203,8 +203,8 @@ def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis)
         return {}
     p, n = len(problem.model.parameters), len(problem.objectives)
     solutions = [[each.get(x.label) for x in front.points] for each in analysis.replicates]
-    theta = _stacked(solutions, p, lambda solution: solution.at.theta)
-    J = _stacked(solutions, n, lambda solution: solution.at.J)
+    theta = _stacked(solutions, p, lambda solution: solution.theta)
+    J = _stacked(solutions, n, lambda solution: solution.J)
     return {
         "bootstrap_theta": theta,
         "bootstrap_objective": J,

@@ -56,7 +56,7 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     """Return the models with their objectives and modes."""
     points, n = front.points, len(problem.objectives)
     solutions = [point.solution for point in points]
-    a, J = problem.properties, _stack([x.at.J for x in solutions], n)
+    a, J = problem.properties, _stack([x.J for x in solutions], n)
     equivalent = [
         model.J
         for _, manifolds in analysis.manifolds
@@ -82,7 +82,7 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     modes = len(problem.data.modes)
     unknown = np.full(modes, np.nan)
     for name in ("frequency", "mac", "paired_mode", "coincident"):
-        out[name] = _stack([x.at.quantities.get(name, unknown) for x in solutions], modes)
+        out[name] = _stack([x.evaluation.quantities.get(name, unknown) for x in solutions], modes)
     return out | certificate_values(problem, solutions)
 
 
@@ -117,7 +117,7 @@ def _minima(problem: UpdatingProblem, front: Front) -> Values:
     return {
         "minimum_of": [name for name, _ in minima],
         "minimum_theta": _thetas(solutions, problem),
-        "minimum_objective": _stack([x.at.J for x in solutions], len(problem.objectives)),
+        "minimum_objective": _stack([x.J for x in solutions], len(problem.objectives)),
         "minimum_converged": [x.converged for x in solutions],
         **certificate_values(problem, solutions, "minimum_"),
     }
@@ -127,16 +127,16 @@ def _branches(front: Front) -> Values:
     """Return the branches of a front of two objectives, and where they end at its gaps."""
     if len(front.edges) != 2 or METHODS[front.method].programme != "boundary":
         return {}
-    J = _stack([point.solution.at.J for point in front.points], 2)
-    p = front.points[0].solution.at.theta.size
+    J = _stack([point.solution.J for point in front.points], 2)
+    p = front.points[0].solution.theta.size
     ends = [end for gap in front.gaps for end in (gap.end, gap.start)]
     names = [name for i in range(len(front.gaps)) for name in (f"end-{i + 1}", f"start-{i + 2}")]
     nothing = np.full(2, np.nan)
     return {
         "piece": branch_numbers(J, nondominated(J), front.gaps),
         "end_label": names,
-        "end_theta": _stack([np.full(p, np.nan) if x is None else x.at.theta for x in ends], p),
-        "end_objective": _stack([nothing if x is None else x.at.J for x in ends], 2),
+        "end_theta": _stack([np.full(p, np.nan) if x is None else x.theta for x in ends], p),
+        "end_objective": _stack([nothing if x is None else x.J for x in ends], 2),
         "end_converged": np.array([x is not None for x in ends], dtype=bool),
     }
 
@@ -155,9 +155,9 @@ def _pareto(front: Front, J: Floats, others: Floats) -> Bools:
     All evaluated models are known, minima and ends of branches too. An end that another branch
     dominates at the same level counts for the points next to it only.
     """
-    minima = [solution.at.J for edge in front.edges for solution in edge.minima]
-    minima += [solution.at.J for gap in front.gaps for solution in gap.ends]
-    minima += [solution.at.J for solution in front.optimal]
+    minima = [solution.J for edge in front.edges for solution in edge.minima]
+    minima += [solution.J for gap in front.gaps for solution in gap.ends]
+    minima += [solution.J for solution in front.optimal]
     n = J.shape[1]
     known = np.vstack([J, front.known.reshape(-1, n), _stack(minima, n), others])
     # Of a front that is a point, the ranges over models as good as each other are rounding.
@@ -193,7 +193,7 @@ def _stack(rows: Sequence[Floats], width: int) -> Floats:
 
 
 def _thetas(solutions: Sequence[Solution], problem: UpdatingProblem) -> Floats:
-    return _stack([solution.at.theta for solution in solutions], len(problem.model.parameters))
+    return _stack([solution.theta for solution in solutions], len(problem.model.parameters))
 
 
 def _shares(weights: Floats, scale: Floats | None) -> Floats:

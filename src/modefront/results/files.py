@@ -3,20 +3,26 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
-import h5py
 import numpy as np
 import xarray as xr
 
 from modefront.errors import Fault, InputError, reason
-from modefront.hdf5 import check_file
-from modefront.inputs import file_size
+from modefront.inputs import available_memory, file_size
+from modefront.isolated import isolated
 from modefront.results.schema import FORMAT, VARIABLES, faults, missing
 from modefront.results.soundness import unsound
 from modefront.text import NAME, clean
 
 FILE = "results.nc"
+
+READER = "modefront.results.netcdf:contents"
+
+SECONDS = 120.0
+"""Time that reading may take."""
 
 
 def write(data: xr.Dataset, path: Path) -> None:
@@ -37,10 +43,7 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
     path = folder / FILE
     file_size(path, "results of a finished run")
     try:
-        with h5py.File(path, "r") as file:
-            check_file(file)
-        with xr.open_dataset(path, engine="h5netcdf", decode_times=False) as data:
-            data.load()
+        data = _read(path)
     except Exception as error:  # what is raised for a damaged file is not documented
         raise InputError(Fault(str(path), "file", "results in netCDF", reason(error))) from None
     version = data.attrs.get("format", 1 if "label" in data else None)
@@ -55,6 +58,36 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
     if wrong:
         raise InputError(wrong)
     return _plain(data)
+
+
+def written_for(path: Path) -> str | None:
+    """Return the hash of the inputs of results; None where the file cannot be read."""
+    try:
+        found = _read(path).attrs.get("inputs")
+    except Exception:  # what is raised for a damaged file is not documented
+        return None
+    return found if isinstance(found, str) else None
+
+
+def _read(path: Path) -> xr.Dataset:
+    """Return what a netCDF file holds, read in a process that damaged files may end."""
+    arrays, found = isolated(READER, path, SECONDS, available_memory())
+
+    def value(part: Mapping[str, Any]) -> Any:
+        if "place" in part:
+            return arrays[part["place"]]
+        return np.array(part["texts"], dtype=object).reshape(part["shape"])
+
+    def attributes(parts: Mapping[str, Any]) -> dict[str, Any]:
+        values = {name: value(part) for name, part in parts.items()}
+        return {name: each[()] if each.ndim == 0 else each for name, each in values.items()}
+
+    variables = {
+        name: xr.Variable(each["dimensions"], value(each["values"]), attributes(each["attributes"]))
+        for name, each in found["variables"].items()
+    }
+    raw = xr.Dataset(variables, attrs=attributes(found["attributes"]))
+    return xr.decode_cf(raw, decode_times=False)
 
 
 def _plain(data: xr.Dataset) -> xr.Dataset:

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.errors import Fault, InputError, ModelError
+from modefront.errors import Fault, InputError, ModelError, reason
 from modefront.models.geometry import Cells, Geometry
 from modefront.results.shapes import PairedShapes
 
@@ -67,7 +67,7 @@ def write_grid(
     except OSError as error:
         temporary.unlink(missing_ok=True)
         expected = "a file that can be written"
-        raise InputError(Fault(str(path), "file", expected, str(error))) from None
+        raise InputError(Fault(str(path), "file", expected, reason(error))) from None
 
 
 def _at_sensors(geometry: Geometry, measured: Floats) -> Floats:

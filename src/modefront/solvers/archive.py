@@ -75,9 +75,9 @@ class Archive:
 
     def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
         """Return the objectives at ``theta``, and remember them."""
-        at = self.problem.evaluate(theta, derivatives=derivatives)
-        self.add(at.theta, at.J)
-        return at
+        evaluation = self.problem.evaluate(theta, derivatives=derivatives)
+        self.add(evaluation.theta, evaluation.J)
+        return evaluation
 
     def on_branch(self, branch: tuple[int, ...]) -> Problem:
         """Return the problem of one smooth piece; its evaluations are not remembered."""

@@ -114,12 +114,11 @@ class Attainment:
 
     def excess(self, beta: Floats, J: Floats) -> Floats:
         """Return c, shape (n,)."""
-        return self.subproblem(beta).maximised.at(J)
+        return self.target.excess(beta, J)
 
-    def value(self, beta: Floats, J: Floats) -> float:
-        """Return max c + rho sum c."""
-        c = self.excess(beta, J)
-        return float(c.max() + SHARE * c.sum())
+    def is_better(self, beta: Floats, J: Floats, known: Floats) -> bool:
+        """Return whether objectives (n,) solve the programme at beta better than known ones."""
+        return self.target.is_better(beta, J, known)
 
     def solve(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         """Return the solution at beta, from a start.
@@ -127,18 +126,21 @@ class Attainment:
         From an edge, where derivatives often vanish, it is sought from between the edges too.
         Where the start is weakly optimal, the front ends and nothing is evaluated.
         """
-        if self.is_weak(beta, start.at.J):
+        if self.is_weak(beta, start.J):
             return replace(start, status=Status.STALLED, evaluations=0, beta=beta)
         solution = self._solve(problem, beta, start)
         span = problem.upper - problem.lower
-        if (np.abs(self.thetas - start.at.theta) > SAME * span).any(axis=1).all():
+        if (np.abs(self.thetas - start.theta) > SAME * span).any(axis=1).all():
             return solution
         share = np.maximum(beta, 0.0) / np.maximum(beta, 0.0).sum()
         theta = np.clip(share @ self.thetas, problem.lower, problem.upper)
         other = self._solve(problem, beta, begin(problem.evaluate(theta)))
         evaluations = solution.evaluations + other.evaluations + 1
-        key = (not solution.converged, self.value(beta, solution.at.J))
-        better = (not other.converged, self.value(beta, other.at.J)) < key
+        better = (
+            self.is_better(beta, other.J, solution.J)
+            if other.converged == solution.converged
+            else other.converged
+        )
         return replace(other if better else solution, evaluations=evaluations)
 
     solve_again = solve
@@ -154,7 +156,7 @@ class Attainment:
             return replace(solve(problem, programme, start), beta=beta)
         solution = replace(solve(problem, programme, start, _BEYOND), beta=beta)
         slow = solution.status is Status.EXHAUSTED
-        if self.is_weak(beta, solution.at.J) and (slow or beta.size > 3):
+        if self.is_weak(beta, solution.J) and (slow or beta.size > 3):
             return replace(solution, status=Status.STALLED)
         if not slow:
             return solution

@@ -42,9 +42,10 @@ import numpy as np
 from modefront._typing import Bools, Floats, Ints
 from modefront.solvers.archive import Archive
 from modefront.solvers.attainment import Attainment
-from modefront.solvers.continuation import BETTER, JUMP, Simplex, simplex
+from modefront.solvers.continuation import JUMP, Simplex, simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.explore import NEAR, Search
+from modefront.solvers.flat import same
 from modefront.solvers.nbi import Projection
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
@@ -96,6 +97,10 @@ SPACING = 0.125
 CROWD = 6
 """Points besides the lattice at most, for one step of it."""
 
+WIDE = 0.15
+"""Distance of neighbours on a rugged front of two objectives, in steps of the lattice, over which a
+point is looked for between them."""
+
 OTHERS = 1e-2
 """Weight of the other objectives, in units of the ranges, where the least of one is looked for."""
 
@@ -103,14 +108,19 @@ BESIDE, NEIGHBOURS = 1.5, 2
 """Distance of points of other branches, in steps of the ranges, within which a point is solved
 again from them, and how many of these are tried at most."""
 
+ABOVE = 1e-2
+"""Height of a point above the tangent plane of another, in units of the ranges, over twice that of
+the other above its own, from which on they count as points of two branches."""
+
 COARSE = 10
 """Steps along an edge below which parameters may change by more from a point to its neighbour on
 the same branch, in proportion."""
 
-BEHIND = 1e-2
-"""Excess of a half-finished search over a point, in units of the ranges, that is not followed."""
+BEHIND, NEARLY = 1e-2, 1e-3
+"""Excess of a half-finished search over a point, in units of the ranges, that is not followed; and
+of one whose steps have become short."""
 
-_ROUGH = Options(step=NEAR / 4, iterations=8)
+_ROUGH, _SHORT = Options(step=NEAR / 4, iterations=8), Options(iterations=60)
 
 
 @record
@@ -137,9 +147,9 @@ class Models:
 
 def models_of(solutions: Sequence[Solution]) -> Models:
     """Return the models of solutions."""
-    theta = np.array([one.at.theta for one in solutions])
-    J = np.array([one.at.J for one in solutions])
-    followed = np.array([one.status is not Status.EXHAUSTED for one in solutions])
+    theta = np.array([solution.theta for solution in solutions])
+    J = np.array([solution.J for solution in solutions])
+    followed = np.array([solution.status is not Status.EXHAUSTED for solution in solutions])
     return Models(theta, J, followed)
 
 
@@ -243,9 +253,9 @@ def explore_between(
     points = between.competed(points, _models_in(visited))
     if search.limit == 0:
         return points
-    known = [*points, *(one for found in minima for one in found)]
-    many = max((_different(found, target.scale) for found in minima), default=0) >= MINIMA
-    doubtful = sum(not one.converged for one in points) >= DOUBTFUL
+    known = [*points, *(solution for solved in minima for solution in solved)]
+    many = max((_different(solved, target.scale) for solved in minima), default=0) >= MINIMA
+    doubtful = sum(not solution.converged for solution in points) >= DOUBTFUL
     if not (many or doubtful):
         probes = between.probes(points, rng)
         if not between.ahead(probes, models_of(known)):
@@ -266,11 +276,11 @@ def _models_in(visited: Archive | None) -> Models | None:
     return Models(visited.theta, visited.J, np.zeros(len(visited.J), dtype=np.bool_))
 
 
-def _different(found: Sequence[Solution], scale: Floats) -> int:
+def _different(solved: Sequence[Solution], scale: Floats) -> int:
     """Return how many minima differ in their objectives: those of one valley do not."""
     kept: list[Floats] = []
-    for one in found:
-        y = one.at.J / scale
+    for solution in solved:
+        y = solution.J / scale
         if all(np.abs(y - other).max() > AHEAD for other in kept):
             kept.append(y)
     return len(kept)
@@ -285,23 +295,23 @@ class _Between:
     lattice: Simplex
     work: Executor
 
-    def excess(self, one: Solution, J: Floats) -> Floats:
+    def excess(self, solution: Solution, J: Floats) -> Floats:
         """Return the excess of models J (m, n) on the normal of a point of the front, (m,)."""
-        return place_on_normals(self.target, place_of(self.target, one)[None], J)[:, 0]
+        return place_on_normals(self.target, place_of(self.target, solution)[None], J)[:, 0]
 
-    def is_near(self, one: Solution, J: Floats) -> Bools:
+    def is_near(self, solution: Solution, J: Floats) -> Bools:
         """Return which models J (m, n) are projected from next to the place of a point.
 
         Others that dominate it, as in a gap of the front, lie on no way to its normal.
         """
-        away = np.abs(self.target.place(J) - place_of(self.target, one)).max(axis=1)
+        away = np.abs(self.target.place(J) - place_of(self.target, solution)).max(axis=1)
         return np.asarray(away <= 1 / self.lattice.divisions)
 
     def ahead(self, probes: Sequence[Solution], known: Models) -> bool:
         """Return whether a probe is ahead of all known models where it was to come to."""
-        for one in probes:
-            own = self.excess(one, one.at.J[None]).min()
-            if self.excess(one, known.J).min() > own + AHEAD:
+        for solution in probes:
+            own = self.excess(solution, solution.J[None]).min()
+            if self.excess(solution, known.J).min() > own + AHEAD:
                 return True
         return False
 
@@ -316,13 +326,13 @@ class _Between:
         thetas = self.problem.lower + span * rng.uniform(size=(PROBES, span.size))
         chosen = np.linspace(0, len(points) - 1, PROBES + 2)[1:-1].astype(int)
         betas = [place_of(self.target, points[k]) for k in chosen.tolist()]
-        found = self.work.run(
+        solved = self.work.run(
             [
                 Task(("probe", k + 1), _probe, (self.problem, self.target, theta, beta))
                 for k, (theta, beta) in enumerate(zip(thetas, betas, strict=True))
             ]
         )
-        return [one for one in found if one.at.feasible]
+        return [solution for solution in solved if solution.feasible]
 
     def evolved(self, models: Models, rng: np.random.Generator, evaluations: int) -> Models:
         """Return the population in which the evolution ends, with all that was followed."""
@@ -364,9 +374,9 @@ class _Between:
                     for k, start in enumerate(starts)
                 ]
             )
-            models = models.joined(models_of([one for one in ends if one.at.feasible]))
+            models = models.joined(models_of([solution for solution in ends if solution.feasible]))
             models = models[survivors(models, excess(models.J))]
-            spent += len(thetas) + sum(one.evaluations for one in ends)
+            spent += len(thetas) + sum(solution.evaluations for solution in ends)
             progress.append(self.progress(models, excess(models.J)))
             if generation > QUIET and progress[-1 - QUIET] - progress[-1] < PROGRESS:
                 break
@@ -379,33 +389,35 @@ class _Between:
         current = list(points)
         tried: set[tuple[int, bytes]] = set()
         for turn in range(ROUNDS):
-            everything = models_of([one for one in current if one.at.feasible])
+            everything = models_of([solution for solution in current if solution.feasible])
             everything = everything if models is None else models.joined(everything)
             starts = {}
-            for k, one in enumerate(current):
-                if one.beta is None:
+            for k, solution in enumerate(current):
+                if solution.beta is None:
                     continue
                 excess = np.where(
-                    self.is_near(one, everything.J), self.excess(one, everything.J), np.inf
+                    self.is_near(solution, everything.J),
+                    self.excess(solution, everything.J),
+                    np.inf,
                 )
                 best = int(excess.argmin())
-                own = self.excess(one, one.at.J[None])[0] if one.at.feasible else np.inf
+                own = self.excess(solution, solution.J[None])[0] if solution.feasible else np.inf
                 key = (k, everything.theta[best].tobytes())
-                if (excess[best] < own - AHEAD / 10 or not one.converged) and key not in tried:
+                if (excess[best] < own - AHEAD / 10 or not solution.converged) and key not in tried:
                     tried.add(key)
                     starts[k] = everything.theta[best]
             if not starts:
                 break
             task_key: Key = ("front", "nbi", "compete", name, turn + 1)
-            found = self.work.run(
+            solved = self.work.run(
                 [
                     Task((*task_key, k + 1), _again, (self.problem, self.target, current[k], theta))
                     for k, theta in starts.items()
                 ]
             )
-            for k, one in zip(starts, found, strict=True):
-                if _is_better(self.target, one, current[k]):
-                    current[k] = one
+            for k, solution in zip(starts, solved, strict=True):
+                if _is_better(self.target, solution, current[k]):
+                    current[k] = solution
         return current
 
     def with_others(self, points: Sequence[Solution], models: Models) -> list[Solution]:
@@ -415,10 +427,28 @@ class _Between:
         out = [*points, *others]
         if self.target.utopia.size > 2:
             return out
-        out.sort(key=lambda one: -float(self.target.place(one.at.J)[0]))
+        out.sort(key=lambda solution: -float(self.target.place(solution.J)[0]))
         task = Task(("front", "nbi", "along"), _continued, (self.problem, self.target, out))
         (along,) = self.work.run([task])
-        return sorted(along, key=lambda one: -float(self.target.place(one.at.J)[0]))
+        along.extend(self._between_neighbours(along))
+        return sorted(along, key=lambda solution: -float(self.target.place(solution.J)[0]))
+
+    def _between_neighbours(self, points: Sequence[Solution]) -> list[Solution]:
+        """Return points of two objectives half-way between optimal neighbours that lie apart."""
+        J = np.array([solution.J for solution in points])
+        optimal = np.flatnonzero(nondominated(J))
+        optimal = optimal[np.argsort(J[optimal, 0], kind="stable")]
+        steps = np.abs(np.diff(J[optimal], axis=0) / self.target.scale).max(axis=1)
+        wide = np.flatnonzero(steps > WIDE / self.lattice.divisions)
+        tasks = [
+            Task(
+                ("front", "nbi", "half-way", int(k) + 1),
+                _half_way,
+                (self.problem, self.target, points[optimal[k]], points[optimal[k + 1]]),
+            )
+            for k in wide
+        ]
+        return [x for x in self.work.run(tasks) if x.converged]
 
 
 def from_other_branches(
@@ -427,28 +457,38 @@ def from_other_branches(
     lattice: Simplex,
     points: Sequence[Solution],
     work: Executor = IMMEDIATE,
+    before: Sequence[Solution] = (),
 ) -> list[Solution]:
     """Return the points, each solved again from those of other branches that lie beside it.
 
     Where branches meet, the lattice leads along one of them as far as it goes, and the other one
-    may already be better.
+    may already be better. A point of another branch is one whose parameters are far, or whose
+    tangent to the front the point lies above by much more than it above the tangent at the point:
+    on one branch both differ in the third order of their distance. Pairs of points that were so
+    ``before`` are not tried.
     """
     current = list(points)
     span = problem.upper - problem.lower
     far = JUMP * max(1.0, COARSE / lattice.divisions)
-    tried: set[tuple[int, bytes]] = set()
+    kept = [k for k, pair in enumerate(zip(points, before, strict=False)) if same(*pair)]
+    tried = {(k, points[j].theta.tobytes()) for k in kept for j in kept}
     for turn in range(ROUNDS):
-        theta = np.array([point.at.theta for point in current]) / span
-        y = np.array([point.at.J for point in current]) / target.scale
+        theta = np.array([point.theta for point in current]) / span
+        y = np.array([point.J for point in current]) / target.scale
+        above = _above_tangents(current, target)
         starts: list[tuple[int, int]] = []
-        for k in range(len(current)):
-            if not np.isfinite(y[k]).all():
-                continue
+        for k in np.flatnonzero(np.isfinite(y).all(axis=1)).tolist():
             away = np.abs(y - y[k]).max(axis=1)
+            near = away <= BESIDE / lattice.divisions
             other = (np.abs(theta - theta[k]) > far).any(axis=1)
-            beside = np.flatnonzero(other & (away <= BESIDE / lattice.divisions))
-            for j in beside[away[beside].argsort(kind="stable")][:NEIGHBOURS].tolist():
-                key = (k, current[j].at.theta.tobytes())
+            beside = np.flatnonzero(near & other)
+            below = np.flatnonzero(near & (above[k] > ABOVE + 2 * np.maximum(above[:, k], 0)))
+            chosen = [
+                *beside[away[beside].argsort(kind="stable")][:NEIGHBOURS].tolist(),
+                *below[above[k, below].argsort(kind="stable")][-NEIGHBOURS:].tolist(),
+            ]
+            for j in dict.fromkeys(chosen):
+                key = (k, current[j].theta.tobytes())
                 if key not in tried:
                     tried.add(key)
                     starts.append((k, j))
@@ -467,16 +507,26 @@ def from_other_branches(
     return current
 
 
+def _above_tangents(points: Sequence[Solution], target: Payoff) -> Floats:
+    """Return how far each point lies above the tangent plane of the front at each other (k, k)."""
+    y = np.array([point.J for point in points]) / target.scale
+    w = np.nan_to_num([np.maximum(point.weights, 0) * target.scale for point in points])
+    total = w.sum(axis=1, keepdims=True)
+    w = np.divide(w, total, out=np.zeros_like(w), where=total > 0)
+    y = np.where(np.isfinite(y), y, 0.0)
+    return np.asarray(y @ w.T - (w * y).sum(axis=1))
+
+
 def _from_branch(problem: Problem, target: Payoff, point: Solution, start: Solution) -> Solution:
     """Return the programme of a point of the front solved from another point of it.
 
-    It is not solved to the end where it ends behind the point.
+    It is not solved to the end where it ends behind the point, or comes to it.
     """
     beta, programmes = place_of(target, point), programmes_of(problem, target)
     end = replace(solve(problem, programmes.subproblem(beta), start, _ROUGH), beta=beta)
-    J = np.array([end.at.J, point.at.J])
-    own, known = place_on_normals(target, beta[None], J)[:, 0]
-    if end.converged or own > known + BEHIND:
+    lead = target.excess(beta, point.J).max() - target.excess(beta, end.J).max()
+    away = np.abs((end.theta - point.theta) / (problem.upper - problem.lower)).max()
+    if lead < -(NEARLY if end.converged else BEHIND) or (end.converged and away < NEAR):
         return end
     again = programmes.solve_again(problem, beta, end)
     return replace(again, evaluations=end.evaluations + again.evaluations)
@@ -491,7 +541,7 @@ def programmes_of(problem: Problem, target: Payoff) -> Projection | Attainment:
 
 def place_of(target: Payoff, point: Solution) -> Floats:
     """Return the coordinates (n,) of the plane that a point of the front belongs to."""
-    return target.place(point.at.J) if point.beta is None else point.beta
+    return target.place(point.J) if point.beta is None else point.beta
 
 
 def _probe(problem: Problem, target: Payoff, theta: Floats, beta: Floats) -> Solution:
@@ -502,15 +552,15 @@ def _probe(problem: Problem, target: Payoff, theta: Floats, beta: Floats) -> Sol
 
 def _follow(problem: Problem, target: Payoff, theta: Floats, objective: int | None) -> Solution:
     """Return the end of the programme through a model, or of that of one objective."""
-    at = problem.evaluate(theta)
-    start = begin(at)
-    if not at.feasible:
+    evaluation = problem.evaluate(theta)
+    start = begin(evaluation)
+    if not evaluation.feasible:
         return start
     if objective is None:
-        beta = np.maximum(target.place(at.J), 0.0)
+        beta = np.maximum(target.place(evaluation.J), 0.0)
         programme = target.subproblem(np.asarray(beta / beta.sum()))
     else:
-        own = np.arange(at.J.size) == objective
+        own = np.arange(evaluation.J.size) == objective
         programme = weighted(np.where(own, 1.0, OTHERS) / target.scale)
     end = solve(problem, programme, start, _ROUGH)
     return replace(end, evaluations=end.evaluations + 1)
@@ -534,7 +584,7 @@ def _others(
     Models that are weakly optimal only are left out.
     """
     spacing = SPACING / lattice.divisions
-    optimal = nondominated(np.concatenate([models.J, [one.at.J for one in points]]))
+    optimal = nondominated(np.concatenate([models.J, [solution.J for solution in points]]))
     left = models[optimal[: len(models.J)]]
     programmes = programmes_of(problem, target)
     if isinstance(programmes, Attainment):
@@ -544,15 +594,15 @@ def _others(
     y = left.J / target.scale
     away = np.full(len(y), np.inf)
     for point in points:
-        if point.at.feasible:
-            away = np.minimum(away, np.abs(y - point.at.J / target.scale).max(axis=1))
+        if point.feasible:
+            away = np.minimum(away, np.abs(y - point.J / target.scale).max(axis=1))
     out: list[Solution] = []
     while len(y) and len(out) < CROWD * lattice.divisions:
         farthest = int(away.argmax())
         if away[farthest] < spacing:
             break
         out.append(_bottom(problem, target, left.theta[farthest]))
-        for J in (left.J[farthest], out[-1].at.J):
+        for J in (left.J[farthest], out[-1].J):
             away = np.minimum(away, np.abs(y - J / target.scale).max(axis=1))
     return out
 
@@ -560,12 +610,11 @@ def _others(
 def _bottom(problem: Problem, target: Payoff, theta: Floats) -> Solution:
     """Return the solution of the programme through a model, or the model if it is no better."""
     start = begin(problem.evaluate(theta))
-    beta = target.place(start.at.J)
+    beta = target.place(start.J)
     end = programmes_of(problem, target).solve_again(problem, beta, start)
-    own, other = place_on_normals(target, beta[None], np.array([end.at.J, start.at.J]))
-    if own[0] <= other[0] + BETTER:
-        return end
-    return replace(start, status=Status.STALLED, beta=beta)
+    if target.is_better(beta, start.J, end.J):
+        return replace(start, status=Status.STALLED, beta=beta)
+    return end
 
 
 def _continued(problem: Problem, target: Payoff, points: Sequence[Solution]) -> list[Solution]:
@@ -579,28 +628,40 @@ def _continued(problem: Problem, target: Payoff, points: Sequence[Solution]) -> 
     for order in (range(1, len(out)), range(len(out) - 2, -1, -1)):
         for k in order:
             near = out[k - order.step]
-            far = bool((np.abs(out[k].at.theta - near.at.theta) > JUMP * span).any())
-            other = out[k].at.branch != near.at.branch
-            if not (near.at.feasible and (far or other)):
+            far = bool((np.abs(out[k].theta - near.theta) > JUMP * span).any())
+            other = out[k].evaluation.branch != near.evaluation.branch
+            if not (near.feasible and (far or other)):
                 continue
-            piece = problem.on_branch(near.at.branch) if other else problem
+            piece = problem.on_branch(near.evaluation.branch) if other else problem
             beta = place_of(target, out[k])
             solution = programmes.solve_again(piece, beta, near)
             if other:
-                start = begin(problem.evaluate(solution.at.theta))
+                start = begin(problem.evaluate(solution.theta))
                 solution = programmes.solve_again(problem, beta, start)
             if _is_better(target, solution, out[k]):
                 out[k] = solution
     return out
 
 
+def _half_way(problem: Problem, target: Payoff, first: Solution, second: Solution) -> Solution:
+    """Return the point of the front half-way between two others, from the first or the second."""
+    beta = (target.place(first.J) + target.place(second.J)) / 2
+    programme = programmes_of(problem, target).subproblem(beta)
+    known = np.array([first.J, second.J])
+    evaluations = 0
+    for start in (first, second):
+        end = replace(solve(problem, programme, start, _SHORT), beta=beta)
+        evaluations += end.evaluations
+        if end.converged and not (known <= end.J).all(axis=1).any():
+            return replace(end, evaluations=evaluations)
+    return replace(end, status=Status.STALLED, evaluations=evaluations)
+
+
 def _is_better(target: Payoff, solution: Solution, known: Solution) -> bool:
     """Return whether a solution is better than a known one of the same point of the front."""
     if solution.converged != known.converged:
         return solution.converged
-    J = np.array([solution.at.J, known.at.J])
-    own, other = place_on_normals(target, place_of(target, known)[None], J)[:, 0]
-    return bool(own < other - BETTER)
+    return target.is_better(place_of(target, known), solution.J, known.J)
 
 
 def _evaluated(problem: Problem, thetas: Floats) -> Models:

@@ -35,10 +35,22 @@ _FEW = Options(iterations=40)
 
 
 def without_slack(
-    problem: Problem, target: Payoff, points: Sequence[Solution], work: Executor = IMMEDIATE
+    problem: Problem,
+    target: Payoff,
+    points: Sequence[Solution],
+    work: Executor = IMMEDIATE,
+    before: Sequence[Solution] = (),
 ) -> list[Solution]:
-    """Return the points, those of the border with all other objectives as small as they can be."""
-    doubtful = [k for k, point in enumerate(points) if _lowerable(target, point)]
+    """Return the points, those of the border with all other objectives as small as they can be.
+
+    Points that were so ``before`` are left as they are.
+    """
+    known = {point.theta.tobytes() for point in before}
+    doubtful = [
+        k
+        for k, point in enumerate(points)
+        if point.theta.tobytes() not in known and _lowerable(target, point)
+    ]
     tasks = [
         Task(("front", "nbi", "border", k + 1), _tightened, (problem, target, points[k]))
         for k in doubtful
@@ -65,29 +77,29 @@ def _lowerable(target: Payoff, point: Solution) -> list[Bools]:
     """
     n = target.scale.size
     free = _free(target, point)
-    vanishing = VANISHING * target.scale >= point.at.J
-    weak = point.beta is not None and point.at.feasible and vanishing.any()
+    vanishing = VANISHING * target.scale >= point.J
+    weak = point.beta is not None and point.feasible and vanishing.any()
     alone = np.flatnonzero(~vanishing & ~free if free.sum() == 1 else ~vanishing) if weak else ()
     return [*([free] if free.any() else []), *(np.arange(n) == i for i in alone)]
 
 
 def _tightened(problem: Problem, target: Payoff, point: Solution) -> Solution:
     """Return a point of the border with the objectives that no bound holds at their least."""
-    J = point.at.J
-    start = end = begin(problem.evaluate(point.at.theta))
+    J = point.J
+    start = end = begin(problem.evaluate(point.theta))
     evaluations = point.evaluations + 1
     for lowered in _lowerable(target, point):
         lower = _lowered(problem, target, replace(end, evaluations=0), lowered)
         evaluations += lower.evaluations
-        if _is_better(target, lower.at.J, end.at.J):
+        if _is_better(target, lower.J, end.J):
             end = lower
-    if end is start or not _is_better(target, end.at.J, J):
+    if end is start or not _is_better(target, end.J, J):
         return replace(point, evaluations=evaluations)
     beta = target.place(J) if point.beta is None else point.beta
     attainment = Attainment(target, np.zeros((0, J.size)))
-    again = solve(problem, attainment.subproblem(beta), begin(end.at))
+    again = solve(problem, attainment.subproblem(beta), begin(end.evaluation))
     evaluations += again.evaluations
-    best = again if again.converged and _is_better(target, again.at.J, end.at.J) else end
+    best = again if again.converged and _is_better(target, again.J, end.J) else end
     weights = again.weights if best is again else point.weights
     status = point.status
     return replace(best, weights=weights, status=status, evaluations=evaluations, beta=beta)
@@ -99,12 +111,14 @@ def _lowered(problem: Problem, target: Payoff, start: Solution, lowered: Bools) 
     Where one of the others nearly vanishes, its slope says nothing of how to keep it: its residuals
     are held in its place (`modefront.solvers.lexicographic`).
     """
-    J, scale = start.at.J, target.scale
+    J, scale = start.J, target.scale
     least = int(np.where(lowered, np.inf, J / scale).argmin())
-    if start.at.residuals and J[least] <= VANISHING * scale[least]:
+    if start.evaluation.residuals and J[least] <= VANISHING * scale[least]:
         order = Lexicographic(least, scale)
         return (
-            _around(problem, order, start, lowered) if order.is_open(problem, start.at) else start
+            _around(problem, order, start, lowered)
+            if order.is_open(problem, start.evaluation)
+            else start
         )
     held = np.eye(J.size)[~lowered] / scale
     return solve(problem, Linear(np.where(lowered, 1 / scale, 0.0), held, held @ J), start, _FEW)
@@ -115,15 +129,15 @@ def _around(problem: Problem, order: Lexicographic, start: Solution, lowered: Bo
 
     At a given sum of squares, residuals along their multipliers are the best.
     """
-    w, r = np.where(lowered, 1 / order.sizes, 0.0), start.at.residuals[order.objective].r
+    w, r = np.where(lowered, 1 / order.sizes, 0.0), start.evaluation.residuals[order.objective].r
     end, mu = order.lowered(problem, start, w, ~lowered, r, _FEW)
     if not (end.converged and mu.any()):
         return end
     aim = mu * float(np.linalg.norm(r) / np.linalg.norm(mu))
     turned, _ = order.lowered(problem, end, w, ~lowered, aim, _FEW)
-    J, known = turned.at.J, end.at.J
+    J, known = turned.J, end.J
     kept = J[~lowered] <= known[~lowered] + VANISHING * SAME * order.sizes[~lowered]
-    better = turned.at.feasible and kept.all() and w @ J < w @ known
+    better = turned.feasible and kept.all() and w @ J < w @ known
     return turned if better else replace(end, evaluations=turned.evaluations)
 
 

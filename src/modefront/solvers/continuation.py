@@ -11,7 +11,6 @@ from __future__ import annotations
 from collections import Counter, deque
 from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
-from functools import partial
 from itertools import combinations, islice
 from math import comb
 from typing import Protocol
@@ -110,12 +109,9 @@ class Programmes(Protocol):
     def solve_again(self, problem: Problem, beta: Floats, start: Solution) -> Solution:
         """Return the solution at beta, from another start than that of one that converged."""
 
-    def value(self, beta: Floats, J: Floats) -> float:
-        """Return what is least at the solution, in units of the range of the objectives."""
+    def is_better(self, beta: Floats, J: Floats, known: Floats) -> bool:
+        """Return whether objectives (n,) solve the programme at beta better than known ones."""
 
-
-BETTER = 1e-7
-"""Difference of two values below which the solutions are the same."""
 
 BEYOND, SHARE = 300, 2
 """Points beyond the simplex that are tried at most; of three objectives, where the lattice is not
@@ -226,7 +222,7 @@ class _Continuation:
     def from_edge(self, number: int, edge: Solution) -> None:
         """Accept an edge at the point it lies on, or the solution of the point next to it."""
         divisions = self.lattice.divisions
-        coordinates = divisions * self.programmes.place(number, edge.at.J)
+        coordinates = divisions * self.programmes.place(number, edge.J)
         point, solution = _nearest(coordinates, divisions), edge
         if np.abs(coordinates - point).max() <= SAME * divisions:
             self.fixed.add(point)
@@ -268,8 +264,8 @@ class _Continuation:
         out = [self.solved[point] for point in within]
         for point in sorted(set(self.solved) - set(within), reverse=True):
             solution = self.solved[point]
-            J = np.array([x.at.J for x in out])
-            away = (np.abs(J - solution.at.J) / self.programmes.scale).max(axis=1)
+            J = np.array([x.J for x in out])
+            away = (np.abs(J - solution.J) / self.programmes.scale).max(axis=1)
             if solution.converged and away.min() > SAME:
                 out.append(solution)
         return out
@@ -313,7 +309,7 @@ class _Continuation:
         """Keep a solution, and take note of the steps to its neighbours."""
         self.solved[point], self.origin[point] = solution, branch
         self.renewed[point] += 1
-        J, divisions = solution.at.J, self.lattice.divisions
+        J, divisions = solution.J, self.lattice.divisions
         own = _nearest(divisions * self.programmes.place(branch, J), divisions)
         here = self.programmes.goes_on(J) and point == own
         steps = self.queue if solution.converged else self.doubtful
@@ -355,14 +351,13 @@ class _Continuation:
     def _jumps(self, solution: Solution, other: Solution) -> bool:
         """Return whether two solutions lie on different branches."""
         span = self.problem.upper - self.problem.lower
-        return bool((np.abs(solution.at.theta - other.at.theta) > JUMP * span).any())
+        return bool((np.abs(solution.theta - other.theta) > JUMP * span).any())
 
     def _better(self, point: LatticePoint, solution: Solution, known: Solution) -> bool:
         """Return whether a solution of a point is better than a known one."""
         if solution.converged != known.converged:
             return solution.converged
-        value = partial(self.programmes.value, self.beta(point))
-        return value(solution.at.J) < value(known.at.J) - BETTER
+        return self.programmes.is_better(self.beta(point), solution.J, known.J)
 
 
 def _solve(problem: Problem, programmes: Programmes, beta: Floats, start: Solution) -> Solution:
@@ -378,7 +373,7 @@ def _solve_again(
 def _from_before(
     problem: Problem, programmes: Programmes, beta: Floats, before: Solution
 ) -> Solution:
-    start = replace(before, at=problem.evaluate(before.at.theta))
+    start = replace(before, evaluation=problem.evaluate(before.theta))
     return programmes.solve(problem, beta, start)
 
 

@@ -38,19 +38,19 @@ class Correction:
     E: Floats
 
     def evaluated(
-        self, problem: Problem, at: Evaluation, s: Floats, new: Evaluation
+        self, problem: Problem, evaluation: Evaluation, s: Floats, new: Evaluation
     ) -> Evaluation | None:
         """Return the end of the step with its correction; None where it is no better.
 
         ``new`` is the end of the step s (p,) from ``at``, which is over the ranges of the
         parameters.
         """
-        theta = self.corrected(problem, at, s, new)
+        theta = self.corrected(problem, evaluation, s, new)
         corrected = None if theta is None else problem.evaluate(theta)
         return corrected if corrected and self.merit.at(corrected) < self.merit.at(new) else None
 
     def corrected(
-        self, problem: Problem, at: Evaluation, s: Floats, new: Evaluation
+        self, problem: Problem, evaluation: Evaluation, s: Floats, new: Evaluation
     ) -> Floats | None:
         """Return parameters within the bounds, at which the rows are as predicted for the step.
 
@@ -58,10 +58,10 @@ class Correction:
         follows then.
         """
         span = problem.upper - problem.lower
-        w = self.merit.multipliers.weights(self.merit.programme, at.J)
-        before, after = self._rows(w, at, span), self._rows(w, new, span)
+        w = self.merit.multipliers.weights(self.merit.programme, evaluation.J)
+        before, after = self._rows(w, evaluation, span), self._rows(w, new, span)
         miss = after.r - (before.r + before.dr @ s)
-        taken = (new.theta - at.theta) / span
+        taken = (new.theta - evaluation.theta) / span
         free = (new.theta > problem.lower) & (new.theta < problem.upper)
         free |= np.abs(s) == 0
         step = np.zeros(s.size)
@@ -70,11 +70,11 @@ class Correction:
             return None
         return np.clip(new.theta + step * span, problem.lower, problem.upper)
 
-    def _rows(self, w: Floats, at: Evaluation, span: Floats) -> Residual:
+    def _rows(self, w: Floats, evaluation: Evaluation, span: Floats) -> Residual:
         """Return the residuals and the rows to be met, with their slopes in u."""
         roots, hold = np.sqrt(np.maximum(w, 0.0)).tolist(), np.sqrt(self.merit.penalty)
-        pairs = list(zip(roots, at.residuals, strict=True))
+        pairs = list(zip(roots, evaluation.residuals, strict=True))
         return Residual(
-            np.concatenate([*(x * of.r for x, of in pairs), hold * (self.E @ at.J)]),
-            np.vstack([*(x * of.dr for x, of in pairs), hold * (self.E @ at.dJ)]) * span,
+            np.concatenate([*(x * of.r for x, of in pairs), hold * (self.E @ evaluation.J)]),
+            np.vstack([*(x * of.dr for x, of in pairs), hold * (self.E @ evaluation.dJ)]) * span,
         )

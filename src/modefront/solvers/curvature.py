@@ -52,12 +52,12 @@ class SecondOrder:
     slopes : derivatives (..., p) of the quantities of the evaluation
     """
 
-    at: Evaluation
+    evaluation: Evaluation
     H: Floats
     slopes: Mapping[str, Floats]
 
 
-def second_order(problem: Problem, at: Evaluation) -> SecondOrder | None:
+def second_order(problem: Problem, evaluation: Evaluation) -> SecondOrder | None:
     """Return all second derivatives at an evaluation with first ones, by 2 p evaluations.
 
     None where the objectives are not defined around the point.
@@ -65,14 +65,14 @@ def second_order(problem: Problem, at: Evaluation) -> SecondOrder | None:
     span = problem.upper - problem.lower
     columns, slopes = [], []
     for k, unit in enumerate(np.diag(span)):
-        steps, weights = _stencil((at.theta[k] - problem.lower[k]) / span[k])
-        thetas = [np.clip(at.theta + s * unit, problem.lower, problem.upper) for s in steps]
+        steps, weights = _stencil((evaluation.theta[k] - problem.lower[k]) / span[k])
+        thetas = [np.clip(evaluation.theta + s * unit, problem.lower, problem.upper) for s in steps]
         around = [problem.evaluate(theta) for theta in thetas]
         if not all(neighbour.feasible for neighbour in around):
             return None
-        points = [at, *around]
+        points = [evaluation, *around]
         # Errors of a reduced basis, say, are known at the point alone.
-        names = [name for name in at.quantities if name in around[0].quantities]
+        names = [name for name in evaluation.quantities if name in around[0].quantities]
         columns.append(sum(w * x.dJ for w, x in zip(weights, points, strict=True)) / span[k])
         slopes.append(
             {
@@ -83,7 +83,7 @@ def second_order(problem: Problem, at: Evaluation) -> SecondOrder | None:
         )
     H = np.stack(columns, axis=2)
     named = {name: np.stack([slope[name] for slope in slopes], axis=-1) for name in names}
-    return SecondOrder(at, (H + H.transpose(0, 2, 1)) / 2, named)
+    return SecondOrder(evaluation, (H + H.transpose(0, 2, 1)) / 2, named)
 
 
 def _stencil(u: float) -> tuple[list[float], list[float]]:

@@ -43,7 +43,7 @@ def sample(problem: Problem, points: int = 16, *, rng: np.random.Generator) -> l
 
 def typical_sizes(points: Sequence[Solution]) -> Floats | None:
     """Return the median of every objective, shape (n,); None where none are defined."""
-    J = np.array([one.at.J for one in points if one.at.feasible])
+    J = np.array([solution.J for solution in points if solution.feasible])
     if len(J) == 0:
         return None
     return np.maximum(np.median(J, axis=0), np.finfo(float).tiny)
@@ -71,22 +71,24 @@ def edge(
 
 
 def ordered(
-    problem: Problem, objective: int, sizes: Floats, found: Sequence[Solution]
+    problem: Problem, objective: int, sizes: Floats, solved: Sequence[Solution]
 ) -> Edge | None:
     """Return the edge that the best of some minima of one objective is; None where there is none.
 
     Minima that did not converge count where nothing better did.
     """
-    if not found:
+    if not solved:
         return None
     order = Lexicographic(objective, sizes)
-    least = min(one.at.J[objective] for one in found)
-    equal = [one for one in found if one.at.J[objective] <= least + order.margin(least)]
-    best = min(equal, key=lambda one: float(order.others @ one.at.J))
+    least = min(solution.J[objective] for solution in solved)
+    equal = [
+        solution for solution in solved if solution.J[objective] <= least + order.margin(least)
+    ]
+    best = min(equal, key=lambda solution: float(order.others @ solution.J))
     minima = [best]
-    for one in sorted(found, key=lambda one: float(one.at.J[objective])):
-        if distinct(minima, one, problem):
-            minima.append(one)
+    for solution in sorted(solved, key=lambda solution: float(solution.J[objective])):
+        if distinct(minima, solution, problem):
+            minima.append(solution)
     return Edge(best, minima)
 
 
@@ -95,7 +97,7 @@ def refined_from(
 ) -> list[Solution]:
     """Return the lexicographic minimum of one objective below each start."""
     order = Lexicographic(objective, sizes)
-    return [order.solve(problem, one, _TIGHT) for one in starts]
+    return [order.solve(problem, solution, _TIGHT) for solution in starts]
 
 
 def near_best(
@@ -113,15 +115,15 @@ def near_best(
     ``known`` solutions that are closest in the objective, one after another. An objective that is
     fitted exactly keeps its edge, and so does one for which the programme does not converge.
     """
-    least = best.at.J[objective]
+    least = best.J[objective]
     if least <= EXACT * sizes[objective]:
         return best
     value = (1 + tolerance) * least
     others = np.where(np.arange(sizes.size) != objective, 1 / sizes, 0.0)
     unit = np.eye(sizes.size)[[objective]] / value
-    closest = sorted(known, key=lambda one: abs(np.log(one.at.J[objective] / value)))
+    closest = sorted(known, key=lambda solution: abs(np.log(solution.J[objective] / value)))
     for start in closest[:ATTEMPTS]:
-        found = solve(problem, Linear(others, unit, np.ones(1)), start)
-        if found.converged:
-            return found
+        solved = solve(problem, Linear(others, unit, np.ones(1)), start)
+        if solved.converged:
+            return solved
     return best

@@ -69,19 +69,24 @@ def evolve_front(
         # Another version of pymoo may ask for other models.
         key = ("front", method, spent, f"{zlib.crc32(thetas.tobytes()):x}")
         (generation,) = work.run([Task(key, _generation, (problem, thetas))])
-        found = _members(generation, n)
+        members = _members(generation, n)
         spent += len(asked)
-        known |= {theta.tobytes(): at for theta, at in zip(thetas, found, strict=True)}
-        J = np.array([at.J for at in found])
+        known |= {
+            theta.tobytes(): evaluation for theta, evaluation in zip(thetas, members, strict=True)
+        }
+        J = np.array([evaluation.J for evaluation in members])
         F = np.nan_to_num(J, posinf=UNDEFINED)
         Evaluator().eval(StaticProblem(described, F=F), asked)
         algorithm.tell(infills=asked)
         alive = {theta.tobytes() for theta in algorithm.pop.get("X")}
-        known = {key: at for key, at in known.items() if key in alive}
-    last = [at for at in known.values() if at.feasible]
+        known = {key: evaluation for key, evaluation in known.items() if key in alive}
+    last = [evaluation for evaluation in known.values() if evaluation.feasible]
     optimal = nondominated(_objectives(last, n))
-    chosen = [at for at, kept in zip(last, optimal, strict=True) if kept]
-    return [_sampled(at) for at in sorted(chosen, key=lambda at: tuple(at.J))]
+    chosen = [evaluation for evaluation, kept in zip(last, optimal, strict=True) if kept]
+    return [
+        _sampled(evaluation)
+        for evaluation in sorted(chosen, key=lambda evaluation: tuple(evaluation.J))
+    ]
 
 
 def _algorithm(method: str, population: int) -> Any:
@@ -114,11 +119,11 @@ class Generation:
 def _generation(problem: Problem, thetas: Floats) -> Generation:
     """Return the evaluations of models (members, p), moved into the bounds."""
     inside = np.clip(thetas, problem.lower, problem.upper)
-    found = [problem.evaluate(theta, derivatives=False) for theta in inside]
-    kept = [at.quantities for at in found if at.feasible]
+    evaluations = [problem.evaluate(theta, derivatives=False) for theta in inside]
+    kept = [evaluation.quantities for evaluation in evaluations if evaluation.feasible]
     names = kept[0] if kept else {}
-    quantities = {name: np.array([one[name] for one in kept]) for name in names}
-    return Generation(inside, np.array([at.J for at in found]), quantities)
+    quantities = {name: np.array([member[name] for member in kept]) for name in names}
+    return Generation(inside, np.array([evaluation.J for evaluation in evaluations]), quantities)
 
 
 def _members(generation: Generation, n: int) -> list[Evaluation]:
@@ -126,19 +131,19 @@ def _members(generation: Generation, n: int) -> list[Evaluation]:
     count = iter(range(len(generation.theta)))
     out = []
     for theta, J in zip(generation.theta, generation.J, strict=True):
-        one = infeasible(theta, n)
+        member = infeasible(theta, n)
         if np.isfinite(J).all():
             k = next(count)
             quantities = {name: values[k] for name, values in generation.quantities.items()}
-            one = replace(one, J=J, quantities=quantities)
-        out.append(one)
+            member = replace(member, J=J, quantities=quantities)
+        out.append(member)
     return out
 
 
 def _objectives(evaluations: list[Evaluation], n: int) -> Floats:
-    return np.array([at.J for at in evaluations]).reshape(-1, n)
+    return np.array([evaluation.J for evaluation in evaluations]).reshape(-1, n)
 
 
-def _sampled(at: Evaluation) -> Solution:
-    n, p = at.J.size, at.theta.size
-    return Solution(at, np.zeros((n, p, p)), np.full(n, np.nan), 0.0, Status.SAMPLED, 0)
+def _sampled(evaluation: Evaluation) -> Solution:
+    n, p = evaluation.J.size, evaluation.theta.size
+    return Solution(evaluation, np.zeros((n, p, p)), np.full(n, np.nan), 0.0, Status.SAMPLED, 0)

@@ -130,8 +130,9 @@ class Descent:
 
     def equal(self, J: Floats, other: Floats) -> bool:
         """Return whether two values differ by rounding only."""
-        one, two = self.value(J), self.value(other)
-        return abs(one - two) <= max(EQUAL * max(abs(one), abs(two)), self.negligible)
+        value, compared = self.value(J), self.value(other)
+        allowed = max(EQUAL * max(abs(value), abs(compared)), self.negligible)
+        return abs(value - compared) <= allowed
 
     def solve(self, problem: Problem, start: Solution, options: Options) -> Solution:
         """Return the minimum below a start.
@@ -139,11 +140,13 @@ class Descent:
         Where many parameters are held by few residuals, learned second derivatives may lead
         astray: a search that they exhaust goes on without them.
         """
-        found = solve(problem, self.programme, start, options)
-        if found.status is not Status.EXHAUSTED:
-            return found
-        again = solve(problem, self.programme, begin(found.at), replace(options, learn=False))
-        return replace(again, evaluations=found.evaluations + again.evaluations)
+        solution = solve(problem, self.programme, start, options)
+        if solution.status is not Status.EXHAUSTED:
+            return solution
+        again = solve(
+            problem, self.programme, begin(solution.evaluation), replace(options, learn=False)
+        )
+        return replace(again, evaluations=solution.evaluations + again.evaluations)
 
 
 def explore(
@@ -186,8 +189,8 @@ def explore(
         new = run.follow(theta)
         if not new or (hopeless and run.least >= before):
             break
-    better = [x for x in run.unfinished if local.value(x.at.J) < run.least]
-    return sorted([*run.minima, *better], key=lambda x: local.value(x.at.J))
+    better = [x for x in run.unfinished if local.value(x.J) < run.least]
+    return sorted([*run.minima, *better], key=lambda x: local.value(x.J))
 
 
 Start: TypeAlias = Solution | Floats
@@ -221,7 +224,7 @@ class _Exploration:
     @property
     def least(self) -> float:
         """Least value of all minima; infinite without any."""
-        return min((self.local.value(x.at.J) for x in self.minima), default=np.inf)
+        return min((self.local.value(x.J) for x in self.minima), default=np.inf)
 
     @property
     def parts(self) -> Executor:
@@ -242,7 +245,7 @@ class _Exploration:
 
     def agreed(self) -> bool:
         """Return whether enough searches have arrived at the best minimum."""
-        best = min(self.minima, key=lambda x: self.local.value(x.at.J), default=None)
+        best = min(self.minima, key=lambda x: self.local.value(x.J), default=None)
         close = [x for x in self.arrived if best and not distinct([best], x, self.problem, NEAR)]
         return len(close) >= AGREED
 
@@ -258,7 +261,7 @@ class _Exploration:
             return False
         arguments = (self.problem, self.local, rough, self.options)
         (end,) = self.work.run([Task(("end", self.count, number), _solved, arguments)], ahead)
-        if not end.at.feasible or not np.isfinite(self.local.value(end.at.J)):
+        if not end.feasible or not np.isfinite(self.local.value(end.J)):
             return False
         if not end.converged:
             self.unfinished.append(end)
@@ -278,13 +281,13 @@ def descended(problem: Problem, local: LocalSearch, start: Start, near: Options)
     """
     if not isinstance(start, Solution):
         start = begin(problem.evaluate(start))
-    elif start.at.derivatives is None:
-        start = begin(problem.evaluate(start.at.theta))
+    elif start.evaluation.derivatives is None:
+        start = begin(problem.evaluate(start.theta))
     rough = local.solve(problem, start, near)
-    if rough.at.branch == start.at.branch:
+    if rough.evaluation.branch == start.evaluation.branch:
         return [rough]
-    on_branch = local.solve(problem.on_branch(start.at.branch), start, near)
-    again = begin(problem.evaluate(on_branch.at.theta))
+    on_branch = local.solve(problem.on_branch(start.evaluation.branch), start, near)
+    again = begin(problem.evaluate(on_branch.theta))
     return [rough, local.solve(problem, again, near)]
 
 
@@ -299,9 +302,9 @@ def _different(minima: Sequence[Solution], local: LocalSearch) -> int:
     another one.
     """
     kept: list[Solution] = []
-    for one in minima:
-        if not any(local.equal(one.at.J, other.at.J) for other in kept):
-            kept.append(one)
+    for solution in minima:
+        if not any(local.equal(solution.J, other.J) for other in kept):
+            kept.append(solution)
     return len(kept)
 
 
@@ -375,8 +378,8 @@ def objectives(problem: Problem, theta: Floats) -> Floats:
 
 
 def distinct(
-    minima: Sequence[Solution], found: Solution, problem: Problem, distance: float = DISTINCT
+    minima: Sequence[Solution], solution: Solution, problem: Problem, distance: float = DISTINCT
 ) -> bool:
     """Return whether a solution is farther than ``distance`` from all minima, in the ranges."""
     span = problem.upper - problem.lower
-    return all(np.abs((found.at.theta - one.at.theta) / span).max() > distance for one in minima)
+    return all(np.abs((solution.theta - known.theta) / span).max() > distance for known in minima)

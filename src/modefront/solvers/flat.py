@@ -72,9 +72,9 @@ def flat_points(J: Floats, least: Floats, tolerance: float, sizes: Floats) -> In
     return np.where(enough, count, 0)
 
 
-def same(one: Solution, other: Solution) -> bool:
+def same(solution: Solution, other: Solution) -> bool:
     """Return whether two solutions are of the same parameters."""
-    return bool(np.array_equal(one.at.theta, other.at.theta))
+    return bool(np.array_equal(solution.theta, other.theta))
 
 
 def identifiable_part(
@@ -94,8 +94,8 @@ def identifiable_part(
     the steps along each edge of the simplex.
     """
     n = len(edges)
-    least = np.array([one.at.J[i] for i, one in enumerate(edges)])
-    J = np.array([one.at.J for one in points])
+    least = np.array([solution.J[i] for i, solution in enumerate(edges)])
+    J = np.array([solution.J for solution in points])
     flat = flat_points(J, least, tolerance, sizes)
     if not flat.any():
         return None
@@ -104,7 +104,7 @@ def identifiable_part(
         arguments = (problem, edges[i], i, tolerance, sizes, known)
         key = ("identifiable", "edge", problem.objectives[i])
         (ends[i],) = work.run([Task(key, near_best, arguments)])
-    moved = [not same(one, edge) for one, edge in zip(ends, edges, strict=True)]
+    moved = [not same(solution, edge) for solution, edge in zip(ends, edges, strict=True)]
     flat, uncut = np.where(moved, flat, 0), np.where(moved, 0, flat)
     if not flat.any():
         return Identifiable(flat, uncut, ends, None, [])
@@ -120,5 +120,5 @@ def identifiable_part(
         Within(work, part=("identifiable",)),
         floor=floor,
     )
-    above = [one for one in along if (floor <= one.at.J).all()]
+    above = [solution for solution in along if (floor <= solution.J).all()]
     return Identifiable(flat, uncut, ends, target, above)

@@ -60,12 +60,12 @@ class Gap:
     @property
     def ends(self) -> list[Solution]:
         """The end and the start, as far as they are known."""
-        return [one for one in (self.end, self.start) if one is not None]
+        return [solution for solution in (self.end, self.start) if solution is not None]
 
     @property
     def middle(self) -> float:
         """The first objective in the middle of the gap."""
-        return float((self.end or self.last).at.J[0] + (self.start or self.first).at.J[0]) / 2
+        return float((self.end or self.last).J[0] + (self.start or self.first).J[0]) / 2
 
 
 def gaps(
@@ -87,7 +87,7 @@ def gaps(
     others = np.zeros((0, 2)) if known is None else known
     tasks, sides = [], []
     for k, (a, b) in enumerate(pairwise(kept)):
-        jump = any(points[a] is one and points[b] is other for one, other in jumps)
+        jump = any(points[a] is solution and points[b] is other for solution, other in jumps)
         if b > a + 1 or jump:
             before = [points[i] for i in kept[: k + 1]]
             behind = [points[i] for i in kept[k + 1 :]]
@@ -96,7 +96,7 @@ def gaps(
             sides.append((points[a], points[b], jump))
     out = []
     for (last, first, jump), ends in zip(sides, work.run(tasks), strict=True):
-        end, start = (one if one.converged else None for one in ends)
+        end, start = (solution if solution.converged else None for solution in ends)
         if not jump or _apart(end, start, first, scale):
             out.append(Gap(last, first, end, start))
     return out
@@ -106,7 +106,7 @@ def _apart(end: Solution | None, start: Solution | None, b: Solution, scale: Flo
     """Return whether a gap that was found lies to the left of the point b behind it."""
     if end is None or start is None:
         return False
-    left, right = ((start.at.J - end.at.J) / scale, (b.at.J - start.at.J) / scale)
+    left, right = ((start.J - end.J) / scale, (b.J - start.J) / scale)
     return bool(left[0] >= -SAME and left[1] < -SAME and right[0] >= -SAME)
 
 
@@ -124,44 +124,44 @@ def _ends(
         return solve(problem, weighted(np.eye(2)[objective] / scale), of, _TIGHT)
 
     def at_level(objective: int, value: float, of: Solution) -> Solution:
-        found = of
+        solved = of
         for steps in LEVELS:
-            found = of
+            solved = of
             for share in np.arange(1, steps + 1) / steps:
-                goal = (1 - share) * of.at.J[objective] + share * value
-                found = solve(
-                    problem, level(1 - objective, objective, float(goal), scale), found, _TIGHT
+                goal = (1 - share) * of.J[objective] + share * value
+                solved = solve(
+                    problem, level(1 - objective, objective, float(goal), scale), solved, _TIGHT
                 )
-            if found.converged:
+            if solved.converged:
                 break
-        return found
+        return solved
 
-    def first_of(found: Iterable[Solution], next_to: Solution, objective: int) -> Solution:
+    def first_of(solutions: Iterable[Solution], next_to: Solution, objective: int) -> Solution:
         """Return the first that can be the end, in an objective, of the branch of a point."""
         last = replace(next_to, status=Status.STALLED)
-        for one in found:
-            ahead = (next_to.at.J - one.at.J)[objective] >= -SAME * scale[objective]
-            dominated = ((known - one.at.J) / scale < -SAME).all(axis=1).any()
-            if one.converged and ahead and not dominated:
-                return one
-            last = replace(one, status=Status.STALLED)
+        for solution in solutions:
+            ahead = (next_to.J - solution.J)[objective] >= -SAME * scale[objective]
+            dominated = ((known - solution.J) / scale < -SAME).all(axis=1).any()
+            if solution.converged and ahead and not dominated:
+                return solution
+            last = replace(solution, status=Status.STALLED)
         return last
 
-    start, a = first_of((minimum(0, one) for one in behind[:STARTS]), b, 0), before[-1]
+    start, a = first_of((minimum(0, solution) for solution in behind[:STARTS]), b, 0), before[-1]
     if start.converged:
-        a = next((one for one in before[::-1] if (one.at.J < start.at.J).any()), a)
-    at = next(k for k, one in enumerate(before) if one is a)
-    near = before[at::-1][:STARTS]
-    own = first_of((minimum(1, one) for one in near), a, 1)
-    if start.converged and start.at.J[0] >= a.at.J[0] and start.at.J[1] < a.at.J[1]:
-        if own.converged and own.at.J[0] <= start.at.J[0]:
-            return [own, start]
-        goal = float(start.at.J[0])
-        return [first_of((at_level(0, goal, one) for one in near), a, 1), start]
-    if not own.converged:
-        return [own, start]
-    goal = float(own.at.J[1])
-    return [own, first_of((at_level(1, goal, one) for one in behind[:STARTS]), b, 0)]
+        a = next((solution for solution in before[::-1] if (solution.J < start.J).any()), a)
+    last = next(k for k, solution in enumerate(before) if solution is a)
+    near = before[last::-1][:STARTS]
+    left_end = first_of((minimum(1, solution) for solution in near), a, 1)
+    if start.converged and start.J[0] >= a.J[0] and start.J[1] < a.J[1]:
+        if left_end.converged and left_end.J[0] <= start.J[0]:
+            return [left_end, start]
+        goal = float(start.J[0])
+        return [first_of((at_level(0, goal, solution) for solution in near), a, 1), start]
+    if not left_end.converged:
+        return [left_end, start]
+    goal = float(left_end.J[1])
+    return [left_end, first_of((at_level(1, goal, solution) for solution in behind[:STARTS]), b, 0)]
 
 
 def branch_numbers(J: Floats, optimal: Bools, gaps: Sequence[Gap]) -> Ints:
@@ -170,7 +170,7 @@ def branch_numbers(J: Floats, optimal: Bools, gaps: Sequence[Gap]) -> Ints:
     A point that no other point dominates lies on no branch if the start of a branch dominates it.
     """
     middles = np.array([gap.middle for gap in gaps])
-    starts = np.array([gap.start.at.J for gap in gaps if gap.start]).reshape(-1, 2)
+    starts = np.array([gap.start.J for gap in gaps if gap.start]).reshape(-1, 2)
     piece = 1 + (J[:, :1] > middles).sum(axis=1)
     below = np.all(starts <= J[:, None], axis=2) & np.any(starts < J[:, None], axis=2)
     return np.where(optimal & ~np.any(below, axis=1), piece, 0)

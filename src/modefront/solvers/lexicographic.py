@@ -116,13 +116,16 @@ class Lexicographic:
         """Return whether neither objectives nor others come first."""
         return not (self.better(J, other) or self.better(other, J))
 
-    def is_open(self, problem: Problem, at: Evaluation) -> bool:
+    def is_open(self, problem: Problem, evaluation: Evaluation) -> bool:
         """Return whether some change of parameters leaves all residuals of the first objective."""
-        return bool(at.residuals) and self._changing(problem, at).shape[1] < at.theta.size
+        return (
+            bool(evaluation.residuals)
+            and self._changing(problem, evaluation).shape[1] < evaluation.theta.size
+        )
 
-    def _changing(self, problem: Problem, at: Evaluation) -> Floats:
+    def _changing(self, problem: Problem, evaluation: Evaluation) -> Floats:
         """Return Q."""
-        dr = at.residuals[self.objective].dr * (problem.upper - problem.lower)
+        dr = evaluation.residuals[self.objective].dr * (problem.upper - problem.lower)
         U, sigma, _ = np.linalg.svd(dr, full_matrices=False)
         return np.asarray(U[:, sigma > RANK * sigma.max(initial=np.finfo(float).tiny)])
 
@@ -146,22 +149,22 @@ class Lexicographic:
         """
         rough = options.step > _TIGHT.step
         tight = replace(_TIGHT, step=options.step, reduction=1e-14) if rough else _TIGHT
-        if not start.at.residuals:
-            found = solve(problem, self._with(EXPLORE), start, tight)
-            return found if rough or not found.at.feasible else self._limit(problem, found)
+        if not start.evaluation.residuals:
+            solution = solve(problem, self._with(EXPLORE), start, tight)
+            return solution if rough or not solution.feasible else self._limit(problem, solution)
         best = _least(problem, self._alone(), start, tight)
-        if not best.at.feasible or self.sizes.size == 1:
+        if not best.feasible or self.sizes.size == 1:
             return best
         for _ in range(1 if rough else REPEATS):
-            found = self._along(problem, best, tight)
-            if found is best:
+            solution = self._along(problem, best, tight)
+            if solution is best:
                 break
-            least = _least(problem, self._alone(), found, tight)
-            kept = found if self._accepts(found.at.J, least.at.J) else least
-            if not self._accepts(kept.at.J, best.at.J):
+            least = _least(problem, self._alone(), solution, tight)
+            kept = solution if self._accepts(solution.J, least.J) else least
+            if not self._accepts(kept.J, best.J):
                 return replace(best, evaluations=least.evaluations)
-            gained = self.better(kept.at.J, best.at.J)
-            best = replace(kept, status=found.status, evaluations=least.evaluations)
+            gained = self.better(kept.J, best.J)
+            best = replace(kept, status=solution.status, evaluations=least.evaluations)
             if not gained:
                 break
         return best
@@ -177,11 +180,11 @@ class Lexicographic:
     def _along(self, problem: Problem, start: Solution, options: Options) -> Solution:
         """Return the best in the others on the manifold of minima; the start where it is none."""
         i, n = self.objective, self.sizes.size
-        if not self.is_open(problem, start.at):
+        if not self.is_open(problem, start.evaluation):
             return start
-        exact = start.at.J[i] <= EXACT * self.sizes[i]
+        exact = start.J[i] <= EXACT * self.sizes[i]
         tight = replace(options, constraint=max(1e-9, 1e-2 * options.step), reduction=1e-16)
-        aim = start.at.residuals[i].r * (0.0 if exact else 1.0)
+        aim = start.evaluation.residuals[i].r * (0.0 if exact else 1.0)
         held = np.zeros(n, dtype=np.bool_)
         return self.lowered(problem, start, self.others, held, aim, tight)[0]
 
@@ -201,15 +204,15 @@ class Lexicographic:
         are those of a programme and of its solution.
         """
         i, n = self.objective, self.sizes.size
-        Q = self._changing(problem, start.at)
+        Q = self._changing(problem, start.evaluation)
         reduced, others = Held(i, Q), np.arange(n) != i
         k, root = Q.shape[1], float(np.sqrt(self.sizes[i]))
-        first = begin(reduced.of(start.at))
+        first = begin(reduced.of(start.evaluation))
         learned = first.learned.copy()
         learned[k:] = start.learned[others]
         rows = np.eye(k + n - 1)[np.concatenate([np.ones(k, dtype=np.bool_), held[others]])]
         unit = np.concatenate([np.full(k, root), self.sizes[others]])
-        values = np.concatenate([Q.T @ aim, start.at.J[others]])
+        values = np.concatenate([Q.T @ aim, start.J[others]])
         programme = Linear(
             np.concatenate([np.zeros(k), w[others]]), rows / unit, rows @ (values / unit)
         )
@@ -220,7 +223,7 @@ class Lexicographic:
         known[others] = solution.learned[k:]
         end = replace(
             start,
-            at=problem.evaluate(solution.at.theta),
+            evaluation=problem.evaluate(solution.theta),
             learned=known,
             status=solution.status,
             violation=solution.violation,
@@ -232,11 +235,13 @@ class Lexicographic:
         """Return the limit of the minimisers for epsilon to 0, by Richardson's extrapolation."""
         coarse = _least(problem, self._with(COARSE), start, _TIGHT)
         fine = _least(problem, self._with(FINE), coarse, _TIGHT)
-        theta = fine.at.theta + (fine.at.theta - coarse.at.theta) * FINE / (COARSE - FINE)
+        theta = fine.theta + (fine.theta - coarse.theta) * FINE / (COARSE - FINE)
         limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper))
         i = self.objective
-        better = limit.feasible and limit.J[i] <= fine.at.J[i]
-        return replace(fine, at=limit if better else fine.at, evaluations=fine.evaluations + 1)
+        better = limit.feasible and limit.J[i] <= fine.J[i]
+        return replace(
+            fine, evaluation=limit if better else fine.evaluation, evaluations=fine.evaluations + 1
+        )
 
     def _with(self, epsilon: float) -> Linear:
         return weighted(
@@ -258,21 +263,21 @@ class Held:
         others = (name for j, name in enumerate(names) if j != i)
         return Wrapped(problem, lambda of, theta, _: self.of(of.evaluate(theta)), (*rows, *others))
 
-    def of(self, at: Evaluation) -> Evaluation:
+    def of(self, evaluation: Evaluation) -> Evaluation:
         """Return the residuals and the other objectives from an evaluation of the problem."""
-        i, k, p = self.objective, self.Q.shape[1], at.theta.size
-        if not at.feasible:
-            return infeasible(at.theta, k + at.J.size - 1)
-        residual, nothing = at.residuals[i], Residual(np.zeros(0), np.zeros((0, p)))
+        i, k, p = self.objective, self.Q.shape[1], evaluation.theta.size
+        if not evaluation.feasible:
+            return infeasible(evaluation.theta, k + evaluation.J.size - 1)
+        residual, nothing = evaluation.residuals[i], Residual(np.zeros(0), np.zeros((0, p)))
         return Evaluation(
-            at.theta,
-            np.concatenate([self.Q.T @ residual.r, np.delete(at.J, i)]),
+            evaluation.theta,
+            np.concatenate([self.Q.T @ residual.r, np.delete(evaluation.J, i)]),
             ObjectiveDerivatives(
-                np.vstack([self.Q.T @ residual.dr, np.delete(at.dJ, i, axis=0)]),
-                np.concatenate([np.zeros((k, p, p)), np.delete(at.H, i, axis=0)]),
+                np.vstack([self.Q.T @ residual.dr, np.delete(evaluation.dJ, i, axis=0)]),
+                np.concatenate([np.zeros((k, p, p)), np.delete(evaluation.H, i, axis=0)]),
             ),
-            residuals=[*[nothing] * k, *(x for j, x in enumerate(at.residuals) if j != i)],
-            branch=at.branch,
+            residuals=[*[nothing] * k, *(x for j, x in enumerate(evaluation.residuals) if j != i)],
+            branch=evaluation.branch,
         )
 
 
@@ -280,12 +285,12 @@ def _least(problem: Problem, programme: Linear, start: Solution, options: Option
     """Return the minimum with the known second derivatives if these suffice, else with learned."""
     spent = start.evaluations
     best = start
-    if start.at.H.any():
+    if start.evaluation.H.any():
         best = solve(problem, programme, start, replace(options, learn=False, iterations=KNOWN))
         spent += best.evaluations
     if best is start or (not best.converged and best.status is not Status.INFEASIBLE):
-        found = solve(problem, programme, best, options)
-        spent += found.evaluations
-        best = found
+        solution = solve(problem, programme, best, options)
+        spent += solution.evaluations
+        best = solution
     learned = best.learned if best.learned.any() else start.learned
     return replace(best, learned=learned, evaluations=spent)

@@ -41,7 +41,7 @@ class Linearised:
     """
 
     programme: Scalarisation
-    at: Evaluation
+    evaluation: Evaluation
     span: Floats
     reach: Floats
     df: Floats
@@ -54,7 +54,7 @@ class Linearised:
     @property
     def f(self) -> float:
         """Smooth part of what is minimised."""
-        return self.programme.value(self.at.J)
+        return self.programme.value(self.evaluation.J)
 
     def step(
         self, H: Floats, radius: float, multipliers: Multipliers | None
@@ -65,15 +65,15 @@ class Linearised:
         ``multipliers`` of the step before; where there is none, those of the slopes at the point
         and, of functions of which the maximum counts, those of another step.
         """
-        dJ, span = self.at.dJ * self.span, np.outer(self.span, self.span)
+        dJ, span = self.evaluation.dJ * self.span, np.outer(self.span, self.span)
         lo, hi = np.maximum(self.reach[0], -radius), np.minimum(self.reach[1], radius)
-        curved = dJ.T @ self.programme.hessian(self.at.J) @ dJ
+        curved = dJ.T @ self.programme.hessian(self.evaluation.J) @ dJ
         qp = QuadraticProgramme(curved, self.g, self.dc, -self.c, lo, hi, self.dy, self.y)
         passes = 1
         if multipliers is None:
             multipliers, passes = self._first(qp), 2 if self.y.size else 1
         for _ in range(passes):
-            w = multipliers.weights(self.programme, self.at.J)
+            w = multipliers.weights(self.programme, self.evaluation.J)
             qp = replace(qp, B=np.tensordot(w, H, axes=1) * span + curved)
             step = solve_qp(qp)
             multipliers = self._bounded(qp, step)
@@ -131,25 +131,25 @@ class Linearised:
 
     def end(self, problem: Problem, s: Floats) -> Floats:
         """Return the parameters at the end of a step."""
-        return np.clip(self.at.theta + s * self.span, problem.lower, problem.upper)
+        return np.clip(self.evaluation.theta + s * self.span, problem.lower, problem.upper)
 
     def noise(self, multipliers: Multipliers) -> float:
         """Return the change of the augmented Lagrangian that may be rounding."""
         A, C = self.programme.constraints.matrix, self.programme.maximised.matrix
-        rows = np.abs(multipliers.mu) @ np.abs(A @ self.at.J)
-        rows += multipliers.kappa @ np.abs(C @ self.at.J)
+        rows = np.abs(multipliers.mu) @ np.abs(A @ self.evaluation.J)
+        rows += multipliers.kappa @ np.abs(C @ self.evaluation.J)
         return float(NOISE * (abs(self.f) + rows))
 
 
-def linearised(problem: Problem, programme: Scalarisation, at: Evaluation) -> Linearised:
+def linearised(problem: Problem, programme: Scalarisation, evaluation: Evaluation) -> Linearised:
     """Return a programme at an evaluation with derivatives."""
     span = problem.upper - problem.lower
-    reach = np.array([problem.lower - at.theta, problem.upper - at.theta]) / span
-    df, dJ = programme.gradient(at.J), at.dJ * span
+    reach = np.array([problem.lower - evaluation.theta, problem.upper - evaluation.theta]) / span
+    df, dJ = programme.gradient(evaluation.J), evaluation.dJ * span
     constraints, maximised = programme.constraints, programme.maximised
-    c, dc = constraints.at(at.J), constraints.matrix @ dJ
-    y, dy = maximised.at(at.J), maximised.matrix @ dJ
-    return Linearised(programme, at, span, reach, df, df @ dJ, c, dc, y, dy)
+    c, dc = constraints.at(evaluation.J), constraints.matrix @ dJ
+    y, dy = maximised.at(evaluation.J), maximised.matrix @ dJ
+    return Linearised(programme, evaluation, span, reach, df, df @ dJ, c, dc, y, dy)
 
 
 def length(s: Floats) -> float:

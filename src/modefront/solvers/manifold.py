@@ -196,19 +196,19 @@ def equivalent_models(
     plain: int | None = None
     waiting = list(minima)
     while waiting:
-        at, before = waiting.pop(0), meter.spent
+        evaluation, before = waiting.pop(0), meter.spent
         near = [
             k
             for k, manifold in enumerate(out)
-            if _distance(manifold, at, span) <= (h if manifold.dimension else SAME_MINIMUM)
+            if _distance(manifold, evaluation, span) <= (h if manifold.dimension else SAME_MINIMUM)
         ]
         if near:
             out[near[0]] = replace(out[near[0]], minima=out[near[0]].minima + 1)
             continue
         try:
-            context, first = context_of(metered, programme, at, still, plain)
+            context, first = context_of(metered, programme, evaluation, still, plain)
         except _SpentError:
-            out.append(Manifold(0, [at], Extent.SPENT, meter.spent - before))
+            out.append(Manifold(0, [evaluation], Extent.SPENT, meter.spent - before))
             continue
         plain = plain if context.exact else context.dimension
         k = _position(context, first, out, h)
@@ -233,15 +233,15 @@ def follow(
     return equivalent_models(problem, programme, [start], h=h, limit=limit)[0]
 
 
-def _distance(manifold: Manifold, at: Evaluation, span: Floats) -> float:
+def _distance(manifold: Manifold, evaluation: Evaluation, span: Floats) -> float:
     """Return the distance of the nearest model of a manifold, over the ranges."""
-    return min(float(np.linalg.norm((at.theta - x.theta) / span)) for x in manifold.models)
+    return min(float(np.linalg.norm((evaluation.theta - x.theta) / span)) for x in manifold.models)
 
 
-def _joined(context: Context, first: TangentPoint, at: Evaluation, h: float) -> bool:
+def _joined(context: Context, first: TangentPoint, evaluation: Evaluation, h: float) -> bool:
     """Return whether a walk from a point of a manifold leads to another minimum."""
     try:
-        return context.equivalent(at) and _reaches(context, first, at, h)
+        return context.equivalent(evaluation) and _reaches(context, first, evaluation, h)
     except _SpentError:
         return False
 
@@ -386,10 +386,10 @@ def _best_step(point: TangentPoint, aim: Floats, length: float) -> Floats:
     return T @ best.x if best.status == 0 else np.zeros(u.size)
 
 
-def _reaches(context: Context, point: TangentPoint, at: Evaluation, h: float) -> bool:
+def _reaches(context: Context, point: TangentPoint, evaluation: Evaluation, h: float) -> bool:
     """Return whether a walk along the manifold from a point arrives next to a point on it."""
     for _ in range(WALK):
-        offset = context.offset(point.u, at)
+        offset = context.offset(point.u, evaluation)
         distance = float(np.linalg.norm(offset))
         if distance <= h:
             return True
@@ -398,7 +398,7 @@ def _reaches(context: Context, point: TangentPoint, at: Evaluation, h: float) ->
         if size < AHEAD * distance:
             return False
         landed = context.landed(point, np.clip(point.u + step * min(1.0, FAR / size), 0, 1))
-        if landed is None or np.linalg.norm(context.offset(landed.u, at)) >= distance:
+        if landed is None or np.linalg.norm(context.offset(landed.u, evaluation)) >= distance:
             return False
         point = landed
     return False

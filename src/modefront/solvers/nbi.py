@@ -74,25 +74,25 @@ class Projection:
         return replace(self._solve(problem, beta, start, 0), beta=beta)
 
     def _solve(self, problem: Problem, beta: Floats, start: Solution, halvings: int) -> Solution:
-        found = solve(problem, self.subproblem(beta), start)
-        if found.converged or not halvings or not start.at.feasible:
-            return found
-        between = (beta + self.place(0, start.at.J)) / 2
+        solution = solve(problem, self.subproblem(beta), start)
+        if solution.converged or not halvings or not start.feasible:
+            return solution
+        between = (beta + self.place(0, start.J)) / 2
         near = self._solve(problem, between, start, halvings - 1)
-        evaluations = found.evaluations + near.evaluations
+        evaluations = solution.evaluations + near.evaluations
         if near.converged:
             again = solve(problem, self.subproblem(beta), near)
             evaluations += again.evaluations
-            found = again if again.converged else found
-        return replace(found, evaluations=evaluations)
+            solution = again if again.converged else solution
+        return replace(solution, evaluations=evaluations)
 
     def subproblem(self, beta: Floats) -> Linear:
         """Return the programme of the point at beta."""
         return self.target.subproblem(beta)
 
-    def value(self, beta: Floats, J: Floats) -> float:
-        """Return -t."""
-        return self.subproblem(beta).value(J)
+    def is_better(self, beta: Floats, J: Floats, known: Floats) -> bool:
+        """Return whether objectives (n,) lie farther along the normal at beta than known ones."""
+        return self.target.is_better(beta, J, known)
 
 
 def programmes(
@@ -102,7 +102,7 @@ def programmes(
     if len(edges) == 2:
         return Projection(target)
     corners = target.worst or edges
-    return Attainment(target, np.array([corner.at.theta for corner in corners]), floor)
+    return Attainment(target, np.array([corner.theta for corner in corners]), floor)
 
 
 def nbi(
@@ -124,9 +124,12 @@ def nbi(
     dominated, and those that did not converge say so in their status.
     """
     solved = programmes(target, edges, floor)
-    known = [*edges, *(one for one in minima if all(one is not edge for edge in edges))]
-    optimal = nondominated(np.array([one.at.J for one in known]))
+    known = [
+        *edges,
+        *(solution for solution in minima if all(solution is not edge for edge in edges)),
+    ]
+    optimal = nondominated(np.array([solution.J for solution in known]))
     others = [known[i] for i in np.flatnonzero(optimal) if i >= len(edges)]
     if len(edges) == 2:
-        others = [one for one in others if target.place(one.at.J).min() >= 0]
+        others = [solution for solution in others if target.place(solution.J).min() >= 0]
     return continuation(problem, solved, [*edges, *others], lattice, work, before)

@@ -30,6 +30,21 @@ _COARSE = Options(step=1e-4, reduction=1e-6, iterations=30)
 """A corner only says how far an objective goes."""
 
 
+BETTER, REST = 1e-7, 1e-4
+"""Differences of the greatest excess over a point of the simplex, and of the sum of all, below
+which two solutions are the same: the others are free where their excess is not the greatest."""
+
+
+def is_less(c: Floats, known: Floats) -> bool:
+    """Return whether an excess (n,) is less than a known one: its greatest, or else its sum.
+
+    >>> is_less(np.array([1.0, 1.0, 0.2]), np.array([1.0, 1.0, 0.3]))
+    True
+    """
+    fall = known.max() - c.max()
+    return bool(fall > BETTER or (fall >= -BETTER and known.sum() - c.sum() > REST))
+
+
 @dataclass(frozen=True)
 class Payoff:
     """The simplex between the edges.
@@ -60,6 +75,15 @@ class Payoff:
         """
         return np.asarray(np.abs((beta - other) @ self.Phi.T).max(axis=-1))
 
+    def excess(self, beta: Floats, J: Floats) -> Floats:
+        """Return how far objectives (n,) lie above a point of the plane, over the normal (n,)."""
+        y = (J - self.utopia) / self.scale
+        return np.asarray((y - self.Phi @ beta) / self.Phi.sum(axis=1))
+
+    def is_better(self, beta: Floats, J: Floats, known: Floats) -> bool:
+        """Return whether objectives exceed a point of the plane by less than known ones."""
+        return is_less(self.excess(beta, J), self.excess(beta, known))
+
     def subproblem(self, beta: Floats) -> Linear:
         """Return the programme of one point of the simplex."""
         return boundary(self.Phi @ beta, -self.Phi.sum(axis=1), self.utopia, self.scale)
@@ -81,9 +105,9 @@ def payoff(
     if len(edges) == 2 or _solid(edges, sizes):
         return spanned(edges, (), sizes)
     known = [*edges, *minima]
-    optimal = nondominated(np.array([one.at.J for one in known]))
+    optimal = nondominated(np.array([solution.J for solution in known]))
     kept = [known[k] for k in np.flatnonzero(optimal).tolist()]
-    worst = [max(kept, key=lambda one: float(one.at.J[i])) for i in range(len(edges))]
+    worst = [max(kept, key=lambda solution: float(solution.J[i])) for i in range(len(edges))]
     return spanned(edges, worst, sizes)
 
 
@@ -103,7 +127,7 @@ def corners(
     n = len(edges)
     if n == 2 or _solid(edges, sizes):
         return []
-    utopia = np.array([one.at.J[i] for i, one in enumerate(edges)])
+    utopia = np.array([solution.J[i] for i, solution in enumerate(edges)])
     tasks = []
     for i, name in enumerate(problem.objectives):
         w = np.where(np.arange(n) == i, LAST, 1.0) / sizes**2
@@ -114,11 +138,11 @@ def corners(
 
 def _corner(problem: Problem, programme: Squares, known: Sequence[Solution]) -> Solution:
     """Return the best minimum found from the best of the known models and from the first guess."""
-    best = sorted(known, key=lambda one: programme.value(one.at.J))[:ATTEMPTS]
+    best = sorted(known, key=lambda solution: programme.value(solution.J))[:ATTEMPTS]
     starts = [begin(problem.evaluate(problem.start)), *best]
-    found = [solve(problem, programme, start, _COARSE) for start in starts]
-    feasible = [one for one in found if one.at.feasible]
-    return min(feasible, key=lambda one: programme.value(one.at.J))
+    solved = [solve(problem, programme, start, _COARSE) for start in starts]
+    feasible = [solution for solution in solved if solution.feasible]
+    return min(feasible, key=lambda solution: programme.value(solution.J))
 
 
 def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats) -> Payoff | None:
@@ -126,9 +150,9 @@ def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats)
 
     None where an objective does not vary.
     """
-    P, utopia = _simplex(edges), np.array([one.at.J[i] for i, one in enumerate(edges)])
+    P, utopia = _simplex(edges), np.array([solution.J[i] for i, solution in enumerate(edges)])
     if worst:
-        P = np.diag([one.at.J[i] for i, one in enumerate(worst)] - utopia)
+        P = np.diag([solution.J[i] for i, solution in enumerate(worst)] - utopia)
     scale = P.max(axis=1)
     if (scale <= POINT * sizes).any():
         return None
@@ -137,7 +161,7 @@ def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats)
 
 def _simplex(edges: Sequence[Solution]) -> Floats:
     """Return the objectives of the edges above the least ones, (n, n), one column an edge."""
-    J = np.array([edge.at.J for edge in edges]).T
+    J = np.array([edge.J for edge in edges]).T
     return np.asarray(J - np.diag(J)[:, None])
 
 

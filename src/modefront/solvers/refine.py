@@ -40,7 +40,7 @@ def refine(
     ``optimal`` says which of the points (in their order along the front) are Pareto optimal. Also
     returned are the neighbours between which there is none: the front may have a gap there.
     """
-    found: list[Solution] = []
+    solved: list[Solution] = []
     jumps: list[tuple[Solution, Solution]] = []
     for piece in pieces(points, optimal, gaps):
         pairs = list(pairwise(piece))[::-1]
@@ -50,45 +50,47 @@ def refine(
                 continue
             middle = _between(problem, target, a, b, work)
             if middle:
-                found.append(middle)
+                solved.append(middle)
                 pairs += [(middle, b), (a, middle)]
             else:
                 jumps.append((a, b))
-    return sorted([*points, *found], key=lambda one: -float(target.place(one.at.J)[0])), jumps
+    return sorted(
+        [*points, *solved], key=lambda solution: -float(target.place(solution.J)[0])
+    ), jumps
 
 
 def pieces(points: Sequence[Solution], optimal: Bools, gaps: Sequence[Gap]) -> list[list[Solution]]:
     """Return the optimal points of each piece of a front, with its ends at gaps."""
-    J = np.array([one.at.J for one in points])
+    J = np.array([solution.J for solution in points])
     number = branch_numbers(J, optimal, gaps)
     out = []
     for k in range(len(gaps) + 1):
         start = gaps[k - 1].start if k else None
         end = gaps[k].end if k < len(gaps) else None
         within = (points[i] for i in np.flatnonzero(number == k + 1).tolist())
-        out.append([one for one in (start, *within, end) if one is not None])
+        out.append([solution for solution in (start, *within, end) if solution is not None])
     return out
 
 
 def distance(a: Solution, b: Solution, scale: Floats) -> float:
     """Return the distance of two points in units of the ranges of the objectives."""
-    return float(np.linalg.norm((a.at.J - b.at.J) / scale))
+    return float(np.linalg.norm((a.J - b.J) / scale))
 
 
 def _between(
     problem: Problem, target: Payoff, a: Solution, b: Solution, work: Executor
 ) -> Solution | None:
     """Return the point half-way, or None where there is none on this piece."""
-    at_a, at_b = target.place(a.at.J), target.place(b.at.J)
+    at_a, at_b = target.place(a.J), target.place(b.J)
     if np.abs(at_a - at_b).max() < SMALLEST:
         return None
     beta = (at_a + at_b) / 2
-    lower, upper = np.minimum(a.at.J, b.at.J), np.maximum(a.at.J, b.at.J)
+    lower, upper = np.minimum(a.J, b.J), np.maximum(a.J, b.J)
     for side, start in (("a", a), ("b", b)):
         key = ("front", "nbi", "refine", float(beta[1]).hex(), side)
-        (found,) = work.run([Task(key, _solve, (problem, target, beta, start))])
-        if found.converged and (lower <= found.at.J).all() and (upper >= found.at.J).all():
-            return found
+        (solution,) = work.run([Task(key, _solve, (problem, target, beta, start))])
+        if solution.converged and (lower <= solution.J).all() and (upper >= solution.J).all():
+            return solution
     return None
 
 

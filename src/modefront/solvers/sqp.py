@@ -135,7 +135,7 @@ class Solution:
 
     Attributes
     ----------
-    at : the objectives and their derivatives there
+    evaluation : of the model that it is
     learned : (n, p, p) learned part S of the second derivatives, for the next programme
     weights : (n,) weights w of the objectives at which it is stationary
     violation : greatest violation of the constraints
@@ -145,7 +145,7 @@ class Solution:
         intersection; None of another programme
     """
 
-    at: Evaluation
+    evaluation: Evaluation
     learned: Floats
     weights: Floats
     violation: float
@@ -154,21 +154,36 @@ class Solution:
     beta: Floats | None = None
 
     @property
+    def theta(self) -> Floats:
+        """Parameters, shape (p,)."""
+        return self.evaluation.theta
+
+    @property
+    def J(self) -> Floats:
+        """Objectives, shape (n,)."""
+        return self.evaluation.J
+
+    @property
+    def feasible(self) -> bool:
+        """Whether the objectives are defined."""
+        return self.evaluation.feasible
+
+    @property
     def converged(self) -> bool:
         """Whether the tolerances were met, or none apply."""
         return self.status in (Status.CONVERGED, Status.GIVEN)
 
 
-def given(at: Evaluation) -> Solution:
+def given(evaluation: Evaluation) -> Solution:
     """Return the solution that a given model is."""
-    return replace(begin(at), status=Status.GIVEN, violation=0.0)
+    return replace(begin(evaluation), status=Status.GIVEN, violation=0.0)
 
 
-def begin(at: Evaluation) -> Solution:
+def begin(evaluation: Evaluation) -> Solution:
     """Return a start for `solve` from an evaluation."""
-    n, p = at.J.size, at.theta.size
-    status = Status.EXHAUSTED if at.feasible else Status.INFEASIBLE
-    return Solution(at, np.zeros((n, p, p)), np.zeros(n), np.inf, status, 0)
+    n, p = evaluation.J.size, evaluation.theta.size
+    status = Status.EXHAUSTED if evaluation.feasible else Status.INFEASIBLE
+    return Solution(evaluation, np.zeros((n, p, p)), np.zeros(n), np.inf, status, 0)
 
 
 def solve(
@@ -180,21 +195,26 @@ def solve(
     defined are shortened.
     """
     options = options or Options()
-    if not start.at.feasible:
+    if not start.feasible:
         return replace(start, status=Status.INFEASIBLE, evaluations=0)
-    at, S = start.at, start.learned if options.learn else np.zeros_like(start.learned)
+    evaluation, S = (
+        start.evaluation,
+        start.learned if options.learn else np.zeros_like(start.learned),
+    )
     trusted, escaped, failed = bool(S.any()), False, 0
     radius, penalty = options.radius, PENALTY
     multipliers: Multipliers | None = None
-    progress = _Progress(options, length(programme.constraints.at(at.J)))
+    progress = _Progress(options, length(programme.constraints.at(evaluation.J)))
     count = -1
     while True:
         count += 1
-        local = linearised(problem, programme, at)
+        local = linearised(problem, programme, evaluation)
         if local.f == -np.inf:
-            return Solution(at, S, local.df, 0.0, Status.UNBOUNDED, count)
-        qp, step, multipliers = local.step(at.H + S if trusted else at.H, radius, multipliers)
-        s, w = step.s, multipliers.weights(programme, at.J)
+            return Solution(evaluation, S, local.df, 0.0, Status.UNBOUNDED, count)
+        qp, step, multipliers = local.step(
+            evaluation.H + S if trusted else evaluation.H, radius, multipliers
+        )
+        s, w = step.s, multipliers.weights(programme, evaluation.J)
         violation = length(local.c)
         progress.proposed(length(s), radius)
         still = length(s) <= options.step or local.unchanging(s, options.reduction)
@@ -203,16 +223,18 @@ def solve(
             still = not s.any()
         status = progress.outcome(count, violation, still, length(s), radius)
         if status or count == options.iterations:
-            return Solution(at, S, w, violation, status or Status.EXHAUSTED, count)
+            return Solution(evaluation, S, w, violation, status or Status.EXHAUSTED, count)
 
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
         new = problem.evaluate(local.end(problem, s))
         merit = Merit(programme, multipliers, penalty)
         correction = Correction(merit, local.tied(step.active))
-        for _ in range(CORRECTIONS if new.feasible and at.residuals and count >= SLOW else 0):
-            if failed >= FAILURES or merit.at(at) - merit.at(new) > BENT * predicted:
+        for _ in range(
+            CORRECTIONS if new.feasible and evaluation.residuals and count >= SLOW else 0
+        ):
+            if failed >= FAILURES or merit.at(evaluation) - merit.at(new) > BENT * predicted:
                 break
-            corrected = correction.evaluated(problem, at, s, new)
+            corrected = correction.evaluated(problem, evaluation, s, new)
             failed = 0 if corrected else failed + 1
             if corrected is None:
                 break
@@ -220,16 +242,16 @@ def solve(
         if not new.feasible or length(programme.constraints.at(new.J)) > progress.farthest:
             radius = length(s) / 4
             continue
-        actual = merit.at(at) - merit.at(new)
+        actual = merit.at(evaluation) - merit.at(new)
         rest = 0.5 * w @ (S @ (s * local.span) @ (s * local.span)) * (1 if trusted else -1)
         if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):
             trusted = not trusted
         noise = local.noise(multipliers)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if options.learn:
-            S = learned_from(S, at, new)
+            S = learned_from(S, evaluation, new)
         if ratio > TAKEN:
-            at = new
+            evaluation = new
         radius = _next_radius(radius, length(s), ratio)
 
 

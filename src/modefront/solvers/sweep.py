@@ -16,6 +16,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.solvers.continuation import Simplex, continuation
+from modefront.solvers.payoff import BETTER
 from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Solution, solve
@@ -57,10 +58,10 @@ class WeightedSums:
 
     solve_again = solve
 
-    def value(self, beta: Floats, J: Floats) -> float:
-        """Return the weighted sum."""
+    def is_better(self, beta: Floats, J: Floats, known: Floats) -> bool:
+        """Return whether the weighted sum is less than a known one."""
         w = self.weights(beta)
-        return float(w @ J / (w @ self.scale))
+        return float(w @ (known - J)) > BETTER * float(w @ self.scale)
 
 
 def weight_sweep(

@@ -109,57 +109,59 @@ class Context:
         """Ranges of the parameters, shape (p,)."""
         return self.problem.upper - self.problem.lower
 
-    def offset(self, u: Floats, at: Evaluation) -> Floats:
+    def offset(self, u: Floats, evaluation: Evaluation) -> Floats:
         """Return the difference of an evaluation from u, but for idle variables."""
-        goal = (at.theta - self.problem.lower) / self.span
+        goal = (evaluation.theta - self.problem.lower) / self.span
         return np.where(self.idle, 0.0, goal - u)
 
-    def slope(self, at: Evaluation) -> Floats:
+    def slope(self, evaluation: Evaluation) -> Floats:
         """Return g."""
-        return self.programme.gradient(at.J) @ at.dJ * self.span
+        return self.programme.gradient(evaluation.J) @ evaluation.dJ * self.span
 
-    def gauss_newton(self, at: Evaluation) -> Floats:
+    def gauss_newton(self, evaluation: Evaluation) -> Floats:
         """Return B_0."""
-        B = np.tensordot(self.programme.gradient(at.J), at.H, axes=1)
+        B = np.tensordot(self.programme.gradient(evaluation.J), evaluation.H, axes=1)
         return B * np.outer(self.span, self.span)
 
-    def hessian(self, at: Evaluation) -> Floats | None:
+    def hessian(self, evaluation: Evaluation) -> Floats | None:
         """Return B; None where the model is not defined around the point."""
-        second = second_order(self.problem, at)
+        second = second_order(self.problem, evaluation)
         if second is None:
             return None
-        B = np.tensordot(self.programme.gradient(at.J), second.H, axes=1)
-        B = B + at.dJ.T @ self.programme.hessian(at.J) @ at.dJ
+        B = np.tensordot(self.programme.gradient(evaluation.J), second.H, axes=1)
+        B = B + evaluation.dJ.T @ self.programme.hessian(evaluation.J) @ evaluation.dJ
         return np.asarray(B * np.outer(self.span, self.span))
 
-    def unchanging(self, at: Evaluation) -> Floats:
+    def unchanging(self, evaluation: Evaluation) -> Floats:
         """Return a basis (p, .) of the directions in which no residual changes."""
-        lam, V = _spectrum(self.gauss_newton(at), ~self.held)
+        lam, V = _spectrum(self.gauss_newton(evaluation), ~self.held)
         return V[:, lam <= FLAT * max(self.top, lam.max(initial=0.0))]
 
-    def tangent_point(self, at: Evaluation, u: Floats) -> TangentPoint | None:
+    def tangent_point(self, evaluation: Evaluation, u: Floats) -> TangentPoint | None:
         """Return a point with its tangents; None where they cannot be told."""
         if not self.exact:
-            return TangentPoint(at, u, self.unchanging(at), self.gauss_newton(at))
-        B = self.hessian(at)
-        return None if B is None else TangentPoint(at, u, self.tangents(at, B), B)
+            return TangentPoint(
+                evaluation, u, self.unchanging(evaluation), self.gauss_newton(evaluation)
+            )
+        B = self.hessian(evaluation)
+        return None if B is None else TangentPoint(evaluation, u, self.tangents(evaluation, B), B)
 
-    def tangents(self, at: Evaluation, B: Floats) -> Floats:
+    def tangents(self, evaluation: Evaluation, B: Floats) -> Floats:
         """Return a basis (p, .) of the null space of B, see the top of the module."""
         flat = ERROR * max(self.top, float(np.abs(B).max()))
-        still = self.unchanging(at)
+        still = self.unchanging(evaluation)
         mu, U = np.linalg.eigh(still.T @ B @ still)
         still = still @ U[:, np.abs(mu) <= flat]
         others = scipy.linalg.null_space(np.vstack([still.T, np.eye(self.held.size)[self.held]]))
         lam, V = np.linalg.eigh(others.T @ B @ others)
         null = others @ V[:, np.abs(lam) <= flat]
-        gamma, U = np.linalg.eigh(null.T @ self.gauss_newton(at) @ null)
+        gamma, U = np.linalg.eigh(null.T @ self.gauss_newton(evaluation) @ null)
         return np.hstack([still, null @ U[:, gamma >= TURNING * self.top]])
 
-    def equivalent(self, at: Evaluation) -> bool:
+    def equivalent(self, evaluation: Evaluation) -> bool:
         """Return whether a model is as good as the start."""
         allowed = TIE * self.size + self.top * TIE**2
-        return self.programme.value(at.J) <= self.value + allowed
+        return self.programme.value(evaluation.J) <= self.value + allowed
 
     def corrected(self, start: TangentPoint, u: Floats, held: Bools) -> TangentPoint | None:
         """Return the point of the manifold next to u, to which a step from ``start`` led, or None.
@@ -168,17 +170,17 @@ class Context:
         one that leaves its bounds on the way is held there.
         """
         for _ in range(CORRECTIONS):
-            at = self.problem.evaluate(self.problem.lower + u * self.span)
+            evaluation = self.problem.evaluate(self.problem.lower + u * self.span)
             d = self.dimension - int((held & ~self.held).sum())
-            if not at.feasible or d < 0:
+            if not evaluation.feasible or d < 0:
                 return None
-            lam, V = _spectrum(start.B if self.exact else self.gauss_newton(at), ~held)
+            lam, V = _spectrum(start.B if self.exact else self.gauss_newton(evaluation), ~held)
             across, V = lam[d:], V[:, d:]
             if (across <= FLAT * max(self.top, across.max(initial=0.0))).any():
                 return None
-            s = -V @ ((V.T @ self.slope(at)) / across)
+            s = -V @ ((V.T @ self.slope(evaluation)) / across)
             if np.abs(s).max(initial=0.0) <= ARRIVED:
-                point = self.tangent_point(at, u) if self.equivalent(at) else None
+                point = self.tangent_point(evaluation, u) if self.equivalent(evaluation) else None
                 on = point is not None and point.T.shape[1] == self.dimension
                 return point if on else None
             u = u + s
@@ -198,7 +200,11 @@ class Context:
 
 
 def context_of(
-    problem: Problem, programme: Scalarisation, at: Evaluation, idle: Bools, plain: int | None
+    problem: Problem,
+    programme: Scalarisation,
+    evaluation: Evaluation,
+    idle: Bools,
+    plain: int | None,
 ) -> tuple[Context, TangentPoint]:
     """Return the context of the manifold through a minimum, and the minimum with its tangents.
 
@@ -206,25 +212,25 @@ def context_of(
     where they are. B is not looked at where B_0 has a null space of the dimension ``plain``, for
     which it was that of B at another minimum.
     """
-    w = programme.gradient(at.J)
-    size = float(np.abs(w) @ np.abs(at.J))
-    u = (at.theta - problem.lower) / (problem.upper - problem.lower)
+    w = programme.gradient(evaluation.J)
+    size = float(np.abs(w) @ np.abs(evaluation.J))
+    u = (evaluation.theta - problem.lower) / (problem.upper - problem.lower)
     none = np.zeros(u.size, dtype=bool)
-    value = programme.value(at.J)
+    value = programme.value(evaluation.J)
     context = Context(problem, programme, value, size, 0.0, none, idle, 0, exact=False)
-    top = float(np.linalg.eigvalsh(context.gauss_newton(at))[-1])
-    slope = context.slope(at)
+    top = float(np.linalg.eigvalsh(context.gauss_newton(evaluation))[-1])
+    slope = context.slope(evaluation)
     pressed = np.abs(slope) > TIE * np.sqrt(top * size) + ARRIVED * top
     held = idle | (pressed & np.where(slope > 0, u <= 0, u >= 1))
     context = replace(context, top=top, held=held)
-    still = context.unchanging(at)
-    B = None if still.shape[1] == plain else context.hessian(at)
-    T = still if B is None else context.tangents(at, B)
+    still = context.unchanging(evaluation)
+    B = None if still.shape[1] == plain else context.hessian(evaluation)
+    T = still if B is None else context.tangents(evaluation, B)
     same = T.shape == still.shape and np.abs(T - still @ (still.T @ T)).max(initial=0) <= TURNING
     context = replace(context, dimension=T.shape[1], exact=not same)
     if B is None or same:
-        return context, TangentPoint(at, u, still, context.gauss_newton(at))
-    return context, TangentPoint(at, u, T, B)
+        return context, TangentPoint(evaluation, u, still, context.gauss_newton(evaluation))
+    return context, TangentPoint(evaluation, u, T, B)
 
 
 def steps_to_bounds(u: Floats, t: Floats) -> Floats:

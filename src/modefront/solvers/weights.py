@@ -85,22 +85,22 @@ def accepted(
     of all models that were evaluated, ``scale`` (n,) the ranges of the objectives.
     """
     programme = LogSum(a)
-    values = [programme.value(rival.at.J) for rival in rivals if regular(rival.at.J, sizes)]
+    values = [programme.value(rival.J) for rival in rivals if regular(rival.J, sizes)]
     least = min(values, default=np.inf)
     out = [
         minimum
         for minimum in minima
-        if regular(minimum.at.J, sizes)
-        and programme.value(minimum.at.J) <= least + TIE * a.sum()
-        and undominated(minimum.at.J[None], known, scale)[0]
+        if regular(minimum.J, sizes)
+        and programme.value(minimum.J) <= least + TIE * a.sum()
+        and undominated(minimum.J[None], known, scale)[0]
     ]
-    return sorted(out, key=lambda minimum: programme.value(minimum.at.J))
+    return sorted(out, key=lambda minimum: programme.value(minimum.J))
 
 
 def least_along(points: Sequence[Solution], a: Floats, sizes: Floats) -> list[Solution]:
     """Return the points of a front in their order next to which I is greater, or not regular."""
     programme = LogSum(a)
-    J = [point.at.J for point in points]
+    J = [point.J for point in points]
     values = [programme.value(row) if regular(row, sizes) else np.inf for row in J]
     padded = [np.inf, *values, np.inf]
     return [
@@ -122,12 +122,12 @@ def iterate_weights(
     evaluations = 0
     status = Status.EXHAUSTED
     for _ in range(limit):
-        if not regular(start.at.J, sizes):
+        if not regular(start.J, sizes):
             return None
-        w = a / start.at.J
+        w = a / start.J
         solution = solve(problem, weighted(w / w.sum()), start, options)
         evaluations += solution.evaluations
-        moved = float(np.abs((solution.at.theta - start.at.theta) / span).max())
+        moved = float(np.abs((solution.theta - start.theta) / span).max())
         start = replace(solution, weights=w)
         if moved <= options.step:
             status = solution.status

@@ -8,8 +8,13 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront.diagnosis.comparison import Comparison, compare
+from modefront.diagnosis.damping import DampingInPercent
 from modefront.diagnosis.diagnose import diagnose
+from modefront.diagnosis.groups import UnusedGroup
+from modefront.diagnosis.pairs import BeyondCandidates, DistantPair
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
+from modefront.diagnosis.sets import SetFactor
+from modefront.diagnosis.units import FrequencyFactor, OtherQuantity
 from modefront.diagnosis.words import Mistake
 from modefront.diagnosis.words import in_words as mistake_in_words
 from modefront.errors import Fault, InputError, ModelError
@@ -45,6 +50,12 @@ MANY = 100
 
 KEPT = 500
 """Models that a search keeps with their second derivatives, some."""
+
+UNITS = (FrequencyFactor, OtherQuantity, SetFactor)
+"""Mistakes with which measured frequencies say nothing of the elements."""
+
+HARMLESS = (DampingInPercent, UnusedGroup, DistantPair, BeyondCandidates)
+"""Mistakes that leave the residuals as they are, or that need not be mistakes."""
 
 
 @dataclass(frozen=True)
@@ -99,11 +110,11 @@ def check(study: Study) -> Findings:
     mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
     warnings = [
         *map(mistake_in_words, mistakes),
-        *_undetermined(problem, nominal, scale),
+        *_undetermined(problem, nominal, scale, parameters_only=spoils(mistakes)),
         *_coincident(problem, nominal),
         *_at_bounds(problem),
         *_infeasible_bounds(problem),
-        *_of_elements(problem),
+        *_of_elements(problem, beside, is_in_hz=not any(isinstance(x, UNITS) for x in mistakes)),
         *_many(problem),
     ]
     agreement = compared(problem)
@@ -117,6 +128,11 @@ def check(study: Study) -> Findings:
         beside,
         sensitivities(problem),
     )
+
+
+def spoils(mistakes: Sequence[Mistake]) -> bool:
+    """Return whether mistakes change the residuals, and with them what the data determine."""
+    return any(not isinstance(each, HARMLESS) for each in mistakes)
 
 
 def _coincident(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:
@@ -136,12 +152,10 @@ def memory_of(problem: UpdatingProblem) -> float:
 
 def refuse_too_many(problem: UpdatingProblem, file: str) -> None:
     """Raise InputError where models with so many parameters do not fit into the memory."""
-    need, there = memory_of(problem), available_memory()
-    if need > there:
+    need, free = memory_of(problem), available_memory()
+    if need > free:
         p = len(problem.model.parameters)
-        expected = (
-            f"as many parameters as fit into the {there / 1e9:.3g} GB of memory that are free"
-        )
+        expected = f"as many parameters as fit into the {free / 1e9:.3g} GB of memory that are free"
         found = (
             f"{p}, for which each model keeps {len(problem.groups)} matrices of {p} x {p}, and a "
             f"search some {KEPT} models, {need / 1e9:.3g} GB: let one parameter scale several "
@@ -162,12 +176,15 @@ def _many(problem: UpdatingProblem) -> list[str]:
     ]
 
 
-def _of_elements(problem: UpdatingProblem) -> list[str]:
-    """Warn of elements that are too thick, skew, distorted or curved for the measured modes."""
+def _of_elements(problem: UpdatingProblem, beside: Comparison, *, is_in_hz: bool) -> list[str]:
+    """Warn of elements that are too thick, skew, distorted or curved for the measured modes.
+
+    Where measured frequencies are not in Hz, those of the paired modes stand for them.
+    """
     model = problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
     if not isinstance(model, MatrixModel):
         return []
-    measured = problem.data.mean_frequency
+    measured = problem.data.mean_frequency if is_in_hz else beside.frequency[beside.pairs.index]
     return model.limits.warnings(float(measured[np.isfinite(measured)].max(initial=0.0)))
 
 
@@ -224,11 +241,18 @@ def determined(problem: UpdatingProblem) -> tuple[str, ...]:
     return tuple(out)
 
 
-def _undetermined(problem: UpdatingProblem, nominal: Evaluation, scale: Scale) -> list[str]:
-    """Warn of parameters without effect, of what all data leave open, and of parameters alike."""
+def _undetermined(
+    problem: UpdatingProblem, nominal: Evaluation, scale: Scale, *, parameters_only: bool
+) -> list[str]:
+    """Warn of parameters without effect, of what all data leave open, and of parameters alike.
+
+    Mistakes change what the residuals determine: then ``parameters_only`` without effect are named.
+    """
     names = problem.model.parameters
     weights = optimal_weights(problem.properties, nominal.J)
     idle = without_effect(problem, nominal, scale)
+    if parameters_only:
+        return no_effect_in_words(idle, names)
     known = combinations(problem, problem.start, weights=weights, scale=scale)
     weak = [each for each in known if each.share < WEAK and not _is_of(idle, each)]
     out = no_effect_in_words(idle, names)

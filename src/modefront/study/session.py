@@ -36,6 +36,7 @@ from modefront.solvers.sqp import Solution, given
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
 from modefront.study.estimate import expected_tasks
+from modefront.study.whereabouts import note_study
 from modefront.uncertainty.noise import noise_floor
 from modefront.uncertainty.options import Uncertainty
 from modefront.work.lock import locked
@@ -176,6 +177,8 @@ def run(
             data = _Session(study, Run(Store(tasks), progress, carrier)).results()
         _keep_other(folder / FILE, study.digest)
         write(data, folder / FILE)
+        if study.origin is not None:
+            note_study(folder, study.origin.file)
     return Results(data, study.problem)
 
 
@@ -319,13 +322,7 @@ def _set_aside(path: Path) -> None:
 
 def _keep_other(path: Path, digest: str) -> None:
     """Set results aside that belong to other inputs."""
-    import xarray as xr
+    from modefront.results.files import written_for
 
-    if path.is_file():
-        try:
-            with xr.open_dataset(path, engine="h5netcdf") as data:
-                same = data.attrs.get("inputs") == digest
-        except (OSError, ValueError, KeyError):
-            same = False
-        if not same:
-            _set_aside(path)
+    if path.is_file() and written_for(path) != digest:
+        _set_aside(path)

@@ -71,16 +71,16 @@ def given_weights(noise: Noise) -> Conditions:
 
 def optimal_weights(point: SecondOrder, a: Floats, noise: Noise) -> Conditions:
     """Return the conditions of w = a / J."""
-    second = a / point.at.J**2
-    return _open(second[:, None] * point.at.dJ, np.ones(a.size), -second * noise.J)
+    second = a / point.evaluation.J**2
+    return _open(second[:, None] * point.evaluation.dJ, np.ones(a.size), -second * noise.J)
 
 
 def level(point: SecondOrder, objective: int, dv: Floats, noise: Noise) -> Conditions:
     """Return the conditions of the least of the others at J_objective = v; dv is (sources,)."""
-    is_held = np.arange(point.at.J.size) == objective
+    is_held = np.arange(point.evaluation.J.size) == objective
     f = np.zeros(noise.J.shape)
     f[:, objective] = dv - noise.J[:, objective]
-    return _open(is_held[:, None] * point.at.dJ, (~is_held).astype(float), f)
+    return _open(is_held[:, None] * point.evaluation.dJ, (~is_held).astype(float), f)
 
 
 @dataclass(frozen=True)
@@ -123,11 +123,13 @@ def boundary(
     dn = target.dP.sum(axis=2)
     active = np.ones(n.size, dtype=np.bool_) if n.size == 2 else active_bounds(w * n)
     w = w / (w[active] @ n[active])
-    above = point.at.J - target.utopia - target.P @ beta  # n c
+    above = point.evaluation.J - target.utopia - target.P @ beta  # n c
     tau = float((above / n)[active].mean())
     moved = target.dutopia + target.dP @ (beta + tau) - noise.J
     f = np.where(active, moved, -SHARE * dn / n**2)
     e = np.where(active, n, 0.0)[:, None]
     h = -(dn[:, active] @ w[active])[:, None]
     bounds = None if n.size == 2 else Bounds(active, n, dn, tau * n - above, moved)
-    return w, Conditions(active[:, None] * point.at.dJ, (~active).astype(float), e, f, h, bounds)
+    return w, Conditions(
+        active[:, None] * point.evaluation.dJ, (~active).astype(float), e, f, h, bounds
+    )

@@ -67,7 +67,7 @@ def laplace(
     regular minimum: an objective vanishes, or the curvature is not positive in all directions that
     residuals determine.
     """
-    evaluation = point.at
+    evaluation = point.evaluation
     J = evaluation.J + floor
     if not (J > 0).all():
         return None

@@ -66,7 +66,7 @@ def front_scatter(
             point, noise = local
             role, text = solved.role, solved.label
             if w is None:
-                w = a / point.at.J if role.kind == "optimal" else solved.solution.weights
+                w = a / point.evaluation.J if role.kind == "optimal" else solved.solution.weights
             if role.kind in ("edge", "minimum", "weights"):
                 conditions = given_weights(noise)
             elif role.kind == "optimal":
@@ -78,7 +78,7 @@ def front_scatter(
                 w, conditions = boundary(point, w, _target(role, ends), beta, noise)
             out[text] = scatter(problem, point, w, conditions, noise)
             if role.kind in ("edge", "minimum", "level"):
-                ends[text] = point.at.J, out[text].J
+                ends[text] = point.evaluation.J, out[text].J
             if role.kind == "edge":
                 level_of[role.objective] = out[text].J[:, role.objective]
     for end in points:

@@ -94,7 +94,7 @@ def _again(
     role = point.role
     if role.kind == "end":
         return solved[role.ends[0]]
-    start = begin(problem.evaluate(point.solution.at.theta))
+    start = begin(problem.evaluate(point.solution.theta))
     programme: Scalarisation
     if role.kind == "optimal":
         programme = LogSum(a)
@@ -102,7 +102,7 @@ def _again(
         programme = weighted(point.solution.weights)
     elif role.kind in ("edge", "minimum", "level"):
         best = solve(problem, weighted(edge_weights(role.objective, sizes)), start)
-        if role.kind != "level" or not best.at.feasible:
+        if role.kind != "level" or not best.feasible:
             return best
         is_own = np.arange(sizes.size) == role.objective
         sizes = np.where(is_own, sizes, 1 / point.solution.weights)  # as it was solved with

@@ -94,7 +94,7 @@ class Scatter:
 
 def held_at_bounds(problem: Problem, point: SecondOrder, w: Floats) -> Bools:
     """Return which parameters the slope of w^T J presses against a bound."""
-    evaluation, span = point.at, problem.upper - problem.lower
+    evaluation, span = point.evaluation, problem.upper - problem.lower
     u = (evaluation.theta - problem.lower) / span
     parts = np.abs(w[:, None] * evaluation.dJ) * span
     slope = w @ evaluation.dJ * span
@@ -110,7 +110,7 @@ def spaces(problem: Problem, point: SecondOrder, w: Floats, held: Bools) -> tupl
 
     Free is where no residual changes to first order and their squares do not to second order.
     """
-    evaluation, span = point.at, problem.upper - problem.lower
+    evaluation, span = point.evaluation, problem.upper - problem.lower
     top = np.abs(evaluation.H).max(axis=(1, 2))
     first = np.tensordot(1 / np.where(top > 0, top, 1.0), evaluation.H, axes=1) * np.outer(
         span, span
@@ -130,7 +130,7 @@ def scatter(
     problem: Problem, point: SecondOrder, w: Floats, conditions: Conditions, noise: Noise
 ) -> Scatter:
     """Return how a solution with weights w (n,) moves with the errors of the data."""
-    evaluation, span = point.at, problem.upper - problem.lower
+    evaluation, span = point.evaluation, problem.upper - problem.lower
     held = held_at_bounds(problem, point, w)
     Q, free = spaces(problem, point, w, held)
     B = span[:, None] * Q  # parameters for unit changes of what is determined

@@ -54,8 +54,8 @@ def locked(folder: Path) -> Iterator[None]:
 
     Raises InputError where another run holds it, and where the folder cannot be written to.
     """
-    path, own = folder / FILE, this_process()
-    _take(path, own)
+    path, process = folder / FILE, this_process()
+    _take(path, process)
     stop = threading.Event()
     renewal = threading.Thread(target=_renew, args=(path, stop), daemon=True)
     renewal.start()
@@ -64,7 +64,7 @@ def locked(folder: Path) -> Iterator[None]:
     finally:
         stop.set()
         renewal.join()
-        if _owner(path) == own:
+        if _owner(path) == process:
             with suppress(OSError):  # the folder may have been taken away
                 path.unlink()
 
@@ -84,11 +84,11 @@ def began(process: int) -> str:
     return text.rpartition(")")[2].split()[19]
 
 
-def _take(path: Path, own: Owner) -> None:
+def _take(path: Path, process: Owner) -> None:
     """Make the lock file; one that is stale is renamed before, which only one run can do."""
     for _ in range(ATTEMPTS):
         try:
-            _make(path, own)
+            _make(path, process)
             return
         except FileExistsError:
             pass
@@ -100,17 +100,17 @@ def _take(path: Path, own: Owner) -> None:
         other = _owner(path)
         if not _stale(path, other):
             break
-        aside = path.with_name(f"{path.name}.{own.token}")
+        aside = path.with_name(f"{path.name}.{process.token}")
         with suppress(OSError):
             path.rename(aside)
             aside.unlink()
     raise InputError(Fault(str(path.parent), "folder", "no other run in it", _words(path, other)))
 
 
-def _make(path: Path, own: Owner) -> None:
+def _make(path: Path, process: Owner) -> None:
     """Write the lock file where there is none, whole; raises FileExistsError where there is one."""
-    part = path.with_name(f"{path.name}.{own.token}.tmp")
-    part.write_text(json.dumps(vars(own)), encoding="utf-8")
+    part = path.with_name(f"{path.name}.{process.token}.tmp")
+    part.write_text(json.dumps(vars(process)), encoding="utf-8")
     try:
         try:
             os.link(part, path)  # exclusive, and whole, on network drives as well
@@ -118,7 +118,7 @@ def _make(path: Path, own: Owner) -> None:
             raise
         except OSError:  # drives without hard links
             with path.open("x", encoding="utf-8") as stream:
-                stream.write(json.dumps(vars(own)))
+                stream.write(json.dumps(vars(process)))
     finally:
         part.unlink(missing_ok=True)
 

@@ -24,6 +24,7 @@ Part = str | int | tuple[int, ...]
 Key = tuple[Part, ...]
 """Parts that name a task; the first one names its stage."""
 
+Identity = tuple[Key, Key, Callable[..., Any]]
 R = TypeVar("R")
 
 
@@ -58,9 +59,12 @@ class Task(Generic[R]):
         return str(self.key[0])
 
     @property
-    def identity(self) -> tuple[Key, Key]:
-        """What tells the task from all others of the run."""
-        return self.key, self.turn
+    def identity(self) -> Identity:
+        """What tells the task from all others of the run, and from what was expected in its place.
+
+        Whether a point is solved for the first time or again may turn out late.
+        """
+        return self.key, self.turn, self.function
 
     @property
     def name(self) -> str:

@@ -24,7 +24,7 @@ from modefront.errors import Fault, InputError, UnfinishedError, wrong
 from modefront.work.backend import Backend, Done, InTurn, computed
 from modefront.work.costs import spend
 from modefront.work.pools import Cluster, LocalPool, Loss, Pool
-from modefront.work.task import Key, Task
+from modefront.work.task import Identity, Task
 from modefront.work.transfer import Message, Reply, Sender
 
 SHORT = 0.02
@@ -44,8 +44,6 @@ SHARE = 0.6
 
 MOST = 61
 """Processes of this machine at most; Windows waits for no more."""
-
-Identity = tuple[Key, Key]
 
 
 @dataclass(frozen=True)
@@ -77,8 +75,7 @@ class _Call:
 
     def wants(self, task: Task[Any]) -> bool:
         """Return whether a task is one of the call without a result."""
-        k = self.position.get(task.identity)
-        return k is not None and self.tasks[k].function is task.function
+        return task.identity in self.position
 
 
 @dataclass
@@ -95,7 +92,7 @@ class Workers:
     memory: float = field(default_factory=lambda: SHARE * available_memory())
     _sender: Sender = field(default_factory=Sender)
     _flying: dict[Future[Reply], _Sent] = field(default_factory=dict)
-    _ready: dict[Identity, tuple[Task[Any], Done]] = field(default_factory=dict)
+    _ready: dict[Identity, Done] = field(default_factory=dict)
     _seconds: dict[str, float] = field(default_factory=dict)
     _losses: Counter[Identity] = field(default_factory=Counter)
 
@@ -129,7 +126,7 @@ class Workers:
         for k, task in enumerate(tasks):
             if task.identity in self._ready:
                 begun(k)
-                yield self._finished(call, task, self._ready.pop(task.identity)[1])
+                yield self._finished(call, task, self._ready.pop(task.identity))
             elif task.identity in flying:
                 begun(k)
             else:
@@ -146,14 +143,10 @@ class Workers:
 
     def _forget(self, call: _Call, ahead: Sequence[Task[Any]]) -> None:
         """Forget what was computed ahead and is not wanted any more."""
-        wanted = {task.identity: task.function for task in (*ahead, *call.tasks)}
-
-        def is_wanted(task: Task[Any]) -> bool:
-            return wanted.get(task.identity) is task.function
-
-        self._ready = {x: entry for x, entry in self._ready.items() if is_wanted(entry[0])}
+        wanted = {task.identity for task in (*ahead, *call.tasks)}
+        self._ready = {x: done for x, done in self._ready.items() if x in wanted}
         for future, sent in list(self._flying.items()):
-            if not any(map(is_wanted, sent.tasks)) and future.cancel():
+            if wanted.isdisjoint(task.identity for task in sent.tasks) and future.cancel():
                 del self._flying[future]
 
     def _here(
@@ -250,7 +243,7 @@ class Workers:
             if call.wants(task):
                 yield self._finished(call, task, done)
             else:
-                self._ready[task.identity] = task, done
+                self._ready[task.identity] = done
         if reply.error is not None:
             self._fail(call, sent.tasks[len(reply.done) :], reply.error)
 

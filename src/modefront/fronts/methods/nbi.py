@@ -13,18 +13,21 @@ from modefront.solvers.basins import explore_between, from_other_branches
 from modefront.solvers.border import without_slack
 from modefront.solvers.continuation import Simplex
 from modefront.solvers.dominance import nondominated
+from modefront.solvers.flat import same
 from modefront.solvers.gaps import gaps
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import Payoff
+from modefront.solvers.problem import Problem
 from modefront.solvers.refine import refine
 from modefront.solvers.sqp import Solution
-from modefront.work.task import Within, seed_sequence
+from modefront.work.task import Executor, Within, seed_sequence
 
 if TYPE_CHECKING:
     from modefront.fronts.options import Pareto
 
 TURNS = 3
-"""Refinements of a front at most, each with the gaps that the one before has shown."""
+"""Refinements of a front at most, each with the gaps that the one before has shown; and comparisons
+of its points with other branches, each with the points that the one before has lowered."""
 
 COPY = 1e-5
 """Distance of two points, over the ranges of the objectives, below which they are copies."""
@@ -69,10 +72,31 @@ class NormalBoundaryIntersection:
             setting.archive,
         )
         if len(setting.edges) > 2:
-            along = from_other_branches(problem, target, lattice, along, setting.work)
-            along = without_slack(problem, target, along, setting.work)
+            along = _settled(problem, target, lattice, along, setting.work)
         front = _without_copies(lattice, solved, along, target)
         return _branches(setting, front) if len(setting.edges) == 2 else front
+
+
+def _settled(
+    problem: Problem,
+    target: Payoff,
+    lattice: Simplex,
+    points: Sequence[Solution],
+    work: Executor,
+) -> list[Solution]:
+    """Return the points, compared with other branches beside them and lowered at the border.
+
+    What is lowered may have left the best branch, or lead to a better one.
+    """
+    compared: list[Solution] = []
+    lowered = list(points)
+    for turn in range(TURNS):
+        part = Within(work, turn=("turn", turn + 1))
+        compared = from_other_branches(problem, target, lattice, lowered, part, compared)
+        if turn and all(map(same, compared, lowered)):
+            break
+        lowered = without_slack(problem, target, compared, part, lowered if turn else ())
+    return lowered
 
 
 def _without_copies(
@@ -88,14 +112,14 @@ def _without_copies(
     position = []
     for point in along:
         with np.errstate(invalid="ignore"):  # models that cannot be evaluated have infinite J
-            copies = (np.abs(J[: len(kept)] - point.at.J) <= COPY * target.scale).all(axis=1)
+            copies = (np.abs(J[: len(kept)] - point.J) <= COPY * target.scale).all(axis=1)
         k = int(copies.argmax()) if copies.any() else len(kept)
         position.append(k)
         if k == len(kept):
             kept.append(point)
         elif point.converged and not kept[k].converged:
             kept[k] = point
-        J[k] = kept[k].at.J
+        J[k] = kept[k].J
     places = []
     for first in solved[: len(lattice.counts)]:
         same = (k for k, point in enumerate(along) if point is first or _of_place(point, first))
@@ -115,7 +139,7 @@ def _branches(setting: Setting, front: Along) -> Along:
     """Return a front of two objectives, refined where wanted, with its gaps."""
     problem, target, refined = setting.problem, setting.target, setting.options.refined
     along = front.points
-    optimal = nondominated(np.array([point.at.J for point in along]))
+    optimal = nondominated(np.array([point.J for point in along]))
     known = setting.archive.J
     breaks = gaps(problem, along, optimal, target.scale, setting.work, known=known)
     if refined is None:
@@ -123,7 +147,7 @@ def _branches(setting: Setting, front: Along) -> Along:
     for turn in range(TURNS):
         work = Within(setting.work, turn=("turn", turn + 1))
         along, jumps = refine(problem, target, along, optimal, breaks, refined, work)
-        optimal = nondominated(np.array([point.at.J for point in along]))
+        optimal = nondominated(np.array([point.J for point in along]))
         before = len(breaks)
         breaks = gaps(problem, along, optimal, target.scale, work, jumps, known)
         if len(breaks) == before:

@@ -46,8 +46,8 @@ class SuperluFactorisation:
         if not np.array_equal(self.lu.perm_r, self.lu.perm_c):
             return None
         known = np.cos(np.arange(self.order.size, dtype=float))
-        found = self.lu.solve(known)
-        error = np.abs(self.A @ found - known) / (abs(self.A) @ np.abs(found) + np.abs(known))
+        x = self.lu.solve(known)
+        error = np.abs(self.A @ x - known) / (abs(self.A) @ np.abs(x) + np.abs(known))
         return int(np.sum(self.lu.U.diagonal() < 0)) if error.max() < GROWTH else None
 
     def solve(self, block: Floats) -> Floats:

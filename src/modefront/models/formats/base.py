@@ -69,9 +69,9 @@ def check_header(path: Path, header: Header) -> None:
     if header.entries > shape[0] ** 2 * 4:  # entries may repeat, but not that often
         found = f"{header.entries} entries announced for {shape[0]} x {shape[1]}"
         raise wrong(path, "a readable matrix", found)
-    need, there = PER_ENTRY * header.entries + PER_ROW * shape[0], available_memory()
-    if need > there:
-        expected = f"a matrix that fits into the {there / 1e9:.3g} GB of memory that are free"
+    need, free = PER_ENTRY * header.entries + PER_ROW * shape[0], available_memory()
+    if need > free:
+        expected = f"a matrix that fits into the {free / 1e9:.3g} GB of memory that are free"
         found = f"{header.entries} entries in {shape[0]} rows, which take {need / 1e9:.3g} GB"
         raise wrong(path, expected, found)
 

@@ -99,30 +99,32 @@ def variables(path: Path) -> Iterator[Variable]:
         order = {b"IM": "<", b"MI": ">"}.get(head[126:128])
         if order is None:
             raise ValueError("no file of MATLAB's version 5 to 7.3: save it with -v7")
-        at = START
+        position = START
         for _ in range(MOST_VARIABLES):
-            stream.seek(at)
+            stream.seek(position)
             tag = stream.read(8)
             if not tag:
                 return
             if len(tag) < 8:
                 raise ValueError("the end of the file in a tag")
             kind, size = (int(x) for x in np.frombuffer(tag, f"{order}u4"))
-            at += 8
-            if size > total - at:
-                raise ValueError(f"{size} bytes of a variable announced, {total - at} there")
+            position += 8
+            if size > total - position:
+                raise ValueError(f"{size} bytes of a variable announced, {total - position} there")
             if kind == COMPRESSED:
                 content = zlib.decompressobj().decompress(stream.read(min(size, HEAD)), HEAD)
                 inside, content = content[:8], content[8:]
                 if len(inside) < 8 or int(np.frombuffer(inside, f"{order}u4")[0]) != MATRIX:
                     raise ValueError("compressed content that is no variable")
                 announced = int(np.frombuffer(inside, f"{order}u4")[1])
-                yield _variable(content, order, announced, (at, size, True))
-                at += size
+                yield _variable(content, order, announced, (position, size, True))
+                position += size
             else:
                 if kind == MATRIX:
-                    yield _variable(stream.read(min(size, HEAD)), order, size, (at, size, False))
-                at += size + -size % 8
+                    yield _variable(
+                        stream.read(min(size, HEAD)), order, size, (position, size, False)
+                    )
+                position += size + -size % 8
     raise ValueError(f"more than {MOST_VARIABLES} variables")
 
 
@@ -189,19 +191,19 @@ def read_variable(path: Path, variable: Variable) -> Any:
 def _elements(content: bytes, order: str, count: int, size: int) -> list[_Element]:
     """Return the first elements of a variable of ``size`` bytes, which may go on beyond these."""
     out: list[_Element] = []
-    at = 0
+    position = 0
     for _ in range(count):
-        tag = content[at : at + 8]
+        tag = content[position : position + 8]
         if len(tag) < 8:
             raise ValueError("a variable that is cut off")
         first, length = (int(x) for x in np.frombuffer(tag, f"{order}u4"))
         if first >> 16:  # small: the bytes are counted in the upper half
-            kind, length, start, at = first & 0xFFFF, first >> 16, at + 4, at + 8
+            kind, length, start, position = first & 0xFFFF, first >> 16, position + 4, position + 8
             if length > 4:
                 raise ValueError(f"a small element of {length} bytes")
         else:
-            kind, start = first, at + 8
-            at = start + length + -length % 8
+            kind, start = first, position + 8
+            position = start + length + -length % 8
         if start + length > size:
             raise ValueError(f"{length} bytes of an element announced, {size - start} there")
         out.append(_Element(kind, start, start + length))

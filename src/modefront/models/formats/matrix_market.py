@@ -51,7 +51,15 @@ def header(path: Path, _: str | None) -> Header:
 
 def read(path: Path, _: str | None) -> Any:
     """Return the matrix of a file; see `MatrixFormat`."""
-    announced = _announced(path)
+    return read_entries(path)
+
+
+def read_entries(path: Path, *, square: bool = True) -> Any:
+    """Return the matrix of a file, which may have another shape where it need not be ``square``.
+
+    Raises InputError and ValueError for a file that is damaged.
+    """
+    announced = _announced(path, square=square)
     size = path.stat().st_size - announced.start
     stored = announced.header.entries
     if announced.layout == "array":
@@ -70,7 +78,7 @@ def read(path: Path, _: str | None) -> Any:
     return scipy.io.mmread(path)
 
 
-def _announced(path: Path) -> _Announced:
+def _announced(path: Path, *, square: bool = True) -> _Announced:
     """Return the header of a file; raises InputError for one that the format does not have."""
     with path.open("rb") as stream:
         words = stream.readline(LONGEST).decode("utf-8", "replace").split()
@@ -100,7 +108,10 @@ def _announced(path: Path) -> _Announced:
         sizes = [int(x) for x in counts]
         entries = sizes[2] if layout == "coordinate" else sizes[0] * sizes[1]
         found = Header((sizes[0], sizes[1]), entries)
-        check_header(path, found)
+        if square:
+            check_header(path, found)
+        elif sizes[0] * sizes[1] < entries:
+            raise wrong(path, WHAT, f"{entries} entries announced for {sizes[0]} x {sizes[1]}")
         return _Announced(layout, numbers, symmetry, found, stream.tell())
 
 

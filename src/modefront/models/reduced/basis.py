@@ -155,10 +155,10 @@ def joined(
     """
     room = W.shape[1] if capacity is None else capacity - basis.columns
     squares, U = np.linalg.eigh(gram(W, AW))
-    there = np.flatnonzero(squares > shortest**2)[::-1][:room]
-    if not there.size:
+    kept = np.flatnonzero(squares > shortest**2)[::-1][:room]
+    if not kept.size:
         return basis
-    W = combine(W, U[:, there] / np.sqrt(squares[there]))
+    W = combine(W, U[:, kept] / np.sqrt(squares[kept]))
     blocks = *basis.blocks, W
     K, M = (
         _bordered(reduced, full.project(blocks, W))
@@ -186,11 +186,11 @@ def _kept(basis: Basis, space: Basis, turn: Floats) -> Basis:
     n, A = basis.columns, space.A
     turn[:n] -= A[:n] @ turn
     squares, U = np.linalg.eigh(turn.T @ A @ turn)
-    there = squares > UNSOUND
-    if not there.any():
+    kept = squares > UNSOUND
+    if not kept.any():
         return basis
-    turn = turn @ (U[:, there] / np.sqrt(squares[there]))
-    K, M = (_turned(one, n, turn) for one in (space.K, space.M))
+    turn = turn @ (U[:, kept] / np.sqrt(squares[kept]))
+    K, M = (_turned(form, n, turn) for form in (space.K, space.M))
     return replace(basis, blocks=(*basis.blocks, space.combine(turn)), K=K, M=M)
 
 

@@ -178,11 +178,14 @@ def estimates(
     They are None where a factor of their own is needed. Errors of eigenvalues are over lam + s.
     """
     shift, space = factor.below.sigma, basis
-    zeros = [np.zeros(one.lam.shape) for one in asked]
-    errors = [_ErrorEstimate(z, z, one.lam, one.Y) for one, z in zip(asked, zeros, strict=True)]
+    zeros = [np.zeros(request.lam.shape) for request in asked]
+    errors = [
+        _ErrorEstimate(z, z, request.lam, request.Y)
+        for request, z in zip(asked, zeros, strict=True)
+    ]
     out: list[Certificate | None] = [None] * len(asked)
     rounding = list(zip(zeros, zeros, strict=True))
-    pending = [k for k, one in enumerate(asked) if _steps(one, shift) <= STEPS]
+    pending = [k for k, request in enumerate(asked) if _steps(request, shift) <= STEPS]
     for step in range(1, STEPS + 1):
         if not pending:
             break
@@ -191,12 +194,12 @@ def estimates(
         space = _with_solutions(pencil, space, factor, solved)
         seen = np.hstack([sensors @ block for block in space.blocks])
         unsettled = []
-        for k, one in zip(pending, solved, strict=True):
+        for k, request in zip(pending, solved, strict=True):
             of = asked[k]
-            proof = _Proof(of, shift, errors[k].eigenvalue, gram(one.R, one.Z), step)
+            proof = _Proof(of, shift, errors[k].eigenvalue, gram(request.R, request.Z), step)
             if step == 1:
                 K0 = pencil.K.at(of.theta)
-                rounding[k] = _rounding(K0, one.X, gram(one.X, one.R), of.lam)
+                rounding[k] = _rounding(K0, request.X, gram(request.X, request.R), of.lam)
             try:
                 K, M = space.K.at(of.theta), space.M.at(of.theta)
                 errors[k] = _judged(K, M, basis.columns, of.lam, of.Y)
@@ -217,7 +220,7 @@ def own_estimate(
     sensors: scipy.sparse.csr_array,
     basis: Basis,
     asked: CertificateRequest,
-    own: Shifted,
+    shifted: Shifted,
 ) -> Certificate:
     """Return the certificate of a model with its own factor of K - sigma M, sigma being the level.
 
@@ -241,8 +244,8 @@ def own_estimate(
         for step in range(1, OWN_STEPS + 1):
             X = combine(S, errors.Y)
             R = times(K, X) - times(M, X) * errors.lam
-            Z = own.factor.solve(R)
-            proof = _Proof(of, shift, errors.eigenvalue, gram(R, Z), step, own.sigma)
+            Z = shifted.factor.solve(R)
+            proof = _Proof(of, shift, errors.eigenvalue, gram(R, Z), step, shifted.sigma)
             S = np.hstack([S, orthonormal(K, M, shift, S, Z)])
             inner, mass = gram(S, times(K, S)), gram(S, times(M, S))
             Y = np.vstack([of.Y, np.zeros((S.shape[1] - n, m))])[:n]
@@ -389,12 +392,14 @@ def _solutions(
     pencil: Pencil, space: Basis, factor: Factor, models: Sequence[tuple[Floats, _ErrorEstimate]]
 ) -> list[_Solutions]:
     """Return the solutions for the residuals of some modes of each model."""
-    thetas = np.repeat([theta for theta, _ in models], [one.lam.size for _, one in models], axis=0)
-    lam = np.concatenate([one.lam for _, one in models])
-    X = space.combine(np.hstack([one.Y for _, one in models]))
+    thetas = np.repeat(
+        [theta for theta, _ in models], [request.lam.size for _, request in models], axis=0
+    )
+    lam = np.concatenate([request.lam for _, request in models])
+    X = space.combine(np.hstack([request.Y for _, request in models]))
     R = residuals(pencil, thetas, lam, X)
     Z = factor.below.factor.solve(R)
-    ends = np.cumsum([one.lam.size for _, one in models])[:-1]
+    ends = np.cumsum([request.lam.size for _, request in models])[:-1]
     parts = (np.split(A, ends, axis=1) for A in (X, R, Z))
     return [_Solutions(*part) for part in zip(*parts, strict=True)]
 
@@ -403,7 +408,7 @@ def _with_solutions(
     pencil: Pencil, space: Basis, factor: Factor, solved: Sequence[_Solutions]
 ) -> Basis:
     """Return the space with the solutions for some residuals."""
-    R, Z = (np.hstack([getattr(one, name) for one in solved]) for name in ("R", "Z"))
+    R, Z = (np.hstack([getattr(request, name) for request in solved]) for name in ("R", "Z"))
     energy = np.maximum(np.einsum("nc,nc->c", R, Z), 0.0)
     unit = np.divide(1.0, np.sqrt(energy), out=np.zeros_like(energy), where=energy > 0)
     return factor.extend(pencil, space, Z * unit, R * unit, np.sqrt(SHARE))

@@ -96,14 +96,14 @@ def level(lam: Floats, count: int, shift: float, most: float) -> tuple[int, floa
     It is in the first wide gap above these, or in the widest of the next ones, and at most
     ``most``; gaps are relative to lam - shift. None where there is none.
     """
-    found, widest = None, GAP
+    place, widest = None, GAP
     for k in range(count, min(count + LATER, lam.size)):
         sigma = min(most, 0.5 * (lam[k - 1] + lam[k]))
         if sigma <= lam[k - 1]:
             continue
         gap = (sigma - lam[k - 1]) / max(sigma - shift, np.finfo(float).tiny)
         if gap > widest:
-            found, widest = (k, float(sigma)), gap
+            place, widest = (k, float(sigma)), gap
         if widest > WIDE:
             break
-    return found
+    return place

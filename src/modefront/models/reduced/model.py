@@ -297,20 +297,20 @@ class ReducedModel:
             return self.full.full_modes(theta, count)
         basis = self._ready().space.basis
         started = time.perf_counter()
-        found = dense.decompose(basis.K.at(theta), basis.M.at(theta))
-        if found.lam.size < count:
+        pairs = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        if pairs.lam.size < count:
             raise ModelError(
-                f"{count} modes asked for, but only {found.lam.size} have a finite frequency"
+                f"{count} modes asked for, but only {pairs.lam.size} have a finite frequency"
             )
-        Phi = basis.combine(np.ascontiguousarray(found.Phi[:, :count]))
+        Phi = basis.combine(np.ascontiguousarray(pairs.Phi[:, :count]))
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
-        return FullModes(found.lam[:count], Phi, None)
+        return FullModes(pairs.lam[:count], Phi, None)
 
     def distance(self, theta: Floats) -> float:
         """Return how far the nearest snapshot is, over the ranges of the parameters."""
         span = self.upper - self.lower
-        thetas = [at for snap in self._wanted if snap.modes for at in snap.models]
-        return float(min(np.linalg.norm((theta - at) / span) for at in thetas))
+        thetas = [nearby for snap in self._wanted if snap.modes for nearby in snap.models]
+        return float(min(np.linalg.norm((theta - nearby) / span) for nearby in thetas))
 
     def certify(self, asked: Sequence[tuple[Floats, Ints]], lowest: int = 0) -> list[Certificate]:
         """Return how wrong modes are at some parameters; see `Certificate`.
@@ -325,12 +325,12 @@ class ReducedModel:
         proofs = list(space.proofs)
         counts = [max(lowest, int(wanted.max()) + 1) for _, wanted in asked]
         width = max(1, together(self.size) // (max(counts, default=1) + 1))
-        found: list[Certificate] = []
+        certificates: list[Certificate] = []
         for first in range(0, len(asked), width):
             some = range(first, min(first + width, len(asked)))
-            found += self._certified(space, [(*asked[k], counts[k]) for k in some], proofs)
+            certificates += self._certified(space, [(*asked[k], counts[k]) for k in some], proofs)
         spend(Costs(certificates=len(asked), certificate_time=time.perf_counter() - started))
-        return found
+        return certificates
 
     def lacking(self, lowest: int) -> list[Floats]:
         """Return models with two parameters at their lower bounds where modes are missing.
@@ -355,7 +355,7 @@ class ReducedModel:
                 doubtful.append((reach, pair, theta, ritz.lam, last))
         return [
             theta
-            for _, _, theta, lam, last in sorted(doubtful, key=lambda one: one[:2])[:PROBES]
+            for _, _, theta, lam, last in sorted(doubtful, key=lambda entry: entry[:2])[:PROBES]
             if self._misses(basis, theta, lam, last, proofs)
         ]
 
@@ -364,18 +364,18 @@ class ReducedModel:
     ) -> list[Certificate]:
         """Return the certificates of some models, with the factor at hand where that will do."""
         pencil, sensors = self.full.pencil, self.full.selection
-        found: dict[int, Certificate] = {}
+        certificates: dict[int, Certificate] = {}
         shared: dict[int, CertificateRequest] = {}
         for k, (theta, wanted, count) in enumerate(some):
             near = _near(space, theta, wanted, count, proofs)
             if near is None:
-                found[k] = self._certified_alone(space, theta, wanted, count, proofs)
+                certificates[k] = self._certified_alone(space, theta, wanted, count, proofs)
             else:
                 shared[k] = near
         known = estimates(pencil, sensors, space.basis, space.factor, list(shared.values()))
-        for k, one in zip(shared, known, strict=True):
-            found[k] = one or self._certified_alone(space, *some[k], proofs)
-        return [found[k] for k in range(len(some))]
+        for k, entry in zip(shared, known, strict=True):
+            certificates[k] = entry or self._certified_alone(space, *some[k], proofs)
+        return [certificates[k] for k in range(len(some))]
 
     def _certified_alone(
         self, space: _Space, theta: Floats, wanted: Ints, count: int, proofs: list[InertiaProof]
@@ -465,9 +465,9 @@ class ReducedModel:
             space, rest, error = self._excluding(space, rest), [], np.inf
         failed = 0
         while rest:
-            found = self._corrected(space, rest, what)
-            if found:
-                space, errors, rest = found
+            correction = self._corrected(space, rest, what)
+            if correction:
+                space, errors, rest = correction
                 corrected += int((errors >= what.enough).sum())
                 error = max(error, float(errors.max()))
                 continue
@@ -502,8 +502,8 @@ class ReducedModel:
         Raises ModelError where none is found.
         """
         basis, pencil = space.basis, self.full.pencil
-        found = [unstable(pencil, basis, space.factor, theta) for theta in models]
-        some = [X for X in found if X.shape[1]]
+        directions = [unstable(pencil, basis, space.factor, theta) for theta in models]
+        some = [X for X in directions if X.shape[1]]
         if not some:
             raise ModelError("no direction of negative stiffness is found")
         basis = extended(pencil, basis, np.hstack(some), self._shortest, self.capacity)
@@ -519,19 +519,23 @@ class ReducedModel:
         """Return the space with the modes of a full solution, and how many others came with it."""
         started = time.perf_counter()
         pencil, count = self.full.pencil, modes + SPARE
-        one = snapshot(pencil, theta, min(count, self.size)) if known else self._wide(theta, count)
-        lowest = one.modes[:, : self.capacity]  # of directions of equal length, the lowest ones
-        basis = extended(pencil, known or empty(pencil, one), lowest, self._shortest, self.capacity)
+        taken = (
+            snapshot(pencil, theta, min(count, self.size)) if known else self._wide(theta, count)
+        )
+        lowest = taken.modes[:, : self.capacity]  # of directions of equal length, the lowest ones
+        basis = extended(
+            pencil, known or empty(pencil, taken), lowest, self._shortest, self.capacity
+        )
         solved = time.perf_counter()
         spend(Costs(full_time=solved - started))
-        factor = Factor(theta, one.below)
+        factor = Factor(theta, taken.below)
         basis = self._with_derivatives(basis, factor, theta, modes)
-        bounds = [] if known else self._bounds(basis, theta, one.below.sigma)
+        bounds = [] if known else self._bounds(basis, theta, taken.below.sigma)
         basis = self._at_bounds(basis, factor, bounds)
         spend(Costs(corrected_time=time.perf_counter() - solved))
-        return _Space(basis, factor, (*proofs, InertiaProof(theta, one.beyond, one.proved))), len(
-            bounds
-        )
+        return _Space(
+            basis, factor, (*proofs, InertiaProof(theta, taken.beyond, taken.proved))
+        ), len(bounds)
 
     def _wide(self, theta: Floats, count: int) -> Snapshot:
         """Return the first snapshot, with more modes than are used.
@@ -564,12 +568,12 @@ class ReducedModel:
         count = what.modes + SPARE if new else what.modes  # all modes that a proof is of
         wanted = CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
         try:
-            found = with_modes(self.full.pencil, basis, factor, here, count, wanted)
+            augmented = with_modes(self.full.pencil, basis, factor, here, count, wanted)
         except ModelError:
             return None  # a larger space sees that a matrix is indefinite
-        if found is None:
+        if augmented is None:
             return None
-        basis, errors = found
+        basis, errors = augmented
         if errors.max() >= what.enough:
             worst = here[int(errors.argmax())]
             basis = self._with_derivatives(basis, factor, worst, what.modes)
@@ -604,10 +608,10 @@ class ReducedModel:
         for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
             for end in ends:
                 for halving in range(HALVINGS + 1):
-                    at = theta.copy()
-                    at[i] += (end - theta[i]) / 2**halving
-                    if completeness.condition_within(basis.K, basis.M, at, sigma) <= FAR:
-                        out.append(at)
+                    nearby = theta.copy()
+                    nearby[i] += (end - theta[i]) / 2**halving
+                    if completeness.condition_within(basis.K, basis.M, nearby, sigma) <= FAR:
+                        out.append(nearby)
                         break
         return out
 
@@ -622,13 +626,13 @@ class ReducedModel:
             return basis
         wanted = CorrectionRequest(SHARE, COARSE, capacity)
         try:
-            found = with_modes(self.full.pencil, basis, factor, bounds, count, wanted)
-            return found[0] if found else basis
+            augmented = with_modes(self.full.pencil, basis, factor, bounds, count, wanted)
+            return augmented[0] if augmented else basis
         except ModelError:  # a larger space sees that a matrix is indefinite at one of them
             for theta in bounds:
                 with suppress(ModelError):
-                    found = with_modes(self.full.pencil, basis, factor, [theta], count, wanted)
-                    basis = found[0] if found else basis
+                    augmented = with_modes(self.full.pencil, basis, factor, [theta], count, wanted)
+                    basis = augmented[0] if augmented else basis
             return basis
 
     @property
@@ -643,7 +647,7 @@ def _reach(basis: Basis, proof: InertiaProof, theta: Floats) -> float:
 
 def _knows(basis: Basis, proofs: Sequence[InertiaProof], theta: Floats, lam: float) -> bool:
     """Return whether proofs rule out that modes below ``lam`` are missing in the basis."""
-    return basis.semidefinite and any(_reach(basis, one, theta) > lam for one in proofs)
+    return basis.semidefinite and any(_reach(basis, proof, theta) > lam for proof in proofs)
 
 
 def _near(
@@ -659,21 +663,21 @@ def _near(
         return None
     K, M, shift = basis.K, basis.M, factor.below.sigma
     bounds = completeness.bounds(K, M, theta, factor.theta, shift)
-    found: CertificateRequest | None = None
-    for one in proofs:
-        most = _reach(basis, one, theta)
+    request: CertificateRequest | None = None
+    for proof in proofs:
+        most = _reach(basis, proof, theta)
         gap = completeness.level(ritz.lam, count, shift, most)
-        proved = int((ritz.lam < most).sum()) == one.count
-        if gap and (found is None or (proved, gap[1]) > (found.proved, found.sigma)):
+        proved = int((ritz.lam < most).sum()) == proof.count
+        if gap and (request is None or (proved, gap[1]) > (request.proved, request.sigma)):
             below, sigma = gap
             some = below + int(not proved)
             lam, Y = ritz.lam[:some], ritz.Phi[:, :some]
-            found = CertificateRequest(theta, wanted, lam, Y, below, sigma, bounds, proved)
-    return found
+            request = CertificateRequest(theta, wanted, lam, Y, below, sigma, bounds, proved)
+    return request
 
 
 def _begins(wanted: Sequence[SnapshotRequest], taken: Sequence[_TakenSnapshot]) -> bool:
     """Return whether the snapshots wanted begin with those that were taken."""
     return len(taken) <= len(wanted) and all(
-        one.what.same(other) for one, other in zip(taken, wanted, strict=False)
+        entry.what.same(other) for entry, other in zip(taken, wanted, strict=False)
     )

@@ -175,10 +175,12 @@ def _file(table: Table, key: str) -> tuple[str, str | None] | None:
 
 def _common_size(model: Table, files: Mapping[str, Mapping[str, _Term]]) -> int | None:
     """Return the N of most N x N matrices; a fault names the ones that differ from it."""
-    found = {f"{key} {name}": term for key, terms in files.items() for name, term in terms.items()}
-    if not found:
+    matrices = {
+        f"{key} {name}": term for key, terms in files.items() for name, term in terms.items()
+    }
+    if not matrices:
         return None
-    sizes = {place: term.size for place, term in found.items()}
+    sizes = {place: term.size for place, term in matrices.items()}
     counts = list(sizes.values())
     common = max(set(counts), key=lambda size: (counts.count(size), size))
     for place, size in sizes.items():
@@ -197,12 +199,12 @@ def _check_entries(
     if mass and not any(A.nnz for A in mass.values()):
         model.fault("mass", "a mass matrix that is not zero", "only zeros")
     elif all(matrices.values()) and not model.faults:
-        there = np.zeros(size, dtype=bool)
+        stiff = np.zeros(size, dtype=bool)
         for A in found:
-            there[A.row] = True
-        if not there.all():
+            stiff[A.row] = True
+        if not stiff.all():
             expected = "stiffness or mass at every degree of freedom"
-            model.fault("", expected, f"neither at {int(np.argmin(there))} (from 0)")
+            model.fault("", expected, f"neither at {int(np.argmin(stiff))} (from 0)")
 
 
 MATRICES = ModelKind("matrices", read_matrices)

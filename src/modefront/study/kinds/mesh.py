@@ -6,10 +6,7 @@ import math
 from collections.abc import Callable, Mapping, Sequence
 from typing import Any, get_args
 
-import numpy as np
-
 from modefront import fem
-from modefront._typing import Floats
 from modefront.data.csv import is_reserved
 from modefront.diagnosis.groups import unused_groups
 from modefront.errors import suggestion
@@ -17,6 +14,7 @@ from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Quantity
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
+from modefront.study.kinds.axes import in_axes, read_axes
 from modefront.study.kinds.base import ModelKind
 from modefront.toml import Table, is_number
 
@@ -49,6 +47,7 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
     structure, outputs = _structure(table, parameters, mesh), _outputs(table)
     table.notes += unused_groups(mesh, (g.name for g in structure.groups), _named_nodes(table))
     if len(table.faults) > before:
+        _look_further(table, structure, mesh)
         return None
     try:
         return mesh_model(structure, parameters, floating=floating, outputs=outputs)
@@ -56,6 +55,29 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
         for message in error.messages:
             table.fault("", "a structure that can be assembled", message)
         return None
+
+
+def _look_further(table: Table, structure: fem.Structure, mesh: Mesh) -> None:
+    """Note what is wrong with sensors and scales, where faults keep the structure from being made.
+
+    Names that other tables give count, faulty or not: of these, the faults are said.
+    """
+    count = len(mesh.nodes)
+    for sensor in structure.sensors:
+        if isinstance(sensor.at, int) and sensor.at >= count:
+            table.fault(f"sensors {sensor.name}", f"nodes from 0 to {count - 1}", str(sensor.at))
+    named = [
+        name
+        for kind in ("group", "spring", "mass")
+        for entry in table.values.get(kind) or ()
+        for name in [entry.get("name")]
+        if isinstance(name, str)
+    ]
+    for parameter in structure.parameters:
+        for name in parameter.of:
+            if name not in named:
+                expected = "the name of a group, spring or mass"
+                table.fault(f"scale {parameter.name} of", expected, suggestion(name, named))
 
 
 def _structure(table: Table, parameters: Sequence[str], mesh: Mesh) -> fem.Structure:
@@ -123,7 +145,8 @@ def _groups(
     for group in model.tables("group", required=True):
         name = group.text("name", "the name of a group of cells")
         kind: Kind | None = group.choice("elements", get_args(Kind))
-        names = tuple(materials)  # none where all are faulty, which is said there
+        declared = model.values.get("material")  # those with faults too, which are said there
+        names = tuple(declared) if isinstance(declared, dict) else ()
         label = group.choice("material", names) if names else group.text("material")
         thickness = offset = section = orientation = None
         if kind == "shell":
@@ -308,17 +331,17 @@ def _places(table: Table) -> list[fem.Sensor]:
         node = place.integer("node", 0, 10**9, default=None)
         coordinates = place.numbers("at", "3 coordinates", lambda x: len(x) == 3, default=None)
         directions = _sensor_directions(place)
-        axes = _axes(place)
+        axes = read_axes(place)
         tolerance = place.number("tolerance", "a distance above 0", lambda x: x > 0, default=None)
         place.close()
         if (node is None) == (coordinates is None):
             place.fault("", "either node or at", "both" if node is not None else "neither")
             continue
-        at = node if coordinates is None else coordinates
+        position = node if coordinates is None else coordinates
         for ending, direction in directions:
-            turned = _turned(place, direction, axes)
+            turned = in_axes(place, direction, axes)
             if turned is not None:
-                out.append(fem.Sensor(name + ending, at, turned, tolerance))
+                out.append(fem.Sensor(name + ending, position, turned, tolerance))
     return out
 
 
@@ -326,8 +349,8 @@ def _sensor_directions(place: Table) -> list[tuple[str, Any]]:
     """Return the directions of a sensor, each with what it adds to the name."""
     value = place.values.get("direction")
     if not (isinstance(value, list) and any(isinstance(x, str) for x in value)):
-        one = _direction(place, "direction")
-        return [] if one is None else [("", one)]
+        direction = _direction(place, "direction")
+        return [] if direction is None else [("", direction)]
     known = [sign + name for name in fem.DIRECTIONS for sign in ("", "-")]
     several = place.take(
         "direction",
@@ -335,44 +358,7 @@ def _sensor_directions(place: Table) -> list[tuple[str, Any]]:
         lambda x: all(y in known for y in x) and len({y.removeprefix("-") for y in x}) == len(x),
         ...,
     )
-    return [(one.removeprefix("-"), one) for one in several or ()]
-
-
-def _axes(place: Table) -> Floats | None:
-    """Return local axes (3, 3), x, y and z in rows; None for those of the mesh."""
-    expected = "two vectors [[...], [...]]: the local x axis, and one in the local x-y plane"
-    rows = place.take(
-        "axes",
-        expected,
-        lambda x: (
-            isinstance(x, list)
-            and len(x) == 2
-            and all(isinstance(v, list) and len(v) == 3 and all(map(is_number, v)) for v in x)
-            and float(np.linalg.norm(np.cross(*x)))
-            > 1e-9 * float(np.prod(np.linalg.norm(x, axis=1)))
-        ),
-        None,
-    )
-    if rows is None:
-        return None
-    first, second = np.asarray(rows, dtype=float)
-    x, z = first / np.linalg.norm(first), np.cross(first, second)
-    z /= np.linalg.norm(z)
-    return np.stack([x, np.cross(z, x), z])
-
-
-def _turned(place: Table, direction: Any, axes: Floats | None) -> Any:
-    """Return a direction in the axes of the mesh, None where it has none there."""
-    if axes is None:
-        return direction
-    if isinstance(direction, str):
-        axis = direction.removeprefix("-")
-        if axis not in fem.DIRECTIONS[:3]:
-            place.fault("direction", "x, y or z where axes are given", f"'{direction}'")
-            return None
-        row = axes[fem.DIRECTIONS.index(axis)]
-        return (-row if direction != axis else row).tolist()
-    return (np.asarray(direction, dtype=float) @ axes).tolist()
+    return [(direction.removeprefix("-"), direction) for direction in several or ()]
 
 
 def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:

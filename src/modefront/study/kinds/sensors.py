@@ -9,6 +9,7 @@ from modefront.data.csv import is_reserved
 from modefront.fem.dofs import DIRECTIONS
 from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
+from modefront.study.kinds.axes import in_axes, read_axes
 from modefront.toml import Table, describe, is_name, is_number
 
 
@@ -97,7 +98,7 @@ def _read(
 def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, SensorSpec]:
     """Return the degrees of freedom of a place given by node and direction.
 
-    A list of directions makes as many places: NAMEx, NAMEy and so on.
+    A list of directions makes as many places: NAMEx, NAMEy and so on. With ``axes`` they are local.
     """
     if dofs is None:
         expected = 'a degree of freedom; nodes and directions need dofs = "dofs.csv"'
@@ -110,6 +111,7 @@ def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, Sensor
     expected = f"one of {', '.join(DIRECTIONS)}, with or without a minus sign, a list of different "
     expected += "ones, or a vector"
     value = place.take("direction", expected, lambda x: is_direction(x) or _are_directions(x), ...)
+    axes = read_axes(place)
     place.close()
     if node is None or value is None:
         return {}
@@ -117,8 +119,11 @@ def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, Sensor
     named = {name + one.removeprefix("-"): one for one in several} or {name: value}
     out: dict[str, SensorSpec] = {}
     for sensor, direction in named.items():
+        turned = in_axes(place, direction, axes)
+        if turned is None:
+            continue
         try:
-            out[sensor] = dofs.sensor(node, direction)
+            out[sensor] = dofs.sensor(node, turned)
         except LookupError as error:
             place.fault("", *error.args)
     return out
@@ -129,8 +134,8 @@ def _are_directions(value: object) -> bool:
     return (
         isinstance(value, list)
         and bool(value)
-        and all(isinstance(one, str) and is_direction(one) for one in value)
-        and len({one.removeprefix("-") for one in value}) == len(value)
+        and all(isinstance(direction, str) and is_direction(direction) for direction in value)
+        and len({direction.removeprefix("-") for direction in value}) == len(value)
     )
 
 

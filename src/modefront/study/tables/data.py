@@ -89,9 +89,10 @@ def _of_nodes(
         if place is None:
             continue
         found[name] = place
-        own = None if in_space is None else in_space.sensor_directions[s]
-        if own is not None and own.any() and abs(own @ place[1][:3]) < ASKEW:
-            table.notes.append(DataDirection(name, axis_name(own), axis_name(place[1])))
+        axis = None if in_space is None else in_space.sensor_directions[s]
+        in_data = modes.in_space(*place)
+        if axis is not None and axis.any() and abs(axis @ in_data[:3]) < ASKEW:
+            table.notes.append(DataDirection(name, axis_name(axis), axis_name(in_data)))
     if len(table.faults) > before:
         return None
     for name, (node, direction) in found.items():
@@ -139,14 +140,17 @@ def _is_any(value: object) -> bool:
 def _by_coordinates(
     modes: NodalModes, geometry: Geometry | None, s: int
 ) -> tuple[int, Floats] | None:
-    """Return the node of the test at the coordinates of a sensor, and the sensor's direction."""
+    """Return the node of the test at the coordinates of a sensor, and its direction there."""
     if geometry is None or np.isnan(modes.position).any():
         return None
     direction = np.concatenate([geometry.sensor_directions[s], np.zeros(3)])
     distance = np.linalg.norm(modes.position - geometry.nodes[geometry.sensor_nodes[s]], axis=1)
     nearest = int(np.argmin(distance))
     size = float(np.linalg.norm(np.ptp(modes.position, axis=0)))
-    return (nearest, direction) if direction.any() and distance[nearest] <= NEAR * size else None
+    is_known = direction.any() and np.isfinite(modes.axes[nearest]).all()
+    if not is_known or distance[nearest] > NEAR * size:
+        return None
+    return nearest, modes.local(nearest, direction)
 
 
 def _listed(modes: NodalModes) -> str:

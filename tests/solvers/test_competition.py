@@ -1,0 +1,79 @@
+"""Points of fronts of three objectives compete with other branches, and with their neighbours."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from problems import Derivatives, Known, box
+
+from modefront._typing import Floats
+from modefront.solvers.attainment import Attainment
+from modefront.solvers.basins import from_other_branches
+from modefront.solvers.border import without_slack
+from modefront.solvers.continuation import simplex
+from modefront.solvers.payoff import Payoff
+from modefront.solvers.sqp import Solution, begin, solve
+
+CENTRES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
+STEP = 0.05
+"""How much higher all objectives are in the left basin."""
+
+
+def two_basins(theta: Floats) -> Derivatives:
+    """Squared distances of (x, y) from three places, and a well at z = -1 and a lower one at 1."""
+    r, z = theta[:2] - CENTRES, theta[2]
+    well = (z**2 - 1) ** 2 + STEP * (1 - z) / 2
+    J = (r**2).sum(axis=1) + well
+    dJ = np.column_stack([2 * r, np.full(3, 4 * z * (z**2 - 1) - STEP / 2)])
+    H = np.array([np.diag([2.0, 2.0, max(12 * z**2 - 4, 0.0)])] * 3)
+    return J, dJ, H
+
+
+PROBLEM = box(two_basins, [-0.5, -0.5, -1.5], [1.5, 1.5, 1.5], 3)
+TARGET = Payoff(np.zeros(3), np.ones(3), np.ones((3, 3)) - np.eye(3))
+ATTAINMENT = Attainment(TARGET, np.zeros((0, 3)))
+
+
+def solved(problem: Known, beta: list[float], z: float) -> Solution:
+    """Return the point of the front at beta, from a start near z."""
+    start = begin(problem.evaluate(np.array([0.3, 0.3, z])))
+    solution = solve(problem, ATTAINMENT.subproblem(np.array(beta)), start)
+    assert solution.converged
+    assert np.sign(solution.theta[2]) == np.sign(z)
+    return replace(solution, beta=np.array(beta))
+
+
+def test_points_are_solved_again_from_a_better_branch_beside_them() -> None:
+    worse, better = solved(PROBLEM, [0.3, 0.4, 0.3], -1.0), solved(PROBLEM, [0.3, 0.3, 0.4], 1.0)
+    ends = from_other_branches(PROBLEM, TARGET, simplex(3, 10), [worse, better])
+    expected = solved(PROBLEM, [0.3, 0.4, 0.3], 1.0)
+    assert ends[0].J == pytest.approx(expected.J, abs=1e-6)
+    assert ends[0].evaluations > 0
+    assert ends[1] is better
+    assert (worse.J - ends[0].J).min() > 0.9 * STEP
+
+
+def test_pairs_of_points_that_were_compared_cost_nothing() -> None:
+    points = [solved(PROBLEM, [0.3, 0.4, 0.3], -1.0), solved(PROBLEM, [0.3, 0.3, 0.4], 1.0)]
+    first = from_other_branches(PROBLEM, TARGET, simplex(3, 10), points)
+    forbidden = box(unreachable, [-0.5, -0.5, -1.5], [1.5, 1.5, 1.5], 3)
+    again = from_other_branches(forbidden, TARGET, simplex(3, 10), first, before=first)
+    assert all(x is y for x, y in zip(again, first, strict=True))
+    assert without_slack(forbidden, TARGET, first, before=first) == first
+
+
+def unreachable(theta: Floats) -> Derivatives:
+    raise AssertionError(f"evaluated at {theta}")
+
+
+def test_of_equal_greatest_excess_the_lower_sum_is_better() -> None:
+    beta = np.array([0.6, 0.3, 0.1])
+    J = TARGET.Phi @ beta + 0.1 * TARGET.Phi.sum(axis=1)
+    lower = J - [0.0, 0.0, 0.01]
+    for programmes in (TARGET, ATTAINMENT):
+        assert programmes.is_better(beta, lower, J)
+        assert not programmes.is_better(beta, J, lower)
+        assert not programmes.is_better(beta, lower + 1e-5, J), "a greater excess"
+        assert not programmes.is_better(beta, J - 1e-8, J), "the same point"
