@@ -249,6 +249,19 @@ def test_names_with_markup_stay_text(tmp_path: Path, opened: Open) -> None:
     assert HOSTILE in page.view("tables").inner_text()
 
 
+def test_long_names_are_shown_whole_and_pairs_are_outlined(tmp_path: Path, opened: Open) -> None:
+    names = ["stiffness of the columns of the first storey", "k" * 60, "k3"]
+    page = opened(written(tmp_path, chain().assign_coords(parameter=names)))
+    texts = page.view("parameters").locator("text.name")
+    for name, text in zip(names, texts.all(), strict=True):
+        lines = text.locator("tspan").all_text_contents()
+        assert "".join(lines).replace(" ", "") == name.replace(" ", "")
+        box = text.bounding_box()
+        assert box is not None
+        assert box["x"] >= 0
+    assert page.view("MAC").locator("td.paired").count() == chain().sizes["mode"]
+
+
 def test_a_mesh_is_deformed(tmp_path: Path, opened: Open) -> None:
     page = opened(written(tmp_path, mesh()))
     view = page.view("mode shape")

@@ -191,7 +191,8 @@ def show(
 @click.option(
     "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
-def compare(directories: tuple[Path, ...], form: str) -> None:
+@click.option("--all", "every", is_flag=True, help="All parameters and predictions.")
+def compare(directories: tuple[Path, ...], form: str, every: bool) -> None:
     """Set the results in several DIRECTORIES side by side."""
     from modefront.cli.compare import comparison_as_json, print_comparison
     from modefront.results.compare import compare as compare_results
@@ -200,7 +201,7 @@ def compare(directories: tuple[Path, ...], form: str) -> None:
     if form == "json":
         print(comparison_as_json(comparison))
     else:
-        print_comparison(comparison)
+        print_comparison(comparison, every=every)
 
 
 @cli.command()
