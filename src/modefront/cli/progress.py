@@ -114,7 +114,8 @@ class _Lines:
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         done, expected = (self.state.done, self.state.expected) if self.state else (0, 0)
         expected = done if self.is_done else max(expected, 1)
-        of = f"{done} tasks" if self.is_done else f"{done} of about {expected} tasks"
+        known = self.state is not None and not self.is_done
+        of = f"{done} of about {expected} tasks" if known else f"{done} tasks"
         count = f"{of}  {_clock(self.clock() - self.began)}"
         if options.max_width < len(self.title) + len(count) + LEAST:
             yield Text(f"{self.title}  {count}", overflow="fold")
