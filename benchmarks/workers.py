@@ -79,7 +79,13 @@ def building(folder: Path) -> mf.Study:
 
 def footbridge(_: Path) -> mf.Study:
     """Return a footbridge of shells of 2,000 degrees of freedom, 5 parameters and 6 modes."""
-    return mf.Study(footbridge_problem(), pareto=mf.Pareto(points=20), seed=1)
+    return mf.Study(
+        footbridge_problem(),
+        pareto=mf.Pareto(points=20),
+        seed=1,
+        uncertainty=mf.Uncertainty(source="sets", bootstrap=12, draws=24),
+        predictions=[mf.PeakResponse("walked", ["s20"], force="s20", damping=0.01)],
+    )
 
 
 def footbridge_problem(reduction: float | Literal["auto", "off"] = "auto") -> mf.UpdatingProblem:

@@ -315,7 +315,7 @@ def test_a_changed_study_mixes_with_nothing_old(
     modefront_("run", study, "-o", clean)
     assert_same(read_dataset(done), read_dataset(clean))
     after = contents(done)
-    assert all(content in after for content in before), "old pieces and results are kept"
+    assert all(content in after for content in before), "old tasks and results are kept"
 
     changed.write_text(text)
     assert modefront_("run", study)[0] == 0

@@ -285,7 +285,7 @@ def test_the_study_of_results_is_found_wherever_it_lies(
     assert modefront("run", study, "-o", results).exit_code in (0, 1)
     found = modefront("export", results, "-o", tmp_path / "a")
     assert found.exit_code == 0, found.output + str(found.exception)
-    shutil.rmtree(results / "pieces")
+    shutil.rmtree(results / "tasks")
     lost = str(modefront("export", results, "-o", tmp_path / "b").exception)
     assert "found none: pass --study FILE" in lost
     monkeypatch.chdir(small)

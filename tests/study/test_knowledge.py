@@ -254,9 +254,9 @@ def test_the_scatter_of_three_groups_runs_on_with_the_same_digits(tmp_path: Path
     head, tail = STUDY.split('[[group]]\nname = "shapes"\nshape = "all"\n')
     (tmp_path / "study.toml").write_text(head + THREE + tail)
     first = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / "results").dataset
-    pieces = tmp_path / "results" / "pieces"
-    for piece in [*pieces.rglob("second-derivatives-nbi-*.npz"), *pieces.rglob("bootstrap-*.npz")]:
-        piece.unlink()
+    tasks = tmp_path / "results" / "tasks"
+    for file in [*tasks.rglob("second-derivatives-nbi-*.npz"), *tasks.rglob("bootstrap-*.npz")]:
+        file.unlink()
     again = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / "results").dataset
     assert again.identical(first)
     along = first["front_part"].values == "whole"
@@ -276,8 +276,8 @@ def test_a_study_runs_on_with_the_same_digits_and_shows_all(
     (tmp_path / "study.toml").write_text(text)
     study = mf.load(tmp_path / "study.toml")
     first = mf.run(study, tmp_path / "results").dataset
-    for piece in (tmp_path / "results" / "pieces").rglob("second-derivatives-*.npz"):
-        piece.unlink()
+    for file in (tmp_path / "results" / "tasks").rglob("second-derivatives-*.npz"):
+        file.unlink()
     again = mf.run(mf.load(tmp_path / "study.toml"), tmp_path / "results").dataset
     assert again.identical(first)
     solved = first["kind"].values != "nominal"

@@ -223,10 +223,10 @@ def test_an_interrupted_evolution_goes_on_where_it_stopped(
     interrupt_at(f"front-{method}-100-", monkeypatch)
     with pytest.raises(KeyboardInterrupt):
         mf.run(mf.load(path), tmp_path / "results")
-    before = set((tmp_path / "results" / "pieces").rglob("*.npz"))
+    before = set((tmp_path / "results" / "tasks").rglob("*.npz"))
     assert sum(file.name.startswith(f"front-{method}-") for file in before) == 5
     with counted() as costs:
         assert mf.run(mf.load(path), tmp_path / "results").dataset.identical(whole)
-    new = set((tmp_path / "results" / "pieces").rglob("*.npz")) - before
+    new = set((tmp_path / "results" / "tasks").rglob("*.npz")) - before
     assert sum(file.name.startswith(f"front-{method}-") for file in new) == 5
     assert 5 * 20 <= costs.eigenproblems < whole.attrs["model_evaluations"] - 5 * 20

@@ -229,7 +229,7 @@ def test_an_interrupted_run_has_the_same_digits(
 @pytest.mark.slow
 def test_more_draws_cost_only_themselves(drawn: xr.Dataset, tmp_path: Path) -> None:
     run(tmp_path, FRF + QUICK)
-    folder = tmp_path / "results" / "pieces"
+    folder = tmp_path / "results" / "tasks"
     before = set(folder.rglob("*.npz"))
     study = mf.load(write_study(tmp_path, with_draws(7)))
     states: list[State] = []

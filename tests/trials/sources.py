@@ -412,7 +412,7 @@ def run_study(folder: Path) -> list[Case]:
     """Run a study and return which commands read its results."""
     command = [sys.executable, "-m", "modefront", "run", "K-npy.toml", "-o", "results"]
     subprocess.run(command, cwd=folder, check=True, capture_output=True)
-    pieces = sorted((folder / "results" / "pieces").rglob("*.npz"))
+    kept = sorted((folder / "results" / "tasks").rglob("*.npz"))
     results = "results/results.nc"
     again = ("run", "K-npy.toml", "-o", "results")
     return [
@@ -420,8 +420,8 @@ def run_study(folder: Path) -> list[Case]:
         Case(results, ("show", "results", "--format", "json")),
         Case(results, ("compare", "results", "results")),
         Case(results, again),
-        Case(os.fspath(pieces[0].relative_to(folder)), again),
-        Case(os.fspath(pieces[-1].relative_to(folder)), again),
+        Case(os.fspath(kept[0].relative_to(folder)), again),
+        Case(os.fspath(kept[-1].relative_to(folder)), again),
     ]
 
 

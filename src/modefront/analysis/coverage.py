@@ -8,7 +8,7 @@ from modefront.fronts.front import Front
 from modefront.fronts.point import Kind, of_kind
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.indicators import REFERENCE, hypervolume, igd_plus, largest_gap
-from modefront.solvers.refine import pieces
+from modefront.solvers.refine import branches_of
 
 
 def coverage(front: Front) -> dict[str, float]:
@@ -32,7 +32,7 @@ def coverage(front: Front) -> dict[str, float]:
     optimal = nondominated(J)
     Y = (J - utopia) / scale
     R = (everything[nondominated(everything)] - utopia) / scale
-    parts = pieces(along, optimal, front.gaps) if front.gaps else []
+    parts = branches_of(along, optimal, front.gaps) if front.gaps else []
     branches = [np.array([(solution.J - utopia) / scale for solution in part]) for part in parts]
     gap = max(
         largest_gap(part[(part <= REFERENCE).all(axis=1)])

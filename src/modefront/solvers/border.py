@@ -31,7 +31,7 @@ GAIN = 1e-5
 VANISHING = 1e-5
 """An objective below this share of its range nearly vanishes: residuals of 3e-3 of theirs."""
 
-_FEW = Options(iterations=40)
+_FEW = Options(iterations=60)
 
 
 def without_slack(
@@ -72,15 +72,18 @@ def _free(target: Payoff, point: Solution) -> Bools:
 def _lowerable(target: Payoff, point: Solution) -> list[Bools]:
     """Return sets of objectives (n,) that may be lower at the same values of the others.
 
-    These are the objectives that no bound holds; and each of the others beside one that nearly
-    vanishes, which may hold the bound without any effect.
+    These are the objectives that no bound holds, all and each; and each of the others beside one
+    that nearly vanishes, which may hold the bound without any effect.
     """
     n = target.scale.size
     free = _free(target, point)
+    sets = [free] if free.any() else []
     vanishing = VANISHING * target.scale >= point.J
     weak = point.beta is not None and point.feasible and vanishing.any()
-    alone = np.flatnonzero(~vanishing & ~free if free.sum() == 1 else ~vanishing) if weak else ()
-    return [*([free] if free.any() else []), *(np.arange(n) == i for i in alone)]
+    alone = free if free.sum() > 1 else np.zeros_like(free)
+    if weak:
+        alone = ~vanishing & ~free if free.sum() == 1 else ~vanishing
+    return [*sets, *(np.arange(n) == i for i in np.flatnonzero(alone))]
 
 
 def _tightened(problem: Problem, target: Payoff, point: Solution) -> Solution:

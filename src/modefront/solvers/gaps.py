@@ -171,6 +171,6 @@ def branch_numbers(J: Floats, optimal: Bools, gaps: Sequence[Gap]) -> Ints:
     """
     middles = np.array([gap.middle for gap in gaps])
     starts = np.array([gap.start.J for gap in gaps if gap.start]).reshape(-1, 2)
-    piece = 1 + (J[:, :1] > middles).sum(axis=1)
+    branch = 1 + (J[:, :1] > middles).sum(axis=1)
     below = np.all(starts <= J[:, None], axis=2) & np.any(starts < J[:, None], axis=2)
-    return np.where(optimal & ~np.any(below, axis=1), piece, 0)
+    return np.where(optimal & ~np.any(below, axis=1), branch, 0)

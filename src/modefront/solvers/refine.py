@@ -1,9 +1,9 @@
-r"""More points of a front of two objectives where it is sparse, and each piece followed to its end.
+r"""More points of a front of two objectives where it is sparse, each branch to its end.
 
-Between neighbours a and b of one piece whose distance, in units of the ranges of the objectives,
+Between neighbours a and b of one branch whose distance, in units of the ranges of the objectives,
 exceeds a wanted size, the subproblem of normal-boundary intersection half-way between their
 projections is solved from a, or else from b, and so on until no distance is greater. The ends of
-the pieces at a gap (`modefront.solvers.gaps`) count as neighbours: so each piece is followed to
+the branches at a gap (`modefront.solvers.gaps`) count as neighbours: so each branch is followed to
 its end.
 """
 
@@ -42,8 +42,8 @@ def refine(
     """
     solved: list[Solution] = []
     jumps: list[tuple[Solution, Solution]] = []
-    for piece in pieces(points, optimal, gaps):
-        pairs = list(pairwise(piece))[::-1]
+    for branch in branches_of(points, optimal, gaps):
+        pairs = list(pairwise(branch))[::-1]
         while pairs:
             a, b = pairs.pop()
             if distance(a, b, target.scale) <= size:
@@ -59,8 +59,10 @@ def refine(
     ), jumps
 
 
-def pieces(points: Sequence[Solution], optimal: Bools, gaps: Sequence[Gap]) -> list[list[Solution]]:
-    """Return the optimal points of each piece of a front, with its ends at gaps."""
+def branches_of(
+    points: Sequence[Solution], optimal: Bools, gaps: Sequence[Gap]
+) -> list[list[Solution]]:
+    """Return the optimal points of each branch of a front, with its ends at gaps."""
     J = np.array([solution.J for solution in points])
     number = branch_numbers(J, optimal, gaps)
     out = []
@@ -80,7 +82,7 @@ def distance(a: Solution, b: Solution, scale: Floats) -> float:
 def _between(
     problem: Problem, target: Payoff, a: Solution, b: Solution, work: Executor
 ) -> Solution | None:
-    """Return the point half-way, or None where there is none on this piece."""
+    """Return the point half-way, or None where there is none on this branch."""
     at_a, at_b = target.place(a.J), target.place(b.J)
     if np.abs(at_a - at_b).max() < SMALLEST:
         return None

@@ -22,7 +22,7 @@ from modefront.work.codec import decode, encode
 from modefront.work.costs import Costs
 from modefront.work.task import Task
 
-FOLDER = "pieces"
+FOLDER = "tasks"
 """Folder of the kept results, within that of the results of a run."""
 
 LONGEST = 60
