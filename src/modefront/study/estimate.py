@@ -17,12 +17,11 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront.errors import InputError, ModelError
-from modefront.fronts.methods import METHODS
 from modefront.models.reduced.model import ReducedModel
 from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.predictions import extent
-from modefront.solvers.continuation import default_points, simplex, size
+from modefront.solvers.continuation import default_points, size
 from modefront.study.definition import Study
 from modefront.work.costs import uncounted
 
@@ -133,8 +132,8 @@ def expected_tasks(study: Study) -> dict[str, int]:
         "shapes": 1,
     }
     if n > 1:
-        lattice = simplex(n, (pareto.points or default_points(n)) - 1)
-        out["front"] = METHODS[pareto.method].extent(pareto, lattice)
+        generations = max(pareto.evaluations // pareto.population, 1)
+        out["front"] = _points(study) if pareto.method in ("nbi", "weights") else generations
     predicted = _models(study) + (study.uncertainty.draws or 1 + 2 * len(study.problem.start))
     return out | extent(study.predictions, predicted)
 
