@@ -110,6 +110,30 @@ def test_an_imported_study_needs_data_and_sensors_only(small: Path) -> None:
     assert estimate(study.problem) == pytest.approx([1.2, 0.8], rel=1e-6)
 
 
+@pytest.mark.parametrize(
+    ("deck", "said"),
+    [
+        (
+            "set k 900.0\nset E 40.0\n",
+            "k: the decks differ by a factor of 3 (line 1), but the run is",
+        ),
+        ("set k 600.0\nset E 40.0\n", ""),
+        ("set k 900.0\nset E 50.0\n", ""),
+        ("set k 900.0\nset F 40.0\n", ""),
+        ("set k 900.0\n", ""),
+    ],
+)
+def test_a_factor_that_the_decks_contradict(small: Path, deck: str, said: str) -> None:
+    (small.parent / "k.tcl").write_text(deck)
+    result = modefront(
+        *("import", "opensees", small.parent / "base"),
+        *("--parameter", f"k={small.parent / 'k'}", "-o", small.parent / "again"),
+    )
+    assert result.exit_code == 0, result.output + str(result.exception)
+    assert said in result.output
+    assert ("the decks differ" in result.output) == bool(said)
+
+
 def test_a_list_of_directions_makes_a_sensor_each(small: Path) -> None:
     file, data = small / "study.toml", small / "modes.csv"
     text = file.read_text()

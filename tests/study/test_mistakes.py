@@ -174,6 +174,15 @@ def test_sensors_of_one_data_set(tmp_path: Path) -> None:
     assert first.exists()
 
 
+def test_a_sensor_that_most_data_sets_have_reversed(tmp_path: Path) -> None:
+    def change(rows: Rows) -> None:
+        for name in ("set1", "set2"):
+            scaled("floor1", -1.0, name)(rows)
+
+    said = only(spoilt(tmp_path, SETS, data=change))
+    assert "reversing floor1 in set set1 and set2 raises MAC" in said
+
+
 def test_a_data_set_in_another_unit_and_one_with_another_frequency(tmp_path: Path) -> None:
     write_example(SETS, tmp_path / "plain")
     name = load(tmp_path / "plain" / "study.toml").problem.data.sets[2]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -12,7 +13,7 @@ from modefront.diagnosis.explain import WrongPlaces, explained, finding_of, pair
 from modefront.diagnosis.measured import measured
 from modefront.diagnosis.opposed import OpposedSensor, opposed_findings
 from modefront.diagnosis.pairs import OutsideModel, PairFinding, pair_findings, without_outside
-from modefront.diagnosis.sensors import WrongSensors, between_sets
+from modefront.diagnosis.sensors import WrongSensors, between_sets, by_sets
 from modefront.diagnosis.sets import (
     SetFactor,
     SetFrequency,
@@ -23,7 +24,13 @@ from modefront.diagnosis.sets import (
     numbering_findings,
     shape_findings,
 )
-from modefront.diagnosis.units import FrequencyFactor, OtherQuantity, shifts_tried, unit_finding
+from modefront.diagnosis.units import (
+    FrequencyFactor,
+    OtherQuantity,
+    distance,
+    shifts_tried,
+    unit_finding,
+)
 
 Finding = (
     FrequencyFactor
@@ -49,7 +56,7 @@ def diagnose(comparison: Comparison) -> list[Finding]:
     """
     data = comparison.data
     of_model = comparison.frequency[comparison.pairs.index]
-    factors, data = factor_findings(data, of_model)
+    factors, data = factor_findings(data, partial(distance, comparison))
     numbers, data = numbering_findings(data, of_model)
     in_sets, view = between_sets(comparison, measured(data))
     inside = without_outside(comparison, view)
@@ -59,8 +66,11 @@ def diagnose(comparison: Comparison) -> list[Finding]:
     shift = 0.0
     if isinstance(unit, FrequencyFactor):
         shift = float(np.log(unit.factor))
-    out: list[Finding] = [*factors, *numbers, *([unit] if unit else []), *in_sets]
-    out += [sensors] if sensors else []
+    out: list[Finding] = [*factors, *numbers, *([unit] if unit else [])]
+    if isinstance(sensors, WrongSensors):
+        out += by_sets(in_sets, sensors, comparison.data.sets)
+    else:
+        out += [*in_sets, *([sensors] if sensors else [])]
     paired = best.phi[:, pairs_of(comparison, best)]
     out += opposed_findings(comparison.data.sensors, best.view, paired)
     out += [*frequency_findings(data), *shape_findings(data, view), *damping_findings(data)]

@@ -9,7 +9,7 @@ is found.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -169,6 +169,23 @@ def wrong_sensors(
         against,
         other,
     )
+
+
+def by_sets(
+    in_sets: Sequence[WrongSensors], in_all: WrongSensors, sets: Sequence[str]
+) -> list[WrongSensors]:
+    """Return the findings with a change in some sets and again in all as one in the other sets."""
+    twice = {c for c in in_all.changes if any(c in found.changes for found in in_sets)}
+    out = [
+        replace(found, changes=tuple(c for c in found.changes if c not in twice))
+        for found in (*in_sets, in_all)
+    ]
+    for change in in_all.changes:
+        if change in twice:
+            right = {name for found in in_sets if change in found.changes for name in found.sets}
+            wrong = tuple(name for name in sets if name not in right)
+            out.append(replace(in_all, changes=(change,), sets=wrong))
+    return [found for found in out if found.changes]
 
 
 def _merged(found: Sequence[WrongSensors]) -> list[WrongSensors]:

@@ -6,8 +6,9 @@ show between the same data sets.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -115,10 +116,14 @@ class SetShape:
     other_mac: float
 
 
-def factor_findings(data: ModalData, of_model: Floats) -> tuple[list[SetFactor], ModalData]:
+Distance: TypeAlias = Callable[[Floats], float]
+"""How far frequencies (modes,) in Hz are from those of the model."""
+
+
+def factor_findings(data: ModalData, distance: Distance) -> tuple[list[SetFactor], ModalData]:
     """Return data sets in another unit than the others, and the data in the same unit.
 
-    ``of_model`` (modes,) are frequencies in Hz of the model, which says which of two sets it is.
+    Which of two sets it is, the ``distance`` from the model says.
     """
     out: list[SetFactor] = []
     f = data.frequency.copy()
@@ -133,9 +138,7 @@ def factor_findings(data: ModalData, of_model: Floats) -> tuple[list[SetFactor],
         if not far:
             break
         worst = max(far)[0]
-        closest = [
-            (_distance(f[k], of_model), k, value) for size, k, value in far if size > 0.9 * worst
-        ]
+        closest = [(distance(f[k]), k, value) for size, k, value in far if size > 0.9 * worst]
         _, k, value = max(closest)
         others = [name for i, name in enumerate(data.sets) if i != k]
         factor = float(np.exp(value))
@@ -151,11 +154,6 @@ def _ratio_to_others(f: Floats, k: int) -> Floats:
     if not known.any():
         return np.zeros(0)
     return np.asarray(np.log(f[k, known] / np.nanmedian(others[:, known], axis=0)))
-
-
-def _distance(f: Floats, of_model: Floats) -> float:
-    known = np.isfinite(f) & (of_model > 0)
-    return float(np.median(np.abs(np.log(f[known] / of_model[known])))) if known.any() else 0.0
 
 
 def frequency_findings(data: ModalData) -> list[SetFactor | SetFrequency]:
@@ -250,7 +248,8 @@ def _between(data: ModalData, j: int, k: int) -> list[tuple[float, SetFrequency]
 def numbering_findings(data: ModalData, of_model: Floats) -> tuple[list[SetNumbers], ModalData]:
     """Return data sets that number their modes differently, and the data numbered alike.
 
-    ``of_model`` (modes,) are frequencies in Hz of the model, which says which of two sets it is.
+    ``of_model`` (modes,) are the frequencies in Hz of the paired modes of the model, which say
+    which of two sets it is.
     """
     out: list[SetNumbers] = []
     for _ in range(len(data.sets) - 1):
@@ -263,7 +262,7 @@ def numbering_findings(data: ModalData, of_model: Floats) -> tuple[list[SetNumbe
             changed = int((index != m).sum())
             if not changed or gain < max(RENUMBERED * changed, 0.5 * float(np.trace(cost))):
                 continue
-            rank = round(gain, 9), _distance(data.frequency[k], of_model)
+            rank = round(gain, 9), _median_distance(data.frequency[k], of_model)
             if best is None or rank > best[:2]:
                 best = *rank, k, index, cost
         if best is None:
@@ -280,6 +279,11 @@ def numbering_findings(data: ModalData, of_model: Floats) -> tuple[list[SetNumbe
         )
         data = _renumbered(data, k, index)
     return out, data
+
+
+def _median_distance(f: Floats, of_model: Floats) -> float:
+    known = np.isfinite(f) & (of_model > 0)
+    return float(np.median(np.abs(np.log(f[known] / of_model[known])))) if known.any() else 0.0
 
 
 def _renumbering_cost(data: ModalData, k: int) -> Floats:

@@ -134,6 +134,12 @@ def unit_finding(
     )
 
 
+def distance(comparison: Comparison, frequency: Floats) -> float:
+    """Return the cost of pairing frequencies (modes,) in Hz of one data set, by all shapes."""
+    view = comparison.view
+    return _at(comparison, view, comparison.phi, np.log(frequency), 0.0)[1]
+
+
 def cause_of(factor: float) -> str:
     """Return the cause that a factor on frequencies has by its size, empty where it has none.
 

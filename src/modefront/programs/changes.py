@@ -18,6 +18,9 @@ NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d
 """A number in a deck."""
 
 SUFFIXES = (".inp", ".dat", ".bdf", ".nas", ".mac", ".py", ".tcl")
+COMMENTS = ("**", "$", "!", "#")
+"""Beginnings of lines that are comments, in one program or another."""
+
 SAME = 1e-6
 """Relative difference from the factor that passes for the digits of a deck."""
 
@@ -63,17 +66,45 @@ def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Cha
 
     None are returned where there are no decks, or these have different numbers of lines.
     """
+    name, pairs = _different_lines(nominal, run)
+    return [
+        Change(parameter, name, number, old, spans)
+        for number, old, new in pairs
+        if (spans := _scaled(old, new, factor))
+    ]
+
+
+def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] | None:
+    """Return the factor of all numbers that a run changes, and a line of it, if it is another one.
+
+    None where some change by the given factor, by different ones, or something else changes.
+    """
+    found: dict[float, int] = {}
+    for number, old, new in _different_lines(nominal, run)[1]:
+        if old.lstrip().startswith(COMMENTS):
+            continue
+        before, after = ([_value(x) for x in NUMBER.findall(text)] for text in (old, new))
+        if len(before) != len(after) or _rest(NUMBER.sub("#", old)) != _rest(NUMBER.sub("#", new)):
+            return None
+        for x, y in zip(before, after, strict=True):
+            if x != y:
+                found.setdefault(float(f"{y / x:.6g}") if x else 0.0, number)
+    if len(found) != 1:
+        return None
+    ((value, line),) = found.items()
+    return None if value <= 0 or abs(value / factor - 1) < 1e-5 else (value, line)
+
+
+def _different_lines(nominal: Path, run: Path) -> tuple[str, list[tuple[int, str, str]]]:
+    """Return the name of the nominal deck, and number and texts of the lines that differ."""
     pair = [_deck(path) for path in (nominal, run)]
     if pair[0] is None or pair[1] is None:
-        return []
+        return "", []
     lines = [path.read_text("utf-8", "replace").splitlines() for path in pair if path]
     if len(lines[0]) != len(lines[1]):
-        return []
-    out = []
-    for number, (old, new) in enumerate(zip(*lines, strict=True), start=1):
-        if old != new and (spans := _scaled(old, new, factor)):
-            out.append(Change(parameter, pair[0].name, number, old, spans))
-    return out
+        return pair[0].name, []
+    numbered = enumerate(zip(*lines, strict=True), start=1)
+    return pair[0].name, [(k, old, new) for k, (old, new) in numbered if old != new]
 
 
 def _deck(path: Path) -> Path | None:

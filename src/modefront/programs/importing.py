@@ -20,7 +20,7 @@ from modefront.models.dofs import number_of, write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.terms import exponents_of, form_of
 from modefront.programs.base import Job, JobOptions, Program, whole
-from modefront.programs.changes import Change, changes, write_changes
+from modefront.programs.changes import Change, changes, other_factor, write_changes
 from modefront.programs.condense import condensed
 from modefront.programs.differences import (
     Differences,
@@ -130,18 +130,28 @@ def read_jobs(request: Request, progress: Callable[[str], None] = lambda _: None
                 "mass, or several terms act on them, so that to eliminate them were not exact"
             )
     frequencies, floating = _frequencies(found, request.modes, notes, progress)
-    changed = _changes(request, names, values)
+    changed = _changes(request, names, values, notes)
     return Imported(nominal, found, frequencies, floating, tuple(errors), tuple(notes), changed)
 
 
 def _changes(
-    request: Request, names: Sequence[str], values: Sequence[Floats]
+    request: Request, names: Sequence[str], values: Sequence[Floats], notes: list[str]
 ) -> tuple[Change, ...]:
-    """Return the lines of the deck that the first run of each parameter changes."""
+    """Return the lines of the deck that the first run of each parameter changes.
+
+    Notes where decks differ by another factor than the one that is given.
+    """
     out: dict[str, list[Change]] = {}
     for (name, path), theta in zip(request.runs, values, strict=True):
         factor = float(theta[names.index(name)])
         out.setdefault(name, changes(name, request.nominal, path, factor))
+        other = other_factor(request.nominal, path, factor)
+        if other is not None:
+            notes.append(
+                f"{name}: the decks differ by a factor of {other[0]:g} (line {other[1]}), but the "
+                f"run is taken for {factor:g} times the nominal value: is --factor {name}="
+                f"{other[0]:g} meant?"
+            )
     return tuple(change for each in out.values() for change in each)
 
 

@@ -11,7 +11,7 @@ from modefront.diagnosis.comparison import Comparison, compare
 from modefront.diagnosis.damping import DampingInPercent
 from modefront.diagnosis.diagnose import diagnose
 from modefront.diagnosis.groups import UnusedGroup
-from modefront.diagnosis.pairs import BeyondCandidates, DistantPair
+from modefront.diagnosis.pairs import BeyondCandidates, DistantPair, UnseenMode
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
 from modefront.diagnosis.sets import SetFactor
 from modefront.diagnosis.units import FrequencyFactor, OtherQuantity
@@ -54,7 +54,7 @@ KEPT = 500
 UNITS = (FrequencyFactor, OtherQuantity, SetFactor)
 """Mistakes with which measured frequencies say nothing of the elements."""
 
-HARMLESS = (DampingInPercent, UnusedGroup, DistantPair, BeyondCandidates)
+HARMLESS = (DampingInPercent, UnusedGroup, DistantPair, BeyondCandidates, UnseenMode)
 """Mistakes that leave the residuals as they are, or that need not be mistakes."""
 
 

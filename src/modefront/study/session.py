@@ -178,7 +178,7 @@ def run(
         _keep_other(folder / FILE, study.digest)
         write(data, folder / FILE)
         if study.origin is not None:
-            note_study(folder, study.origin.file)
+            note_study(folder, tasks, study.origin.file)
     return Results(data, study.problem)
 
 

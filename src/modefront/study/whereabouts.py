@@ -13,20 +13,26 @@ from modefront.study.file import load
 from modefront.work.store import FOLDER
 
 NOTE = "study"
-"""File beside the results of tasks, with the path of the study file from the results."""
+"""File among the results of tasks, with the path of the study file from the results."""
 
 LONGEST = 4096
-"""Characters of a path that is believed."""
+"""Bytes of a path that is believed."""
+
+LARGEST = 10**7
+"""Bytes of a study file, at most."""
 
 ABOVE = 3
 """Folders above the results in which a study is looked for."""
 
 
-def note_study(folder: Path, file: Path) -> None:
-    """Note beside results in a folder where their study lies; not where it has no relative path."""
+def note_study(folder: Path, tasks: Path, file: Path) -> None:
+    """Note where the study of results in a folder lies, among its ``tasks``.
+
+    Not where it has no relative path.
+    """
     try:
         path = os.path.relpath(file.absolute(), folder.absolute())
-        (folder / FOLDER / NOTE).write_text(Path(path).as_posix() + "\n", encoding="utf-8")
+        (tasks / NOTE).write_text(Path(path).as_posix() + "\n", encoding="utf-8")
     except (ValueError, OSError):  # another drive; a note that cannot be written is no loss
         return
 
@@ -84,20 +90,30 @@ def given_study(results: Path, file: Path, digest: str) -> Study:
 
 def _candidates(results: Path) -> Iterator[Path]:
     """Yield the files that may be the study, the likeliest first."""
-    try:
-        note = (results / FOLDER / NOTE).read_text("utf-8")[:LONGEST].strip()
-    except (OSError, UnicodeDecodeError):
-        note = ""
-    if note.isprintable() and note.endswith(".toml"):
-        yield Path(os.path.normpath(results / note))
+    for file in sorted((results / FOLDER).glob(f"*/{NOTE}")):
+        note = _text(file).strip()
+        if note.isprintable() and note.endswith(".toml"):
+            yield Path(os.path.normpath(results / note))
     absolute = results.absolute()
     for folder in (results, *absolute.parents[:ABOVE], Path.cwd()):
         yield from sorted(folder.glob("*.toml"))
     yield from sorted(absolute.parent.glob("*/*.toml"))
 
 
+def _text(file: Path) -> str:
+    """Return a note, empty where it cannot be read."""
+    try:
+        if not file.is_file() or file.stat().st_size > LONGEST:
+            return ""
+        return file.read_text("utf-8")
+    except (OSError, UnicodeDecodeError):
+        return ""
+
+
 def _is_named(file: Path, name: str) -> bool:
     try:
+        if not file.is_file() or file.stat().st_size > LARGEST:
+            return False
         return bool(tomllib.loads(file.read_text("utf-8-sig"))["study"]["name"] == name)
     except (OSError, ValueError, KeyError, TypeError):
         return False
