@@ -1,5 +1,6 @@
 // What is chosen and what is brushed, shared by all views.
 
+import { isOfPart } from "./marks";
 import type { Front, Report } from "./data";
 
 export type Test = (front: Front, point: number) => boolean;
@@ -98,20 +99,28 @@ export class State {
 export function nearestOnFront(front: Front, point: number): number {
   if (front.order.includes(point)) return point;
   const target = front.error[point];
-  return least(front.order, (i) =>
+  return least(optimal(front), (i) =>
     excesses(front, i, target).reduce((sum, x) => sum + x * x, 0),
   );
 }
 
 /** The Pareto-optimal model with the least of the greatest excesses over an aspiration. */
 export function nearestTo(front: Front, aspiration: (number | null)[]): number {
-  return least(optimal(front), (i) => Math.max(...excesses(front, i, aspiration)));
+  return least(best(front), (i) => Math.max(...excesses(front, i, aspiration)));
 }
 
 /** The Pareto-optimal points of the front, in their order; all of them where none is. */
 export function optimal(front: Front): number[] {
   const best = front.order.filter((i) => front.pareto[i]);
   return best.length ? best : front.order;
+}
+
+/** All Pareto-optimal models, edges and weighted ones too; the points of the front come first. */
+export function best(front: Front): number[] {
+  const beside = front.label
+    .map((_, i) => i)
+    .filter((i) => front.pareto[i] && !front.order.includes(i) && !isOfPart(front.kind[i]));
+  return [...optimal(front), ...beside];
 }
 
 /** The candidate of least cost. */

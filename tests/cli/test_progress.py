@@ -12,7 +12,7 @@ from rich.console import Console
 import modefront as mf
 from modefront.cli.progress import _Lines, _Log
 from modefront.solvers.explore import Search
-from modefront.study.estimate import SHORT, duration, estimate
+from modefront.study.estimate import SHORT, duration, estimate, expected_tasks
 from modefront.study.examples import write_example
 from modefront.work.costs import Costs
 from modefront.work.progress import State
@@ -28,9 +28,9 @@ def drawn(lines: _Lines, width: int) -> list[str]:
 def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     now = 0.0
     costs = Costs()
-    lines = _Lines("a study of a bridge", costs, 100.0, lambda: now, began=0.0)
+    lines = _Lines("a study of a bridge", costs, lambda: now, began=0.0)
     assert drawn(lines, 80)[1] == "starting"
-    lines.take(State("edge", 2, 1, 27, 0.0, None))
+    lines.take(State("edge", 2, 1, 27, 0.0, 100.0))
     now, costs.eigenproblems = 30.0, 143
     with listening(lines.hear):
         note("search 7 of at most 60")
@@ -38,17 +38,17 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     first, second = drawn(lines, 80)
     assert len(first) <= 80
     assert first.startswith("a study of a bridge ")
-    assert first.rstrip().endswith("2/27 tasks  0:00:30")
+    assert first.rstrip().endswith("2 of about 27 tasks  0:00:30")
     assert second == "edges, search 7 of at most 60, 143 models solved, about 70 s left"
     lines.take(State("edge", 3, 0, 27, 30.0, 50.0))
     now = 40.0
     assert drawn(lines, 80)[1] == "edges, 143 models solved, about 40 s left"
     lines.end()
-    assert drawn(lines, 80)[0].rstrip().endswith("3/3 tasks  0:00:40")
+    assert drawn(lines, 80)[0].rstrip().endswith(" 3 tasks  0:00:40")
 
 
 def test_nothing_is_cut_in_a_narrow_terminal() -> None:
-    lines = _Lines("three-story C0, chain M0", Costs(), None, lambda: 0.0, began=0.0)
+    lines = _Lines("three-story C0, chain M0", Costs(), lambda: 0.0, began=0.0)
     lines.take(State("probe-basis", 12, 1, 12345, 0.0, 5000.0))
     lines.hear("search 12 of at most 1000000")
     text = " ".join(" ".join(drawn(lines, 40)).split())
@@ -62,7 +62,9 @@ def test_a_log_has_a_line_a_stage() -> None:
     for done in range(3):
         log(State("front", done, 1, 20, 1.0, 100.0 * done))
     log(State("edge", 3, 0, 20, 1.0, None))
-    assert stream.getvalue() == "a\\x1b[31m: 0/20 front\na\\x1b[31m: 3/20 edges\n"
+    assert stream.getvalue() == (
+        "a\\x1b[31m: 0 of about 20 tasks done: front\na\\x1b[31m: 3 of about 20 tasks done: edges\n"
+    )
 
 
 def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Path) -> None:
@@ -82,6 +84,26 @@ def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Pat
     points = estimate(replace(study, pareto=mf.Pareto(points=9000)))
     assert points is not None
     assert points.evaluations > 10 * short.evaluations
+
+
+def test_predictions_are_timed_with_few_samples_and_expected_from_the_start(tmp_path: Path) -> None:
+    write_example("three-story-c0", tmp_path)
+    study = mf.load(tmp_path / "study.toml")
+    noise = mf.Passage(
+        name="noise", force="floor1", response=["floor1"], levels=[1e-4], density=1e-4, sided="two",
+        duration=1.0, step=0.01, damping=0.02, samples=10**8,
+    )  # fmt: skip
+    long = estimate(replace(study, predictions=[noise]))
+    short = estimate(study)
+    assert long is not None
+    assert short is not None
+    assert long.seconds > SHORT + short.seconds
+    assert long.evaluations == pytest.approx(short.evaluations, rel=0.01)
+    assert "for predictions" in long.text
+    assert any("prediction 'noise': fewer samples" in text for text in long.advice)
+    tasks = expected_tasks(replace(study, predictions=[noise]))
+    assert tasks["front"] == 20
+    assert tasks["predict"] == 20 + 2 + 3 + 1 + 2 * 3 + (noise.kind.check is not None)
 
 
 def test_durations_are_in_the_unit_that_suits_them() -> None:

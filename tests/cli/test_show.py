@@ -11,9 +11,11 @@ import xarray as xr
 from rich.console import Console
 
 import modefront as mf
+from modefront.cli.compare import print_comparison
 from modefront.cli.layout import Screen
 from modefront.cli.lists import LISTS
 from modefront.cli.show import print_results
+from modefront.results.compare import Apart, Comparison, Spread, Summary
 from modefront.results.remarks import headlines, remarks
 
 SEARCH = mf.Search(starts=2, limit=3, evolutions=0)
@@ -204,3 +206,31 @@ def test_the_first_screen_is_a_screen(
     print_results(data, ["models"])
     words = " ".join(capsys.readouterr().out.split())
     assert all(f"stiffness of storey {j} " in words for j in range(parameters))
+
+
+def test_a_comparison_of_many_parameters_is_cut_with_a_word_on_the_rest(
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    spreads = tuple(Spread(f"stiffness {j}", 0.5, 2.0, 1.0) for j in range(9))
+    predictions = (Spread("frequency 1", 1.0, 2.0, 1.5), Spread("peak push", 3.0, 4.0, 3.5))
+    fronts = [
+        Summary(
+            name, name, "nbi", 5, 99, 1.0, 1.0, (0.1, 0.2), 0.3, 0.4, "optimal-weights", 0.4,
+            spreads, predictions,
+        )
+        for name in ("a/one", "b/two")
+    ]  # fmt: skip
+    names = tuple(spread.name for spread in spreads)
+    pair = Apart("a/one", "b/two", names, 0.1, 0.2, 0.3, 0.3)
+    comparison = Comparison(("frequencies", "shapes"), tuple(fronts), (pair,))
+    print_comparison(comparison)
+    out = capsys.readouterr().out
+    assert len(out.splitlines()) <= 50
+    assert max(map(len, out.splitlines())) <= 80
+    assert "and 3 more parameters: modefront compare --all" in out
+    assert "9 parameters" in out
+    assert out.index("peak push") < out.index("frequency 1"), "what the study asks for comes first"
+    print_comparison(comparison, every=True)
+    out = capsys.readouterr().out
+    assert "stiffness 8" in out
+    assert "more parameters" not in out

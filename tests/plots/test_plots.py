@@ -195,3 +195,20 @@ def test_shapes_are_drawn_at_all_nodes(two: Results, kind: str) -> None:
     figure = Plots(data).modes("nominal")
     figure.canvas.draw()
     assert [axes.name for axes in figure.axes] == ["rectilinear" if kind == "chain" else "3d"] * 2
+
+
+def test_legends_of_long_names_stay_in_the_picture(three: Results) -> None:
+    groups = [f"group with a name of some length, number {i}" for i in range(3)]
+    labels = [
+        f"edge-{groups[i % 3]}" if kind == "edge" else str(label)
+        for i, (label, kind) in enumerate(
+            zip(three.dataset["label"].values, three.dataset["kind"].values, strict=True)
+        )
+    ]
+    data = three.dataset.assign_coords(group=groups).assign(label=("point", labels))
+    for figure in (Plots(data).uncertainty(), Plots(data).minima()):
+        figure.canvas.draw()
+        for legend in figure.legends:
+            box = legend.get_window_extent()
+            assert box.x0 >= -1
+            assert box.x1 <= figure.bbox.width + 1

@@ -16,7 +16,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from pages import chain, written
+from pages import HOSTILE, chain, hostile, written
 
 from modefront.results.selection import front_points
 
@@ -137,7 +137,14 @@ def firefox(downloads: Path) -> Iterator[str]:
         shutil.rmtree(profile, ignore_errors=True)
 
 
-async def walk(address: str, file: Path, downloads: Path) -> None:
+MARKS = (
+    "new Promise((done) => { const look = () => document.querySelector('circle.mark') ? "
+    "done() : setTimeout(look, 50); look(); })"
+)
+"""Waits until a page is drawn."""
+
+
+async def walk(address: str, file: Path, markup: Path, downloads: Path) -> None:
     """Open a report and do what a reader does."""
     socket = await websocket.websocket_connect(address, max_message_size=50_000_000)
     bidi = Bidi(socket)
@@ -153,10 +160,7 @@ async def walk(address: str, file: Path, downloads: Path) -> None:
     url = file.as_uri()
     await bidi.command("browsingContext.navigate", context=bidi.context, url=url, wait="complete")
     status = "document.querySelector('[role=status]').textContent"
-    await bidi.evaluate(
-        "new Promise((done) => { const look = () => document.querySelector('circle.mark') ? "
-        "done() : setTimeout(look, 50); look(); })"
-    )
+    await bidi.evaluate(MARKS)
     labels = chain()["label"].values[front_points(chain())].tolist()
 
     assert await bidi.evaluate("document.title") == "three storeys"
@@ -180,6 +184,14 @@ async def walk(address: str, file: Path, downloads: Path) -> None:
     half = f"{len(labels) // 2} of {len(labels)} selected"
     assert half in await bidi.evaluate("document.querySelector('.brushed').textContent")
     assert await bidi.evaluate("document.querySelectorAll('[aria-label=front] .dimmed').length") > 0
+    await bidi.keys("\ue00c")  # Escape
+    assert (
+        await bidi.evaluate("document.querySelectorAll('[aria-label=front] .dimmed').length") == 0
+    )
+
+    slide = "{ const s = document.getElementById('model'); s.value = 2;"
+    await bidi.evaluate(slide + "s.dispatchEvent(new Event('input', {bubbles: true})); 0 }")
+    assert await bidi.evaluate(status) == labels[1]
 
     await bidi.evaluate(
         "[...document.querySelectorAll('button')].find((b) => b.textContent === 'Download CSV')"
@@ -199,6 +211,12 @@ async def walk(address: str, file: Path, downloads: Path) -> None:
             "axe.run().then((r) => JSON.stringify(r.violations.map((each) => each.id)))"
         )
         assert json.loads(found) == []
+    url = markup.as_uri()
+    await bidi.command("browsingContext.navigate", context=bidi.context, url=url, wait="complete")
+    await bidi.evaluate(MARKS)
+    assert HOSTILE in await bidi.evaluate("document.title"), "the title stays what it is"
+    assert HOSTILE in await bidi.evaluate("document.querySelector('main').textContent")
+    assert await bidi.evaluate("document.querySelectorAll('main script').length") == 0
     assert bidi.messages == []
     assert [
         each for each in bidi.requests if not each.startswith(("file:", "blob:", "data:"))
@@ -211,5 +229,7 @@ def test_a_report_in_firefox(tmp_path: Path) -> None:
     downloads = tmp_path / "downloads"
     downloads.mkdir()
     file = written(tmp_path, chain())
+    (tmp_path / "markup").mkdir()
+    markup = written(tmp_path / "markup", hostile())
     with firefox(downloads) as address:
-        asyncio.run(asyncio.wait_for(walk(address, file, downloads), PATIENCE))
+        asyncio.run(asyncio.wait_for(walk(address, file, markup, downloads), PATIENCE))

@@ -321,7 +321,7 @@ def test_never_more_is_done_than_expected_whatever_happens(
 ) -> None:
     follow, states, clock = progress()
     running: list[str] = []
-    ended: list[float | None] = []
+    ended: list[tuple[str, float | None]] = []
     for event, value in events:
         clock.now += 1
         if event == "expect":
@@ -330,19 +330,36 @@ def test_never_more_is_done_than_expected_whatever_happens(
             follow.start(value)
             running.append(value)
         elif running:
-            follow.end(running.pop(0), value)
-            ended.append(value)
+            follow.end(running[0], value)
+            ended.append((running.pop(0), value))
     for state in states:
         assert state.done + state.running <= state.expected
         assert state.left is None or state.left >= 0
     assert all(one.done <= other.done for one, other in pairwise(states))
     last = follow.state
     assert (last.done, last.running) == (len(ended), len(running))
-    computed = [seconds for seconds in ended if seconds is not None]
+    computed = [seconds for _, seconds in ended if seconds is not None]
     assert (last.left is None) == (not computed)
     if computed:
-        mean = sum(computed) / len(computed)
-        assert last.left == pytest.approx((last.expected - last.done) * mean)
+        of = {x: [y for stage, y in ended if stage == x and y is not None] for x, _ in ended}
+        means = [sum(some) / len(some) for some in of.values() if some]
+        to_come = last.expected - last.done
+        assert last.left is not None
+        assert to_come * min(means) * (1 - 1e-9) <= last.left <= to_come * max(means) * (1 + 1e-9)
+
+
+def test_the_time_left_follows_a_plan_until_tasks_of_a_stage_are_done() -> None:
+    follow, states, clock = progress()
+    follow.planned = {"edge": 2.0, "predict": 2.0}
+    follow.expect({"edge": 2, "predict": 50})
+    assert states[-1].left == 104.0
+    follow.start("edge")
+    clock.now += 6
+    follow.end("edge", 6.0)
+    assert states[-1].left == pytest.approx(6.0 + 100.0)
+    follow.start("predict")
+    follow.end("predict", 1.0)
+    assert states[-1].left == pytest.approx(49.0), "edges have ended, predictions are quick"
 
 
 def test_serial_tells_of_every_task_and_of_what_it_took(tmp_path: Path) -> None:

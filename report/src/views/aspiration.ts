@@ -3,7 +3,7 @@
 import { frequencyError, leastMac, worstFrequency } from "../data";
 import { h, section } from "../dom";
 import { fixed, number } from "../format";
-import { least, nearestTo, optimal, type State } from "../state";
+import { best, least, nearestTo, optimal, type State } from "../state";
 
 /** An aspiration in the space of errors, shared by its form and the view of the front. */
 export class Aspiration {
@@ -58,7 +58,7 @@ export function aspirationView(state: State, aspiration: Aspiration): HTMLElemen
       const parts = [f === null ? 0 : f / limit, m === null ? 0 : (1 - m) / room];
       return parts.some((x) => Number.isNaN(x)) ? Infinity : Math.max(...parts);
     };
-    const chosen = least(optimal(front), excess);
+    const chosen = least(best(front), excess);
     state.choose(chosen);
     const f = worstFrequency(front, chosen);
     const m = leastMac(front, chosen);

@@ -11,16 +11,26 @@ import numpy as np
 
 from modefront.cli.layout import Screen
 from modefront.cli.show import as_plain
-from modefront.results.compare import Comparison, Spread
+from modefront.results.compare import Comparison, Spread, short_names
 
 OPTIMAL = "optimal-weights"
 
+SHOWN = 6
+"""Parameters, and predictions, that are printed unless all are asked for."""
 
-def print_comparison(comparison: Comparison) -> None:
-    """Print a comparison as tables, one column a study, and say which models are meant."""
+OF_MODES = ("frequency ", "mac ")
+"""How predictions of the modes begin; they stand behind those that the studies ask for."""
+
+
+def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
+    """Print a comparison as tables, one column a study, and say which models are meant.
+
+    The first parameters and predictions are printed, or ``every`` one.
+    """
     screen = Screen.of_output()
     fronts = comparison.fronts
-    columns = ["", *(summary.name for summary in fronts)]
+    columns = ["", *short_names([summary.name for summary in fronts])]
+    names = dict(zip((summary.name for summary in fronts), columns[1:], strict=True))
     screen.say("Studies side by side", style="bold")
     screen.say(
         "Errors are root mean squares, which mean the same in all studies. Ranges are those of all "
@@ -32,12 +42,13 @@ def print_comparison(comparison: Comparison) -> None:
             screen.say(
                 f"{summary.name} has no {OPTIMAL}: its reference model is {summary.reference}"
             )
-    _print_ranges(screen, "parameters", columns, [x.parameters for x in fronts])
-    _print_ranges(screen, "predictions", columns, [x.predictions for x in fronts])
+    most = None if every else SHOWN
+    _print_ranges(screen, "parameters", columns, [x.parameters for x in fronts], most)
+    _print_ranges(screen, "predictions", columns, [x.predictions for x in fronts], most)
     pairs = [
         [
-            f"{pair.first} and {pair.second}",
-            ", ".join(pair.common) or "none",
+            f"{names[pair.first]} and {names[pair.second]}",
+            _common(pair.common, most),
             *map(_number, (pair.least, pair.greatest, pair.reference)),
         ]
         for pair in comparison.pairs
@@ -47,6 +58,13 @@ def print_comparison(comparison: Comparison) -> None:
         "models, of the farthest one from the other study, and of the reference models"
     )
     screen.table(title, ["studies", "common", "least", "greatest", "references"], pairs)
+
+
+def _common(names: Sequence[str], most: int | None) -> str:
+    """Return the names of common parameters, of many only how many there are."""
+    if most is not None and len(names) > most:
+        return f"{len(names)} parameters"
+    return ", ".join(names) or "none"
 
 
 def _fronts(comparison: Comparison) -> list[list[str]]:
@@ -59,28 +77,36 @@ def _fronts(comparison: Comparison) -> list[list[str]]:
     rows = [
         row("study", [x.study for x in fronts]),
         row("method", [x.method for x in fronts]),
-        row("Pareto-optimal points of the front", [x.points for x in fronts]),
+        row("Pareto-optimal points", [x.points for x in fronts]),
         row("eigenproblems", [x.eigenproblems for x in fronts]),
         row("length of the front", [_number(x.length) for x in fronts]),
         row("  over that of the first", [_number(x.length_ratio) for x in fronts]),
     ]
     for i, group in enumerate(comparison.groups):
-        rows.append(row(f"range of the error of {group}", [_number(x.extent[i]) for x in fronts]))
+        rows.append(row(f"range of error, {group}", [_number(x.extent[i]) for x in fronts]))
     rows += [
-        row("least distance from the origin", [_number(x.distance) for x in fronts]),
+        row("least distance from origin", [_number(x.distance) for x in fronts]),
         row("reference model", [x.reference for x in fronts]),
-        row("  its distance from the origin", [_number(x.reference_distance) for x in fronts]),
+        row("  its distance from origin", [_number(x.reference_distance) for x in fronts]),
     ]
     return rows
 
 
 def _print_ranges(
-    screen: Screen, title: str, columns: Sequence[str], rows: Sequence[Sequence[Spread]]
+    screen: Screen,
+    title: str,
+    columns: Sequence[str],
+    rows: Sequence[Sequence[Spread]],
+    most: int | None,
 ) -> None:
     """Print values of the reference models with least and greatest of the Pareto-optimal ones."""
     names = list(dict.fromkeys(spread.name for row in rows for spread in row))
-    cells = [[name, *(_range(row, name) for row in rows)] for name in names]
+    names.sort(key=lambda name: name.startswith(OF_MODES))
+    cells = [[name, *(_range(row, name) for row in rows)] for name in names[:most]]
     screen.table(f"{title}: reference model, and least to greatest", columns, cells)
+    rest = len(names) - len(cells)
+    if rest:
+        screen.say(f"and {rest} more {title}: modefront compare --all")
 
 
 def comparison_as_json(comparison: Comparison) -> str:

@@ -61,7 +61,7 @@ def check(study: Path, every: bool) -> None:
     loaded = load(study)
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
-    say_estimate(estimate(loaded, predictions=False))
+    say_estimate(estimate(loaded))
     if not findings.sound and findings.mistakes:
         raise UnfinishedError(
             "the derivatives cannot be proved before what is warned of first is put right"
@@ -117,8 +117,7 @@ def run(
     expected = estimate(loaded)
     if expected is not None and expected.seconds > SHORT:
         say_estimate(expected, err=True)
-    seconds = expected.seconds / workers if expected else None
-    with progress_bar(loaded.name, seconds) as progress:
+    with progress_bar(loaded.name, expected.stages if expected else {}) as progress:
         data = run_study(
             loaded,
             directory,
@@ -192,7 +191,8 @@ def show(
 @click.option(
     "--format", "form", type=click.Choice(["table", "json"]), default="table", show_default=True
 )
-def compare(directories: tuple[Path, ...], form: str) -> None:
+@click.option("--all", "every", is_flag=True, help="All parameters and predictions.")
+def compare(directories: tuple[Path, ...], form: str, every: bool) -> None:
     """Set the results in several DIRECTORIES side by side."""
     from modefront.cli.compare import comparison_as_json, print_comparison
     from modefront.results.compare import compare as compare_results
@@ -201,7 +201,7 @@ def compare(directories: tuple[Path, ...], form: str) -> None:
     if form == "json":
         print(comparison_as_json(comparison))
     else:
-        print_comparison(comparison)
+        print_comparison(comparison, every=every)
 
 
 @cli.command()

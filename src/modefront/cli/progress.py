@@ -60,18 +60,18 @@ PER_SECOND = 4
 
 
 @contextmanager
-def progress_bar(title: str, seconds: float | None = None) -> Iterator[Progress]:
-    """Show how many tasks are done, of how many, what goes on and the time that is left.
+def progress_bar(title: str, planned: Mapping[str, float]) -> Iterator[Progress]:
+    """Show how many tasks are done, of about how many, what goes on and the time that is left.
 
-    ``seconds`` is an estimate of the whole, for as long as no task has ended.
+    ``planned`` are the seconds that a task of each stage will probably take.
     """
     screen = Console(stderr=True)
     if not screen.is_terminal:
-        yield Progress(_Log(screen, title))
+        yield Progress(_Log(screen, title), planned=planned)
         return
     with counted() as costs:
-        lines = _Lines(clean(title, WIDTH), costs, seconds)
-        progress = Progress(lines.take)
+        lines = _Lines(clean(title, WIDTH), costs)
+        progress = Progress(lines.take, planned=planned)
         with Live(lines, console=screen, refresh_per_second=PER_SECOND), listening(lines.hear):
             yield progress
             lines.end()
@@ -85,13 +85,11 @@ class _Lines:
     ----------
     title : of the study
     costs : counts the models that are solved
-    seconds : estimate of the whole; None for none
     clock : returns seconds
     """
 
     title: str
     costs: Costs
-    seconds: float | None = None
     clock: Callable[[], float] = time.monotonic
     state: State | None = None
     step: str = ""
@@ -116,7 +114,9 @@ class _Lines:
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> RenderResult:
         done, expected = (self.state.done, self.state.expected) if self.state else (0, 0)
         expected = done if self.is_done else max(expected, 1)
-        count = f"{done}/{expected} tasks  {_clock(self.clock() - self.began)}"
+        known = self.state is not None and not self.is_done
+        of = f"{done} of about {expected} tasks" if known else f"{done} tasks"
+        count = f"{of}  {_clock(self.clock() - self.began)}"
         if options.max_width < len(self.title) + len(count) + LEAST:
             yield Text(f"{self.title}  {count}", overflow="fold")
             yield Text(self.words, overflow="fold")
@@ -149,10 +149,9 @@ class _Lines:
 
     def _left(self) -> float | None:
         """Return the seconds that are left, which go down while a task takes long."""
-        now = self.clock()
-        if self.state is not None and self.state.left is not None:
-            return self.state.left - (now - self.taken)
-        return None if self.seconds is None else self.seconds - (now - self.began)
+        if self.state is None or self.state.left is None:
+            return None
+        return self.state.left - (self.clock() - self.taken)
 
 
 class _Log:
@@ -167,7 +166,7 @@ class _Log:
             words = TITLES.get(state.stage, state.stage)
             if state.left is not None and state.left >= 1:
                 words += f", about {_left_in_words(state.left)} left"
-            text = f"{self.title}: {state.done}/{state.expected} {words}"
+            text = f"{self.title}: {state.done} of about {state.expected} tasks done: {words}"
             self.screen.print(text, markup=False, highlight=False, soft_wrap=True)
 
 

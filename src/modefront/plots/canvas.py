@@ -4,12 +4,18 @@ from __future__ import annotations
 
 import io
 import math
+from typing import Literal
 
 from matplotlib import rc_context
 from matplotlib.axes import Axes
 from matplotlib.figure import Figure
 
 from modefront.plots.style import COLUMNS, PANEL, STYLE
+
+Place = Literal[
+    "outside lower left", "outside lower center", "outside upper left", "outside upper center"
+]
+"""Where legends are."""
 
 
 class Picture(Figure):
@@ -25,6 +31,16 @@ class Picture(Figure):
 def picture(width: float, height: float) -> Picture:
     """Return an empty figure; width and height are in inches."""
     return Picture(figsize=(width, height), layout="constrained")
+
+
+def legend(figure: Figure, axes: Axes, loc: Place, most: int) -> None:
+    """Put the legend of axes beside them, in ``most`` columns or as many as the figure has room."""
+    handles, labels = axes.get_legend_handles_labels()
+    for columns in range(most, 0, -1):
+        shown = figure.legend(handles, labels, loc=loc, ncols=columns)
+        if columns == 1 or shown.get_window_extent().width <= figure.bbox.width:
+            return
+        shown.remove()
 
 
 def panels(count: int, columns: int = COLUMNS) -> tuple[Picture, list[Axes]]:

@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from modefront.plots.canvas import Picture, picture
+from modefront.plots.canvas import Picture, legend, picture
 from modefront.plots.parameters import unit_of
 from modefront.plots.style import COLOURS, plain, short
 
@@ -38,6 +38,5 @@ def draw(data: xr.Dataset) -> Picture:
         axes.yaxis.set_minor_formatter(NullFormatter())
     axes.set_xticks(x, names, rotation=60 if len(names) > 6 else 0)
     axes.set_ylabel(title)
-    handles, labels = axes.get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside upper left", ncols=4)
+    legend(figure, axes, "outside upper left", 4)
     return figure

@@ -30,7 +30,7 @@ from modefront._typing import Floats
 from modefront.errors import Fault, refuse
 from modefront.plots import write_pictures
 from modefront.plots.along import titled
-from modefront.plots.canvas import Picture, picture
+from modefront.plots.canvas import Picture, legend, picture
 from modefront.plots.models import branches, front_of
 from modefront.plots.predictions import predictions_in
 from modefront.plots.style import COLOURS, plain
@@ -106,7 +106,7 @@ def fronts(studies: Studies) -> Picture:
     axes.set(xlabel=f"error of {first}, $e_1$", ylabel=f"error of {second}, $e_2$")
     for sign, size, name in ((EQUAL, 8, "equal weights"), (OPTIMAL, 12, "optimal weights")):
         axes.plot([], [], sign, color="0.7", mec="k", mew=0.6, ms=size, ls="", label=name)
-    _legend(figure, axes, studies)
+    legend(figure, axes, "outside lower center", min(len(studies) + 2, 4))
     return figure
 
 
@@ -124,7 +124,7 @@ def planes(studies: Studies) -> Picture:
         axes.set(xlabel=names[i], ylabel=names[j])
     for axes in grid[len(pairs) :]:
         axes.remove()
-    _legend(figure, grid[0], studies)
+    legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
     return figure
 
 
@@ -136,7 +136,7 @@ def parameters(studies: Studies) -> Picture:
         for k, (study, data) in enumerate(studies):
             _along(axes, data, data["theta"].values[:, j], k, study)
         titled(axes, name)
-    _legend(figure, grid[0], studies)
+    legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
     return figure
 
 
@@ -157,7 +157,7 @@ def modes(studies: Studies) -> Picture:
         grid[1][r].set_xlabel("point of the front")
     grid[0][0].set_ylabel("error of the frequency, %")
     grid[1][0].set_ylabel("MAC")
-    _legend(figure, grid[0][0], studies)
+    legend(figure, grid[0][0], "outside lower center", min(len(studies) + 2, 4))
     return figure
 
 
@@ -182,7 +182,7 @@ def predictions(studies: Studies, dimension: str) -> Picture | None:
         _along(axes, data, values, k, study)
         titled(axes, data[dimension].values[i])
     grid[0].set_ylabel(rows[0][3].ranged[0].key)
-    _legend(figure, grid[0], studies)
+    legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
     return figure
 
 
@@ -224,13 +224,3 @@ def _along(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str) -> N
     axes.plot(x[best], y[best], marker, color=colour, ms=3.5, ls="", label=plain(name))
     axes.plot(x[~best], y[~best], marker, mfc="w", mec=colour, ms=3.5, ls="")
     axes.set_xticks([1, *range(5, front.size + 1, 5)])
-
-
-def _legend(figure: Picture, axes: Axes, studies: Studies) -> None:
-    """Put the legend below, in as many columns as are not cut at the borders of the figure."""
-    handles, labels = axes.get_legend_handles_labels()
-    for columns in range(min(len(studies) + 2, 4), 0, -1):
-        legend = figure.legend(handles, labels, loc="outside lower center", ncols=columns)
-        if columns == 1 or legend.get_window_extent().width <= figure.bbox.width:
-            return
-        legend.remove()

@@ -8,7 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Ellipse
 
 from modefront._typing import Floats
-from modefront.plots.canvas import Picture, picture
+from modefront.plots.canvas import Picture, legend, picture
 from modefront.plots.models import front_of, reference_of, series
 from modefront.plots.parameters import parameter_std, unit_of
 from modefront.plots.style import COLOURS, plain, short
@@ -31,8 +31,7 @@ def draw(data: xr.Dataset) -> Picture:
     figure = picture(3.6 * parts, max(3.2, 0.26 * p + 1.2))
     row = list(figure.subplots(1, parts, squeeze=False)[0])
     _parameters(row[0], data)
-    handles, labels = row.pop(0).get_legend_handles_labels()
-    figure.legend(handles, labels, loc="outside lower left", ncols=3)
+    legend(figure, row.pop(0), "outside lower left", 3)
     if covariance is not None:
         _correlation(row.pop(0), data, covariance)
     if scattered:

@@ -11,7 +11,6 @@ import base64
 import gzip
 import json
 from collections.abc import Iterator, Mapping, Sequence
-from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -21,6 +20,7 @@ from modefront._typing import Floats
 from modefront._version import __version__
 from modefront.predictions import KINDS, ResultVariable
 from modefront.report.words import texts, topics
+from modefront.results.compare import short_names
 from modefront.results.selection import front_points
 
 INFINITE = 10**400
@@ -46,7 +46,7 @@ def payload(results: Sequence[tuple[str, xr.Dataset]]) -> tuple[str, str]:
     names of their folders.
     """
     arrays = _Arrays()
-    names = _names([name for name, _ in results])
+    names = short_names([name for name, _ in results])
     with np.errstate(all="ignore"):  # what is no number is shown as unknown
         fronts = [
             _front(name, data, arrays) for name, (_, data) in zip(names, results, strict=True)
@@ -157,12 +157,6 @@ OPTIONAL: Mapping[str, str] = {
     "measuredShape": "measured_shape",
 }
 """Further variables, by their names on the page."""
-
-
-def _names(folders: Sequence[str]) -> list[str]:
-    """Return the names of folders, whole paths where these are the same."""
-    short = [Path(folder).resolve().name for folder in folders]
-    return short if len(set(short)) == len(short) else list(folders)
 
 
 def _texts(data: xr.Dataset, name: str) -> list[str]:

@@ -129,6 +129,12 @@ def compare(folders: Sequence[Path]) -> Comparison:
     return Comparison(groups, tuple(fronts), tuple(pairs))
 
 
+def short_names(folders: Sequence[str]) -> list[str]:
+    """Return the last names of folders, whole paths where these are the same."""
+    short = [Path(folder).resolve().name for folder in folders]
+    return short if len(set(short)) == len(short) else list(folders)
+
+
 def read_together(folders: Sequence[Path], *, whole: bool = True) -> list[tuple[str, xr.Dataset]]:
     """Return the results in folders, each with the name of its folder.
 

@@ -27,7 +27,6 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats, Ints
-from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.local import geometry_of, shapes_at
@@ -35,6 +34,7 @@ from modefront.pairing.match import mean_mac, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values
 from modefront.results.schema import described
+from modefront.results.shapes import unit_scale
 from modefront.work.codec import record
 
 TOLERANCE = 1e-3
@@ -164,7 +164,7 @@ def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> Mod
         if geometry is not None and found.Phi is not None:
             u = geometry.displacement(found.Phi[:, index])[:, drawn]
         phi = found.phi[:, index].T
-        scale = _scale(data, phi, u)
+        scale = unit_scale(data, phi, u if u.size else None)
         sensed[i] = phi * scale[:, None]
         rows[i] = basis.coefficients((u * scale[:, None, None]).reshape(modes, -1).T)
     if geometry is None or not rows:
@@ -173,19 +173,6 @@ def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> Mod
     coefficient = np.full((points, modes, B.shape[1]), np.nan)
     coefficient[list(rows)] = C
     return ModeShapes(frequency, mac, sensed, B.T.reshape(-1, len(drawn), 3), coefficient)
-
-
-def _scale(data: ModalData, phi: Floats, u: Floats) -> Floats:
-    """Return factors (modes,) to a greatest length of 1 and the sign of the first measured shape.
-
-    Without displacements u (modes, nodes, 3) the greatest component at the sensors is 1.
-    """
-    size = np.sqrt((u**2).sum(axis=2)).max(axis=1) if u.size else np.abs(phi).max(axis=1)
-    product = np.nansum(data.shape * phi, axis=2)
-    first = np.argmax(product != 0, axis=0)
-    sign = np.where(product[first, np.arange(len(size))] < 0, -1.0, 1.0)
-    out: Floats = sign / np.where(size > 0, size, 1.0)
-    return out
 
 
 class _Basis:

@@ -1,4 +1,6 @@
-r"""Mode shapes of a model at all its degrees of freedom, beside the measured ones.
+r"""Mode shapes of one model at all its degrees of freedom, beside the measured ones.
+
+Those of all points, in a common basis, are in `modefront.results.mode_shapes`.
 
 The shape of a model mode and that of a measured one have a scale and a sign of their own. Model
 shapes are scaled to a greatest displacement of 1 at the nodes; the measured shape follows by the
@@ -73,7 +75,10 @@ def paired_shapes(row: xr.Dataset, problem: UpdatingProblem) -> PairedShapes:
     else:
         count = int(index.max()) + 1
         computed = problem.model.modes(theta, count, derivatives=False).phi[:, index].T
-    computed, displacement = _scaled(problem.data, computed, displacement)
+    scale = unit_scale(problem.data, computed, displacement)
+    computed = computed * scale[:, None]
+    if displacement is not None:
+        displacement = displacement * scale[:, None, None]
     return PairedShapes(
         problem.data.modes,
         row["frequency"].values,
@@ -87,10 +92,12 @@ def paired_shapes(row: xr.Dataset, problem: UpdatingProblem) -> PairedShapes:
     )
 
 
-def _scaled(
-    data: ModalData, computed: Floats, displacement: Floats | None
-) -> tuple[Floats, Floats | None]:
-    """Return shapes with a greatest displacement of 1 and the sign of the first measured one."""
+def unit_scale(data: ModalData, computed: Floats, displacement: Floats | None) -> Floats:
+    """Return factors (modes,) to a greatest length of 1 and the sign of the first measured shape.
+
+    Without displacements (modes, nodes, 3) the greatest component of the ``computed`` shapes
+    (modes, sensors) is 1.
+    """
     if displacement is None:
         size = np.abs(computed).max(axis=1)
     else:
@@ -98,9 +105,8 @@ def _scaled(
     product = np.nansum(data.shape * computed, axis=2)
     first = np.argmax(product != 0, axis=0)
     sign = np.where(product[first, np.arange(len(size))] < 0, -1.0, 1.0)
-    scale = sign / np.where(size > 0, size, 1.0)
-    moved = None if displacement is None else displacement * scale[:, None, None]
-    return computed * scale[:, None], moved
+    out: Floats = sign / np.where(size > 0, size, 1.0)
+    return out
 
 
 def _fitted(data: ModalData, computed: Floats) -> Floats:

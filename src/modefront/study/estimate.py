@@ -1,24 +1,26 @@
 """How long a study will probably take, and what would make it shorter.
 
-One model is evaluated a few times, and each prediction once. How many models a run evaluates is
-counted in `_parts` from averages over studies with 1 to 17 parameters: a local search takes 8
-evaluations and one more for every second parameter, a point of the front 4 and half as many.
-Searches for global minima go on for as long as they find new ones, so that the estimate may be
-wrong by a factor of three.
+One model is evaluated a few times, and each prediction once, with few samples. How many models a
+run evaluates is counted in `_parts` from averages over studies with 1 to 17 parameters: a local
+search takes 8 evaluations and one more for every second parameter, a point of the front 4 and half
+as many. Searches for global minima go on for as long as they find new ones, so that the estimate
+may be wrong by a factor of three.
 """
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from modefront.errors import InputError, ModelError
 from modefront.models.reduced.model import ReducedModel
+from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
+from modefront.results.predictions import extent
 from modefront.solvers.continuation import default_points, size
 from modefront.study.definition import Study
 from modefront.work.costs import uncounted
@@ -33,6 +35,9 @@ REDUCED = 0.05
 """Share of a solution in full that one in a reduced basis takes, for models that have one."""
 
 
+SAMPLES = 100
+"""Samples with which a prediction is timed, and three times as many."""
+
 LARGE = 2000
 """Degrees of freedom from which a reduced basis is worth a try."""
 
@@ -43,12 +48,14 @@ class Part:
 
     Attributes
     ----------
+    stage : of the run in which it is done
     seconds : that it will probably take
-    advice : what would make it shorter
+    advice : what would make it shorter; empty for nothing
     """
 
+    stage: str
     seconds: float
-    advice: str
+    advice: str = ""
 
 
 @dataclass(frozen=True)
@@ -61,44 +68,74 @@ class Estimate:
     evaluations : models that are evaluated, about
     each : seconds for one of them
     advice : what would make the run shorter, that of the longest part first; none for short runs
+    stages : seconds of a task of the stages of a run
     """
 
     seconds: float
     evaluations: int
     each: float
     advice: tuple[str, ...]
+    stages: Mapping[str, float]
 
     @property
     def text(self) -> str:
         """The estimate in a sentence."""
+        predicted = self.seconds - self.evaluations * self.each
+        share = f", {duration(predicted)} for predictions" if predicted > self.seconds / 10 else ""
         return (
             f"a run takes about {duration(self.seconds)} (roughly {_round(self.evaluations)} "
-            f"models at {duration(self.each)} each; within a factor of 3)"
+            f"models at {duration(self.each)} each{share}; within a factor of 3)"
         )
 
 
-def estimate(study: Study, *, predictions: bool = True) -> Estimate | None:
-    """Return the time that a study takes; None where the nominal model cannot be evaluated.
-
-    Each prediction is evaluated once, which may take a while; none without ``predictions``.
-    """
+def estimate(study: Study) -> Estimate | None:
+    """Return the time that a study takes; None where the nominal model cannot be evaluated."""
     problem = study.problem
     with uncounted():
         each = _seconds(problem)
         if each is None:
             return None
-        parts = list(_parts(study, each))
-        if predictions:
-            parts += _predictions(study, each)
+        parts = [*_parts(study, each), *_predictions(study, each)]
     seconds = sum(part.seconds for part in parts)
-    evaluations = round(seconds / each) if each else 0
+    solving = sum(part.seconds for part in parts if part.stage != "predict")
+    evaluations = round(solving / each) if each else 0
     long = [part for part in parts if part.seconds > SHARE * seconds and part.advice]
     advice = [part.advice for part in sorted(long, key=lambda part: -part.seconds)]
     if study.problem.model.size >= LARGE and not isinstance(study.problem.model, ReducedModel):
         advice.insert(0, 'a reduced basis ([model] reduction = "auto")')
     if seconds > SHORT:
         advice.append("--workers N with as many as there are cores")
-    return Estimate(seconds, evaluations, each, tuple(advice) if seconds > SHORT else ())
+    stages: dict[str, float] = {}
+    tasks = expected_tasks(study)
+    for part in parts:
+        share = part.seconds / max(tasks.get(part.stage, 1), 1)
+        stages[part.stage] = stages.get(part.stage, 0.0) + share
+    return Estimate(seconds, evaluations, each, tuple(advice) if seconds > SHORT else (), stages)
+
+
+def expected_tasks(study: Study) -> dict[str, int]:
+    """Return the tasks that a run of a study will probably have, by their stages."""
+    n, pareto = len(study.problem.groups), study.pareto
+    models = study.identifiability.models
+    known = study.uncertainty.of(study.problem.data) is not None
+    out = {
+        "check-groups": 1,
+        "sample": 1,
+        "edge": n,
+        "weights": len(study.weighted) + 1,
+        "optimal-weights": 1,
+        "iterated-weights": 1,
+        "manifold": n + 1 if models else 0,
+        "second-derivatives": _models(study) if known else 1,
+        "bootstrap": study.uncertainty.bootstrap,
+        "nominal": 1,
+        "shapes": 1,
+    }
+    if n > 1:
+        generations = max(pareto.evaluations // pareto.population, 1)
+        out["front"] = _points(study) if pareto.method in ("nbi", "weights") else generations
+    predicted = _models(study) + (study.uncertainty.draws or 1 + 2 * len(study.problem.start))
+    return out | extent(study.predictions, predicted)
 
 
 def duration(seconds: float) -> str:
@@ -148,31 +185,37 @@ def _parts(study: Study, each: float) -> Iterator[Part]:
     search, pareto = study.search, study.pareto
     runs = min(search.limit, search.starts + 4)
     local = 8 + p / 2
+    yield Part("optimal-weights", each * runs * local)
     yield Part(
-        each * (n + 1) * runs * local,
+        "edge",
+        each * n * runs * local,
         f"fewer local searches ([search] limit, now {search.limit}; starts, now {search.starts})",
     )
     points = _points(study)
     point = 4 + p / 2
     if pareto.method in ("nbi", "weights"):
         along = points * point
-        yield Part(each * along, f"fewer points of the front ([pareto] points), now {points}")
+        yield Part(
+            "front", each * along, f"fewer points of the front ([pareto] points), now {points}"
+        )
     else:
         evaluations = pareto.evaluations
-        yield Part(
-            each * evaluations, f"fewer evaluations ([pareto] evaluations, now {evaluations})"
-        )
+        advice = f"fewer evaluations ([pareto] evaluations, now {evaluations})"
+        yield Part("front", each * evaluations, advice)
     manifolds = min(study.identifiability.models, 40) * n
-    yield Part(each * 3 * manifolds, "fewer equivalent models ([identifiability] models)")
-    yield Part(each * 2 * p * points, "")  # second derivatives of the scatter
+    yield Part(
+        "manifold", each * 3 * manifolds, "fewer equivalent models ([identifiability] models)"
+    )
+    yield Part("second-derivatives", each * 2 * p * points)
     samples = study.uncertainty.bootstrap
     if samples:
         yield Part(
+            "bootstrap",
             each * samples * points * point,
             f"fewer bootstrap samples ([uncertainty] bootstrap, now {samples})",
         )
     if isinstance(study.problem.model, ReducedModel):
-        yield Part(each / REDUCED * (3 * p + 5), "")  # snapshots
+        yield Part("snapshot", each / REDUCED * (3 * p + 5))
 
 
 def _points(study: Study) -> int:
@@ -185,18 +228,36 @@ def _points(study: Study) -> int:
     return size(n, study.pareto.points or default_points(n))
 
 
+def _models(study: Study) -> int:
+    """Return how many models results will probably hold, those beside the front too."""
+    return _points(study) + len(study.problem.groups) + len(study.weighted) + 3
+
+
 def _predictions(study: Study, each: float) -> Sequence[Part]:
-    """Return the time of the predictions, each of which is evaluated once for that."""
+    """Return the time of the predictions."""
     out = []
-    models = _points(study) + 5 + 2 * len(study.problem.start) + study.uncertainty.draws
+    models = expected_tasks(study)["predict"] / max(len(study.predictions), 1)
     for prediction in study.predictions:
-        began = time.perf_counter()
         try:
-            complete = prediction.complete(study.problem)
-            complete.evaluate(study.problem, study.problem.start, np.random.SeedSequence(0))
+            spent = max(_seconds_of(prediction, study.problem) - each, each)
         except (ModelError, InputError):
             continue
-        spent = max(time.perf_counter() - began - each, each)
         advice = f"prediction '{prediction.name}': fewer samples, fewer draws or fewer points"
-        out.append(Part(models * spent, advice))
+        out.append(Part("predict", models * spent, advice))
     return out
+
+
+def _seconds_of(prediction: Prediction, problem: UpdatingProblem) -> float:
+    """Return the seconds of a prediction of one model; of many samples, by the time of a few."""
+
+    def timed(each: Prediction) -> float:
+        complete = each.complete(problem)
+        began = time.perf_counter()
+        complete.evaluate(problem, problem.start, np.random.SeedSequence(0))
+        return time.perf_counter() - began
+
+    if not isinstance(prediction, Passage) or prediction.samples <= 3 * SAMPLES:
+        return timed(prediction)
+    # The first one imports and sets up what the others share.
+    _, few, more = (timed(replace(prediction, samples=k * SAMPLES)) for k in (1, 1, 3))
+    return few + max(more - few, 0.1 * few) / (2 * SAMPLES) * (prediction.samples - SAMPLES)

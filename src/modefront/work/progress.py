@@ -2,6 +2,9 @@
 
 Every task belongs to a stage. The extent of a stage is an estimate until it ends; a stage has ended
 when a task of another one starts, and its extent then is the number of tasks that it had.
+
+Tasks of a stage that has begun take as long as those before them. What the others take is planned;
+without a plan they take as long as all tasks.
 """
 
 from __future__ import annotations
@@ -24,7 +27,7 @@ class State:
     running : tasks that are being computed
     expected : tasks in all, as far as is known; never less than those done and running
     elapsed : seconds since the run began
-    left : estimated seconds until it ends; None before the first computed task has ended
+    left : estimated seconds until it ends; None for as long as nothing is known of it
     """
 
     stage: str
@@ -49,18 +52,20 @@ class Progress:
     clock : returns seconds
     spent : costs of the tasks computed, without those kept from an earlier run
     workers : tasks that are computed at the same time, as far as there are so many
+    planned : seconds that a task of each stage will probably take
     """
 
     report: Callable[[State], None] = ignore
     clock: Callable[[], float] = time.monotonic
     spent: Costs = field(default_factory=Costs)
     workers: int = 1
+    planned: Mapping[str, float] = field(default_factory=dict)
     _expected: dict[str, int] = field(default_factory=dict)
     _done: dict[str, int] = field(default_factory=dict)
     _running: dict[str, int] = field(default_factory=dict)
     _stage: str = ""
-    _computed: int = 0
-    _seconds: float = 0.0
+    _computed: dict[str, int] = field(default_factory=dict)
+    _seconds: dict[str, float] = field(default_factory=dict)
     _began: float | None = None
 
     def expect(self, stages: Mapping[str, int]) -> None:
@@ -84,21 +89,38 @@ class Progress:
         self._running[stage] -= 1
         self._done[stage] = self._done.get(stage, 0) + 1
         if seconds is not None:
-            self._computed += 1
-            self._seconds += seconds
+            self._computed[stage] = self._computed.get(stage, 0) + 1
+            self._seconds[stage] = self._seconds.get(stage, 0.0) + seconds
         self.report(self.state)
 
     @property
     def state(self) -> State:
         """State of the run."""
-        stages = {*self._expected, *self._done, *self._running}
         done, running = sum(self._done.values()), sum(self._running.values())
-        expected = sum(max(self._expected.get(x, 0), self._met(x)) for x in stages)
+        extents = self._extents()
         elapsed = 0.0 if self._began is None else self.clock() - self._began
-        left = None
-        if self._computed:
-            left = (expected - done) * self._seconds / self._computed / self.workers
-        return State(self._stage, done, running, expected, elapsed, left)
+        return State(
+            self._stage, done, running, sum(extents.values()), elapsed, self._left(extents)
+        )
+
+    def _extents(self) -> dict[str, int]:
+        """Return how many tasks each stage has, as far as is known."""
+        stages = dict.fromkeys([*self._expected, *self._done, *self._running])
+        return {stage: max(self._expected.get(stage, 0), self._met(stage)) for stage in stages}
+
+    def _left(self, extents: Mapping[str, int]) -> float | None:
+        """Return the seconds that all tasks to come will probably take; None for unknown."""
+        count = sum(self._computed.values())
+        if not count and not self.planned:
+            return None
+        mean = sum(self._seconds.values()) / count if count else 0.0
+        left = 0.0
+        for stage, extent in extents.items():
+            each = self.planned.get(stage, mean)
+            if stage in self._computed:
+                each = self._seconds[stage] / self._computed[stage]
+            left += (extent - self._done.get(stage, 0)) * each
+        return left / self.workers
 
     def _met(self, stage: str) -> int:
         return self._done.get(stage, 0) + self._running.get(stage, 0)
