@@ -24,6 +24,10 @@ NAMED = 20
 TOGETHER = 3
 """Parameters alike of which pairs are named, at most."""
 
+MOST = 100
+"""Combinations that are not determined, beyond which they are counted and not said in words: a
+simple basis of them takes the fourth power of their number."""
+
 SHOWN = 3
 """Directions that are not determined, at most, that a sentence names one by one."""
 
@@ -90,6 +94,8 @@ def free_in_words(
     kept = free @ V[:, lam > 0.5]  # parameters without effect are directions of their own
     if not kept.size:
         return []
+    if kept.shape[1] > MOST:
+        return [f"{kept.shape[1]} combinations of parameters can be changed"]
     whole = [one.change / scale.unit for one in scale.scalings]
     whole.append(scale.theta / scale.unit)
     shares = np.array([one.share for one in combinations])
