@@ -51,7 +51,8 @@ def roof(X: Floats) -> Floats:
     ("change", "triangles", "says"),
     [
         (skew, False, "quadrilaterals of group 'plate' are skew by up to 45°"),
-        (roof, True, "triangles of group 'plate' are up to"),
+        (roof, True, "elements of group 'plate' are up to"),
+        (roof, False, "elements of group 'plate' are up to"),
     ],
 )
 def test_shapes_of_shells(change: Callable[[Floats], Floats], triangles: bool, says: str) -> None:

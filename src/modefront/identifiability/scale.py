@@ -35,6 +35,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from weakref import ref
 
 import numpy as np
 import scipy.linalg
@@ -58,6 +59,9 @@ RANK = 1e-6
 
 RIGID = 1e-3
 """Frequency over the greatest one below which a measured mode is one of a rigid body."""
+
+SETTLED = 1e-13
+"""Relative change of an eigenvalue at which power iteration ends."""
 
 SHIFT = 1e-3
 """Share of the least measured eigenvalue that is added to a K with rigid-body modes, times M."""
@@ -96,7 +100,19 @@ class Scale:
 
 
 def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
-    """Return the scale of a problem at ``theta``, shape (parameters,)."""
+    """Return the scale of a problem at ``theta``, shape (parameters,); the last one is kept."""
+    for of, last in _LAST:
+        if of() is problem and np.array_equal(last.theta, theta):
+            return last
+    found = _scale_at(problem, theta.copy())
+    _LAST[:] = [(ref(problem), found)]
+    return found
+
+
+_LAST: list[tuple[ref[UpdatingProblem], Scale]] = []
+
+
+def _scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
     span, model = problem.upper - problem.lower, matrices_at(problem.model, theta)
     positive = problem.lower > 0
     if model is None:
@@ -169,7 +185,9 @@ def _sparse(model: MatrixModel, stiffness: SparseAffine, theta: Floats, shift: f
                 break
             x = x / np.sqrt(energy)
             f = dK @ x
-            out[j] = np.sqrt(max(float(f @ factor.solve(f[:, None])[:, 0]), 0.0))
+            before, out[j] = out[j], np.sqrt(max(float(f @ factor.solve(f[:, None])[:, 0]), 0.0))
+            if abs(out[j] - before) <= SETTLED * out[j]:  # at once, where dK is of rank one
+                break
     return out
 
 

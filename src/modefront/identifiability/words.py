@@ -24,6 +24,10 @@ NAMED = 20
 TOGETHER = 3
 """Parameters alike of which pairs are named, at most."""
 
+MOST = 100
+"""Combinations that are not determined, beyond which they are counted and not said in words: a
+simple basis of them takes the fourth power of their number."""
+
 SHOWN = 3
 """Directions that are not determined, at most, that a sentence names one by one."""
 
@@ -92,7 +96,9 @@ def free_in_words(
     kept = free @ V[:, lam > 0.5]  # parameters without effect are directions of their own
     if not kept.size:
         return []
-    whole = [combination.change / scale.unit for combination in scale.scalings]
+    if kept.shape[1] > MOST:
+        return [f"{kept.shape[1]} combinations of parameters can be changed"]
+    whole = [scaling.change / scale.unit for scaling in scale.scalings]
     whole.append(scale.theta / scale.unit)
     shares = np.array([combination.share for combination in combinations])
     V = np.array([combination.direction for combination in combinations])

@@ -11,12 +11,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 import numpy as np
+import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, wrong
 from modefront.models.geometry import chain_geometry
 from modefront.models.matrices import MatrixModel, SensorSpec, matrices
 from modefront.models.terms import BASE
+
+_Terms = dict[str, dict[tuple[int, int], float]]
+"""Entries of each term by its name, and by row and column."""
 
 BASE_DIRECTION = "x"
 """The one direction in which the masses, and the ground, can move."""
@@ -78,24 +82,39 @@ def chain(
         )
         if len(values) not in lengths
     )
-    K = {BASE: np.zeros((n, n))}
-    M = {BASE: np.diag(np.array(added, float))}
+    K: _Terms = {BASE: {}}
+    M: _Terms = {BASE: {(i, i): float(m) for i, m in enumerate(added)}}
     for i, (k, name) in enumerate(zip(stiffnesses, stiffness_scales, strict=True)):
-        K.setdefault(name or BASE, np.zeros((n, n)))
-        K[name or BASE] += k * _spring(n, i)
+        for place, entry in _spring(n, i).items():
+            _add(K, name or BASE, place, k * entry)
     for i, (m, name) in enumerate(zip(masses, mass_scales, strict=True)):
-        M.setdefault(name or BASE, np.zeros((n, n)))
-        M[name or BASE][i, i] += m
+        _add(M, name or BASE, (i, i), m)
     if sensors is None:
         sensors = {f"floor{i + 1}": i for i in range(n)}
     base = {BASE_DIRECTION: [(i, 1.0) for i in range(n)]}
-    model = matrices(parameters, K, M, sensors, outputs=outputs, base=base)
+    model = matrices(
+        parameters, _matrices(K, n), _matrices(M, n), sensors, outputs=outputs, base=base
+    )
     return replace(model, geometry=chain_geometry(n, model.selection))
 
 
-def _spring(n: int, i: int) -> Floats:
-    """Return the stiffness matrix of a unit spring between mass i-1 and mass i."""
-    ends = np.zeros(n + 2)
-    ends[i], ends[i + 1] = -1.0, 1.0
-    out: Floats = np.outer(ends[1:-1], ends[1:-1])
+def _spring(n: int, i: int) -> dict[tuple[int, int], float]:
+    """Return the entries of the stiffness of a unit spring between mass i-1 and mass i."""
+    ends = [mass for mass in (i - 1, i) if 0 <= mass < n]
+    return {(a, b): 1.0 if a == b else -1.0 for a in ends for b in ends}
+
+
+def _add(terms: _Terms, name: str, place: tuple[int, int], value: float) -> None:
+    """Add to an entry of a term, which is made where there is none."""
+    term = terms.setdefault(name, {})
+    term[place] = term.get(place, 0.0) + value
+
+
+def _matrices(terms: _Terms, n: int) -> dict[str, scipy.sparse.coo_array]:
+    """Return sparse matrices (n, n): full ones, one a parameter, would take n^3 numbers."""
+    out = {}
+    for name, term in terms.items():
+        places = np.array(list(term), dtype=np.int64).reshape(-1, 2)
+        values = np.array(list(term.values()), dtype=float)
+        out[name] = scipy.sparse.coo_array((values, (places[:, 0], places[:, 1])), shape=(n, n))
     return out
