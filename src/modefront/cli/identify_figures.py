@@ -132,6 +132,7 @@ def _auto_mac(figure: Figure, identification: Identification) -> None:
     axes.set_xticks(range(len(ticks)), ticks, rotation=90)
     axes.set_yticks(range(len(ticks)), ticks)
     for (r, s), value in np.ndenumerate(mac):
-        axes.text(s, r, f"{value:.2f}", ha="center", va="center", fontsize=6)
+        colour = "white" if value > 0.5 else "black"  # legible on the dark end of the scale
+        axes.text(s, r, f"{value:.2f}", ha="center", va="center", fontsize=6, color=colour)
     axes.set(title="auto-MAC", xlabel="frequency in Hz", ylabel="frequency in Hz")
     figure.colorbar(image)
