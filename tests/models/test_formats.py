@@ -238,3 +238,10 @@ def test_a_matrix_is_not_read_to_know_its_size(
     monkeypatch.setattr(base, "available_memory", lambda: 10**9)
     with pytest.raises(mf.InputError, match="fits into the 1 GB of memory"):
         read_matrix(path)
+
+
+def test_a_reader_that_crashes_takes_no_process_with_it(tmp_path: Path) -> None:
+    head = "%%MatrixMarket matrix array real symmetric\n%\n2 2\n5E3\n-2E3\n"
+    (tmp_path / "A.mtx").write_text(head + "2E31e999")  # SciPy's reader reads beyond the end
+    with pytest.raises(mf.InputError, match="expected a readable matrix, found"):
+        read_matrix(tmp_path / "A.mtx")

@@ -119,6 +119,8 @@ def decompose(K: Floats, M: Floats) -> Decomposition:
         raise ModelError("the mass matrix is indefinite")
     mu, X = mu[::-1], X[:, ::-1]
     lam = 1 / mu[mu > 1e-13 * mu[0]] - shift
+    if not lam.size:
+        raise ModelError("no mode has a finite frequency: a stiffness vanishes; check its units")
     if lam[0] < -1e-2 * shift:
         raise ModelError("the stiffness matrix is indefinite")
     return Decomposition(mu, X, shift, lam)

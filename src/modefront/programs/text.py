@@ -13,8 +13,12 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.errors import InputError, reason
-from modefront.models.formats.matrix_market import NUMERIC, read_entries
+from modefront.inputs import available_memory
+from modefront.isolated import IsolatedError, isolated
+from modefront.models.formats.matrix_market import NUMERIC, SECONDS, SPEED, read_entries
 from modefront.programs.base import Entries, wrong
+
+READER = f"{__name__}:lines_of_entries"
 
 BLOCK = 2**24
 """Bytes that are read at once."""
@@ -54,14 +58,25 @@ def coordinates(path: Path, size: int, *, skip: int = 0) -> Entries:
             end = block[-1:]
         if end != b"\n":
             raise wrong(path, "whole lines to the end", "a file that is cut off")
-        file.seek(skip)
-        head = b"%%%%MatrixMarket matrix coordinate real general\n%d %d %d\n" % (size, size, count)
-        try:
-            matrix = scipy.io.mmread(_Headed(head, file))
-        except (ValueError, OverflowError) as error:
-            expected = f"lines 'row column value' with rows and columns from 1 to {size}"
-            raise wrong(path, expected, reason(error)) from None
-    return Entries(matrix.row, matrix.col, matrix.data)
+    given = [str(size), str(count), str(skip)]
+    seconds = SECONDS + path.stat().st_size / SPEED
+    try:
+        arrays, _ = isolated(READER, path, seconds, available_memory(), given)
+    except IsolatedError as error:
+        expected = f"lines 'row column value' with rows and columns from 1 to {size}"
+        raise wrong(path, expected, reason(error)) from None
+    return Entries(arrays["row"], arrays["column"], arrays["data"])
+
+
+def lines_of_entries(
+    path: Path, size: str, count: str, skip: str
+) -> tuple[dict[str, np.ndarray], list[int]]:
+    """Return what SciPy reads from such lines: for processes that read files."""
+    with path.open("rb") as file:
+        file.seek(int(skip))
+        head = f"%%MatrixMarket matrix coordinate real general\n{size} {size} {count}\n"
+        found = scipy.io.mmread(_Headed(head.encode(), file))
+    return {"row": found.row, "column": found.col, "data": found.data}, []
 
 
 def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.ndarray]:
@@ -112,9 +127,9 @@ def matrix_market(path: Path, *, square: bool = True) -> scipy.sparse.coo_array:
     """
     try:
         matrix = scipy.sparse.coo_array(read_entries(path, square=square))
-    except (ValueError, OSError, OverflowError) as error:
-        if isinstance(error, InputError):
-            raise
+    except InputError:
+        raise
+    except (ValueError, OSError, OverflowError, IsolatedError) as error:
         raise wrong(path, "a Matrix Market file", reason(error)) from None
     if matrix.dtype.kind not in "biuf":
         raise wrong(path, "real numbers", str(matrix.dtype))

@@ -1,7 +1,7 @@
 """Matrix Market files.
 
 SciPy's reader is fast, but ends the process at some bytes that no matrix holds; so the header is
-read here, and what follows is looked through, before it sees the file.
+read here, what follows is looked through, and the reader has a process of its own.
 """
 
 from __future__ import annotations
@@ -10,14 +10,23 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import scipy.io
+import scipy.sparse
 
+from modefront.inputs import available_memory
+from modefront.isolated import isolated
 from modefront.models.formats.base import Header, MatrixFormat, check_header, wrong
 
 SHORTEST = {"pattern": 4, "integer": 6, "real": 6, "complex": 8}
 """Characters that a line of an entry takes at least, by the kind of numbers."""
 
 SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
+
+READER = f"{__name__}:entries"
+
+SECONDS, SPEED = 60.0, 10**6
+"""Time that reading may take, and bytes that are read a second at least besides."""
 
 LONGEST = 2**16
 """Characters of a line of the header, at most; the format allows 1024."""
@@ -75,7 +84,20 @@ def read_entries(path: Path, *, square: bool = True) -> Any:
         while chunk := stream.read(CHUNK):
             if other := chunk.translate(None, NUMERIC):
                 raise wrong(path, WHAT, f"the byte {other[:1]!r} among the entries")
-    return scipy.io.mmread(path)
+    seconds = SECONDS + path.stat().st_size / SPEED
+    arrays, shape = isolated(READER, path, seconds, available_memory())
+    if "values" in arrays:
+        return arrays["values"]
+    entries = arrays["data"], (arrays["row"], arrays["column"])
+    return scipy.sparse.coo_array(entries, shape=(int(shape[0]), int(shape[1])))
+
+
+def entries(path: Path) -> tuple[dict[str, np.ndarray[Any, Any]], list[int]]:
+    """Return what SciPy reads from a file, as plain arrays: for processes that read files."""
+    found = scipy.io.mmread(path)
+    if isinstance(found, np.ndarray):
+        return {"values": found}, list(found.shape)
+    return {"data": found.data, "row": found.row, "column": found.col}, list(found.shape)
 
 
 def _announced(path: Path, *, square: bool = True) -> _Announced:
