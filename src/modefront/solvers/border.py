@@ -91,9 +91,13 @@ def _tightened(problem: Problem, target: Payoff, point: Solution) -> Solution:
     J = point.J
     start = end = begin(problem.evaluate(point.theta))
     evaluations = point.evaluations + 1
+    free, settled = _free(target, point), False  # where their sum is least, each of them is
     for lowered in _lowerable(target, point):
+        if settled and np.array_equal(lowered & free, lowered):
+            continue
         lower = _lowered(problem, target, replace(end, evaluations=0), lowered)
         evaluations += lower.evaluations
+        settled |= np.array_equal(lowered, free) and not _trades(target, lower.J, end.J)
         if _is_better(target, lower.J, end.J):
             end = lower
     if end is start or not _is_better(target, end.J, J):
@@ -142,6 +146,11 @@ def _around(problem: Problem, order: Lexicographic, start: Solution, lowered: Bo
     kept = J[~lowered] <= known[~lowered] + VANISHING * SAME * order.sizes[~lowered]
     better = turned.feasible and kept.all() and w @ J < w @ known
     return turned if better else replace(end, evaluations=turned.evaluations)
+
+
+def _trades(target: Payoff, J: Floats, known: Floats) -> bool:
+    """Return whether some objective is greater than a known one."""
+    return bool((J - known > SAME * target.scale).any())
 
 
 def _is_better(target: Payoff, J: Floats, known: Floats) -> bool:
