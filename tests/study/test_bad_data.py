@@ -80,7 +80,7 @@ ROWS = [
     ("0.01\na", "0.01,7\na", "modes.csv: line 2: expected 8 fields, as in the header, found 9"),
     ("0.1,0.01\na", "0.1\na", "modes.csv: line 2: expected 8 fields, as in the header, found 7"),
     ("set,", "set;", "modes.csv: line 1, column 'mode': expected this column, found no such"),
-    ("low_std\n", "low_std,\n", "modes.csv: line 1, column '': ... found ''"),
+    ("low_std\n", "low_std,,x\n", "modes.csv: line 1, column '': ... found ''"),
     ("low_std\n", "mode_std\n", "line 1, column 'mode_std': ... found 'mode_std'"),
     ("low_std\n", "lοw_std\n", "line 1, column 'lοw_std': expected the name of a quantity"),
     ("0.5,1.0,0.1", "0,0.0,0.1", SHAPE + "that is not zero at all sensors, found only zeros"),

@@ -192,9 +192,11 @@ def test_run_shows_the_cost_and_show_the_errors(
     out = " ".join(capfd.readouterr().out.split())
     n = whole.attrs["full_eigensolutions"]
     corrected = whole.attrs["corrected_eigensolutions"]
-    assert f"reduced basis from {n} full eigensolutions and {corrected} corrected" in out
     assert f"{n} full eigensolutions in" in out
     assert "reduced solutions in" in out
+    assert command(monkeypatch, "show", folder, "--findings") == 0
+    out = " ".join(capfd.readouterr().out.split())
+    assert f"reduced basis from {n} full eigensolutions and {corrected} corrected" in out
     assert command(monkeypatch, "show", folder, "--points") == 0
     out = capfd.readouterr().out
     assert "estimated relative errors" in out
@@ -221,6 +223,8 @@ def test_predictions_are_made_in_full_and_that_is_said(
     folder = shutil.copytree(file.with_name("whole"), tmp_path / "results")
     study = variant(file, "predicted", "[pareto]", f"{PREDICTION}[pareto]")
     assert command(monkeypatch, "run", study, "-o", folder) == 0
+    capfd.readouterr()
+    assert command(monkeypatch, "show", folder, "--findings") == 0
     out = " ".join(capfd.readouterr().out.split())
     data = read_dataset(folder)
     basis = whole.attrs["full_eigensolutions"]
@@ -246,8 +250,11 @@ def test_what_cannot_be_met_in_the_memory_is_said_and_is_an_exit_of_1(
     failed = data["label"].values[~data["certified"].values]
     assert failed.size
     assert data.attrs["full_eigensolutions"] == 1
-    assert f"above the tolerance: {', '.join(failed)}" in out
-    assert "within the tolerance" in out
+    assert "modes are less accurate than asked for" in out
+    assert command(monkeypatch, "show", folder, "--findings") == 0
+    listed = " ".join(capfd.readouterr().out.split())
+    assert f"above the tolerance: {', '.join(failed)}" in listed
+    assert "within the tolerance" in listed
     assert f"errors above the tolerance, kept and marked: {', '.join(failed)}" in err
 
 
@@ -264,8 +271,10 @@ def test_a_model_without_a_basis_says_so(
     )
     file.write_text(text.replace("points = 3", "points = 2"))
     status = command(monkeypatch, "run", file)
-    out = capfd.readouterr().out
+    capfd.readouterr()
     assert status in (0, 1)
+    assert command(monkeypatch, "show", tmp_path / "study-results", "--findings") == 0
+    out = capfd.readouterr().out
     assert "no reduced basis: the model has only 90 degrees of freedom" in out
 
 
