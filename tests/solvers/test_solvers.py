@@ -1,7 +1,8 @@
 """Problems with known answers, for every solver."""
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
+from typing import Any
 
 import moocore
 import numpy as np
@@ -41,6 +42,7 @@ from modefront.solvers.scalarisation import LogSum, level, weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 from modefront.solvers.weights import iterate_weights, optimal_minima, regular
 from modefront.work.costs import counted
+from modefront.work.task import Immediate, Key, R, Task
 
 
 def sizes_of(problem: Known) -> Floats:
@@ -311,6 +313,23 @@ def test_a_point_far_from_its_neighbour_is_solved_from_there_though_the_way_back
     edges = [at_theta(0.0), at_theta(1.0)]
     points = continuation(problem, TwoBasins(np.ones(2)), edges, simplex(2, 3))
     assert [one.theta[0] for one in points] == [0.0, 0.9, 0.9, 1.0]
+
+
+def test_steps_that_are_expected_have_other_names_where_they_turn_out_to_be_others() -> None:
+    functions: dict[Key, Any] = {}
+
+    class Recording(Immediate):
+        def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
+            for task in (*tasks, *ahead):
+                assert functions.setdefault(task.key, task.function) is task.function
+            return super().run(tasks, ahead)
+
+    problem = box(three_wells, [-1, -1.5], [2, 1.5])
+    edges = edges_of(problem)
+    target = payoff(edges, sizes_of(problem))
+    assert target is not None
+    nbi(problem, edges, target, simplex(2, 10), work=Recording())
+    assert {"from", "again-from"} <= {key[3] for key in functions}
 
 
 def test_a_piece_of_the_front_between_the_edges_is_reached_from_its_own_minimum() -> None:

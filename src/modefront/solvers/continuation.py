@@ -291,10 +291,11 @@ class _Continuation:
     def _task(self, point: LatticePoint, source: LatticePoint) -> Task[Solution]:
         """Return the task of a step from a neighbour."""
         known = self.solved.get(point)
-        solve = _solve_again if known is not None and known.converged else _solve
-        key = ("front", self.programmes.label, point, "from", source, self.renewed[source])
+        again = known is not None and known.converged
+        way = "again-from" if again else "from"  # which it is may turn out late
+        key = ("front", self.programmes.label, point, way, source, self.renewed[source])
         arguments = (self.problem, self.programmes, self.beta(point), self.solved[source])
-        return Task(key, solve, arguments)
+        return Task(key, _solve_again if again else _solve, arguments)
 
     def _next(self) -> list[Task[Solution]]:
         """Return the tasks of the next steps, unless the one at hand changes what they are."""
