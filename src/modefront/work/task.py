@@ -60,9 +60,10 @@ class Task(Generic[R]):
 
     @property
     def identity(self) -> Identity:
-        """What tells the task from all others of the run, and from what was expected in its place.
+        """What tells the task from all others of the run.
 
-        Whether a point is solved for the first time or again may turn out late.
+        The function is a part, so that no other one that was expected under its name is taken for
+        it.
         """
         return self.key, self.turn, self.function
 
