@@ -268,8 +268,8 @@ def _bounds(data: xr.Dataset) -> Floats:
     return np.zeros(data["theta"].shape)
 
 
-def _count(number: int, thing: str) -> str:
-    return f"{number} more {thing}{'s' * (number > 1)}"
+def _count(number: int, noun: str) -> str:
+    return f"{number} more {noun}{'s' * (number > 1)}"
 
 
 def _number(value: float, form: str) -> str:

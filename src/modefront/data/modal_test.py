@@ -168,7 +168,7 @@ def _impact_table(root: Table) -> Windows | None:
     estimator = table.choice("estimator", ESTIMATORS, "H1")
     force_window = table.number("force_window", seconds, lambda x: x > 0, None)
     if table.values.get("exponential") == "none":
-        table.asked.append("exponential")
+        table.requested.append("exponential")
         exponential = math.inf
     else:
         seconds = "a time constant in s above zero, or 'none'"

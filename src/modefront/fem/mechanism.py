@@ -110,8 +110,8 @@ def rigid_bodies(X: Floats, elements: Sequence[Block], exists: Bools) -> Bodies:
     bodies, compact = np.unique(incidence[:, 1], return_inverse=True)
     incidence = np.stack([incidence[:, 0], compact], 1)
     home = np.full(nodes, -1)
-    home_nodes, at = np.unique(incidence[:, 0], return_index=True)
-    home[home_nodes] = incidence[at, 1]
+    home_nodes, earliest = np.unique(incidence[:, 0], return_index=True)
+    home[home_nodes] = incidence[earliest, 1]
     shared = incidence[incidence[:, 1] != home[incidence[:, 0]]]
 
     n, b = incidence.T

@@ -40,7 +40,7 @@ def in_words(combination: Combination, names: Sequence[str]) -> str:
     return " ".join(parts[:PARTS]) + " ..." * (len(parts) > PARTS)
 
 
-def measured_thing(groups: Sequence[Group]) -> str:
+def measured_noun(groups: Sequence[Group]) -> str:
     """Return what is measured of these groups: the kind of residual, "residual" for several."""
     kinds = {kind for group in groups for kind, _ in group.chosen}
     return kinds.pop() if len(kinds) == 1 else "residual"
@@ -54,7 +54,7 @@ def determined(combinations: Sequence[Combination]) -> tuple[int, int]:
 
 def summary(
     subject: str,
-    thing: str,
+    noun: str,
     combinations: Sequence[Combination],
     names: Sequence[str],
     scale: Scale | None = None,
@@ -62,7 +62,7 @@ def summary(
 ) -> str:
     """Return one sentence of what a group of data determines.
 
-    ``subject`` are the data in the plural, ``thing`` is what does not change; ``idle`` are
+    ``subject`` are the data in the plural, ``noun`` names what does not change; ``idle`` are
     parameters without effect on any data, which are left out. Without a ``scale``, changes are
     relative to the parameters.
     """
@@ -77,7 +77,7 @@ def summary(
     if rank >= p:
         return text
     free = _listed(free_in_words(combinations, names, scale, idle))
-    return f"{text}; {free}: no {thing} changes"
+    return f"{text}; {free}: no {noun} changes"
 
 
 def free_in_words(

@@ -109,8 +109,8 @@ class MatrixModel:
     def above_zero(self) -> tuple[str, ...]:
         """Names of parameters that have to be above 0: there are roots or quotients of them."""
         tables = self.stiffness.coefficients, self.mass.coefficients
-        found = {i for table in tables for i in above_zero(table.exponents)}
-        return tuple(self.parameters[i] for i in sorted(found))
+        indices = {i for table in tables for i in above_zero(table.exponents)}
+        return tuple(self.parameters[i] for i in sorted(indices))
 
     @property
     def unused(self) -> tuple[str, ...]:

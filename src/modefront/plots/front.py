@@ -37,7 +37,7 @@ def _one(data: xr.Dataset, error: Floats, group: str) -> Picture:
     figure = picture(4.6, 0.9 + 0.25 * len(labels))
     axes = figure.add_subplot()
     for each in series(data):
-        axes.plot(error[each.at, 0], each.at, **each.marks, label=each.name)
+        axes.plot(error[each.positions, 0], each.positions, **each.marks, label=each.name)
     axes.set_yticks(range(len(labels)), labels)
     axes.invert_yaxis()
     axes.set_xlabel(f"error of {group}")
@@ -118,7 +118,7 @@ def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> P
 
 def _points(axes: Axes, data: xr.Dataset, error: Floats) -> None:
     for each in series(data):
-        axes.plot(*error[each.at].T, **each.marks, label=each.name)
+        axes.plot(*error[each.positions].T, **each.marks, label=each.name)
 
 
 def _once(handles: Iterable[object], labels: Iterable[object]) -> tuple[list[object], list[str]]:

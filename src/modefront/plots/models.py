@@ -21,12 +21,12 @@ class Series:
     Attributes
     ----------
     name : of the kind, for the legend
-    at : (models,) positions of the points
+    positions : (models,) of the points
     marks : how `matplotlib.axes.Axes.plot` draws them
     """
 
     name: str
-    at: Ints
+    positions: Ints
     marks: Mapping[str, Any]
 
 

@@ -29,11 +29,11 @@ def predictions_in(data: xr.Dataset) -> Iterator[tuple[Kind, str, list[int]]]:
     """Yield the kind, the name and the positions of the values of each prediction."""
     for kind in kinds_in(data):
         names = data.get(f"{kind.dimension}_name")
-        found: dict[str, list[int]] = {}
+        positions_of: dict[str, list[int]] = {}
         for i, place in enumerate(data[kind.dimension].values):
             name = str(place).partition(":")[0] if names is None else str(names.values[i])
-            found.setdefault(name, []).append(i)
-        for name, positions in found.items():
+            positions_of.setdefault(name, []).append(i)
+        for name, positions in positions_of.items():
             yield kind, name, positions
 
 
@@ -99,10 +99,10 @@ def pages(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
     """Yield a name and a picture of each prediction at all models."""
     for kind, name, positions in predictions_in(data):
         variable = kind.ranged[0] if kind.ranged else kind.variables[0]
-        yield f"{kind.dimension} {name}", one(data, kind, variable, name, positions)
+        yield f"{kind.dimension} {name}", draw_one(data, kind, variable, name, positions)
 
 
-def one(
+def draw_one(
     data: xr.Dataset, kind: Kind, variable: ResultVariable, name: str, positions: Sequence[int]
 ) -> Picture:
     """Return one prediction at all models, along the front where that is a path."""

@@ -75,8 +75,8 @@ def lines_of_entries(
     with path.open("rb") as file:
         file.seek(int(skip))
         head = f"%%MatrixMarket matrix coordinate real general\n{size} {size} {count}\n"
-        found = scipy.io.mmread(_Headed(head.encode(), file))
-    return {"row": found.row, "column": found.col, "data": found.data}, []
+        matrix = scipy.io.mmread(_Headed(head.encode(), file))
+    return {"row": matrix.row, "column": matrix.col, "data": matrix.data}, []
 
 
 def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.ndarray]:

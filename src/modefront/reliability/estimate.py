@@ -109,8 +109,8 @@ def estimate(
     """
     b = real_array("levels", levels, (None,), "barriers")
     if np.any(b <= 0):
-        at = int(np.argmax(b <= 0))
-        raise wrong("levels", "positive numbers", f"{b[at]} at index {at}")
+        first = int(np.argmax(b <= 0))
+        raise wrong("levels", "positive numbers", f"{b[first]} at index {first}")
     if positive_count("samples", samples) < 2:
         raise wrong("samples", "at least 2, for a coefficient of variation", samples)
     positive_count("workers", workers)

@@ -147,8 +147,8 @@ def _times(ratio: float) -> str:
     return f"by more than {int(np.log10(ratio))} powers of ten"
 
 
-def _count(number: int, thing: str) -> str:
-    return f"{number} {thing}{'s' * (number != 1)}"
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' * (number != 1)}"
 
 
 def _some(names: Sequence[str]) -> str:

@@ -16,7 +16,7 @@ from modefront.identifiability.words import (
     alike_in_words,
     determined,
     enumeration,
-    measured_thing,
+    measured_noun,
     no_effect_in_words,
     summary,
 )
@@ -120,10 +120,10 @@ def _identifiability(problem: UpdatingProblem, reference: Determination) -> Iter
         yield Rank.IDLE, f"at {where}: {text}"
     for i, (name, combinations) in enumerate(reference.combinations):
         whole = i == len(groups)
-        thing = measured_thing(groups if whole else [groups[i]])
+        noun = measured_noun(groups if whole else [groups[i]])
         full = determined(combinations) == (len(names) - len(reference.idle), 0)
         rank = Rank.DETERMINED if full else Rank.ALL_DATA if whole else Rank.OF_GROUP
-        text = summary(name, thing, combinations, names, reference.scale, reference.idle)
+        text = summary(name, noun, combinations, names, reference.scale, reference.idle)
         yield rank, f"at {where}: {text}"
     for text in alike_in_words(reference.effects, names, reference.idle):
         yield Rank.ALIKE, f"at {where}: {text}"

@@ -332,9 +332,9 @@ def _pairs(data: xr.Dataset) -> Iterator[str]:
 
 def _changed_pairs(data: xr.Dataset) -> list[str]:
     """Return which measured modes are paired with different model modes, of many in one line."""
-    found = list(_pairs(data))
-    if len(found) <= FEW:
-        return found
+    pairs = list(_pairs(data))
+    if len(pairs) <= FEW:
+        return pairs
     paired = data["paired_mode"].values[front_points(data)]
     changed = [np.unique(column[np.isfinite(column)]).size > 1 for column in paired.T]
     modes = ", ".join(str(r) for r in data["mode"].values[changed])

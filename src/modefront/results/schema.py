@@ -640,20 +640,20 @@ def faults(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
             continue
         names = data[name]
         if names.dims != (name,) or names.dtype.kind not in kinds:
-            there = f"{names.dtype} of the dimensions {', '.join(map(str, names.dims))}"
-            yield f"coordinate '{name}'", DIMENSIONS[name], there
+            found = f"{names.dtype} of the dimensions {', '.join(map(str, names.dims))}"
+            yield f"coordinate '{name}'", DIMENSIONS[name], found
     for name, variable in VARIABLES.items():
         if name not in data:
             if variable.required:
                 yield f"variable '{name}'", variable.meaning, "nothing"
             continue
-        found = data[name]
-        if found.dims != variable.dimensions:
+        array = data[name]
+        if array.dims != variable.dimensions:
             dimensions = ", ".join(variable.dimensions) or "none"
-            there = ", ".join(map(str, found.dims)) or "none"
-            yield f"variable '{name}'", f"dimensions {dimensions}", there
-        elif found.dtype.kind not in DTYPES[variable.values]:
-            yield f"variable '{name}'", f"values of type {variable.values}", str(found.dtype)
+            found = ", ".join(map(str, array.dims)) or "none"
+            yield f"variable '{name}'", f"dimensions {dimensions}", found
+        elif array.dtype.kind not in DTYPES[variable.values]:
+            yield f"variable '{name}'", f"values of type {variable.values}", str(array.dtype)
     if not data.sizes.get("point") or not data.sizes.get("mode"):
         yield "dimensions 'point' and 'mode'", "at least one each", "none"
 

@@ -310,8 +310,8 @@ class _Between:
     def ahead(self, probes: Sequence[Solution], known: Models) -> bool:
         """Return whether a probe is ahead of all known models where it was to come to."""
         for solution in probes:
-            own = self.excess(solution, solution.J[None]).min()
-            if self.excess(solution, known.J).min() > own + AHEAD:
+            excess = self.excess(solution, solution.J[None]).min()
+            if self.excess(solution, known.J).min() > excess + AHEAD:
                 return True
         return False
 
@@ -387,7 +387,7 @@ class _Between:
     ) -> list[Solution]:
         """Return the points, each solved again from a model that is ahead of it, if any is."""
         current = list(points)
-        tried: set[tuple[int, bytes]] = set()
+        attempts: set[tuple[int, bytes]] = set()
         for turn in range(ROUNDS):
             everything = models_of([solution for solution in current if solution.feasible])
             everything = everything if models is None else models.joined(everything)
@@ -401,10 +401,14 @@ class _Between:
                     np.inf,
                 )
                 best = int(excess.argmin())
-                own = self.excess(solution, solution.J[None])[0] if solution.feasible else np.inf
+                current_excess = (
+                    self.excess(solution, solution.J[None])[0] if solution.feasible else np.inf
+                )
                 key = (k, everything.theta[best].tobytes())
-                if (excess[best] < own - AHEAD / 10 or not solution.converged) and key not in tried:
-                    tried.add(key)
+                if (
+                    excess[best] < current_excess - AHEAD / 10 or not solution.converged
+                ) and key not in attempts:
+                    attempts.add(key)
                     starts[k] = everything.theta[best]
             if not starts:
                 break
@@ -471,7 +475,7 @@ def from_other_branches(
     span = problem.upper - problem.lower
     far = JUMP * max(1.0, COARSE / lattice.divisions)
     kept = [k for k, pair in enumerate(zip(points, before, strict=False)) if same(*pair)]
-    tried = {(k, points[j].theta.tobytes()) for k in kept for j in kept}
+    attempts = {(k, points[j].theta.tobytes()) for k in kept for j in kept}
     for turn in range(ROUNDS):
         theta = np.array([point.theta for point in current]) / span
         y = np.array([point.J for point in current]) / target.scale
@@ -489,8 +493,8 @@ def from_other_branches(
             ]
             for j in dict.fromkeys(chosen):
                 key = (k, current[j].theta.tobytes())
-                if key not in tried:
-                    tried.add(key)
+                if key not in attempts:
+                    attempts.add(key)
                     starts.append((k, j))
         if not starts:
             break
@@ -560,8 +564,8 @@ def _follow(problem: Problem, target: Payoff, theta: Floats, objective: int | No
         beta = np.maximum(target.place(evaluation.J), 0.0)
         programme = target.subproblem(np.asarray(beta / beta.sum()))
     else:
-        own = np.arange(evaluation.J.size) == objective
-        programme = weighted(np.where(own, 1.0, OTHERS) / target.scale)
+        chosen = np.arange(evaluation.J.size) == objective
+        programme = weighted(np.where(chosen, 1.0, OTHERS) / target.scale)
     end = solve(problem, programme, start, _ROUGH)
     return replace(end, evaluations=end.evaluations + 1)
 

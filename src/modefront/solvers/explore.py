@@ -172,14 +172,14 @@ def explore(
         run.follow(start, known[k + 1 :])
     fewest = 0 if starts else search.starts
     rugged, hopeless = True, False
-    for tried, (theta, ahead) in enumerate(latin_hypercube(problem, rng, search.limit)):
-        N, w = tried + len(starts), _different(run.minima, local)
-        note(f"search {tried + 1} of at most {search.limit}")
-        few_left = tried >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2)
-        if few_left or (tried >= ENOUGH and run.agreed()):
+    for attempts, (theta, ahead) in enumerate(latin_hypercube(problem, rng, search.limit)):
+        N, w = attempts + len(starts), _different(run.minima, local)
+        note(f"search {attempts + 1} of at most {search.limit}")
+        few_left = attempts >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2)
+        if few_left or (attempts >= ENOUGH and run.agreed()):
             rugged = False
             break
-        hopeless = tried >= ESTIMATED and w * (N - 1) > MANY * search.limit * (N - w - 2)
+        hopeless = attempts >= ESTIMATED and w * (N - 1) > MANY * search.limit * (N - w - 2)
         if hopeless:
             break
         run.follow(theta, ahead)
@@ -355,8 +355,8 @@ def evolve(
         not strategy.stop() and np.max(strategy.sigma * strategy.sm.variances**0.5) > search.spread
     ):
         note(f"generation {strategy.countiter + 1} of at most {search.generations}")
-        asked = strategy.ask()
-        candidates = [problem.lower + span * np.clip(u, 0, 1) for u in asked]
+        proposals = strategy.ask()
+        candidates = [problem.lower + span * np.clip(u, 0, 1) for u in proposals]
         tasks = [
             Task(("member", generation, k), objectives, (problem, candidate))
             for k, candidate in enumerate(candidates)
@@ -367,7 +367,7 @@ def evolve(
             values.append(value)
             if value < best:
                 best, theta = value, candidate
-        strategy.tell(asked, values)
+        strategy.tell(proposals, values)
         generation += 1
     return theta
 

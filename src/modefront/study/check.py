@@ -33,7 +33,7 @@ from modefront.identifiability.words import (
     SHOWN,
     alike_in_words,
     in_words,
-    measured_thing,
+    measured_noun,
     no_effect_in_words,
     summary,
 )
@@ -232,12 +232,12 @@ def determined(problem: UpdatingProblem) -> tuple[str, ...]:
     out = []
     for i, group in enumerate(groups):
         of_group = combinations(problem, problem.start, i, scale=scale)
-        out.append(summary(group.name, measured_thing([group]), of_group, names, scale, idle))
+        out.append(summary(group.name, measured_noun([group]), of_group, names, scale, idle))
     if len(groups) > 1:
         weights = optimal_weights(problem.properties, nominal.J)
         of_all = combinations(problem, problem.start, weights=weights, scale=scale)
-        thing = measured_thing(groups)
-        out.append(summary("all data together", thing, of_all, names, scale, idle))
+        noun = measured_noun(groups)
+        out.append(summary("all data together", noun, of_all, names, scale, idle))
     return tuple(out)
 
 

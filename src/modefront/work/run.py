@@ -54,7 +54,7 @@ class Run:
                 results[k], self.costs[names[k]] = kept
                 self.progress.end(task.stage, None)
         left = [k for k in range(len(tasks)) if k not in results]
-        elsewhere = [k for k in left if not tasks[k].here and not tasks[k].has_parts]
+        elsewhere = [k for k in left if not tasks[k].in_process and not tasks[k].has_parts]
         likely = [x for x in ahead if not (self.store and self.store.has(x))] if left else []
         chosen = [tasks[k] for k in elsewhere]
 

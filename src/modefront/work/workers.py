@@ -143,10 +143,10 @@ class Workers:
 
     def _forget(self, call: _Call, ahead: Sequence[Task[Any]]) -> None:
         """Forget what was computed ahead and is not wanted any more."""
-        wanted = {task.identity for task in (*ahead, *call.tasks)}
-        self._ready = {x: done for x, done in self._ready.items() if x in wanted}
+        requested = {task.identity for task in (*ahead, *call.tasks)}
+        self._ready = {x: done for x, done in self._ready.items() if x in requested}
         for future, sent in list(self._flying.items()):
-            if wanted.isdisjoint(task.identity for task in sent.tasks) and future.cancel():
+            if requested.isdisjoint(task.identity for task in sent.tasks) and future.cancel():
                 del self._flying[future]
 
     def _here(

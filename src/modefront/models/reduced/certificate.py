@@ -268,7 +268,7 @@ class _Proof:
     known : (lowest,) their errors as the space before the last extension knew them
     energy : R^T Z (lowest, lowest) of the residuals in that space
     step : number of extensions
-    own : the shift of the factor, if it is that of the model itself
+    exact_shift : the shift of the factor, if it is that of the model itself
     """
 
     of: CertificateRequest
@@ -276,7 +276,7 @@ class _Proof:
     known: Floats
     energy: Floats
     step: int
-    own: float | None = None
+    exact_shift: float | None = None
 
     def is_leading(self, error: Floats) -> bool:
         """Return whether leading orders tell, and the mode above the level belongs there."""
@@ -288,7 +288,9 @@ class _Proof:
     def holds(self, errors: _ErrorEstimate) -> bool:
         """Return whether a third of the errors of all modes in question is found."""
         of = self.of
-        iterated = (1 - self._missed >= FOUND) if self.own is None else np.zeros(1, dtype=np.bool_)
+        iterated = (
+            (1 - self._missed >= FOUND) if self.exact_shift is None else np.zeros(1, dtype=np.bool_)
+        )
         eigenvalues = iterated | self._bounded(errors.eigenvalue, FOUND)
         shapes = FOUND * self.most(errors) <= np.maximum(errors.shape[: of.below], TOO_SMALL)
         return bool((eigenvalues & shapes)[of.wanted].all())
@@ -306,7 +308,7 @@ class _Proof:
 
     def _left(self, error: Floats) -> Floats:
         """Return what is left of the errors of modes below the level at most, (below,)."""
-        missed = np.minimum(self._missed, MISSED) if self.own is None else MISSED
+        missed = np.minimum(self._missed, MISSED) if self.exact_shift is None else MISSED
         ratio = np.full(self.of.below, missed / (1 - missed))
         for share in SHARES:
             bounded = self._bounded(error, share)
@@ -330,7 +332,7 @@ class _Proof:
         for j in range(m):
             ell = rho[j] - allowed[j]
             above = rho - rho[j] + allowed[j] - known  # rho_k - ell, without cancellation
-            if self.own is None:
+            if self.exact_shift is None:
                 g = of.bounds[0] * (1 - ell / level)
                 if not g > 0:
                     continue

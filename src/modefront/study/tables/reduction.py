@@ -20,7 +20,7 @@ def read_reduction(model: Table | None, header: Table | None, kind: ModelKind | 
     for table, name in ((model, "reduction"), (header, "memory")):
         if table is None:
             continue
-        table.asked.append(name)
+        table.requested.append(name)
         if name in table.values:
             out = _with(table, name, out)
     return out
