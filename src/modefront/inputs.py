@@ -21,13 +21,13 @@ KINDS = (
     (stat.S_ISCHR, "a device"),
     (stat.S_ISBLK, "a device"),
 )
-"""What is no regular file, in words."""
+"""Names of the kinds of files that are not regular."""
 
 HDF5, USER_BLOCK = b"\x89HDF\r\n\x1a\n", 512
-"""What HDF5 begins with, and the size of the smallest block of the user's before it."""
+"""Signature of HDF5, and the size of the smallest user block before it."""
 
 SAMPLES, SAMPLE = 32, 4096
-"""How many parts of a file are looked at for holes, and how long these are."""
+"""Number and length of the parts of a file that are checked for holes."""
 
 
 def file_size(path: Path, expected: str, most: int | None = None) -> int:

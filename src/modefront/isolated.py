@@ -51,7 +51,7 @@ class IsolatedError(RuntimeError):
 def isolated(
     function: str, path: Path, seconds: float, memory: int, arguments: Sequence[str] = ()
 ) -> Read:
-    """Return what a function reads from a file, called in another process.
+    """Return the arrays and texts that a function reads from a file in another process.
 
     Parameters
     ----------

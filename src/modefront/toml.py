@@ -1,4 +1,4 @@
-"""Typed access to the tables of a TOML file that collects everything that is wrong."""
+"""Typed access to the tables of a TOML file, which collects the faults."""
 
 from __future__ import annotations
 
@@ -163,7 +163,7 @@ class Table:
         ]
 
     def close(self) -> None:
-        """Note every key that nobody has asked for."""
+        """Note every unknown key."""
         known = set(self.requested)
         for number, key in enumerate(key for key in self.values if key not in known):
             found = (

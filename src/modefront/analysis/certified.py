@@ -4,8 +4,8 @@ A round does all of the work in the basis at hand. Then snapshots are taken of t
 the farthest from all others, as long as they lack more than a tenth of the tolerance, and the next
 round starts from what is known. Where they do not, every model that is reported gets its
 certificate, and where one is above the tolerance, a snapshot is taken there. Minima that cannot be
-the best ones, whatever their errors are, need not hold. As long as the basis is poor, it may have
-led astray: after a single snapshot the global search is repeated.
+the best ones, whatever their errors are, are exempt from the tolerance. A poor basis may
+mislead the search, which is repeated after a single snapshot then.
 
 The tasks of every round have a turn of their own, and its snapshots are among them, so that an
 interrupted run goes on with the same digits.
@@ -247,7 +247,7 @@ def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Floats]:
 
 
 def _lowest(problem: UpdatingProblem) -> int:
-    """Return how many of the lowest modes may be paired with measured ones."""
+    """Return the number of lowest modes that may be paired with measured ones."""
     return modes_needed(problem.pairing, problem.data, problem.model.size)
 
 

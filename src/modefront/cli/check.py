@@ -1,4 +1,4 @@
-"""What a check finds, as tables and sentences of 80 columns."""
+"""Findings of a check as tables and sentences of 80 columns."""
 
 from __future__ import annotations
 

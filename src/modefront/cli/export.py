@@ -53,7 +53,7 @@ def run_export(
 
 
 def _origin(file: Path) -> Origin:
-    """Return what the study of an imported model keeps of the program's model."""
+    """Return the mesh, labels and changed lines that an imported study keeps of its program."""
     table = tomllib.loads(file.read_text("utf-8-sig")).get("model", {})
     if table.get("kind") != "matrices":
         return Origin(None, None, ())

@@ -50,7 +50,7 @@ class Channel:
 
 @dataclass(frozen=True)
 class Assembled:
-    """The functions of one data set, and what is odd about them."""
+    """The functions of one data set, with warnings."""
 
     data: FrequencyResponses
     warnings: tuple[str, ...]

@@ -210,7 +210,7 @@ def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
 
 
 def _separator(stream: TextIO) -> tuple[str, int]:
-    """Return what separates the columns of a file, and how many lines before the header say it.
+    """Return the separator of the columns, and the number of lines before the header that name it.
 
     The stream is left at the first line that counts.
     """
@@ -372,7 +372,7 @@ def _row(
 
 
 def _range(column: str, value: float) -> str:
-    """Return what is expected of a value that is out of range; empty where it is not."""
+    """Return the range expected of a value that is out of it; empty for a value within."""
     if not math.isfinite(value):
         return "a finite number or an empty field"
     least, most = FREQUENCIES

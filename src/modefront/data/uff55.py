@@ -154,7 +154,7 @@ def read_uff55(path: Path) -> NodalModes:
 
 @dataclass(frozen=True, eq=False)
 class _Mode:
-    """One dataset 55: its data set (empty if not said), number, values, and place in the file."""
+    """One dataset 55: its data set (empty if not given), number, values, and place in the file."""
 
     set: str
     number: int

@@ -1,4 +1,4 @@
-"""All that a comparison at the nominal parameters shows of mistakes in models and data."""
+"""Diagnosis of model and data by a comparison at the nominal parameters."""
 
 from __future__ import annotations
 
@@ -45,11 +45,11 @@ Finding = (
     | DampingInPercent
     | PairFinding
 )
-"""What can be found, each a record with its numbers; `modefront.diagnosis.words` has the words."""
+"""Findings, each a record with its numbers; `modefront.diagnosis.words` has the words."""
 
 
 def diagnose(comparison: Comparison) -> list[Finding]:
-    """Return what is wrong with a model or its data, the causes before what they bring about.
+    """Return the mistakes of a model or its data, causes before their consequences.
 
     What one finding explains is put right before the next ones are looked for, so that each is
     said once.

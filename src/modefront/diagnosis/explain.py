@@ -198,7 +198,7 @@ def pairs_of(comparison: Comparison, explanation: Explanation) -> Ints:
 def finding_of(
     comparison: Comparison, view: Measured, explanation: Explanation
 ) -> WrongSensors | WrongPlaces | None:
-    """Return what an explanation says is wrong; None for the plain one."""
+    """Return the mistake that an explanation assumes; None for the plain one."""
     if explanation.is_plain:
         return None
     mac = mac_values(explanation.view.psi, explanation.view.seen, explanation.phi)

@@ -100,7 +100,7 @@ def opposed_findings(sensors: Sequence[str], view: Measured, phi: Floats) -> lis
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """How sensors, or differences of them, move beside a model that is scaled to all others.
+    """Motion of sensors, or differences of them, beside a model scaled to all other sensors.
 
     Attributes
     ----------

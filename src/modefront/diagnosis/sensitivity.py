@@ -26,7 +26,7 @@ ALIKE = 0.98
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """What the data say of each parameter.
+    """Sensitivities of the measured modes to each parameter.
 
     Attributes
     ----------

@@ -1,6 +1,6 @@
 """Sensors that are reversed or exchanged, in one data set or in all.
 
-Changes are looked for one after the other, each the one that helps most. Between data sets, no
+Changes are sought one after the other, each the one that helps most. Between data sets, no
 model is needed: the same mode has the same shape. Against the model, the frequencies keep a mode
 with a reversed sensor from being taken for another one; `modefront.diagnosis.explain` proves what
 is found.
@@ -19,7 +19,7 @@ from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.measured import Measured, assigned, mac_values, pair_costs
 
 MOST = 8
-"""Changes that are looked for, one after the other."""
+"""Changes that are sought at most."""
 
 HELPS = 0.25
 """Share of the unexplained part of the shapes that a change has to remove to be tried further."""

@@ -117,7 +117,7 @@ class SetShape:
 
 
 Distance: TypeAlias = Callable[[Floats], float]
-"""How far frequencies (modes,) in Hz are from those of the model."""
+"""Function that returns the distance of frequencies (modes,) in Hz from those of the model."""
 
 
 def factor_findings(data: ModalData, distance: Distance) -> tuple[list[SetFactor], ModalData]:

@@ -63,7 +63,7 @@ class FrequencyFactor:
 
 @dataclass(frozen=True)
 class OtherQuantity:
-    """What is measured looks like another quantity than frequencies in Hz.
+    """The measured values resemble another quantity than frequencies in Hz.
 
     Attributes
     ----------
@@ -104,7 +104,7 @@ def shifts_to_try(comparison: Comparison, view: Measured) -> list[float]:
 def unit_finding(
     comparison: Comparison, view: Measured, phi: Floats, shift: float
 ) -> FrequencyFactor | OtherQuantity | None:
-    """Return what is wrong with the unit of all frequencies, where a factor explains them best.
+    """Return the mistake in the unit of all frequencies, where a factor explains them best.
 
     ``view`` and ``phi`` are measured and model shapes in which wrong sensors are put right.
     """

@@ -1,4 +1,4 @@
-"""The findings of a diagnosis in words: what is found, with its numbers, and what to do."""
+"""Sentences on the findings of a diagnosis: the finding with its numbers, and the remedy."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ CAUSES: Mapping[str, tuple[str, str]] = {
         "give forces in N and masses in kg, or another consistent set of units",
     ),
 }
-"""What each cause of a factor looks like, and what to do."""
+"""Description and remedy of each cause of a factor."""
 
 UNITS: Mapping[int, str] = {
     1: "masses in kg with stiffness in kN, or in t with N",
@@ -54,11 +54,11 @@ UNITS: Mapping[int, str] = {
 
 
 Mistake = Finding | UnusedGroup | DataDirection
-"""What is found by a comparison, or when a study is read."""
+"""Findings of a comparison, or of the reading of a study."""
 
 
 def in_words(finding: Mistake) -> str:
-    """Return what is found and what to do, as one text."""
+    """Return a finding and its remedy as one text."""
     return "; ".join(_WORDS[type(finding)](finding))
 
 
@@ -322,4 +322,4 @@ _WORDS: Mapping[type, Callable[[Any], tuple[str, str]]] = {
     WrongPlaces: _places,
     WrongSensors: _sensors,
 }
-"""The words of each finding: what it is, and what to do."""
+"""Functions that put each finding and its remedy into words."""

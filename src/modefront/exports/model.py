@@ -26,7 +26,7 @@ from modefront.results.vtu import write_grid
 
 @dataclass(frozen=True, eq=False)
 class Origin:
-    """What an imported study keeps of the program's model.
+    """Mesh, labels and changed lines of the program that an imported study keeps.
 
     Attributes
     ----------

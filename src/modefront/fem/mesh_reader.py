@@ -1,4 +1,4 @@
-"""What meshio reads from mesh files, as plain arrays: a module for processes that read files."""
+"""Mesh files by meshio as plain arrays: a module for processes that read files."""
 
 from __future__ import annotations
 

@@ -25,7 +25,7 @@ TOGETHER = 3
 """Parameters alike of which pairs are named, at most."""
 
 MOST = 100
-"""Combinations that are not determined, beyond which they are counted and not said in words: a
+"""Combinations that are not determined, beyond which they are counted and not listed: a
 simple basis of them takes the fourth power of their number."""
 
 SHOWN = 3
@@ -41,7 +41,7 @@ def in_words(combination: Combination, names: Sequence[str]) -> str:
 
 
 def measured_noun(groups: Sequence[Group]) -> str:
-    """Return what is measured of these groups: the kind of residual, "residual" for several."""
+    """Return the noun for the data of groups: their kind of residual, "residual" for several."""
     kinds = {kind for group in groups for kind, _ in group.chosen}
     return kinds.pop() if len(kinds) == 1 else "residual"
 
@@ -213,7 +213,7 @@ def _named(members: Sequence[int], ratio: Floats, names: Sequence[str]) -> str:
 
 
 def _meaning(v: Floats, scale: Scale) -> str:
-    """Return what a direction means to the structure, where it scales a matrix as a whole."""
+    """Return the effect of a direction that scales a matrix as a whole."""
     for scaling in scale.scalings:
         whole = scaling.change / scale.unit
         along = v * (whole @ v) / (v @ v)
@@ -233,7 +233,7 @@ def sparse_basis(
     whole: Sequence[Floats] | None = None,
     holds: Callable[[Floats], bool] = lambda _: True,
 ) -> Floats:
-    """Return a basis of the span of the columns of N (p, d) that can be said simply.
+    """Return a basis of the span of the columns of N (p, d) of directions that are short in words.
 
     First single parameters; then those of the directions ``whole`` (p,) that are in the span, by
     default the scaling of all other parameters together; then pairs of parameters; the rest has

@@ -161,7 +161,7 @@ class CheckedFunction:
         )
 
     def _call(self, theta: NDArray[Any], place: str, expected: str) -> Any:
-        """Return what the function returns, two or four things."""
+        """Return K and M, with their derivatives where the function returns these."""
         try:
             returned = self.function(theta)
         except (ModelError, InputError):

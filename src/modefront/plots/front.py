@@ -62,7 +62,7 @@ def _two(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Pi
 
 
 def _limits(axes: Axes, data: xr.Dataset, error: Floats) -> None:
-    """Leave far models out that are not Pareto optimal, and say how many these are."""
+    """Leave far models out that are not Pareto optimal, and note their number."""
     chosen = shown(data)
     most = np.nanmax(error[chosen], axis=0)
     most = np.where(most > 0, most, 1.0)

@@ -1,4 +1,4 @@
-"""Which models a picture shows, and how they are told apart."""
+"""Models of a picture, and the marks of their kinds."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""How far errors of the data scatter the models: parameters, their correlation, the front."""
+"""Scatter of the models by errors of the data: parameters, their correlation, the front."""
 
 from __future__ import annotations
 

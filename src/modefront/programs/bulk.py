@@ -52,7 +52,7 @@ Dof = tuple[int, int]
 
 @dataclass
 class Bulk:
-    """What a deck says of the model.
+    """Nodes, elements and constraints of a deck.
 
     Attributes
     ----------
@@ -93,7 +93,7 @@ class Bulk:
 
 @dataclass
 class _Content:
-    """What is gathered while a deck is read."""
+    """Entries collected while a deck is read."""
 
     nodes: dict[int, Floats] = field(default_factory=dict)
     scalar: set[int] = field(default_factory=set)
@@ -113,7 +113,7 @@ class _Content:
 
 
 def read_bulk(path: Path) -> Bulk:
-    """Return what a deck says of the model; entries that cannot be understood are left out.
+    """Return the model of a deck; entries that cannot be understood are left out.
 
     Raises OSError where it cannot be read.
     """

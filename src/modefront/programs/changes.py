@@ -1,4 +1,4 @@
-"""What the decks of runs change: lines with numbers that are a factor times those of the nominal.
+"""Lines that differ between the decks of runs: their numbers are a factor times the nominal ones.
 
 From it, updated values can be written as lines of the deck.
 """

@@ -118,7 +118,7 @@ class Terms:
 
 
 class Differences:
-    """Matrices of a nominal run, and what other runs differ from it by.
+    """Matrices of a nominal run, and the differences of other runs from it.
 
     Runs are added one after the other, so that two of them are in memory at a time.
     """
@@ -353,7 +353,7 @@ def _joint(E: scipy.sparse.coo_array, A: Matrix) -> Floats:
 
 
 def _cleaned(changed: Matrix, A: Matrix) -> Matrix:
-    """Return what a matrix differs from the nominal one by, without noise."""
+    """Return the difference of a matrix from the nominal one, without noise."""
     D = scipy.sparse.coo_array(changed - A)
     greatest = np.abs(A.data).max(initial=0.0)
     noise = (np.abs(D.data) <= DROPPED * greatest) & (np.abs(D.data) <= LOCAL * _joint(D, A))

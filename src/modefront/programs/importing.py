@@ -1,4 +1,4 @@
-"""From jobs of a program to a study: what the command line asks for, done in its order."""
+"""Import of jobs of a program as a study."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ BOUNDS = (0.5, 2.0)
 
 @dataclass(frozen=True)
 class Request:
-    """What is to be imported.
+    """Jobs, parameters and options of an import.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class Request:
 
 @dataclass(frozen=True, eq=False)
 class Imported:
-    """What was imported.
+    """Terms, frequencies and remarks of an import.
 
     Attributes
     ----------
@@ -367,7 +367,7 @@ def _comment(text: str) -> str:
 
 
 def describe(term: Term) -> str:
-    """Return what a term is, in words."""
+    """Return the description of a term."""
     what = " and ".join(term.matrices)
     rank = "" if term.rank is None else f", of rank {term.rank}"
     return f"{what}, at {term.dofs} degrees of freedom{rank}"

@@ -72,7 +72,7 @@ def read_op4(path: Path) -> Mapping[str, Op4Matrix]:
 
 @dataclass(frozen=True)
 class _Layout:
-    """How a binary file is written: byte order, and the bytes of a word."""
+    """Layout of a binary file: byte order, and the bytes of a word."""
 
     order: str
     word: int

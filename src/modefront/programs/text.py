@@ -71,7 +71,7 @@ def coordinates(path: Path, size: int, *, skip: int = 0) -> Entries:
 def lines_of_entries(
     path: Path, size: str, count: str, skip: str
 ) -> tuple[dict[str, np.ndarray], list[int]]:
-    """Return what SciPy reads from such lines: for processes that read files."""
+    """Return the entries of such lines, read by SciPy: for processes that read files."""
     with path.open("rb") as file:
         file.seek(int(skip))
         head = f"%%MatrixMarket matrix coordinate real general\n{size} {size} {count}\n"

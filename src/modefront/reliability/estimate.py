@@ -33,7 +33,7 @@ Prepare = Callable[[GaussianResponse, FloatArray], Weigh]
 Estimator = Callable[
     [FirstPassage, ArrayLike, int, np.random.SeedSequence, int], "tuple[Estimate, ...]"
 ]
-"""What every method is: (problem, levels, samples, seed, workers) → an estimate a level."""
+"""Signature of every method: (problem, levels, samples, seed, workers) → an estimate a level."""
 
 
 @dataclass(frozen=True)

@@ -1,4 +1,4 @@
-"""What results say, in sentences beside the pictures of a report."""
+"""Findings of results as sentences beside the pictures of a report."""
 
 from __future__ import annotations
 
@@ -34,7 +34,7 @@ def texts(values: Any) -> list[str]:
 
 
 def topics(data: xr.Dataset) -> list[Topic]:
-    """Return what the study was, what was found, and what is left open."""
+    """Return the sentences on the study, its results and its open questions."""
     all_topics = (
         Topic("What was studied", tuple(_study(data))),
         Topic("How well the best models do", _sentences(quality(data))),
@@ -92,7 +92,7 @@ def _open(data: xr.Dataset) -> Iterator[str]:
 
 
 def _spread(data: xr.Dataset) -> Iterator[str]:
-    """Yield what the spread of predictions is, and what it means."""
+    """Yield the spread of predictions, with its meaning."""
     widest: list[tuple[float, str]] = []
     for kind in (each.kind for each in KINDS):
         if kind.dimension not in data.sizes:
@@ -132,7 +132,7 @@ def _sentences(texts: Iterable[str]) -> tuple[str, ...]:
 
 
 def _times(ratio: float) -> str:
-    """Return a ratio as one says it.
+    """Return a ratio in words.
 
     >>> _times(1.31), _times(2.34), _times(4512.3), _times(3.2e7)
     ('by 31 %', 'by a factor of 2.3', 'by a factor of 4,500', 'by more than 7 powers of ten')

@@ -1,4 +1,4 @@
-"""What the response and reliability rooms ask of their arguments.
+"""Checks of arguments for the packages response and reliability.
 
 Every error is an `InputError` that names the argument, what was expected and what was found.
 """

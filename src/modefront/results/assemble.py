@@ -94,7 +94,7 @@ def _at_bound(problem: UpdatingProblem, theta: Floats) -> Ints:
 
 
 def _data(problem: UpdatingProblem, front: Front) -> Values:
-    """Return what the results repeat of the problem."""
+    """Return the data, bounds and names of the problem that results repeat."""
     return {
         "measured_frequency": problem.data.mean_frequency,
         "properties": problem.properties,

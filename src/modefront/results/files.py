@@ -70,7 +70,7 @@ def written_for(path: Path) -> str | None:
 
 
 def _read(path: Path) -> xr.Dataset:
-    """Return what a netCDF file holds, read in a process that damaged files may end."""
+    """Return the contents of a netCDF file, read in a process that damaged files may end."""
     arrays, texts = isolated(READER, path, SECONDS, available_memory())
 
     def value(part: Mapping[str, Any]) -> Any:

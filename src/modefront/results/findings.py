@@ -1,4 +1,4 @@
-"""Findings: what the analysis of a front shows, in sentences, the most important first."""
+"""Findings of the analysis of a front as sentences, the most important first."""
 
 from __future__ import annotations
 
@@ -114,7 +114,7 @@ def _unknown_ends(front: Front) -> list[Finding]:
 
 
 def _identifiability(problem: UpdatingProblem, reference: Determination) -> Iterator[Finding]:
-    """Yield what the data determine at the reference."""
+    """Yield the determined combinations of parameters at the reference."""
     names, groups, where = problem.model.parameters, problem.groups, reference.point.label
     for text in no_effect_in_words(reference.idle, names):
         yield Rank.IDLE, f"at {where}: {text}"

@@ -38,7 +38,7 @@ from modefront.results.shapes import unit_scale
 from modefront.work.codec import record
 
 TOLERANCE = 1e-3
-"""What the basis may lack of a shape, over its length."""
+"""Error of a shape in the basis, over its length, at most."""
 
 AXES = ("x", "y", "z")
 
@@ -79,7 +79,7 @@ class ModeShapes:
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """What is drawn of a geometry.
+    """Lines, faces and nodes of a geometry that pictures show.
 
     Attributes
     ----------

@@ -1,4 +1,4 @@
-"""What a netCDF file holds, as plain arrays and texts: for processes that read files."""
+"""Contents of a netCDF file as plain arrays and texts: for processes that read files."""
 
 from __future__ import annotations
 

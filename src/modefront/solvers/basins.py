@@ -99,10 +99,10 @@ CROWD = 6
 
 WIDE = 0.15
 """Distance of neighbours on a rugged front of two objectives, in steps of the lattice, over which a
-point is looked for between them."""
+point is sought between them."""
 
 OTHERS = 1e-2
-"""Weight of the other objectives, in units of the ranges, where the least of one is looked for."""
+"""Weight of the other objectives, in units of the ranges, where the least of one is sought."""
 
 BESIDE, NEIGHBOURS = 1.5, 2
 """Distance of points of other branches, in steps of the ranges, within which a point is solved

@@ -28,7 +28,7 @@ from modefront.work.codec import record
 from modefront.work.task import IMMEDIATE, Executor, Task
 
 UNDEFINED = 1e20
-"""What an objective counts as where the model cannot be evaluated; pymoo takes no infinity."""
+"""Value of an objective where the model cannot be evaluated; pymoo takes no infinity."""
 
 
 def available() -> bool:

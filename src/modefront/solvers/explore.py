@@ -52,7 +52,7 @@ NEAR = 2e-2
 
 
 LIMIT = 60
-"""Local searches at most, where nothing else is said and no more of them are wanted at least."""
+"""Default limit of local searches, unless the least number requested is greater."""
 
 MOST = 10**6
 """Local searches, runs and generations that may be asked for."""
@@ -65,7 +65,7 @@ SPREAD = number("a share of the ranges above 0", lambda x: x > 0)
 
 @dataclass(frozen=True)
 class Search:
-    """How many local searches and runs of an evolution strategy seek global minima.
+    """Numbers of local searches and runs of an evolution strategy that seek global minima.
 
     Raises InputError for values that are not possible, alone or together.
 
@@ -102,7 +102,7 @@ class Search:
 
 
 class LocalSearch(Protocol):
-    """What leads from a start to the minimum below it."""
+    """Local search from a start to the minimum below it."""
 
     def value(self, J: Floats, /) -> float:
         """Return the number by which models are ordered."""
@@ -125,7 +125,7 @@ class Descent:
     negligible: float = 0.0
 
     def value(self, J: Floats) -> float:
-        """Return what is minimised."""
+        """Return the value of the programme."""
         return self.programme.value(J)
 
     def equal(self, J: Floats, other: Floats) -> bool:

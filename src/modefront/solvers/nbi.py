@@ -35,7 +35,7 @@ from modefront.solvers.sqp import Solution, solve
 from modefront.work.task import IMMEDIATE, Executor
 
 HALVINGS = 2
-"""How often a step along the front is halved, at most."""
+"""Halvings of a step along the front, at most."""
 
 
 @dataclass(frozen=True)

@@ -257,7 +257,7 @@ def solve(
 
 @dataclass
 class _Progress:
-    """What the steps so far say of whether the solution ends; ``start`` is its first violation."""
+    """Progress of the steps, by which the solution ends; ``start`` is its first violation."""
 
     options: Options
     start: float

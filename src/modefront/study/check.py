@@ -1,4 +1,4 @@
-"""The check of a study before it is run: mistakes, derivatives, what its data do not determine."""
+"""Check of a study before it is run: mistakes, derivatives, undetermined parameters."""
 
 from __future__ import annotations
 
@@ -85,7 +85,7 @@ class Findings:
 
     @property
     def sound(self) -> bool:
-        """Whether the derivatives are as they should be."""
+        """Whether the derivatives agree with finite differences."""
         return self.derivative_error <= AGREEMENT
 
 
@@ -225,7 +225,7 @@ def _fitted_by_any(problem: UpdatingProblem, i: int) -> str:
 
 
 def determined(problem: UpdatingProblem) -> tuple[str, ...]:
-    """Return what each group, and all together, determine at the nominal parameters."""
+    """Return the sentences on the combinations that each group, and all, determine."""
     names, groups = problem.model.parameters, problem.groups
     nominal, scale = problem.evaluate(problem.start), scale_at(problem, problem.start)
     idle = without_effect(problem, nominal, scale)

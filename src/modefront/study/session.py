@@ -198,7 +198,7 @@ def _prepare(folder: Path, aside: Sequence[Path] = ()) -> None:
 
 @dataclass(frozen=True)
 class _Session:
-    """The work of a study, and who does it."""
+    """The work of a study, with the executor that does it."""
 
     study: Study
     work: Run

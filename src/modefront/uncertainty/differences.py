@@ -61,9 +61,9 @@ def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stenci
     """
     m = axes.shape[1]
     std = np.linalg.norm(axes, axis=1)
-    ways = np.where(np.abs(axes) > NEGLIGIBLE * std[:, None], axes, 0.0).T
+    directions = np.where(np.abs(axes) > NEGLIGIBLE * std[:, None], axes, 0.0).T
     points, factors = np.empty((m, 2, theta.size)), np.empty((m, 3))
-    for k, direction in enumerate(ways):
+    for k, direction in enumerate(directions):
         up, down = (_room(theta, s * direction, lower, upper) for s in (1.0, -1.0))
         side = 1.0 if up >= down else -1.0
         central, aside = min(STEP, up, down), min(STEP, max(up, down) / 2)

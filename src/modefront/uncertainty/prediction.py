@@ -39,7 +39,7 @@ TRIALS = 100_000
 
 
 class TruncationError(ValueError):
-    """Hardly anything of a Gaussian is within the bounds."""
+    """The share of a Gaussian within the bounds is too small to sample."""
 
 
 def linear(covariance: Floats, slope: Floats) -> Floats:

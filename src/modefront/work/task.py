@@ -30,7 +30,7 @@ R = TypeVar("R")
 
 @dataclass(frozen=True)
 class Task(Generic[R]):
-    """A function to call, and what it is called with.
+    """A function with its arguments.
 
     Attributes
     ----------
@@ -60,7 +60,7 @@ class Task(Generic[R]):
 
     @property
     def identity(self) -> Identity:
-        """What tells the task from all others of the run.
+        """Identity of the task among all tasks of the run.
 
         The function is a part, so that no other one that was expected under its name is taken for
         it.

@@ -1,4 +1,4 @@
-"""What files of MATLAB's version 7.3, which are HDF5, hold: for processes that read files."""
+"""Contents of files of MATLAB's version 7.3, which are HDF5: for processes that read files."""
 
 from __future__ import annotations
 
@@ -15,7 +15,7 @@ Headers = dict[str, tuple[list[int], int]]
 
 
 def headers(path: Path) -> tuple[dict[str, np.ndarray[Any, Any]], Headers]:
-    """Return no arrays, and what is announced of each variable of a file."""
+    """Return no arrays, and the header of each variable of a file."""
     with h5py.File(path, "r") as file:
         out: Headers = {}
         for name in file:

@@ -54,7 +54,7 @@ class _Announced:
 
 
 def header(path: Path, _: str | None) -> Header:
-    """Return what a file announces; see `MatrixFormat`."""
+    """Return the header of a file; see `MatrixFormat`."""
     return _announced(path).header
 
 
@@ -93,7 +93,7 @@ def read_entries(path: Path, *, square: bool = True) -> Any:
 
 
 def entries(path: Path) -> tuple[dict[str, np.ndarray[Any, Any]], list[int]]:
-    """Return what SciPy reads from a file, as plain arrays: for processes that read files."""
+    """Return the entries of a file as plain arrays, by SciPy: for processes that read files."""
     matrix = scipy.io.mmread(path)
     if isinstance(matrix, np.ndarray):
         return {"values": matrix}, list(matrix.shape)

@@ -1,4 +1,4 @@
-r"""How wrong the modes of a reduced model are, from their residuals in the full one.
+r"""Errors of the modes of a reduced model, from their residuals in the full one.
 
 The basis is extended by :math:`A^{-1} r` for the residuals r of all models that are asked for, see
 `modefront.models.reduced.corrections`. The reduced problem in that space has the modes
@@ -62,7 +62,7 @@ FOUND = 1 / 3
 """Share of the error that an estimate has to have found."""
 
 SHARES = 0.9999, 0.99, 0.8, FOUND
-"""Shares of the error of which it is looked whether they were found."""
+"""Shares of the error that are tested, one after the other, for having been found."""
 
 MISSED = 0.99
 """Share of the error of a mode next to those in question that is left, where none is known."""
@@ -124,7 +124,7 @@ def missing(modes: int) -> Certificate:
 
 @dataclass(frozen=True, eq=False)
 class CertificateRequest:
-    """What is to be judged.
+    """Modes of one model whose errors are requested.
 
     Attributes
     ----------
@@ -259,7 +259,7 @@ def own_estimate(
 
 @dataclass(frozen=True, eq=False)
 class _Proof:
-    """What shows how much of the errors of the lowest modes a space has found.
+    """Evidence for the share of the errors of the lowest modes that a space has found.
 
     Attributes
     ----------
@@ -307,7 +307,7 @@ class _Proof:
         return np.sqrt(errors.shape[:m] ** 2 + outside + close)
 
     def _left(self, error: Floats) -> Floats:
-        """Return what is left of the errors of modes below the level at most, (below,)."""
+        """Return bounds of the errors not yet found, of modes below the level, (below,)."""
         missed = np.minimum(self._missed, MISSED) if self.exact_shift is None else MISSED
         ratio = np.full(self.of.below, missed / (1 - missed))
         for share in SHARES:
@@ -417,7 +417,7 @@ def _with_solutions(
 
 
 def _judged(K: Floats, M: Floats, n: int, lam: Floats, Y: Floats) -> _ErrorEstimate:
-    """Return how wrong the lowest modes of a basis are, given the matrices in a space.
+    """Return the errors of the lowest modes of a basis, given the matrices in a space.
 
     The basis is the first n columns of the space, and the modes have the eigenvalues lam (modes,)
     and coordinates Y (n, modes).

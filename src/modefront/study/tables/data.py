@@ -23,7 +23,7 @@ NEAR = 0.01
 """Distance of a sensor from the node of the test that is its own, over the size of the test."""
 
 ASKEW = 0.5
-"""Cosine between the directions of a sensor in the model and in the data below which it is said."""
+"""Cosine between the directions of a sensor in model and data below which these disagree."""
 
 
 def read_data(root: Table, model: Model | None) -> ModalData | None:

@@ -1,4 +1,4 @@
-"""``reduction`` and ``memory``: whether a model is solved in a reduced basis, and how exactly."""
+"""``reduction`` and ``memory``: use, tolerance and memory of a reduced basis."""
 
 from __future__ import annotations
 
