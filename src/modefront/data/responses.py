@@ -124,6 +124,7 @@ class FrequencyResponses:
         )
 
 
+# 8 arguments: the parts of measured functions, the optional ones by keyword.
 def frequency_responses(
     frequency: Floats,
     H: Complexes,

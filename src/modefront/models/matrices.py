@@ -232,6 +232,7 @@ class MatrixModel:
         return replace(whole, symbolic=_Counted(whole.symbolic))
 
 
+# 7 arguments: the matrices and places of a model, the optional ones by keyword.
 def matrices(
     parameters: Sequence[str],
     stiffness: Mapping[str, Matrix],
@@ -291,6 +292,7 @@ def matrices(
     return replace(model, floating=floating)
 
 
+# 7 arguments: the first fields of a `MatrixModel`.
 def affine_model(
     parameters: Sequence[str],
     sensors: Sequence[str],

@@ -129,6 +129,7 @@ def _heading(name: str, settings: Mapping[str, Any]) -> str:
     )
 
 
+# 16 fields: the keys of a table of a study file.
 @dataclass(frozen=True)
 class Passage:
     """First-passage probabilities at several levels.

@@ -91,6 +91,7 @@ class Bulk:
         return [dof for dof in every if dof not in gone and (kept is None or dof in kept)]
 
 
+# 15 fields: one for each kind of entry of a deck.
 @dataclass
 class _Content:
     """Entries collected while a deck is read."""

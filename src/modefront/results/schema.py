@@ -78,6 +78,7 @@ DIMENSIONS: Mapping[str, str] = {
 """Dimensions of the variables."""
 
 
+# 80 lines: a table, one entry a variable.
 def _models() -> Iterator[Variable]:
     yield Variable("label", ("point",), "name of the point", "text", required=True)
     yield Variable(
@@ -317,6 +318,7 @@ def _open() -> Iterator[Variable]:
     yield Variable("equal_objective", ("equal", "group"), "J_i", unit="1")
 
 
+# 65 lines: a table, one entry a variable.
 def _errors() -> Iterator[Variable]:
     by = "by errors of the data, linearised"
     yield Variable(
@@ -384,6 +386,7 @@ def _errors() -> Iterator[Variable]:
     )
 
 
+# 75 lines: a table, one entry a variable.
 def _shapes() -> Iterator[Variable]:
     yield Variable(
         "set_frequency",

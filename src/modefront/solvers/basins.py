@@ -228,6 +228,7 @@ def chosen(models: Models, count: int, rng: np.random.Generator) -> Ints:
     return np.asarray(pairs[better, np.arange(count)])
 
 
+# 9 arguments: the front of `nbi`, and the models known beside it.
 def explore_between(
     problem: Problem,
     target: Payoff,

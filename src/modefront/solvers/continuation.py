@@ -168,6 +168,7 @@ def continuation(
     return run.solutions()
 
 
+# 15 fields: the problem, and the state of the work.
 @dataclass
 class _Continuation:
     """A continuation at work.

@@ -49,6 +49,7 @@ def typical_sizes(points: Sequence[Solution]) -> Floats | None:
     return np.maximum(np.median(J, axis=0), np.finfo(float).tiny)
 
 
+# 7 arguments: the problem and one search, the executor by keyword.
 def edge(
     problem: Problem,
     objective: int,

@@ -149,6 +149,7 @@ class Descent:
         return replace(again, evaluations=solution.evaluations + again.evaluations)
 
 
+# 7 arguments: the problem and one search, its parts by keyword.
 def explore(
     problem: Problem,
     local: LocalSearch,

@@ -79,6 +79,7 @@ def same(solution: Solution, other: Solution) -> bool:
     return bool(np.array_equal(solution.theta, other.theta))
 
 
+# 8 arguments: the front, and the options of the part.
 def identifiable_part(
     problem: Problem,
     points: Sequence[Solution],

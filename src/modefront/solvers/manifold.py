@@ -167,6 +167,7 @@ class _Meter:
         return problem.evaluate(theta, derivatives=derivatives)
 
 
+# 8 arguments: the minima, and limits by keyword.
 def equivalent_models(
     problem: Problem,
     programme: Scalarisation,

@@ -105,6 +105,7 @@ def programmes(
     return Attainment(target, np.array([corner.theta for corner in corners]), floor)
 
 
+# 8 arguments: the simplex, and what is known of the front from before.
 def nbi(
     problem: Problem,
     edges: Sequence[Solution],

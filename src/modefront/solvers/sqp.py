@@ -186,6 +186,7 @@ def begin(evaluation: Evaluation) -> Solution:
     return Solution(evaluation, np.zeros((n, p, p)), np.zeros(n), np.inf, status, 0)
 
 
+# 61 lines: the loop reads as the algorithm in the head of the module.
 def solve(
     problem: Problem, programme: Scalarisation, start: Solution, options: Options | None = None
 ) -> Solution:

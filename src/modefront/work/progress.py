@@ -42,6 +42,7 @@ def ignore(_: State) -> None:
     """Ignore progress reports."""
 
 
+# 12 fields: five are given, the others are its state.
 @dataclass
 class Progress:
     """Follows the tasks of a run and reports its state after every change.

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from modefront.fronts.options import Pareto
 
 
+# 12 fields: a method is passed all that any of the methods needs.
 @dataclass(frozen=True)
 class Setting:
     """Problem, edges and options from which a method starts.

@@ -198,6 +198,7 @@ def with_modes(
     return basis, np.concatenate(errors)
 
 
+# 7 arguments: the model, the space and the request.
 def with_derivatives(
     pencil: Pencil,
     basis: Basis,

@@ -147,6 +147,7 @@ class _Projected:
     sensed: Floats
 
 
+# 11 fields: eight describe the basis, three are its state.
 @shared
 @dataclass(eq=False)
 class ReducedModel:
