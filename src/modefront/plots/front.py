@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from modefront._typing import Bools, Floats
+from modefront.fronts.methods import METHODS
 from modefront.plots.canvas import Picture, picture
 from modefront.plots.models import branches, is_path, series, shown
 from modefront.plots.parallel import key, parallel
@@ -48,7 +49,8 @@ def _one(data: xr.Dataset, error: Floats, group: str) -> Picture:
 def _two(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
     figure = picture(5.2, 4.0)
     axes = figure.add_subplot()
-    if is_path(data) and data.attrs["method"] in ("nbi", "weights"):
+    method = METHODS.get(data.attrs["method"])
+    if is_path(data) and method is not None and method.programme is not None:
         for branch in branches(data):
             axes.plot(*error[branch].T, "-", color=COLOURS[0], lw=1, alpha=0.5)
     _points(axes, data, error)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from modefront.fronts.methods import METHODS
 from modefront.predictions import KINDS
 from modefront.results.remarks import cautions, failures, quality, single
 from modefront.results.selection import front_points
@@ -55,24 +56,17 @@ def _study(data: xr.Dataset) -> Iterator[str]:
     front = front_points(data)
     optimal = int(data["pareto"].values[front].sum())
     method = str(data.attrs["method"])
+    title = METHODS[method].title if method in METHODS else method
     yield from _sentences(single(data))
     if front.size:
         yield (
-            f"The front has {_count(front.size, 'point')}, found by {METHODS.get(method, method)}; "
+            f"The front has {_count(front.size, 'point')}, found by {title}; "
             f"{optimal} of them are Pareto optimal: no known model is better in one group without "
             "being worse in another."
         )
     yield f"{_count(int(data.attrs['model_evaluations']), 'eigenproblem')} were solved in all."
     if data.attrs.get("remark"):
         yield f"{data.attrs['remark']}."
-
-
-METHODS = {
-    "nbi": "normal-boundary intersection",
-    "weights": "a sweep of the weights",
-    "spea2": "SPEA2",
-    "nsga2": "NSGA-II",
-}
 
 
 def _open(data: xr.Dataset) -> Iterator[str]:

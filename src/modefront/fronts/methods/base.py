@@ -74,6 +74,14 @@ class FrontMethod(Protocol):
         """Name in ``[pareto] method``, and first part of the labels of its points."""
 
     @property
+    def title(self) -> str:
+        """Name of the method in sentences."""
+
+    @property
+    def refines(self) -> bool:
+        """Whether it adds points where neighbours are far apart (``[pareto] refined``)."""
+
+    @property
     def programme(self) -> Literal["boundary", "weights"] | None:
         """Programme that a point solves: of the simplex between edges, of its weights, or none."""
 
