@@ -22,6 +22,7 @@ from modefront.identifiability.words import (
 )
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Determination
+from modefront.results.schema import AT_BOUND
 from modefront.solvers.manifold import Extent, Manifold
 from modefront.uncertainty.validity import LinearisationWarning
 
@@ -50,9 +51,6 @@ FEW = 10
 
 VARIED = 1e-3
 """Change of a parameter along a manifold, over its range, from which it is named."""
-
-AT_BOUND = 1e-9
-"""Share of the range of a parameter that a manifold may lack to go from bound to bound."""
 
 
 def findings(

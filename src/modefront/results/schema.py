@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 
+from modefront._typing import Ints
 from modefront.predictions import KINDS
 from modefront.variables import Values, Variable
 
@@ -78,7 +79,19 @@ DIMENSIONS: Mapping[str, str] = {
 """Dimensions of the variables."""
 
 
-# 80 lines: a table, one entry a variable.
+AT_BOUND = 1e-9
+"""Distance from a bound, over the range, up to which a parameter is at it: solvers set it exactly
+there, and files in text lose less."""
+
+
+def _at_bound(values: Mapping[str, Any]) -> Ints:
+    lower, upper = np.asarray(values["bounds"]).T
+    margin = AT_BOUND * (upper - lower)
+    side = np.where(values["theta"] >= upper - margin, 1, 0)
+    return np.where(values["theta"] <= lower + margin, -1, side)
+
+
+# 87 lines: a table, one entry a variable.
 def _models() -> Iterator[Variable]:
     yield Variable("label", ("point",), "name of the point", "text", required=True)
     yield Variable(
@@ -106,7 +119,14 @@ def _models() -> Iterator[Variable]:
     )
     yield Variable("theta", ("point", "parameter"), "parameter values", required=True)
     yield Variable("objective", ("point", "group"), "J_i", unit="1", required=True)
-    yield Variable("error", ("point", "group"), "sqrt(J_i / a_i)", unit="1", required=True)
+    yield Variable(
+        "error",
+        ("point", "group"),
+        "sqrt(J_i / a_i)",
+        unit="1",
+        required=True,
+        value=lambda values: np.sqrt(values["objective"] / values["properties"]),
+    )
     yield Variable(
         "weight",
         ("point", "group"),
@@ -158,6 +178,7 @@ def _models() -> Iterator[Variable]:
         ("point", "parameter"),
         "-1 at the lower bound, 1 at the upper one, 0 between them",
         "count",
+        value=_at_bound,
     )
 
 
@@ -612,6 +633,11 @@ ATTRIBUTES: Mapping[str, Attribute] = {
     )
 }
 """Attributes by name."""
+
+
+def derived(values: Mapping[str, Any]) -> dict[str, object]:
+    """Return the values of the variables that follow from others."""
+    return {x.name: x.value(values) for x in VARIABLES.values() if x.value is not None}
 
 
 def described(
