@@ -98,10 +98,10 @@ CROWD = 6
 
 WIDE = 0.15
 """Distance of neighbours on a rugged front of two objectives, in steps of the lattice, over which a
-point is looked for between them."""
+point is sought between them."""
 
 OTHERS = 1e-2
-"""Weight of the other objectives, in units of the ranges, where the least of one is looked for."""
+"""Weight of the other objectives, in units of the ranges, where the least of one is sought."""
 
 _ROUGH, _SHORT = Options(step=NEAR / 4, iterations=8), Options(iterations=60)
 
@@ -211,6 +211,7 @@ def chosen(models: Models, count: int, rng: np.random.Generator) -> Ints:
     return np.asarray(pairs[better, np.arange(count)])
 
 
+# 9 arguments: the front of `nbi`, and the models known beside it.
 def explore_between(
     problem: Problem,
     target: Payoff,
@@ -293,8 +294,8 @@ class _Between:
     def ahead(self, probes: Sequence[Solution], known: Models) -> bool:
         """Return whether a probe is ahead of all known models where it was to come to."""
         for solution in probes:
-            own = self.excess(solution, solution.J[None]).min()
-            if self.excess(solution, known.J).min() > own + AHEAD:
+            excess = self.excess(solution, solution.J[None]).min()
+            if self.excess(solution, known.J).min() > excess + AHEAD:
                 return True
         return False
 
@@ -370,7 +371,7 @@ class _Between:
     ) -> list[Solution]:
         """Return the points, each solved again from a model that is ahead of it, if any is."""
         current = list(points)
-        tried: set[tuple[int, bytes]] = set()
+        attempts: set[tuple[int, bytes]] = set()
         for turn in range(ROUNDS):
             everything = models_of([solution for solution in current if solution.feasible])
             everything = everything if models is None else models.joined(everything)
@@ -384,10 +385,14 @@ class _Between:
                     np.inf,
                 )
                 best = int(excess.argmin())
-                own = self.excess(solution, solution.J[None])[0] if solution.feasible else np.inf
+                current_excess = (
+                    self.excess(solution, solution.J[None])[0] if solution.feasible else np.inf
+                )
                 key = (k, everything.theta[best].tobytes())
-                if (excess[best] < own - AHEAD / 10 or not solution.converged) and key not in tried:
-                    tried.add(key)
+                if (
+                    excess[best] < current_excess - AHEAD / 10 or not solution.converged
+                ) and key not in attempts:
+                    attempts.add(key)
                     starts[k] = everything.theta[best]
             if not starts:
                 break
@@ -462,8 +467,8 @@ def _follow(problem: Problem, target: Payoff, theta: Floats, objective: int | No
         beta = np.maximum(target.place(evaluation.J), 0.0)
         programme = target.subproblem(np.asarray(beta / beta.sum()))
     else:
-        own = np.arange(evaluation.J.size) == objective
-        programme = weighted(np.where(own, 1.0, OTHERS) / target.scale)
+        chosen = np.arange(evaluation.J.size) == objective
+        programme = weighted(np.where(chosen, 1.0, OTHERS) / target.scale)
     end = solve(problem, programme, start, _ROUGH)
     return replace(end, evaluations=end.evaluations + 1)
 

@@ -39,6 +39,8 @@ class NormalBoundaryIntersection:
     """The front by normal-boundary intersection (Das & Dennis 1998)."""
 
     name: str = "nbi"
+    title: str = "normal-boundary intersection"
+    refines: bool = True
     programme: Literal["boundary"] = "boundary"
 
     @property
