@@ -174,20 +174,22 @@ def _sparse(model: MatrixModel, stiffness: SparseAffine, theta: Floats, shift: f
     if factor is None:
         return np.zeros(theta.size)
     start = np.random.default_rng(0).standard_normal((stiffness.size, 1))
-    forces = stiffness.derivatives_times(theta, start)[:, 0]
-    out = np.zeros(theta.size)
-    for j, force in enumerate(forces.T):
-        x, f, dK = np.zeros(force.shape), force, stiffness.derivative(theta, j)
-        for _ in range(STEPS if force.any() else 0):
-            x = factor.solve(f[:, None])[:, 0]
-            energy = float(x @ f)  # of x in the norm of K, squared
-            if energy <= 0:
-                break
-            x = x / np.sqrt(energy)
-            f = dK @ x
-            before, out[j] = out[j], np.sqrt(max(float(f @ factor.solve(f[:, None])[:, 0]), 0.0))
-            if abs(out[j] - before) <= SETTLED * out[j]:  # at once, where dK is of rank one
-                break
+    F = stiffness.derivatives_times(theta, start)[:, 0]
+    dK = [stiffness.derivative(theta, j) for j in range(theta.size)]
+    out, active, X = np.zeros(theta.size), np.flatnonzero(F.any(axis=0)), np.zeros(F.shape)
+    X[:, active] = factor.solve(F[:, active])
+    for _ in range(STEPS):
+        energy = np.einsum("nj,nj->j", X, F)  # of each x in the norm of K, squared
+        active = active[energy[active] > 0]
+        if not active.size:
+            break
+        X[:, active] /= np.sqrt(energy[active])
+        F[:, active] = np.stack([dK[j] @ X[:, j] for j in active], axis=1)
+        X[:, active] = factor.solve(F[:, active])
+        before, after = out[active], np.einsum("nj,nj->j", X[:, active], F[:, active])
+        out[active] = np.sqrt(np.maximum(after, 0.0))
+        # An eigenvalue settles at once where dK is of rank one.
+        active = active[np.abs(out[active] - before) > SETTLED * out[active]]
     return out
 
 
