@@ -60,7 +60,7 @@ RANK = 1e-6
 RIGID = 1e-3
 """Frequency over the greatest one below which a measured mode is one of a rigid body."""
 
-SETTLED = 1e-13
+SETTLED = 1e-3
 """Relative change of an eigenvalue at which power iteration ends."""
 
 SHIFT = 1e-3
@@ -188,7 +188,6 @@ def _sparse(model: MatrixModel, stiffness: SparseAffine, theta: Floats, shift: f
         X[:, active] = factor.solve(F[:, active])
         before, after = out[active], np.einsum("nj,nj->j", X[:, active], F[:, active])
         out[active] = np.sqrt(np.maximum(after, 0.0))
-        # An eigenvalue settles at once where dK is of rank one.
         active = active[np.abs(out[active] - before) > SETTLED * out[active]]
     return out
 
