@@ -11,8 +11,8 @@ tridiagonal system. With :math:`g_r = Q^T L^{-1} f_r` and the known modes j < k
 .. math:: \sum_{j \ge k} x_j \frac{x_j^T f_r}{1 - \lambda_r \mu_j} = L^{-T} Q P z_r, \qquad
     (I - \lambda_r T) z_r = P g_r, \qquad P = I - S S^T,
 
-S (N, k) being the known eigenvectors. The matrix is singular but for rounding, in a direction that P
-removes from both sides.
+S (N, k) being the known eigenvectors. The matrix is singular but for rounding, in a direction that
+P removes from both sides.
 
 Source: LAPACK Users' Guide, 1999, sections 2.4.4 and 2.4.5 (dsygst, dsytrd, dsterf, dstein).
 """
@@ -27,7 +27,7 @@ import scipy.linalg
 from modefront._typing import Bools, Floats
 from modefront.linalg.affine import DenseAffine
 
-MANY = 48
+MANY = 100
 """Degrees of freedom from which on this is faster than all modes, if few are wanted."""
 
 FEW = 0.25
@@ -82,12 +82,19 @@ class LowestModes:
         out[1:] = _turned(self.Q, self.tau, "T", out[1:])
         return out
 
-    def beyond(self, right: Floats, modes: int) -> Floats:
-        """Return P z_r for g_r (N, modes, p) of the lowest modes, shape (N, modes, p)."""
-        N, _, p = right.shape
+    def times(self, vectors: Floats) -> Floats:
+        """Return T times some vectors (N, m)."""
+        out = self.diagonal[:, None] * vectors
+        out[:-1] += self.beside[:, None] * vectors[1:]
+        out[1:] += self.beside[:, None] * vectors[:-1]
+        return out
+
+    def beyond(self, right: Floats, lam: Floats) -> Floats:
+        """Return P z_r for g_r (N, m, p) and eigenvalues (m,) among the known ones, (N, m, p)."""
+        N, modes, p = right.shape
         S, flat = self.S, right.reshape(N, -1)
         g = (flat - S @ (S.T @ flat)).reshape(right.shape).transpose(1, 0, 2).reshape(-1, p)
-        lam = self.lam[:modes, None]
+        lam = lam[:, None]
         beside = np.zeros((modes, N))
         beside[:, :-1] = -lam * self.beside
         off = beside.ravel()[:-1]
@@ -159,7 +166,7 @@ def derivatives(
     inside[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi[:, r])
     both = np.hstack([force[:, r].reshape(len(Phi), -1), sensors.T])
     right, seen = np.split(modes.transformed(both), [count * p], axis=1)
-    beyond = modes.beyond(right.reshape(len(Phi), count, p), count).reshape(len(Phi), -1)
+    beyond = modes.beyond(right.reshape(len(Phi), count, p), lam[r]).reshape(len(Phi), -1)
     dphi = (sensors @ Phi) @ inside.reshape(known, -1) - seen.T @ beyond
     return dlam[:count], dphi.reshape(-1, count, p), coincident[:count]
 
