@@ -13,6 +13,7 @@ from pathlib import Path
 from modefront.errors import Fault, InputError, reason
 
 MEGABYTE = 10**6
+"""Bytes."""
 
 KINDS = (
     (stat.S_ISDIR, "a folder"),

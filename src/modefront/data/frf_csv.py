@@ -23,6 +23,7 @@ from modefront.inputs import available_memory, file_size, refuse_holes
 FREQUENCY, REAL, IMAGINARY, COHERENCE = "frequency", "_re", "_im", "_coherence"
 
 MOST_FAULTS = 5
+"""Faults that are listed of one file."""
 
 LARGEST = 2 * 10**9
 """Bytes of a file, at most."""

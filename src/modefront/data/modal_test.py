@@ -24,6 +24,8 @@ from modefront.toml import Table, is_name, repeated
 
 UFF_ENDINGS = (".uff", ".unv", ".uf", ".bunv", ".ufb")
 MOST_MODES = 200
+"""Modes that a test file may ask for."""
+
 LARGEST = 64 * 10**6
 """Bytes of a test file, at most."""
 

@@ -33,15 +33,18 @@ SUFFIXES = (".uff", ".unv", ".uf")
 """Ends of names of universal files."""
 
 GEOMETRY = (15, 2411)
+"""Datasets of nodes."""
 
 SYSTEMS = 2420
 """Dataset of coordinate systems."""
 
 CARTESIAN, CYLINDRICAL = 0, 1
+"""Types of coordinate systems."""
 
 WHAT = "a universal file with modes (dataset 55)"
 
 NORMAL, COMPLEX = 2, (3, 7)
+"""Analysis types of normal and of complex modes."""
 
 ALONG = 1e-6
 """Component of a unit vector, below which it is the rounding of the axes in a file."""

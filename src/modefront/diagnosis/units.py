@@ -13,9 +13,10 @@ import numpy as np
 
 from modefront._typing import Bools, Floats
 from modefront.diagnosis.comparison import Comparison
-from modefront.diagnosis.measured import Measured, assigned, mac_values, pair_costs
+from modefront.diagnosis.measured import RIGID, Measured, assigned, mac_values, pair_costs
 
 RAD = 2 * np.pi
+"""Factor between circular frequencies and Hz."""
 
 DOUBTFUL = float(np.log(2.0))
 """Logarithm of a factor on all frequencies beyond which something is wrong."""
@@ -176,4 +177,4 @@ def _at(
 
 def _elastic(comparison: Comparison) -> Bools:
     """Return which modes of the model are none of a rigid body."""
-    return np.asarray(comparison.frequency > 1e-6 * comparison.frequency.max())
+    return np.asarray(comparison.frequency > RIGID * comparison.frequency.max())

@@ -20,7 +20,7 @@ from modefront._typing import Floats, Ints
 from modefront.errors import InputError, reason
 from modefront.fem.errors import FemError
 from modefront.inputs import available_memory, file_size, is_hdf5, refuse_holes
-from modefront.isolated import IsolatedError, isolated
+from modefront.isolated import IsolatedError, isolated, seconds_for
 from modefront.text import one_line
 
 Kind = Literal["beam", "shell", "solid"]
@@ -34,9 +34,6 @@ READER = "modefront.fem.mesh_reader:read_with_meshio"
 
 LARGEST = 2 * 10**9
 """Bytes of a mesh file, at most."""
-
-SECONDS, SPEED = 60.0, 10**6
-"""Time that reading may take, and bytes that are read a second at least besides."""
 
 MEMORY, PER_BYTE = 2 * 10**9, 40
 """Memory that reading may take, in bytes, and that for each byte of the file besides."""
@@ -151,7 +148,7 @@ def read_mesh(path: str | Path) -> Mesh:
         if reference := refers_to(path):
             raise FemError(f"{path}: expected a mesh that is one file, found {reference}")
         memory = min(available_memory(), MEMORY + PER_BYTE * size)
-        arrays, parts = isolated(READER, path, SECONDS + size / SPEED, memory)
+        arrays, parts = isolated(READER, path, seconds_for(size), memory)
     except IsolatedError as error:
         raise FemError(f"{path}: expected a mesh that meshio can read, found {error}") from None
     except InputError as error:

@@ -17,6 +17,7 @@ from scipy.optimize import linear_sum_assignment
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
 from modefront.options import check_fields, number, whole
+from modefront.rounding import TINY
 
 OUTSIDE = 1e3
 """Cost of a candidate outside the window of frequencies."""
@@ -83,7 +84,7 @@ def match(pairing: Pairing, data: ModalData, frequency: Floats, phi: Floats) -> 
     if q < m:
         raise ValueError(f"{m} measured modes cannot be paired with {q} model modes")
     with np.errstate(divide="ignore"):
-        distance = np.abs(np.log(np.maximum(frequency, 1e-300) / data.mean_frequency[:, None]))
+        distance = np.abs(np.log(np.maximum(frequency, TINY) / data.mean_frequency[:, None]))
     cost = np.where(np.isnan(values), distance, 1 - values)
     if pairing.window is not None:
         cost = cost + OUTSIDE * (distance > np.log(pairing.window))

@@ -53,9 +53,10 @@ from modefront.reliability import (
     WhiteNoise,
     step_effect,
 )
-from modefront.reliability.problem import LARGEST_ANGLE
+from modefront.reliability.problem import LARGEST_ANGLE, WHOLE
 from modefront.residuals.problem import UpdatingProblem
 from modefront.response import ModalSystem
+from modefront.rounding import ACCUMULATED
 
 MOST_WORKERS = 8
 """Threads at most; each takes some 100 MB."""
@@ -64,6 +65,7 @@ STEPS_A_PERIOD = 20
 """Time steps in the shortest period, where the step is not given."""
 
 MOST_STEPS = 10**6
+"""Time steps at most: convolutions of more fill the memory."""
 
 SIDES = {"one": Sided.ONE, "two": Sided.TWO}
 
@@ -234,7 +236,7 @@ class Passage:
             steps = self.duration / self.step
             if steps > MOST_STEPS:
                 yield Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps:.6g}")
-            elif steps < 0.5 or abs(steps - round(steps)) > 1e-6:
+            elif steps < 0.5 or abs(steps - round(steps)) > WHOLE:
                 expected = f"a whole number of steps of {self.step:g} s in {self.duration:g} s"
                 yield Fault("", "step", expected, f"{steps:.6g} of them")
 
@@ -294,7 +296,7 @@ class Passage:
         highest = max(float(system.omega.max()), soil)
         if self.step is not None:
             limit = LARGEST_ANGLE / highest
-            if self.step > limit * (1 + 1e-12):
+            if self.step > limit * (1 + ACCUMULATED):
                 period = f"a quarter of the shortest period ({highest / (2 * np.pi):.4g} Hz)"
                 expected = f"at most {limit:.4g} s, {period}"
                 raise wrong("step", expected, f"{self.step:g}")

@@ -22,8 +22,8 @@ from modefront.identifiability.words import (
 )
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Determination
-from modefront.results.schema import AT_BOUND
 from modefront.solvers.manifold import Extent, Manifold
+from modefront.solvers.tangents import AT_BOUND
 from modefront.uncertainty.validity import LinearisationWarning
 
 
