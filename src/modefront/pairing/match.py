@@ -36,9 +36,11 @@ class Pairing:
 
     Attributes
     ----------
-    method : by MAC, or by the order of the modes
-    window : greatest ratio of frequencies of a pair, above 1; None is no limit
-    spare : number of model modes that are candidates, beyond the number of measured ones
+    method : ``"mac"``, one to one with the greatest sum of MAC values; ``"order"``, measured mode r
+        is model mode r
+    window : greatest ratio of frequencies of a pair, above 1, where others are left; None for no
+        limit
+    spare : number of model modes, 0 or more, that are candidates beyond the number of measured ones
     """
 
     method: Literal["mac", "order"] = "mac"

@@ -100,9 +100,14 @@ MODULATION = Requirement(
 
 @dataclass(frozen=True)
 class SoilFilter:
-    """A filter of Kanai and Tajimi: frequency of the soil in Hz, and its damping ratio.
+    """A filter of white noise by a layer of soil, after Kanai and Tajimi.
 
     Raises InputError for values that are not possible.
+
+    Attributes
+    ----------
+    frequency : of the soil in Hz, above 0
+    damping : damping ratio of the soil, above 0
     """
 
     frequency: Annotated[float, SOIL_FREQUENCY]
@@ -144,16 +149,17 @@ class Passage:
     response : a sensor or output, a list of them, or weighted sums of them by their names; failure
         is that any of these leaves [-b, b]
     density : spectral density of the white noise at every input, (unit of load)²/(rad/s)
-    sided : whether it is a one- or a two-sided density
-    levels : barriers b
-    duration : T in s
+    sided : ``"one"`` or ``"two"``: whether the density is for frequencies above 0 only
+    levels : barriers b, above 0, in the unit of the responses, the same for all of them
+    duration : T in s, above 0
     force : where forces act, each with noise of its own; this or ``base``
     base : direction in which the base accelerates
-    step : time step in s; None for a twentieth of the shortest period
+    step : time step in s, a whole part of the duration and at most a quarter of the shortest
+        period; None for a twentieth of it
     filter : filter of the noise, such as that of a soil; None for white noise
     modulation : times in s and factors on the noise, linear between them; None for a constant 1
-    samples : number of samples for each model
-    method : one of `modefront.reliability.METHODS`
+    samples : number of samples for each model, 2 at least
+    method : ``"importance"``, ``"directional"``, ``"additive"`` or ``"monte-carlo"``
     modes : number of modes superposed; None for as many as reach 1.5 times the default band's end
     damping : a ratio, a list of ratios, one a mode, or ``"measured"``
     """
