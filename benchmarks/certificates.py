@@ -1,4 +1,4 @@
-"""How estimated errors of reduced models compare with true ones, over boxes of all widths.
+"""Estimated errors of reduced models beside true ones, over boxes of all widths.
 
     python benchmarks/certificates.py [--structures 24] [--models 9] [--seed 0]
 
@@ -227,7 +227,7 @@ def models(rng: np.random.Generator, lower: Floats, upper: Floats, count: int) -
 
 
 def box(bounds: tuple[float, float], structures: int, count: int, seed: int) -> dict[str, float]:
-    """Return what is measured of one box."""
+    """Return the errors of one box."""
     result: list[Comparison] = []
     factorisations = 0
     for number in range(structures):

@@ -1,4 +1,4 @@
-"""What several processes gain over one, in one run.
+"""Gain of several processes over one, in one run.
 
     python benchmarks/workers.py [--workers 2] [--studies building footbridge]
 

@@ -1,6 +1,6 @@
 """Edges beside those of SciPy's optimisers, on random chains that are like no example.
 
-Three regimes of the objective whose edge is looked for: one minimum; a valley, in which the
+Three regimes of the objective whose edge is sought: one minimum; a valley, in which the
 objective is small but not zero and hardly changes; a manifold of models that fit exactly.
 """
 

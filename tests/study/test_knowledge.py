@@ -1,4 +1,4 @@
-"""What results say of parameters that data do not determine, and of errors of the data."""
+"""Results on parameters that data do not determine, and on errors of the data."""
 
 from dataclasses import replace
 from functools import cache

@@ -1,4 +1,4 @@
-"""What is reported of ends that are not known, of copies, and of flat parts that are not cut."""
+"""Reports of unknown ends, of copies, and of flat parts that are not cut."""
 
 import json
 from dataclasses import dataclass, replace
