@@ -66,7 +66,7 @@ AGREE = 1e-10
 
 @dataclass
 class Line:
-    """Comparison of the results of a problem; an excess is NaN where there is nothing to compare."""
+    """Comparison of the results of a problem; an excess is NaN where nothing is compared."""
 
     case: Case
     edges: dict[str, float] = field(default_factory=dict)
