@@ -122,6 +122,7 @@ def test_a_manifold_of_exact_fits(key: Key, i: int) -> None:
     assert_as_good(key, i)
 
 
+@pytest.mark.slow
 def test_a_front_on_which_other_modes_are_paired() -> None:
     """Of this frame, SLSQP finds models between the points of two pairings, on the second one."""
     problem = make("frame", 29).problem
