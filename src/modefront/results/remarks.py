@@ -52,7 +52,7 @@ def digest(findings: Sequence[str], where: str, most: int | None = MOST) -> list
 def remarks(data: xr.Dataset) -> list[str]:
     """Return all remarks on the results."""
     return [
-        *quality(data),
+        *misfit(data),
         *single(data),
         *_exact(data),
         *_iteration(data),
@@ -77,7 +77,7 @@ def headlines(data: xr.Dataset) -> list[str]:
     """
     return [
         *failures(data),
-        *quality(data),
+        *misfit(data),
         *single(data),
         *_gaps(data),
         *_poor_pairs(data, FEW),
@@ -146,7 +146,7 @@ def places(data: xr.Dataset, chosen: Bools) -> str:
     return ", ".join(parts)
 
 
-def quality(data: xr.Dataset) -> Iterator[str]:
+def misfit(data: xr.Dataset) -> Iterator[str]:
     """Yield how far models are from the data: all Pareto-optimal ones, the reference, the nominal.
 
     Pareto-optimal are edges and weighted models too: the best models are never left out.
