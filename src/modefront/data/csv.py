@@ -28,7 +28,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, InputError, reason, suggestion
-from modefront.inputs import available_memory, file_size, refuse_holes
+from modefront.inputs import MOST_DATA, available_memory, file_size, refuse_holes
 from modefront.rounding import LARGEST as LARGEST_NUMBER
 from modefront.text import NAME, clean
 
@@ -77,9 +77,6 @@ SUGGESTED = 20
 
 TOGETHER = 10_000
 """Rows that are read at once, by columns."""
-
-LARGEST = 2 * 10**9
-"""Bytes of a file, at most."""
 
 FREQUENCIES = 1e-9, 1e12
 """Frequencies in Hz beyond which a number must be a slip."""
@@ -194,7 +191,7 @@ class _Rows:
 def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
     """Return the numbered rows that are not blank; raises InputError for what is no CSV."""
     expected = "a file of modal data"
-    size = file_size(path, expected, min(LARGEST, available_memory() // 4))
+    size = file_size(path, expected, min(MOST_DATA, available_memory() // 4))
     try:
         refuse_holes(path, expected, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:

@@ -19,7 +19,7 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.errors import InputError, reason
 from modefront.fem.errors import FemError
-from modefront.inputs import available_memory, file_size, is_hdf5, refuse_holes
+from modefront.inputs import MOST_DATA, available_memory, file_size, is_hdf5, refuse_holes
 from modefront.isolated import IsolatedError, isolated, seconds_for
 from modefront.text import one_line
 
@@ -31,9 +31,6 @@ CELL_TYPES: Mapping[Kind, tuple[str, ...]] = {
 }
 
 READER = "modefront.fem.mesh_reader:read_with_meshio"
-
-LARGEST = 2 * 10**9
-"""Bytes of a mesh file, at most."""
 
 MEMORY, PER_BYTE = 2 * 10**9, 40
 """Memory that reading may take, in bytes, and that for each byte of the file besides."""
@@ -143,7 +140,7 @@ def read_mesh(path: str | Path) -> Mesh:
         raise FemError("reading meshes needs meshio: install it with `pip install modefront[mesh]`")
     path = Path(path)
     try:
-        size = file_size(path, "a mesh", LARGEST)
+        size = file_size(path, "a mesh", MOST_DATA)
         refuse_holes(path, "a mesh", size)
         if reference := refers_to(path):
             raise FemError(f"{path}: expected a mesh that is one file, found {reference}")
