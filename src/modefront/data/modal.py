@@ -7,7 +7,25 @@ from functools import cached_property
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Bools, Floats, Ints
+
+
+@dataclass(frozen=True, eq=False)
+class MeasuredShapes:
+    """Shapes with zeros where nothing was measured.
+
+    Attributes
+    ----------
+    measured : (sets, modes, sensors) which components were measured
+    shape : (sets, modes, sensors) components, or 0
+    squares : (sets, modes, 1) sum of their squares
+    sets : (modes, 1) number of data sets with the shape of each mode
+    """
+
+    measured: Bools
+    shape: Floats
+    squares: Floats
+    sets: Ints
 
 
 @dataclass(frozen=True)
@@ -42,6 +60,14 @@ class ModalData:
         count = measured.sum(axis=0)
         out: Floats = np.where(count > 0, total / np.maximum(count, 1), np.nan)
         return out
+
+    @cached_property
+    def measured_shapes(self) -> MeasuredShapes:
+        """The shapes with zeros where nothing was measured."""
+        measured = np.isfinite(self.shape)
+        shape = np.where(measured, self.shape, 0.0)
+        squares = (shape**2).sum(axis=2)[:, :, None]
+        return MeasuredShapes(measured, shape, squares, measured.any(axis=2).sum(axis=0)[:, None])
 
 
 # 7 arguments: the parts of modal data, the optional ones by keyword.

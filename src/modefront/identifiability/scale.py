@@ -46,6 +46,7 @@ from modefront.linalg.affine import DenseAffine, SparseAffine
 from modefront.linalg.factorisation import Factorisation, SingularMatrixError
 from modefront.models.local import matrices_at
 from modefront.models.matrices import MatrixModel
+from modefront.modes import sparse
 from modefront.residuals.problem import UpdatingProblem
 
 STEPS = 12
@@ -63,7 +64,7 @@ RANK = 1e-6
 RIGID = 1e-3
 """Frequency over the greatest one below which a measured mode is one of a rigid body."""
 
-SETTLED = 1e-13
+SETTLED = 1e-3
 """Relative change of an eigenvalue at which power iteration ends."""
 
 SHIFT = 1e-3
@@ -172,34 +173,63 @@ def _dense_at(matrix: DenseAffine | SparseAffine, theta: Floats) -> Floats:
 
 
 def _sparse(model: MatrixModel, stiffness: SparseAffine, theta: Floats, shift: float) -> Floats:
-    """Return the same by power iteration in the norm of K, from one motion for all parameters."""
+    """Return the same for sparse matrices.
+
+    Where no degree of freedom tells it, it is found by power iteration in the norm of K, from one
+    motion for all parameters.
+    """
+    known = _of_single_terms(stiffness, theta)
+    if np.isfinite(known).all():
+        return known
     factor = _definite(model, theta, shift)
     if factor is None:
         return np.zeros(theta.size)
     start = np.random.default_rng(0).standard_normal((stiffness.size, 1))
-    forces = stiffness.derivatives_times(theta, start)[:, 0]
-    out = np.zeros(theta.size)
-    for j, force in enumerate(forces.T):
-        x, f, dK = np.zeros(force.shape), force, stiffness.derivative(theta, j)
-        for _ in range(STEPS if force.any() else 0):
-            x = factor.solve(f[:, None])[:, 0]
-            energy = float(x @ f)  # of x in the norm of K, squared
-            if energy <= 0:
-                break
-            x = x / np.sqrt(energy)
-            f = dK @ x
-            before, out[j] = out[j], np.sqrt(max(float(f @ factor.solve(f[:, None])[:, 0]), 0.0))
-            if abs(out[j] - before) <= SETTLED * out[j]:  # at once, where dK is of rank one
-                break
+    F = stiffness.derivatives_times(theta, start)[:, 0]
+    dK = [stiffness.derivative(theta, j) for j in range(theta.size)]
+    out, X = np.where(np.isfinite(known), known, 0.0), np.zeros(F.shape)
+    active = np.flatnonzero(F.any(axis=0) & np.isnan(known))
+    X[:, active] = factor.solve(F[:, active])
+    for _ in range(STEPS):
+        energy = np.einsum("nj,nj->j", X, F)  # of each x in the norm of K, squared
+        active = active[energy[active] > 0]
+        if not active.size:
+            break
+        X[:, active] /= np.sqrt(energy[active])
+        F[:, active] = np.stack([dK[j] @ X[:, j] for j in active], axis=1)
+        X[:, active] = factor.solve(F[:, active])
+        before, after = out[active], np.einsum("nj,nj->j", X[:, active], F[:, active])
+        out[active] = np.sqrt(np.maximum(after, 0.0))
+        active = active[np.abs(out[active] - before) > SETTLED * out[active]]
     return out
+
+
+def _of_single_terms(stiffness: SparseAffine, theta: Floats) -> Floats:
+    r"""Return what the terms of K alone tell of its greatest eigenvalues, (p,); NaN where nothing.
+
+    Where :math:`K = \sum_k c_k K_k` with semidefinite terms and positive coefficients, no
+    eigenvalue of dK with respect to K is above the greatest :math:`|\partial c_k| / c_k`, and a
+    degree of freedom that only this term has is an eigenvector with that eigenvalue. Terms with
+    negative entries on their diagonals are not semidefinite.
+    """
+    c, dc = stiffness.coefficients.values(theta), stiffness.coefficients.jacobian(theta)
+    D = _diagonals(stiffness)
+    if not (c > 0).all() or (D < 0).any():
+        return np.full(theta.size, np.nan)
+    rates = np.abs(dc) / c[:, None]
+    alone = ((D > 0) & ((D > 0).sum(axis=1) == 1)[:, None]).any(axis=0)
+    out = rates.max(axis=0)
+    return np.where(alone[rates.argmax(axis=0)] | (out == 0), out, np.nan)
 
 
 def _definite(model: MatrixModel, theta: Floats, shift: float) -> Factorisation | None:
     """Return the factor of K, or of K + shift M where K is singular; None if it is indefinite."""
     K, M = model.pencil.K.at(theta).data, model.pencil.M.at(theta).data
-    sigma = -shift if model.floating and model.is_singular(theta) else 0.0
+    regular = sparse.regular_factor(model.pencil, theta) if model.floating else None
+    if regular is not None:
+        return regular
     try:
-        factor = model.pencil.factor(K, M, sigma)
+        factor = model.pencil.factor(K, M, -shift if model.floating else 0.0)
     except SingularMatrixError:
         return None
     return factor if factor.negative == 0 else None
@@ -261,8 +291,8 @@ def _rows(matrix: DenseAffine | SparseAffine, theta: Floats) -> tuple[Floats, Fl
     else:
         row = np.repeat(np.arange(matrix.size), np.diff(matrix.indptr))
         weights = scipy.sparse.diags_array(d[row] * d[matrix.indices])
-        sparse = weights @ matrix.terms
-        gram = (sparse.T @ sparse).toarray()
+        scaled = weights @ matrix.terms
+        gram = (scaled.T @ scaled).toarray()
     length = np.sqrt(np.diag(gram))
     over = np.where(length > 0, length, 1.0)
     lam, V = np.linalg.eigh(gram / np.outer(over, over))

@@ -35,7 +35,9 @@ import scipy.linalg
 from modefront._typing import Bools, Floats
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, first_axis
+from modefront.modes import tridiagonal
 from modefront.modes.result import ModeDerivatives, Modes
+from modefront.modes.tridiagonal import LowestModes, lowest_modes
 
 CLOSE = 1e-2
 """Relative gap of eigenvalues below which a quotient is formed with the gap itself."""
@@ -72,6 +74,13 @@ def modes(
     frequency than asked for.
     """
     Kt, Mt = K.at(theta), M.at(theta)
+    few = lowest_modes(Kt, Mt, count)
+    if few is not None:
+        at_sensors = few.lam[:count], sensors @ few.Phi[:, :count]
+        if not derivatives:
+            return Modes(*at_sensors)
+        slopes = tridiagonal.derivatives(K, M, sensors, theta, few, count)
+        return Modes(*at_sensors, ModeDerivatives(*slopes))
     decomposition = decompose(Kt, Mt)
     lam = decomposition.lam
     if lam.size < count:
@@ -107,6 +116,14 @@ class Decomposition:
         finite = self.lam.size
         out: Floats = self.X[:, :finite] / np.sqrt(self.mu[:finite])
         return out
+
+
+def lowest(K: Floats, M: Floats, count: int) -> LowestModes | Decomposition:
+    """Return all finite eigenvalues and the ``count`` lowest modes, or as many as there are.
+
+    Raises ModelError where K or M is indefinite.
+    """
+    return lowest_modes(K, M, count) or decompose(K, M)
 
 
 def decompose(K: Floats, M: Floats) -> Decomposition:

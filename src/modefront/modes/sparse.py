@@ -164,7 +164,12 @@ def _noise(K: scipy.sparse.csr_array, Phi: Floats) -> Floats:
 
 
 def is_singular(pencil: Pencil, theta: Floats) -> bool:
-    """Return whether a positive semidefinite K(theta) is singular, and not just soft.
+    """Return whether a positive semidefinite K(theta) is singular, and not just soft."""
+    return regular_factor(pencil, theta) is None
+
+
+def regular_factor(pencil: Pencil, theta: Floats) -> Factorisation | None:
+    """Return the factor of a positive definite K(theta); None where it is singular, or indefinite.
 
     Motions that strain nothing leave an energy of rounding, over that of the diagonal; the softest
     motion of a slender structure of many elements comes near to it, but not that near.
@@ -173,12 +178,12 @@ def is_singular(pencil: Pencil, theta: Floats) -> bool:
     try:
         factor = pencil.factor(K.data, pencil.M.at(theta).data, 0.0)
     except SingularMatrixError:
-        return True
+        return None
     right = np.random.default_rng(0).standard_normal((pencil.size, BLOCK))
     X = factor.solve(right)
     energy = np.einsum("nb,nb->b", X, right)
     rounding = np.finfo(float).eps * (K.diagonal() @ X**2)
-    return factor.negative != 0 or bool((energy < rounding).any())
+    return factor if factor.negative == 0 and not (energy < rounding).any() else None
 
 
 def _gap(lam: Floats, known: int, count: int, s: float, complete: bool) -> tuple[int, float] | None:

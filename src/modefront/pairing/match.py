@@ -103,12 +103,10 @@ def mean_mac(data: ModalData, phi: Floats) -> Floats:
     """
     size = np.abs(phi).max(axis=0, initial=0.0)
     phi = np.where(size > UNSEEN * size.max(initial=0.0), phi, 0.0)
-    measured = np.isfinite(data.shape)
-    psi = np.where(measured, data.shape, 0.0)
+    known = data.measured_shapes
     # The MAC of each pair at the sensors that measured its mode in its data set.
-    cross = (psi @ phi) ** 2
-    norm = (psi**2).sum(axis=2)[:, :, None] * (measured @ phi**2)
+    cross = (known.shape @ phi) ** 2
+    norm = known.squares * (known.measured @ phi**2)
     values = np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)
-    count = measured.any(axis=2).sum(axis=0)[:, None]
-    total = values.sum(axis=0)
+    total, count = values.sum(axis=0), known.sets
     return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)

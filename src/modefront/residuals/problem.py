@@ -76,10 +76,12 @@ class UpdatingProblem:
             modes, pairs = self.modes(theta, derivatives=derivatives)
         except ModelError:
             return infeasible(theta, len(self.groups))
-        J = np.array([r @ r for r in self._vectors(modes, pairs)])
-        residuals = self._residuals(modes, pairs) if derivatives else ()
+        vectors = self._vectors(modes, pairs)
+        J = np.array([r @ r for r in vectors])
+        residuals: tuple[Residual, ...] = ()
         slopes = None
         if derivatives:
+            residuals = self._residuals(modes, pairs, vectors)
             slopes = ObjectiveDerivatives(
                 np.array([2 * residual.r @ residual.dr for residual in residuals]),
                 np.array([2 * residual.dr.T @ residual.dr for residual in residuals]),
@@ -111,11 +113,14 @@ class UpdatingProblem:
 
         Raises ModelError where the model has no modes at ``theta``.
         """
-        return self._residuals(*self.modes(theta))
+        modes, pairs = self.modes(theta)
+        return self._residuals(modes, pairs, self._vectors(modes, pairs))
 
-    def _residuals(self, modes: Modes, pairs: Pairs) -> tuple[Residual, ...]:
+    def _residuals(
+        self, modes: Modes, pairs: Pairs, vectors: Sequence[Floats]
+    ) -> tuple[Residual, ...]:
         slopes = [_stacked([member.dr(modes, pairs) for member in row]) for row in self.members]
-        return tuple(map(Residual, self._vectors(modes, pairs), slopes))
+        return tuple(map(Residual, vectors, slopes))
 
     def _vectors(self, modes: Modes, pairs: Pairs) -> list[Floats]:
         """Return the residual vector of each group without derivatives."""

@@ -74,7 +74,7 @@ class Linearised:
             multipliers, passes = self._first(qp), 2 if self.y.size else 1
         for _ in range(passes):
             w = multipliers.weights(self.programme, self.evaluation.J)
-            qp = replace(qp, B=np.tensordot(w, H, axes=1) * span + curved)
+            qp = replace(qp, B=weighted(w, H) * span + curved)
             step = solve_qp(qp)
             multipliers = self._bounded(qp, step)
         return qp, step, multipliers
@@ -152,6 +152,11 @@ def linearised(problem: Problem, programme: Scalarisation, evaluation: Evaluatio
     return Linearised(programme, evaluation, span, reach, df, df @ dJ, c, dc, y, dy)
 
 
+def weighted(w: Floats, H: Floats) -> Floats:
+    """Return sum_i w_i H_i for w (n,) and H (n, p, p)."""
+    return np.asarray((w[None] @ H.reshape(len(H), -1)).reshape(H.shape[1:]))
+
+
 def length(s: Floats) -> float:
     """Return the greatest component; 0 of nothing."""
-    return float(np.max(np.abs(s), initial=0.0))
+    return float(np.abs(s).max()) if s.size else 0.0

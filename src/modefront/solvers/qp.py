@@ -75,6 +75,8 @@ class QuadraticProgramme:
 
     def ties(self, active: list[int]) -> Floats:
         """Return E (., p), the equalities' slopes and those that keep active functions equal."""
+        if len(active) < 2:
+            return self.A
         return np.vstack([self.A, self.C[active[1:]] - self.C[active[:1]]])
 
     def slope(self, s: Floats, active: list[int]) -> Floats:
@@ -88,8 +90,11 @@ class QuadraticProgramme:
         Where equalities hardly depend on these, mu is of any size.
         """
         E = self.ties(active)
-        both = np.linalg.lstsq(E[:, free].T, -self.slope(s, active)[free], rcond=None)[0]
-        mu, others = np.split(both, [len(self.A)])
+        both = np.zeros(0)
+        if len(E):
+            left = -self.slope(s, active)[free]
+            both = np.asarray(np.linalg.lstsq(E[:, free].T, left, rcond=None)[0], dtype=float)
+        mu, others = both[: len(self.A)], both[len(self.A) :]
         kappa = np.zeros(len(self.C))
         if active:
             kappa[active[0]] = 1 - others.sum()
@@ -146,11 +151,12 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
 def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools, width: float) -> Floats:
     """Return the step of the free variables to their minimum that leaves E s as it is."""
     d = np.zeros(free.size)
-    Z = _null_space(E[:, free])
-    if Z.shape[1]:
-        curvature, V = np.linalg.eigh(Z.T @ B[np.ix_(free, free)] @ Z)
+    inner = B if free.all() else B[np.ix_(free, free)]
+    Z = _null_space(E[:, free]) if len(E) else None
+    if free.any() if Z is None else Z.shape[1]:
+        curvature, V = np.linalg.eigh(inner if Z is None else Z.T @ inner @ Z)
         curvature = np.abs(curvature)
-        T = Z @ V
+        T = V if Z is None else Z @ V
         slope = T.T @ gradient[free]
         steepest = float(np.abs(slope).max()) / width
         floor = max(FLAT * curvature.max(), FAR * steepest, np.finfo(float).tiny ** 0.5)

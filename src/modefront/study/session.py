@@ -173,7 +173,7 @@ def run(
     with locked(folder):
         _prepare(tasks, (tasks, folder / FILE) if fresh or not study.work else ())
         _remove_leftovers(folder / FILE, tasks)
-        with backend(workers, scheduler, warm=__name__) as carrier:
+        with backend(workers, scheduler, warm=pareto_front.__module__) as carrier:
             progress.workers = carrier.workers
             data = _Session(study, Run(Store(tasks), progress, carrier)).results()
         _keep_other(folder / FILE, study.digest)

@@ -89,7 +89,7 @@ class _Context(SpawnContext):
 class LocalPool:
     """Processes of this machine, spawned, with one thread of the BLAS each.
 
-    They import the module ``warm`` when they start, and with it what tasks need.
+    They import the module ``warm`` when they start, and with it what most tasks need.
     """
 
     count: int

@@ -57,6 +57,7 @@ from modefront.models.reduced.corrections import Factor
 from modefront.modes import dense
 from modefront.modes.spectrum import Shifted
 from modefront.modes.subspace import orthonormal
+from modefront.modes.tridiagonal import LowestModes
 
 FOUND = 1 / 3
 """Share of the error that an estimate has to have found."""
@@ -328,23 +329,21 @@ class _Proof:
         rho, level = of.lam[:m] - self.shift, of.sigma - self.shift
         share = error[:m] / np.maximum(rho - error[:m], np.finfo(float).tiny) / part
         allowed = rho * np.maximum(share / (1 + share), NOTHING)
-        out = np.zeros(m, dtype=np.bool_)
-        for j in range(m):
-            ell = rho[j] - allowed[j]
-            above = rho - rho[j] + allowed[j] - known  # rho_k - ell, without cancellation
-            if self.exact_shift is None:
-                g = of.bounds[0] * (1 - ell / level)
-                if not g > 0:
-                    continue
-                D = ell / (rho - known)
-                P = energy * np.outer(D, D) / g
-            else:
-                above = above * (level - rho + known) / (level - ell)
-                P = energy
-            unit = 1 / np.sqrt(np.maximum(np.abs(above), np.finfo(float).tiny))
-            values = np.linalg.eigvalsh(np.diag(np.sign(above)) - P * np.outer(unit, unit))
-            out[j] = np.sum(values < 0) <= j
-        return out
+        # One row, or one matrix, a mode whose eigenvalue is bounded.
+        ell = (rho - allowed)[:, None]
+        above = rho - rho[:, None] + allowed[:, None] - known  # rho_k - ell, without cancellation
+        unit = np.ones(above.shape)
+        possible = np.ones(m, dtype=np.bool_)
+        if self.exact_shift is None:
+            g = of.bounds[0] * (1 - ell / level)
+            possible = g[:, 0] > 0
+            unit = ell / (rho - known) / np.sqrt(np.where(g > 0, g, 1.0))
+        else:
+            above = above * (level - rho + known) / (level - ell)
+        unit = unit / np.sqrt(np.maximum(np.abs(above), np.finfo(float).tiny))
+        signs = np.sign(above)[:, None] * np.eye(m)
+        values = np.linalg.eigvalsh(signs - energy * unit[:, :, None] * unit[:, None])
+        return np.asarray(possible & ((values < 0).sum(axis=1) <= np.arange(m)))
 
 
 def _rate(of: CertificateRequest, shift: float) -> Floats:
@@ -422,17 +421,26 @@ def _judged(K: Floats, M: Floats, n: int, lam: Floats, Y: Floats) -> _ErrorEstim
     The basis is the first n columns of the space, and the modes have the eigenvalues lam (modes,)
     and coordinates Y (n, modes).
     """
-    modes, s = dense.decompose(K, M), np.arange(lam.size)
+    modes, s = dense.lowest(K, M, lam.size), np.arange(lam.size)
     r = K[n:, :n] @ Y - M[n:, :n] @ Y * lam
-    mu, shift = modes.mu[:, None], modes.sigma
+    far = np.zeros((2, lam.size))
+    if isinstance(modes, LowestModes):
+        known = modes.lam[: modes.Phi.shape[1]]
+        mu, shift, X = 1 / known[:, None], 0.0, modes.Phi / np.sqrt(known)
+        right = modes.transformed(np.vstack([np.zeros((n, lam.size)), r]))
+        z = modes.beyond(right[:, :, None], lam)[:, :, 0]  # all other components
+        seen = (z * modes.times(z)).sum(axis=0)
+        far = np.array([(z**2).sum(axis=0) - modes.lam[s] * seen, seen])
+    else:
+        mu, shift, X = modes.mu[:, None], modes.sigma, modes.X
     gap = 1 - (lam + shift) * mu  # (lam_j - lam) mu_j
-    c = modes.X[n:].T @ r
+    c = X[n:].T @ r
     close = np.abs(gap) < CLOSE
     c = np.divide(c, gap, out=np.zeros_like(c), where=~close)  # over the root of mu_j
     if close.any():
-        c = np.where(close, modes.X.T @ (M[:, :n] @ Y) / np.where(close, mu, 1.0), c)
+        c = np.where(close, X.T @ (M[:, :n] @ Y) / np.where(close, mu, 1.0), c)
     lam = modes.lam[s]
     c[s, s] = 0.0
-    eigenvalue = (c**2 * (1 - (lam + shift) * mu)).sum(axis=0)
-    shape = np.sqrt((c**2 * np.maximum(mu, 0.0)).sum(axis=0))
+    eigenvalue = (c**2 * (1 - (lam + shift) * mu)).sum(axis=0) + far[0]
+    shape = np.sqrt((c**2 * np.maximum(mu, 0.0)).sum(axis=0) + far[1])
     return _ErrorEstimate(np.maximum(eigenvalue, 0.0), shape, lam, modes.Phi[:, s])

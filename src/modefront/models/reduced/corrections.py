@@ -126,7 +126,7 @@ class _Modes:
 
 
 def _modes(pencil: Pencil, models: Sequence[Floats], count: int, space: Basis) -> _Modes:
-    decompositions = [dense.decompose(space.K.at(theta), space.M.at(theta)) for theta in models]
+    decompositions = [dense.lowest(space.K.at(theta), space.M.at(theta), count) for theta in models]
     lam = np.concatenate([modes.lam[:count] for modes in decompositions])
     Y = np.hstack([modes.Phi[:, :count] for modes in decompositions]) / np.sqrt(lam - space.sigma)
     return _Modes(pencil, space, np.repeat(models, count, axis=0), Y, lam)

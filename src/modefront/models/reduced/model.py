@@ -298,7 +298,7 @@ class ReducedModel:
             return self.full.full_modes(theta, count)
         basis = self.ready().space.basis
         started = time.perf_counter()
-        pairs = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        pairs = dense.lowest(basis.K.at(theta), basis.M.at(theta), count)
         if pairs.lam.size < count:
             raise ModelError(
                 f"{count} modes asked for, but only {pairs.lam.size} have a finite frequency"
@@ -347,7 +347,7 @@ class ReducedModel:
             theta = self.nominal.copy()
             theta[list(pair)] = self.lower[list(pair)]
             try:
-                ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+                ritz = dense.lowest(basis.K.at(theta), basis.M.at(theta), lowest)
             except ModelError:
                 continue
             last = min(lowest, ritz.lam.size - 1) - 1
@@ -384,7 +384,7 @@ class ReducedModel:
         """Return the certificate of a model with its own factor, which proves modes complete."""
         basis, pencil = space.basis, self.full.pencil
         try:
-            ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+            ritz = dense.lowest(basis.K.at(theta), basis.M.at(theta), count + completeness.LATER)
         except ModelError:
             return missing(wanted.size)
         gap = completeness.level(ritz.lam, count, basis.sigma, np.inf)
@@ -586,7 +586,7 @@ class ReducedModel:
     ) -> bool:
         """Return whether the factor at hand is of use for a snapshot, and no mode is missing."""
         try:
-            ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+            ritz = dense.lowest(basis.K.at(theta), basis.M.at(theta), modes)
         except ModelError:
             return False
         return (
@@ -659,7 +659,7 @@ def _near(
     if not basis.semidefinite:
         return None
     try:
-        ritz = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+        ritz = dense.lowest(basis.K.at(theta), basis.M.at(theta), count + completeness.LATER)
     except ModelError:
         return None
     K, M, shift = basis.K, basis.M, factor.below.sigma

@@ -1,0 +1,178 @@
+r"""The lowest modes of dense matrices, and their derivatives, without all the other modes.
+
+With :math:`K = L L^T`, :math:`L^{-1} M L^{-T} = Q T Q^T` and T tridiagonal,
+
+.. math:: T s = \mu s, \qquad x = L^{-T} Q s, \qquad \mu = 1 / \lambda, \qquad x^T K x = 1 .
+
+All :math:`\mu` cost next to nothing, and so does an eigenvector of T (inverse iteration). The sum
+over the other modes in Nelson's derivative, see `modefront.modes.dense`, is the solution of a
+tridiagonal system. With :math:`g_r = Q^T L^{-1} f_r` and the known modes j < k
+
+.. math:: \sum_{j \ge k} x_j \frac{x_j^T f_r}{1 - \lambda_r \mu_j} = L^{-T} Q P z_r, \qquad
+    (I - \lambda_r T) z_r = P g_r, \qquad P = I - S S^T,
+
+S (N, k) being the known eigenvectors. The matrix is singular but for rounding, in a direction that
+P removes from both sides.
+
+Source: LAPACK Users' Guide, 1999, sections 2.4.4 and 2.4.5 (dsygst, dsytrd, dsterf, dstein).
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.linalg
+
+from modefront._typing import Bools, Floats
+from modefront.linalg.affine import DenseAffine
+
+MANY = 100
+"""Degrees of freedom from which on this is faster than all modes, if few are wanted."""
+
+FEW = 0.25
+"""Share of the modes that are few."""
+
+SPARE = 2
+"""Modes that are known beyond those wanted, at least."""
+
+GAP = 1e-2
+"""Relative gap of eigenvalues above the known modes."""
+
+FINITE = 1e-13
+"""mu over the greatest one, above which a mode has a finite frequency."""
+
+INDEFINITE = 1e-10
+"""Negative mu over the greatest one, above which M is indefinite."""
+
+COINCIDENT = 1e-8
+"""Relative error of a quotient, as caused by rounding in its gap, above which it is left out."""
+
+_ROUNDING = 10 * np.finfo(float).eps
+_BLOCK = 64  # columns that LAPACK treats together
+
+_lapack = scipy.linalg.lapack
+
+
+@dataclass(frozen=True, eq=False)
+class LowestModes:
+    """The lowest modes, and T.
+
+    Attributes
+    ----------
+    lam : (modes,) all finite eigenvalues, ascending
+    Phi : (N, k) mass-normalised modes that are known
+    S : (N, k) their eigenvectors of T
+    L, Q, tau : the factor of K, and Q as LAPACK stores its reflectors
+    diagonal, beside : (N,) and (N - 1,) of T
+    """
+
+    lam: Floats
+    Phi: Floats
+    S: Floats
+    L: Floats
+    Q: Floats
+    tau: Floats
+    diagonal: Floats
+    beside: Floats
+
+    def transformed(self, vectors: Floats) -> Floats:
+        """Return Q^T L^-1 times some vectors (N, m)."""
+        out = _lapack.dtrtrs(self.L, vectors, lower=1)[0]
+        out[1:] = _turned(self.Q, self.tau, "T", out[1:])
+        return out
+
+    def times(self, vectors: Floats) -> Floats:
+        """Return T times some vectors (N, m)."""
+        out = self.diagonal[:, None] * vectors
+        out[:-1] += self.beside[:, None] * vectors[1:]
+        out[1:] += self.beside[:, None] * vectors[:-1]
+        return out
+
+    def beyond(self, right: Floats, lam: Floats) -> Floats:
+        """Return P z_r for g_r (N, m, p) and eigenvalues (m,) among the known ones, (N, m, p)."""
+        N, modes, p = right.shape
+        S, flat = self.S, right.reshape(N, -1)
+        g = (flat - S @ (S.T @ flat)).reshape(right.shape).transpose(1, 0, 2).reshape(-1, p)
+        lam = lam[:, None]
+        beside = np.zeros((modes, N))
+        beside[:, :-1] = -lam * self.beside
+        off = beside.ravel()[:-1]
+        *_, z, info = _lapack.dgtsv(off, (1 - lam * self.diagonal).ravel(), off, g)
+        if info:  # exactly singular
+            *_, z, _ = _lapack.dgtsv(off, (1 + _ROUNDING - lam * self.diagonal).ravel(), off, g)
+        flat = z.reshape(modes, N, p).transpose(1, 0, 2).reshape(N, -1)
+        return (flat - S @ (S.T @ flat)).reshape(right.shape)
+
+
+def lowest_modes(K: Floats, M: Floats, count: int) -> LowestModes | None:
+    """Return the ``count`` lowest modes or more; None where all modes have to be solved for.
+
+    That is so for small or singular matrices and for many modes.
+    """
+    N = len(K)
+    if N < MANY or count + SPARE > FEW * N:
+        return None
+    L, failed = _lapack.dpotrf(K.T, lower=1)
+    if failed:
+        return None
+    C, _ = _lapack.dsygst(M.T, L, lower=1)
+    C, diagonal, beside, tau, _ = _lapack.dsytrd(C, lower=1, lwork=_BLOCK * N, overwrite_a=1)
+    mu, failed = _lapack.dsterf(diagonal, beside)
+    if failed or not mu[-1] > 0 or mu[0] < -INDEFINITE * mu[-1]:
+        return None
+    lam = 1 / mu[::-1][: np.sum(mu > FINITE * mu[-1])]
+    wide = np.flatnonzero(np.diff(lam[count + SPARE - 1 :]) > GAP * lam[count + SPARE :])
+    if not wide.size:
+        return None
+    known = count + SPARE + int(wide[0])
+    one = np.ones(N, dtype=np.int32)
+    S, failed = _lapack.dstein(diagonal, beside, mu[-known:], one, N * one)
+    if failed:
+        return None
+    S, Q = S[:, ::-1], np.asfortranarray(C[1:, :-1])
+    Y = S.copy()
+    Y[1:] = _turned(Q, tau, "N", S[1:])
+    Phi = _lapack.dtrtrs(L, Y, lower=1, trans=1)[0] * np.sqrt(lam[:known])
+    return LowestModes(lam, Phi, S, L, Q, tau, diagonal, beside)
+
+
+def derivatives(
+    K: DenseAffine, M: DenseAffine, sensors: Floats, theta: Floats, modes: LowestModes, count: int
+) -> tuple[Floats, Floats, Bools]:
+    """Return dlam (count, p), dphi (sensors, count, p) and which modes coincide with another one.
+
+    The arguments are those of `modefront.modes.dense.modes`, and the modes.
+    """
+    Phi, known, p = modes.Phi, modes.Phi.shape[1], theta.size
+    lam = modes.lam[:known]
+    rounding = _ROUNDING * lam**2 / lam[0]
+    same = np.abs(lam[:, None] - lam) * COINCIDENT <= np.maximum(rounding, rounding[:, None])
+    c = count
+    while c < known and same[c, :c].any():
+        c += 1
+    r = np.arange(c)
+    dM_phi = M.derivatives_times(theta, Phi[:, :c])
+    force = K.derivatives_times(theta, Phi[:, :c]) - lam[r, None] * dM_phi
+    G = (Phi.T @ force.reshape(len(Phi), -1)).reshape(known, c, p)
+    dlam, coincident = G[r, r], np.asarray(same[:, :c].sum(axis=0) > 1)
+    for group in {tuple(np.flatnonzero(same[:, k])) for k in np.flatnonzero(coincident)}:
+        block = G[np.ix_(group, group)]
+        dlam[list(group)] = np.linalg.eigvalsh(np.moveaxis(block, 2, 0)).T
+
+    r = r[:count]
+    gap = np.where(same, np.inf, lam - lam[:, None])[:, r]
+    inside = G[:, r] / gap[:, :, None]
+    inside[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi[:, r])
+    both = np.hstack([force[:, r].reshape(len(Phi), -1), sensors.T])
+    right, seen = np.split(modes.transformed(both), [count * p], axis=1)
+    beyond = modes.beyond(right.reshape(len(Phi), count, p), lam[r]).reshape(len(Phi), -1)
+    dphi = (sensors @ Phi) @ inside.reshape(known, -1) - seen.T @ beyond
+    return dlam[:count], dphi.reshape(-1, count, p), coincident[:count]
+
+
+def _turned(Q: Floats, tau: Floats, trans: str, vectors: Floats) -> Floats:
+    """Return Q or, with ``trans`` "T", its transpose times vectors (N - 1, m)."""
+    return np.asarray(
+        _lapack.dormqr("L", trans, Q, tau, vectors, _BLOCK * max(1, vectors.shape[1]))[0]
+    )
