@@ -1,4 +1,4 @@
-"""How estimated errors of reduced models compare with true ones, over boxes of all widths.
+"""Estimated errors of reduced models beside true ones, over boxes of all widths.
 
     python benchmarks/certificates.py [--structures 24] [--models 9] [--seed 0]
 
@@ -188,7 +188,7 @@ def compared(model: ReducedModel, thetas: Floats) -> list[Comparison]:
     """Return estimated and true errors at some parameters (models, p)."""
     requested = np.arange(MODES)
     certificates = model.certify([(theta, requested) for theta in thetas], MODES + SPARE)
-    basis, pencil, out = model._ready().space.basis, model.full.pencil, []
+    basis, pencil, out = model.ready().space.basis, model.full.pencil, []
     for theta, certificate in zip(thetas, certificates, strict=True):
         K, M = pencil.K.at(theta).toarray(), pencil.M.at(theta).toarray()
         X = scipy.linalg.eigh(M, K)[1][:, ::-1]
@@ -227,7 +227,7 @@ def models(rng: np.random.Generator, lower: Floats, upper: Floats, count: int) -
 
 
 def box(bounds: tuple[float, float], structures: int, count: int, seed: int) -> dict[str, float]:
-    """Return what is measured of one box."""
+    """Return the errors of one box."""
     result: list[Comparison] = []
     factorisations = 0
     for number in range(structures):

@@ -377,7 +377,7 @@ MISTAKES: dict[str, tuple[Spoil, tuple[str, ...]]] = {
 
 
 def rates(name: str, studies: int, *, verbose: bool) -> str:
-    """Return how often a mistake is found, in words."""
+    """Return the rates at which a mistake is found, in words."""
     spoil, kinds = MISTAKES[name]
     hits = alone = tried = 0
     seed = 10_000

@@ -104,7 +104,7 @@ def work(problem: mf.UpdatingProblem) -> None:
 
 
 def line(name: str, both: bool) -> dict[str, float]:
-    """Return what is measured of one model."""
+    """Return the measurements of one model."""
     kind, size, p = MODELS[name]
     full = kind(size, p)
     problem = problem_of(full, basis=True)

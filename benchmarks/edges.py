@@ -66,7 +66,7 @@ AGREE = 1e-10
 
 @dataclass
 class Line:
-    """What was found of a problem; an excess is NaN where there is nothing to compare."""
+    """Comparison of the results of a problem; an excess is NaN where nothing is compared."""
 
     case: Case
     edges: dict[str, float] = field(default_factory=dict)
@@ -377,7 +377,7 @@ def referenced(case: Case, cache: Cache, starts: int) -> Reference:
 
 
 def study(cache: Cache, starts: int) -> str:
-    """Return what the whole study of 18 storeys with 4 modes costs, and how good it is."""
+    """Return the costs of the whole study of 18 storeys with 4 modes, and its errors."""
     case = chain_case(18, 4, 0)
     best_known = referenced(case, cache, starts)
     began = time.process_time()
@@ -391,7 +391,7 @@ def study(cache: Cache, starts: int) -> str:
 
 
 def summary(lines: list[Line]) -> str:
-    """Return how often results were worse or missing, and the eigenproblems."""
+    """Return the numbers of results that were worse or missing, and the eigenproblems."""
     done = [line for line in lines if not line.failure]
     rows = [f"{len(lines)} problems, {len(lines) - len(done)} failures"]
     for what in ("edges", "weighted", "front"):

@@ -1,4 +1,4 @@
-"""What elements cost that are thick, skew, distorted or curved: docs/elements.md has the table.
+"""Errors of elements that are thick, skew, distorted or curved: docs/elements.md has the table.
 
     python benchmarks/elements.py
 

@@ -1,4 +1,4 @@
-"""How long first-passage probabilities take, and how many evaluations they save.
+"""Time of first-passage probabilities, and the evaluations that they save.
 
 Run with ``python benchmarks/first_passage.py`` (needs the package ``openturns``). It prints
 

@@ -1,4 +1,4 @@
-"""What a front costs: normal-boundary intersection beside evolutionary methods, in one run.
+"""Costs of a front: normal-boundary intersection beside evolutionary methods, in one run.
 
 python benchmarks/front.py [--limit EVALUATIONS]
 

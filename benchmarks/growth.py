@@ -1,4 +1,4 @@
-"""How the time of a study grows with its model and its data.
+"""Growth of the time of a study with its model and its data.
 
     python benchmarks/growth.py [--over dofs parameters ...] [--save benchmarks/growth.jsonl]
     python benchmarks/growth.py --draw benchmarks/growth.jsonl docs/growth.svg
@@ -77,7 +77,7 @@ def problem(dofs: int, parameters: int, modes: int, sensors: int, sets: int) -> 
 
 
 def measured(over: str, size: int) -> dict[str, Any]:
-    """Return what a study of one size takes."""
+    """Return the time and the evaluations of a study of one size."""
     sizes = USUAL | {over: size}
     points = sizes.pop("points")
     built = problem(**sizes)

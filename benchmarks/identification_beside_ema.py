@@ -52,7 +52,7 @@ def by_modefront(measured: Complexes, structure: Structure) -> Modes:
 
 
 def by_ema(order: int) -> Callable[[Complexes, Structure], Modes]:
-    """Return what identifies by `sdypy-EMA` with a highest order."""
+    """Return a function that identifies by `sdypy-EMA` with a highest order."""
 
     def identified(measured: Complexes, structure: Structure) -> Modes:
         H = measured.mean(axis=0)

@@ -583,7 +583,7 @@ def reference(equation: Equation, starts: int = 4, seed: int = 0) -> Reference:
 
 
 def edge_reference(equation: Equation, i: int, starts: int = 4, seed: int = 0) -> Reference:
-    """Return what is found of the edge of one group only."""
+    """Return the reference of the edge of one group only."""
     result = _started(equation, starts, seed)
     _edge(result, i, starts, seed)
     return Reference(result.known, equation.sizes, equation.a)

@@ -34,6 +34,7 @@ from pathlib import Path
 
 import numpy as np
 import xarray as xr
+from study_tables import PUSHED, uncertainty
 
 FEW = "\n[search]\nstarts = 3\nlimit = 4\n"
 GROUPS = re.compile(r"(?s)\[\[group\]\].*?(?=\n\[pareto\])")
@@ -49,17 +50,7 @@ shape = [1]
 name = "high"
 shape = [2, 3]
 """
-PREDICTIONS = """
-[uncertainty]
-draws = 4
-
-[[predict.frf]]
-name = "pushed"
-force = { floor3 = 1.0 }
-response = { top = "floor3" }
-band = [0.5, 20.0]
-damping = 0.02
-"""
+PREDICTIONS = uncertainty(draws=4) + PUSHED
 EVOLUTION = '[pareto]\nmethod = "nsga2"\npopulation = 20\nevaluations = 200\n'
 
 

@@ -1,4 +1,4 @@
-"""What a front costs with a reduced basis, over one full eigensolution, in one run.
+"""Costs of a front with a reduced basis, over one full eigensolution, in one run.
 
     python benchmarks/reduced.py [--kind shell] [--sizes 1000 10000 ...] [--full-up-to 5000]
         [--exact-up-to 25000]
@@ -176,7 +176,7 @@ def requests_of(result: xr.Dataset) -> list[tuple[Floats, Ints]]:
 
 def sharpness(full: MatrixModel, model: ReducedModel, result: xr.Dataset) -> Floats:
     """Return estimated errors over true ones, wherever these can be told from rounding."""
-    basis = model._ready().space.basis
+    basis = model.ready().space.basis
     models = requests_of(result)
     ratios = []
     for (theta, r), certificate in zip(models, model.certify(models), strict=True):
@@ -203,7 +203,7 @@ def quotients(K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, X: Floats) -
 def line(
     kind: Model, size: int, data: mf.ModalData, compare: bool, exact: bool
 ) -> dict[str, float]:
-    """Return what is measured of one size."""
+    """Return the measurements of one size."""
     full = kind(size, REGIONS)
     out: dict[str, float] = {"size": full.size, "memory_model": memory()}
     count = MODES + mf.Pairing().spare

@@ -355,7 +355,7 @@ def volume(J: Floats, utopia: Floats, scale: Floats) -> float:
 
 @dataclass(frozen=True)
 class Row:
-    """What one run gave."""
+    """Results of one run."""
 
     truth: float
     volume: float

@@ -1,4 +1,4 @@
-"""What several processes gain over one, in one run.
+"""Gain of several processes over one, in one run.
 
     python benchmarks/workers.py [--workers 2] [--studies building footbridge]
 
@@ -21,6 +21,7 @@ from pathlib import Path
 from typing import Any, Literal
 
 import numpy as np
+from study_tables import PUSHED, uncertainty
 
 import modefront as mf
 from modefront import fem
@@ -32,19 +33,7 @@ from modefront.work.task import R, Task
 from modefront.work.workers import Workers, backend
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
-MORE = """
-[uncertainty]
-source = "sets"
-bootstrap = 12
-draws = 24
-
-[[predict.frf]]
-name = "pushed"
-force = { floor3 = 1.0 }
-response = { top = "floor3" }
-band = [0.5, 20.0]
-damping = 0.02
-"""
+MORE = uncertainty(draws=24, bootstrap=12, source="sets") + PUSHED
 
 
 @dataclass

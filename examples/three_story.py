@@ -34,7 +34,7 @@ PUBLISHED: dict[str, dict[str, Sequence[float]]] = {
 
 
 def front(folder: Path) -> dict[str, Sequence[float]]:
-    """Return what the paper prints of a front, from results."""
+    """Return the numbers that the paper prints of a front, from results."""
     data = mf.read_results(folder).dataset
     nbi = data.isel(point=data["kind"].values == "front")
     error = 100 * np.abs(nbi["frequency"].values / nbi["measured_frequency"].values - 1)

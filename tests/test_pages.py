@@ -69,6 +69,7 @@ def test_the_page_of_pictures_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     assert {path.name for path in tmp_path.iterdir()} == {"front.png", "modes.pdf", "modes.vtu"}
 
 
+@pytest.mark.slow
 def test_the_page_of_python_runs_and_prints_what_it_says(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -68,7 +68,13 @@ class Fault:
 
 
 class InputError(ValueError):
-    """The input, a file or an option in Python, is wrong; carries every fault that was found."""
+    """The input, a file or an option in Python, is wrong.
+
+    Attributes
+    ----------
+    faults : everything that is wrong, each a `Fault` with the file, the place in it, and what was
+        expected and found; the message has a line for each
+    """
 
     def __init__(self, faults: Fault | Iterable[Fault]) -> None:
         self.faults = (faults,) if isinstance(faults, Fault) else tuple(faults)
@@ -131,11 +137,14 @@ def reason(error: BaseException) -> str:
 
 
 class ModelError(ValueError):
-    """A model cannot be evaluated at the given parameters."""
+    """A model cannot be evaluated at the given parameters, since its matrices have no modes there.
+
+    A user's function raises it where there is no model; searches then keep away.
+    """
 
 
 class UnfinishedError(RuntimeError):
-    """The work could not be done; what was found before is kept."""
+    """The work could not be done; the results of tasks that were done are kept."""
 
 
 def suggestion(name: str, known: Iterable[str]) -> str:

@@ -13,6 +13,13 @@ from pathlib import Path
 from modefront.errors import Fault, InputError, reason
 
 MEGABYTE = 10**6
+"""Bytes."""
+
+MOST_DATA = 2000 * MEGABYTE
+"""Bytes of a file of data, at most. Chosen against files that fill the memory."""
+
+MOST_TABLES = 64 * MEGABYTE
+"""Bytes of a TOML file, at most. Chosen against files that fill the memory when parsed."""
 
 KINDS = (
     (stat.S_ISDIR, "a folder"),

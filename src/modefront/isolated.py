@@ -32,6 +32,10 @@ from modefront.text import one_line
 MOST_OUTPUT = 20_000
 """Bytes of what a process prints that are looked at."""
 
+LEAST_SECONDS, SPEED = 60.0, 10**6
+"""Time that reading may take, and bytes that are read a second at least besides: chosen against
+readers that do not end, far above what whole files take."""
+
 GRACE = 30.0
 """Seconds that a server may take to start and to answer, besides the time for reading."""
 
@@ -46,6 +50,11 @@ Read = tuple[dict[str, np.ndarray[Any, Any]], Any]
 
 class IsolatedError(RuntimeError):
     """A reader failed, took too long, or ended its process; the message says which."""
+
+
+def seconds_for(size: int) -> float:
+    """Return the time in s that reading a file of so many bytes may take."""
+    return LEAST_SECONDS + size / SPEED
 
 
 def isolated(

@@ -9,10 +9,8 @@ from pathlib import Path
 from typing import Any
 
 from modefront.errors import Fault, suggestion
+from modefront.rounding import LARGEST
 from modefront.text import NAME, clean
-
-LARGEST = 1e100
-"""Greatest number that a file may hold."""
 
 SUGGESTED = 20
 """Unknown keys of a table for which a known one is sought."""

@@ -1,4 +1,4 @@
-"""What the terminal shows of results: all of it, in its width and in its characters."""
+"""Results in the terminal: complete, in its width and in its characters."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Modes from universal files: what pyuff writes is read again, and what is wrong is said."""
+"""Modes from universal files: files of pyuff are read, and faulty ones are refused in words."""
 
 from pathlib import Path
 from typing import Any

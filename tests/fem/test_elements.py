@@ -1,4 +1,4 @@
-"""What holds for every element alone: rigid motions, mass, invariance, symmetry."""
+"""Properties of every element alone: rigid motions, mass, invariance, symmetry."""
 
 from __future__ import annotations
 

@@ -139,7 +139,7 @@ def test_files_that_would_be_read_without_an_end(
             stream.truncate(size)
         with pytest.raises(fem.FemError, match=says):
             read_mesh(tmp_path / "b.ply")
-    monkeypatch.setattr("modefront.fem.mesh.SECONDS", 3.0)
+    monkeypatch.setattr("modefront.isolated.LEAST_SECONDS", 3.0)
     (tmp_path / "c.ply").write_text("ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\n")
     with pytest.raises(fem.FemError, match="expected a mesh that meshio can read, found "):
         read_mesh(tmp_path / "c.ply")

@@ -1,4 +1,4 @@
-"""The scale of changes and what is said in it: the same in every form of the same problem.
+"""The scale of changes and the sentences in it: the same in every form of the same problem.
 
 Every sentence is compared with what finite differences of the residuals, or the residuals
 themselves at models along the claimed combination, say without this code.

@@ -61,7 +61,7 @@ def test_sharing_among_threads_changes_no_digit(
     monkeypatch.setattr(products, "SHARED", 0)
     for threads in (1, 2, 3):
         with ThreadPoolExecutor(threads) as pool:
-            monkeypatch.setattr(products, "_pool", lambda pool=pool, n=threads: (pool, n))
+            monkeypatch.setattr(products, "shared_pool", lambda pool=pool, n=threads: (pool, n))
             for expected, shared in zip(whole, products_of(), strict=True):
                 assert np.array_equal(expected, shared)
     close(whole[2], A @ X)

@@ -90,9 +90,9 @@ def test_derivatives_everywhere_are_those_at_the_sensors(full: MatrixModel) -> N
 def test_the_basis_is_orthonormal_in_energy_and_grows_without_change(full: MatrixModel) -> None:
     model = reduced(full)
     model.modes(np.ones(3), 8)
-    before = model._ready().space.basis
+    before = model.ready().space.basis
     model.take(SnapshotRequest(np.array([0.6, 1.5, 2.0]), 10))
-    basis = model._ready().space.basis
+    basis = model.ready().space.basis
     n = before.columns
     assert basis.columns > n
     assert all(map(np.array_equal, basis.blocks, before.blocks))
@@ -143,14 +143,14 @@ def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int)
         exact_modes, result = lowest(full.pencil, theta, 8), model.modes(theta, 8)
         r = elastic(result.lam)
         (certificate,) = model.certify([(theta, r)])
-        shift = model._ready().space.factor.below.sigma
+        shift = model.ready().space.factor.below.sigma
         noise = 1e2 * exact_modes.noise[r] / exact_modes.lam[r]
         truth = (result.lam[r] - exact_modes.lam[r]) / (result.lam[r] - shift)
         sure = truth > 10 * noise
         assert (certificate.eigenvalue[sure] <= 2 * truth[sure]).all()
         assert (certificate.eigenvalue[sure] >= truth[sure] / 2).all()
 
-        basis = model._ready().space.basis
+        basis = model.ready().space.basis
         K, M = basis.K.at(theta), basis.M.at(theta)
         vectors = basis.combine(scipy.linalg.eigh(M, K + 1e-3 * M)[1][:, ::-1][:, r])
         MPhi = exact_modes.MPhi[:, r]
@@ -370,7 +370,7 @@ def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
     unit = snapshot(pencil, np.ones(3), 10)
     model = reduced(full)
     model.take(SnapshotRequest(np.ones(3), 10))
-    basis = model._ready().space.basis
+    basis = model.ready().space.basis
     assert completeness.semidefinite(basis.K)
     for theta in rng.uniform(0.4, 2.5, (5, 3)):
         ratio = completeness.lower_bound(basis.K, basis.M, theta, unit.theta)

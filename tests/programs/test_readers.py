@@ -1,4 +1,4 @@
-"""Each format is read as its writer has written it, and what is wrong with a file is said."""
+"""Each format is read as its writer has written it, and faulty files are refused in words."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What is determined of a measured 18-story frame: 3 modes at 6 floors, 18 stiffnesses.
+"""Combinations that data of an 18-story frame determine: 3 modes at 6 floors, 18 stiffnesses.
 
 The data lie beside the project (origin and licence: see the README there) and are not part of it.
 """

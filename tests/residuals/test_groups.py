@@ -1,4 +1,4 @@
-"""What groups of measured properties hold, and what they refuse."""
+"""Groups of measured properties, and their errors."""
 
 import pickle
 from typing import Any

@@ -68,6 +68,7 @@ def test_a_missing_attribute(name: str, whole: xr.Dataset, tmp_path: Path) -> No
     refused(other, tmp_path, f"'{name}': expected")
 
 
+@pytest.mark.slow
 def test_variables_that_belong_together(whole: xr.Dataset, tmp_path: Path) -> None:
     present = [names for names in TOGETHER.values() if names[0] in whole]
     assert len(present) >= 3

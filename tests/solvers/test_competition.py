@@ -18,7 +18,7 @@ from modefront.solvers.sqp import Solution, begin, solve
 
 CENTRES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 STEP = 0.05
-"""How much higher all objectives are in the left basin."""
+"""Height of all objectives in the left basin."""
 
 
 def two_basins(theta: Floats) -> Derivatives:

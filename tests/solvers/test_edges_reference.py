@@ -1,6 +1,6 @@
 """Edges beside those of SciPy's optimisers, on random chains that are like no example.
 
-Three regimes of the objective whose edge is looked for: one minimum; a valley, in which the
+Three regimes of the objective whose edge is sought: one minimum; a valley, in which the
 objective is small but not zero and hardly changes; a manifold of models that fit exactly.
 """
 
@@ -122,6 +122,7 @@ def test_a_manifold_of_exact_fits(key: Key, i: int) -> None:
     assert_as_good(key, i)
 
 
+@pytest.mark.slow
 def test_a_front_on_which_other_modes_are_paired() -> None:
     """Of this frame, SLSQP finds models between the points of two pairings, on the second one."""
     problem = make("frame", 29).problem

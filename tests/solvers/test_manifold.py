@@ -270,7 +270,7 @@ def bent(theta: Floats) -> Derivatives:
 def extents_by_slsqp(
     residuals: Callable[[Floats], Floats], start: Floats, lower: Floats, upper: Floats
 ) -> Floats:
-    """How far each parameter goes where residuals vanish, (2, p), by another method."""
+    """Ranges of each parameter where residuals vanish, (2, p), by another method."""
     out = np.zeros((2, start.size))
     for j in range(start.size):
         for row, sign in enumerate((1.0, -1.0)):

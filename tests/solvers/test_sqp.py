@@ -13,7 +13,7 @@ from modefront._typing import Floats
 from modefront.solvers.correction import Correction
 from modefront.solvers.merit import Merit, Multipliers, projected, surplus
 from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Residual
-from modefront.solvers.scalarisation import Achievement, Scalarisation, level, weighted
+from modefront.solvers.scalarisation import Scalarisation, achievement, level, weighted
 from modefront.solvers.secant import learned_from
 from modefront.solvers.sqp import Options, Status, begin, solve
 
@@ -162,7 +162,7 @@ def test_the_least_maximum_is_that_of_an_independent_solver(
     rng = np.random.default_rng(seed)
     problem = box(function, lower, upper, 3)
     point = rng.dirichlet(np.ones(3)) - 0.2
-    programme = Achievement(np.full(3, 1e-3), np.diag(rng.uniform(0.5, 2, 3)), point)
+    programme = achievement(np.full(3, 1e-3), np.diag(rng.uniform(0.5, 2, 3)), point)
     starts = rng.uniform(problem.lower, problem.upper, (12, len(lower)))
     result = [solve(problem, programme, begin(problem.evaluate(theta))) for theta in starts]
     assert all(solution.converged for solution in result)
@@ -187,7 +187,7 @@ def test_a_maximum_is_found_within_constraints_too() -> None:
         """A maximum with a constraint."""
 
         constraints = level(1, 0, 0.3, np.ones(3)).constraints
-        maximised = Achievement(np.zeros(3), np.eye(3)[1:], np.zeros(2)).maximised
+        maximised = achievement(np.zeros(3), np.eye(3)[1:], np.zeros(2)).maximised
 
         def value(self, J: Floats) -> float:
             return 0.0 * float(J.sum())
@@ -216,7 +216,7 @@ def test_a_point_between_equal_functions_is_no_minimum_where_the_curvature_is_ne
         return J, np.array([[1.0, -2 * y], [-1.0, -2 * y]]), H
 
     problem = box(ridge, [-1.0, -1.0], [1.0, 1.0])
-    programme = Achievement(np.zeros(2), np.eye(2), np.zeros(2))
+    programme = achievement(np.zeros(2), np.eye(2), np.zeros(2))
     result = solve(problem, programme, begin(problem.evaluate(np.zeros(2))))
     assert result.status is Status.CONVERGED
     assert np.abs(result.theta) == pytest.approx([0.0, 1.0], abs=1e-6)
@@ -225,7 +225,7 @@ def test_a_point_between_equal_functions_is_no_minimum_where_the_curvature_is_ne
 
 def test_a_maximum_without_learned_second_derivatives() -> None:
     problem = box(bowls, [-2.0, -2.0], [2.0, 2.0], 3)
-    programme = Achievement(np.zeros(3), np.eye(3), np.zeros(3))
+    programme = achievement(np.zeros(3), np.eye(3), np.zeros(3))
     result = solve(problem, programme, begin(problem.evaluate(-np.ones(2))), Options(learn=False))
     assert result.converged
     assert result.theta == pytest.approx([0.5, 0.5], abs=1e-6), "the centre of the circle"

@@ -285,7 +285,7 @@ KEYS = [
 
 
 def fault_text(place: str, expected: str, what: str) -> str:
-    """Return what is said of an item of a list, whose name stands behind its number or not."""
+    """Return the message on an item of a list, whose name stands behind its number or not."""
     head = re.sub(r"(\]\] \d)", r"\1 ... ", place)
     return f"{head}: expected ... {expected} ... , found {what}"
 

@@ -1,4 +1,4 @@
-"""Whatever is wrong with a mesh, or with what a study says of it, is said in one message."""
+"""All faults of a mesh, and of a study on it, are in one message."""
 
 from __future__ import annotations
 

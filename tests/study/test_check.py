@@ -1,4 +1,4 @@
-"""What a check says of studies in which something is known to be wrong or hard."""
+"""Findings of checks of studies with known mistakes and difficulties."""
 
 from dataclasses import replace
 from pathlib import Path

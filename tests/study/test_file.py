@@ -72,7 +72,7 @@ M = np.diag([2.0, 1.0])
 
 @pytest.fixture
 def study(tmp_path: Path) -> Callable[[str], Study]:
-    """Return what a study file says, with data and matrices in folders beside its own."""
+    """Return a study file, with data and matrices in folders beside its own."""
     for name in ("data", "model", "studies"):
         (tmp_path / name).mkdir()
     (tmp_path / "data" / "modes.csv").write_text(

@@ -1,4 +1,4 @@
-"""What results say of parameters that data do not determine, and of errors of the data."""
+"""Results on parameters that data do not determine, and on errors of the data."""
 
 from dataclasses import replace
 from functools import cache
@@ -101,16 +101,17 @@ def test_exact_fits_of_the_frequencies_are_points() -> None:
 def test_linearised_scatter_is_that_of_synthetic_data(source: str) -> None:
     """100 drawings tell a standard deviation to 7 %; where it is smooth, the linear one agrees.
 
-    Of K sets the bootstrap has the variance of their distribution, (K - 1) / K of the estimate.
+    Of K sets the bootstrap has the variance of their distribution, (K - 1) / K of the estimate, and
+    8 sets tell it to twice the error.
     """
-    factor = np.sqrt(7 / 8) if source == "sets" else 1.0
+    factor, limit = (np.sqrt(7 / 8), 0.28) if source == "sets" else (1.0, 0.14)
     data = results(source)
     for label in ("edge-frequencies", "edge-shapes", "equal-weights", "optimal-weights", "nbi-2"):
         for name in ("theta", "objective"):
             linear = factor * value_of(data, f"{name}_std", label)
             drawn = value_of(data, f"bootstrap_{name}_std", label)
             kept = linear > 1e-3 * linear.max()
-            assert linear[kept] == pytest.approx(drawn[kept], rel=0.28), (label, name)
+            assert linear[kept] == pytest.approx(drawn[kept], rel=limit), (label, name)
     covariance = value_of(data, "theta_covariance", "optimal-weights")
     assert np.sqrt(np.diag(covariance)) == pytest.approx(
         value_of(data, "theta_std", "optimal-weights")
@@ -141,7 +142,8 @@ def test_points_of_three_groups_scatter_as_synthetic_data_do() -> None:
         linear = data[f"{name}_std"].values[along]
         drawn = data[f"bootstrap_{name}_std"].values[along]
         kept = linear > 1e-3 * linear.max(axis=0)
-        assert linear[kept] == pytest.approx(drawn[kept], rel=0.52), name
+        assert linear[kept] == pytest.approx(drawn[kept], rel=0.26), name
+        assert np.median(linear[kept] / drawn[kept]) == pytest.approx(1, abs=0.1), name
     assert (data["scatter_doubt"].values[along] == "").all()
 
 

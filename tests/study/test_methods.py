@@ -1,4 +1,4 @@
-"""What each method finds on the three-story building, and what it misses."""
+"""Fronts of each method on the three-story building, with their gaps."""
 
 from dataclasses import replace
 from functools import cache

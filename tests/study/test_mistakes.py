@@ -55,7 +55,7 @@ def findings_of(study: Path) -> Findings:
 
 
 def only(study: Path) -> str:
-    """Return the one mistake that is found, in words; nothing that it brings about is said."""
+    """Return the sentence on the only finding: consequences of a mistake are not reported."""
     findings = findings_of(study)
     assert len(findings.mistakes) == 1, findings.warnings
     assert len(findings.warnings) == 1, findings.warnings

@@ -1,4 +1,4 @@
-"""More parameters than data: the model that the data prefer, and what is said of it."""
+"""More parameters than data: the model that the data prefer, and the sentences on it."""
 
 from functools import cache
 from pathlib import Path

@@ -1,4 +1,4 @@
-"""The posterior of predictions: closed forms, own differences, integration, and what is said."""
+"""The posterior of predictions: closed forms, differences, integration, and sentences."""
 
 from collections.abc import Sequence
 from dataclasses import replace

@@ -1,4 +1,4 @@
-"""What is reported of ends that are not known, of copies, and of flat parts that are not cut."""
+"""Reports of unknown ends, of copies, and of flat parts that are not cut."""
 
 import json
 from dataclasses import dataclass, replace
@@ -19,7 +19,7 @@ from modefront.fronts.methods import nbi
 from modefront.fronts.options import Pareto
 from modefront.fronts.point import Kind, of_kind
 from modefront.identifiability.options import Identifiability
-from modefront.results.assemble import _lattice
+from modefront.results.assemble import lattice_values
 from modefront.results.remarks import remarks
 from modefront.solvers.continuation import Simplex, simplex
 from modefront.solvers.explore import Search
@@ -124,7 +124,7 @@ def test_no_point_of_three_groups_comes_twice_and_places_tell_where_they_led() -
     J = np.array([point.J for point in along]) / front.scale
     apart = np.abs(J[:, None] - J).max(axis=2) + np.eye(len(J))
     assert (apart > 1e-5).all()
-    lattice = _lattice(front)
+    lattice = lattice_values(front)
     beta, labels = np.asarray(lattice["lattice"]), np.asarray(lattice["lattice_label"]).tolist()
     assert beta.shape == (10, 3)
     assert set(labels) <= {f"nbi-{k + 1}" for k in range(len(along))}
@@ -151,7 +151,7 @@ def test_copies_are_merged_and_their_places_kept() -> None:
     position[0] = replace(position[0], status=Status.STALLED)
     better = point(position[0].J - 1e-6, None)
     along = [*position[:5], better]
-    result = nbi._without_copies(lattice, position, along, target)
+    result = nbi.without_copies(lattice, position, along, target)
     # The third is a copy of the second, what came last is the first, but converged; the sixth
     # place led to nothing that is left.
     assert [point.J.tolist() for point in result.points] == [

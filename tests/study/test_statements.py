@@ -1,4 +1,4 @@
-"""What studies say of few data: once, in order of weight, and nothing of rounding."""
+"""Statements on few data: each once, in order of weight, and none on rounding."""
 
 from pathlib import Path
 

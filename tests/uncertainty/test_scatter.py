@@ -13,7 +13,7 @@ from modefront.solvers.attainment import Attainment, active_bounds
 from modefront.solvers.curvature import SecondOrder, second_order
 from modefront.solvers.nbi import programmes as programmes_of
 from modefront.solvers.payoff import spanned
-from modefront.solvers.scalarisation import Linear, LogSum, Scalarisation, weighted
+from modefront.solvers.scalarisation import LogSum, Scalarisation, constrained, weighted
 from modefront.solvers.sqp import Options, Solution, begin, solve
 from modefront.uncertainty.conditions import (
     between,
@@ -133,7 +133,7 @@ def test_a_level_that_moves_with_the_data() -> None:
     def cut(problem: Known) -> Solution:
         best = minimum(problem, weighted(np.array([1.0, 0.0])), first.theta)
         value = (1 + tolerance) * best.J[0]
-        programme = Linear(np.array([0.0, 1.0]), np.array([[1.0, 0.0]]), np.array([value]))
+        programme = constrained(np.array([0.0, 1.0]), np.array([[1.0, 0.0]]), np.array([value]))
         return minimum(problem, programme, best.theta + 0.01)
 
     problem = case.problem()

@@ -20,6 +20,8 @@ from modefront.study.check import Findings, spoils
 from modefront.study.definition import Study
 
 WIDTH = 80
+"""Characters of a line."""
+
 NAME = 22
 """Longest name that a table shows in full."""
 

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 MOST_PANELS = 12
+"""Functions in a picture, at most: more are too small to read."""
 
 SHORT = 40
 """Characters of the name of a data set in those of its files."""

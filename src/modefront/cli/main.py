@@ -27,6 +27,7 @@ if TYPE_CHECKING:
     from modefront.study.definition import Study
 
 OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
+"""Exit statuses; 130 is that of shells for an interrupt."""
 
 
 @click.group(context_settings={"help_option_names": ["-h", "--help"]})

@@ -11,6 +11,7 @@ from rich.table import Table
 from modefront.text import NAME, clean
 
 _WIDTH = 1100
+"""Characters of a line where output is no terminal: no table is cut."""
 
 
 def console() -> Console:

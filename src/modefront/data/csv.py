@@ -28,7 +28,8 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, InputError, reason, suggestion
-from modefront.inputs import available_memory, file_size, refuse_holes
+from modefront.inputs import MOST_DATA, available_memory, file_size, refuse_holes
+from modefront.rounding import LARGEST as LARGEST_NUMBER
 from modefront.text import NAME, clean
 
 KEYS = ("set", "mode")
@@ -63,8 +64,10 @@ LONGEST_LINE = 10**6
 """Characters of the header in which separators are counted."""
 
 MOST_MODES = 10**6
+"""Modes of all data sets, at most: chosen against slips that fill the memory."""
 
 MOST_COLUMNS = 20_000
+"""Columns, at most: chosen against files that fill the memory."""
 
 MOST_FAULTS = 100
 """Faults of rows after which the rest is not looked at."""
@@ -75,13 +78,10 @@ SUGGESTED = 20
 TOGETHER = 10_000
 """Rows that are read at once, by columns."""
 
-LARGEST = 2 * 10**9
-"""Bytes of a file, at most."""
-
 FREQUENCIES = 1e-9, 1e12
 """Frequencies in Hz beyond which a number must be a slip."""
 
-SHAPES = 1e-100, 1e100
+SHAPES = 1 / LARGEST_NUMBER, LARGEST_NUMBER
 """Greatest components of a mode shape of which the squares are still numbers."""
 
 
@@ -191,7 +191,7 @@ class _Rows:
 def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
     """Return the numbered rows that are not blank; raises InputError for what is no CSV."""
     expected = "a file of modal data"
-    size = file_size(path, expected, min(LARGEST, available_memory() // 4))
+    size = file_size(path, expected, min(MOST_DATA, available_memory() // 4))
     try:
         refuse_holes(path, expected, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:

@@ -18,14 +18,12 @@ from modefront.data.blows import TIME, Contents, blow_of_columns
 from modefront.data.channels import Channel
 from modefront.data.csv import NUMBER
 from modefront.errors import Fault, InputError, reason, suggestion
-from modefront.inputs import available_memory, file_size, refuse_holes
+from modefront.inputs import MOST_DATA, available_memory, file_size, refuse_holes
 
 FREQUENCY, REAL, IMAGINARY, COHERENCE = "frequency", "_re", "_im", "_coherence"
 
 MOST_FAULTS = 5
-
-LARGEST = 2 * 10**9
-"""Bytes of a file, at most."""
+"""Faults that are listed of one file."""
 
 
 def read_test_csv(path: Path, reference: str) -> Contents:
@@ -82,7 +80,7 @@ def _names(path: Path, header: Sequence[str]) -> list[str]:
 def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
     """Return the header and the rows of a CSV file of numbers; raises InputError."""
     file = str(path)
-    size = file_size(path, what, min(LARGEST, available_memory() // 4))
+    size = file_size(path, what, min(MOST_DATA, available_memory() // 4))
     try:
         refuse_holes(path, what, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:

@@ -30,12 +30,16 @@ import scipy.fft
 
 from modefront._typing import Bools, Complexes, Floats
 from modefront.data.responses import ForceNoise, FrequencyResponses, frequency_responses
+from modefront.rounding import ACCUMULATED
 
 Estimator = Literal["H1", "H2", "Hv"]
 ESTIMATORS: tuple[Estimator, ...] = get_args(Estimator)
 
 SECOND = 0.1
 """Force of a second hit over that of the first."""
+
+SAME = 1e-9
+"""Difference of two samples, over the greatest, that is none: converters have 24 bits."""
 
 CLIPPED = 3
 """Samples in a row at the greatest value that may be an overload."""
@@ -210,7 +214,7 @@ def _force_noise(force: Floats, window: Floats, X: Complexes, t: Floats) -> Forc
 
 def _over(a: Complexes | Floats, b: Complexes | Floats) -> Complexes:
     """Return a / b, NaN where the power b is no more than rounding of its greatest value."""
-    good = np.abs(b) > 1e-24 * np.abs(b).max(initial=0.0)
+    good = np.abs(b) > ACCUMULATED**2 * np.abs(b).max(initial=0.0)
     out: Complexes = np.where(good, a / np.where(good, b, 1.0), np.nan).astype(complex)
     return out
 
@@ -247,9 +251,9 @@ def _clipped(x: Floats) -> bool:
     if not np.any(x):
         return False
     size = np.abs(x)
-    top = size >= size.max() * (1 - 1e-9)
+    top = size >= size.max() * (1 - SAME)
     steps = np.abs(np.diff(x))
-    least = steps[steps > 1e-9 * size.max()].min(initial=np.inf)
+    least = steps[steps > SAME * size.max()].min(initial=np.inf)
     edges = np.flatnonzero(np.diff(np.concatenate([[False], top, [False]]).astype(int)))
     for start, end in zip(edges[::2], edges[1::2], strict=True):
         leaps = [steps[start - 1]] if start else []

@@ -19,13 +19,12 @@ from modefront.data.impact import ESTIMATORS, Windows
 from modefront.data.responses import ORDERS, joined
 from modefront.data.uff import read_uff
 from modefront.errors import Fault, InputError, reason, suggestion
-from modefront.inputs import read_text_bytes
+from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.toml import Table, is_name, repeated
 
 UFF_ENDINGS = (".uff", ".unv", ".uf", ".bunv", ".ufb")
 MOST_MODES = 200
-LARGEST = 64 * 10**6
-"""Bytes of a test file, at most."""
+"""Modes that a test file may ask for."""
 
 
 @dataclass(frozen=True)
@@ -118,7 +117,7 @@ def _from_toml(path: Path) -> ModalTest:
 
 
 def _parsed(path: Path) -> dict[str, object]:
-    content = read_text_bytes(path, "a test file", LARGEST)
+    content = read_text_bytes(path, "a test file", MOST_TABLES)
     try:
         return tomllib.loads(content.decode("utf-8-sig"))
     except (ValueError, RecursionError) as error:

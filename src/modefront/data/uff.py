@@ -26,7 +26,7 @@ import numpy as np
 from modefront.data.blows import Blow, Contents
 from modefront.data.channels import Channel
 from modefront.errors import Fault, InputError, reason
-from modefront.inputs import read_text_bytes
+from modefront.inputs import MOST_DATA, read_text_bytes
 
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
@@ -50,9 +50,6 @@ HEADERS = {55: 9, 58: 13}
 RECORD_7 = 8
 """Line of dataset 58 with the kind and the number of values, first abscissa and increment."""
 
-LARGEST = 2 * 10**9
-"""Bytes of a universal file, at most."""
-
 WHAT = "a universal file with frequency response functions or records of blows (dataset 58)"
 
 
@@ -73,7 +70,7 @@ def read_uff(path: Path) -> Contents:
     Where it has none, the records of blows: of the force and of the responses in time. Raises
     InputError where the file holds neither, is cut off or cannot be decoded.
     """
-    file, content = str(path), read_text_bytes(path, WHAT, LARGEST)
+    file, content = str(path), read_text_bytes(path, WHAT, MOST_DATA)
     datasets = blocks(content, file)
     functions = [block for block in datasets if block.number == 58]
     if not functions:

@@ -25,23 +25,26 @@ import numpy as np
 
 from modefront._typing import Complexes, Floats, Ints
 from modefront.data.modal import ModalData
-from modefront.data.uff import AXES, LARGEST, Block, blocks, decode
+from modefront.data.uff import AXES, Block, blocks, decode
 from modefront.errors import Fault, InputError
-from modefront.inputs import read_text_bytes
+from modefront.inputs import MOST_DATA, read_text_bytes
 
 SUFFIXES = (".uff", ".unv", ".uf")
 """Ends of names of universal files."""
 
 GEOMETRY = (15, 2411)
+"""Datasets of nodes."""
 
 SYSTEMS = 2420
 """Dataset of coordinate systems."""
 
 CARTESIAN, CYLINDRICAL = 0, 1
+"""Types of coordinate systems."""
 
 WHAT = "a universal file with modes (dataset 55)"
 
 NORMAL, COMPLEX = 2, (3, 7)
+"""Analysis types of normal and of complex modes."""
 
 ALONG = 1e-6
 """Component of a unit vector, below which it is the rounding of the axes in a file."""
@@ -140,7 +143,7 @@ def read_uff55(path: Path) -> NodalModes:
 
     Raises InputError where the file holds none, is cut off or cannot be decoded.
     """
-    file, content = str(path), read_text_bytes(path, WHAT, LARGEST)
+    file, content = str(path), read_text_bytes(path, WHAT, MOST_DATA)
     sections = blocks(content, file)
     shapes = [block for block in sections if block.number == 55]
     if not shapes:

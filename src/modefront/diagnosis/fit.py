@@ -19,6 +19,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.diagnosis.measured import (
+    RIGID,
     Measured,
     assigned,
     log_frequencies,
@@ -28,9 +29,14 @@ from modefront.diagnosis.measured import (
 from modefront.errors import ModelError
 from modefront.models.base import Model
 from modefront.modes.result import Modes
+from modefront.rounding import ACCUMULATED
 
 STEPS = 8
 """Steps, at most."""
+
+FIRST, LAST = 1e-3, 1e3
+"""Damping after Levenberg and Marquardt, over the diagonal: of the first step, and that at which
+the steps end. Chosen: the end of the steps hardly depends on them."""
 
 PRIOR = 4e-3
 """Weight mu of the distance from the nominal parameters."""
@@ -79,7 +85,7 @@ class Updating:
 
     def fit(self, view: Measured) -> Fit | None:
         """Return the best fit of measured modes; None where the nominal model has no modes."""
-        theta, damping = self.start, 1e-3
+        theta, damping = self.start, FIRST
         unit = np.where(self.start != 0, np.abs(self.start), self.upper - self.lower)
         state = self._state(view, theta)
         if state is None:
@@ -91,14 +97,14 @@ class Updating:
             g = np.concatenate([r, away * (theta - self.start)])
             total = float(g @ g)
             H = G.T @ G
-            step = np.linalg.solve(H + damping * np.diag(np.diag(H) + 1e-12), -G.T @ g)
+            step = np.linalg.solve(H + damping * np.diag(np.diag(H) + ACCUMULATED), -G.T @ g)
             new = np.clip(theta + np.clip(step, -0.5, 0.5) * unit, self.lower, self.upper)
             ahead = self._state(view, new)
             drift = away * (new - self.start)
             value = np.inf if ahead is None else float(ahead[0] @ ahead[0] + drift @ drift)
             if ahead is None or value >= total:
-                damping = max(10 * damping, 1e-2)
-                if damping > 1e3:
+                damping = max(10 * damping, 10 * FIRST)
+                if damping > LAST:
                     break
                 continue
             theta, (r, dr, mode), damping = new, ahead, damping / 5
@@ -128,7 +134,7 @@ def _residuals(
 ) -> tuple[Floats, Floats, Ints]:
     """Return residuals (rows,), their derivatives (rows, parameters) and measured modes (rows,)."""
     f = modes.frequency
-    known = np.isfinite(view.log_frequency) & (f[index] > 1e-6 * f.max())
+    known = np.isfinite(view.log_frequency) & (f[index] > RIGID * f.max())
     parts = [np.log(f[index[known]]) - view.log_frequency[known] + shift]
     slopes = [modes.dfrequency[index[known]] / f[index[known], None]]
     owners = [np.flatnonzero(known)]

@@ -18,6 +18,11 @@ from scipy.optimize import linear_sum_assignment
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.data.modal import ModalData
+from modefront.rounding import TINY
+
+RIGID = 1e-6
+"""Frequency over the greatest one below which a mode is one of a rigid body: rounding leaves the
+root of 1e-13."""
 
 KAPPA = 0.4
 """Cost of a factor e between frequencies, in units of a MAC value."""
@@ -103,5 +108,5 @@ def assigned(cost: Floats) -> tuple[Ints, float]:
 
 def log_frequencies(frequency: Floats) -> Floats:
     """Return logarithms of a model's frequencies; those of rigid-body modes are far below all."""
-    least = 1e-6 * float(frequency.max(initial=0.0))
-    return np.log(np.maximum(frequency, max(least, 1e-300)))
+    least = RIGID * float(frequency.max(initial=0.0))
+    return np.log(np.maximum(frequency, max(least, TINY)))

@@ -22,6 +22,7 @@ import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.diagnosis.measured import Measured
+from modefront.rounding import ACCUMULATED
 
 OPPOSED, AGREES = -0.95, 0.8
 """Value of a reversed sensor, and that which the median sensor has to reach."""
@@ -160,7 +161,7 @@ class _Setting:
         a = (psi**2).sum(axis=2, keepdims=True) - _total([p**2 for p, _ in parts])
         b = (model**2).sum(axis=2, keepdims=True) - _total([m**2 for _, m in parts])
         norm = a * b
-        mac = np.divide(x**2, norm, out=np.zeros(norm.shape), where=norm > 1e-12)
+        mac = np.divide(x**2, norm, out=np.zeros(norm.shape), where=norm > ACCUMULATED)
         fits = (mac >= FITS) & np.logical_and.reduce(
             np.broadcast_arrays(*(self.seen[:, :, k] for k in places), mac >= FITS)
         )

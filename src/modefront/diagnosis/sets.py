@@ -23,6 +23,10 @@ KNOWN, LEAST_KNOWN = 5.0, 0.005
 UNKNOWN, LEAST_UNKNOWN = 6.0, 0.03
 """The same where the scatter is that of the other modes."""
 
+NORMAL, ALONE = 1.4826, 0.02
+"""Standard deviation of a normal distribution over the median of absolute values; and the scatter
+that is assumed where no other mode shows any."""
+
 SHIFTED = 0.03, 0.25
 """Relative difference of all frequencies, and their spread over it, for a common shift."""
 
@@ -234,7 +238,7 @@ def _between(data: ModalData, j: int, k: int) -> list[tuple[float, SetFrequency]
             scatter, limit = float(sigma[i]), max(KNOWN * float(sigma[i]), LEAST_KNOWN)
         else:
             others = np.delete(np.abs(difference), i)
-            scatter = 1.4826 * float(np.median(others)) if others.size else 0.02
+            scatter = NORMAL * float(np.median(others)) if others.size else ALONE
             limit = max(UNKNOWN * scatter, LEAST_UNKNOWN)
         if abs(difference[i]) > limit:
             finding = SetFrequency(

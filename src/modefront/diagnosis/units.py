@@ -13,12 +13,14 @@ import numpy as np
 
 from modefront._typing import Bools, Floats
 from modefront.diagnosis.comparison import Comparison
-from modefront.diagnosis.measured import Measured, assigned, mac_values, pair_costs
+from modefront.diagnosis.measured import RIGID, Measured, assigned, mac_values, pair_costs
 
 RAD = 2 * np.pi
+"""Factor between circular frequencies and Hz."""
 
-DOUBTFUL = float(np.log(2.0))
-"""Logarithm of a factor on all frequencies beyond which something is wrong."""
+OFF = float(np.log(2.0))
+"""Logarithm of a factor on all frequencies beyond which something is wrong. Chosen: a factor of
+four on stiffness over mass."""
 
 SKIPPED = 0.02
 """Cost of a model mode that is passed over."""
@@ -88,16 +90,14 @@ def shifts_to_try(comparison: Comparison, view: Measured) -> list[float]:
     if not known.size:
         return [0.0]
     shift, _, _ = best_shift(comparison, view, logs)
-    if abs(shift) < DOUBTFUL:
+    if abs(shift) < OFF:
         return [0.0]
     elastic = comparison.log_frequency[_elastic(comparison)]
     low = np.minimum(np.arange(known.size), elastic.size - 1)
     in_order = float(np.median(logs[known] - elastic[low])) if elastic.size else shift
     shifts = (shift, in_order, float(np.log(RAD)), -float(np.log(RAD)))
     # Modes in their order show a factor as well, if not as sharply as shapes do.
-    likely = [
-        s for s in shifts if abs(s) > DOUBTFUL and abs(s - in_order) < max(0.8, IN_ORDER * abs(s))
-    ]
+    likely = [s for s in shifts if abs(s) > OFF and abs(s - in_order) < max(0.8, IN_ORDER * abs(s))]
     return [0.0, *likely]
 
 
@@ -108,13 +108,13 @@ def unit_finding(
 
     ``view`` and ``phi`` are measured and model shapes in which wrong sensors are put right.
     """
-    if abs(shift) < DOUBTFUL:
+    if abs(shift) < OFF:
         return None
     logs = view.log_frequency
     known = np.isfinite(logs)
     _, cost, ratio = _at(comparison, view, phi, logs, shift)
     median = float(np.median(ratio))
-    if abs(median) < DOUBTFUL:
+    if abs(median) < OFF:
         return None
     for quantity, changed in (
         ("periods in s", -logs),
@@ -176,4 +176,4 @@ def _at(
 
 def _elastic(comparison: Comparison) -> Bools:
     """Return which modes of the model are none of a rigid body."""
-    return np.asarray(comparison.frequency > 1e-6 * comparison.frequency.max())
+    return np.asarray(comparison.frequency > RIGID * comparison.frequency.max())

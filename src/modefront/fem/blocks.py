@@ -8,6 +8,8 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.fem.check import (
+    ALONG,
+    COINCIDENT,
     cell_array,
     check_positive,
     check_sizes,
@@ -24,9 +26,14 @@ from modefront.fem.elements.tetrahedron import tetrahedron
 from modefront.fem.errors import Checks, FemError
 from modefront.fem.scatter import Block
 from modefront.fem.structure import Beams, Mass, Shells, Solids, Spring
+from modefront.rounding import TINY
+
+SYMMETRIC = 1e-9
+"""Relative error of an inertia matrix that passes for the digits it is given with."""
 
 TRANSLATIONS = (0, 1, 2)
 SIX = (0, 1, 2, 3, 4, 5)
+"""Directions of nodes of solids, and of beams and shells."""
 
 
 def element_blocks(
@@ -54,7 +61,7 @@ def _beams(X: Floats, group: Beams, place: str) -> Block:
     ends = X[cells] + r
     axis = ends[:, 1] - ends[:, 0]
     length = np.linalg.norm(axis, axis=1)
-    check_sizes(length / np.ptp(X, axis=0).max(initial=1e-300), cells, "length", place)
+    check_sizes(length / np.ptp(X, axis=0).max(initial=TINY), cells, "length", place)
     axis = axis / length[:, None]
     section = group.section
     if group.orientation is None:
@@ -68,7 +75,7 @@ def _beams(X: Floats, group: Beams, place: str) -> Block:
     else:
         v = unit_vector(tuple(group.orientation), f"{place}, orientation")[:3]
         orientation = np.broadcast_to(v, axis.shape)
-        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < 1e-6)
+        parallel = np.flatnonzero(np.linalg.norm(np.cross(axis, v), axis=1) < ALONG)
         if len(parallel):
             raise FemError(
                 f"{place}: orientation {tuple(group.orientation)} must not be parallel to the"
@@ -118,13 +125,13 @@ def _springs(X: Floats, member: Spring, place: str) -> Block:
     length = np.linalg.norm(gap, axis=1, keepdims=True)
     size = np.ptp(X, axis=0).max()
     if member.direction is None:
-        if member.to is None or (length <= 1e-9 * size).any():
+        if member.to is None or (length <= COINCIDENT * size).any():
             raise FemError(f"{place}: a direction is needed unless it joins two distant nodes")
         axis = np.pad(gap / length, ((0, 0), (0, 3)))
     else:
         axis = np.tile(unit_vector(member.direction, place), (len(nodes), 1))
         slant = np.linalg.norm(np.cross(gap, axis[:, :3]), axis=1)
-        skew = np.flatnonzero(slant > 1e-6 * length[:, 0] + 1e-9 * size)
+        skew = np.flatnonzero(slant > ALONG * length[:, 0] + COINCIDENT * size)
         if axis[0, :3].any() and len(skew):
             raise FemError(
                 f"{place}: between distant nodes it must act along their line, else it resists a"
@@ -152,8 +159,12 @@ def _masses(X: Floats, member: Mass, place: str) -> Block:
             f"{place}: expected inertia (3,) or (3, 3) and offset (3,), found {inertia.shape} and"
             f" {c.shape}"
         )
-    symmetric = np.allclose(inertia, inertia.T, rtol=1e-9, atol=0)
-    if member.mass < 0 or not symmetric or np.linalg.eigvalsh(inertia)[0] < -1e-9 * inertia.max():
+    symmetric = np.allclose(inertia, inertia.T, rtol=SYMMETRIC, atol=0)
+    if (
+        member.mass < 0
+        or not symmetric
+        or np.linalg.eigvalsh(inertia)[0] < -SYMMETRIC * inertia.max()
+    ):
         raise FemError(
             f"{place}: expected mass >= 0 and inertia symmetric and not negative, found"
             f" {member.mass!r} and {inertia.tolist()}"

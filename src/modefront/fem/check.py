@@ -29,6 +29,17 @@ from modefront.fem.errors import Checks, FemError
 from modefront.fem.structure import Direction, Parameter, Shells, Structure
 
 FLAT = 1e-8
+"""Length, area or volume of an element over that of its extent that is rounding of coordinates."""
+
+SAME_PLACE = 1e-6
+"""Distance over the size of a structure below which points are the same:
+files hold seven digits."""
+
+COINCIDENT = 1e-9
+"""Distance over the size of a structure below which nodes were given the same coordinates."""
+
+ALONG = 1e-6
+"""Sine of an angle below which two directions are the same: files hold seven digits."""
 
 
 def check_points(nodes: npt.ArrayLike) -> Floats:

@@ -30,14 +30,22 @@ from scipy.sparse.csgraph import connected_components
 from scipy.spatial import KDTree
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.fem.check import SAME_PLACE
 from modefront.fem.dofs import DIRECTIONS, LinkRows
 from modefront.fem.errors import FemError
 from modefront.fem.scatter import Block
+from modefront.rounding import ACCUMULATED, TINY
 
 BRICK_FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
 TETRAHEDRON_FACES = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
-RANK_TOLERANCE = 1e-12
 LARGEST_PART = 3000
+"""Motions of a part beyond which it is not examined: its null space takes their cube."""
+
+INVOLVED = 1e-6
+"""Share of a body in the squares of free motions of length one that is more than rounding."""
+
+NAMED = 0.05
+"""Share of a direction in a motion, over the greatest, from which the message names it."""
 
 
 @dataclass(frozen=True)
@@ -84,7 +92,7 @@ def rigid_bodies(X: Floats, elements: Sequence[Block], exists: Bools) -> Bodies:
     alone = members == 1
     moves[alone] = False
     np.logical_or.at(moves, b, exists[n])
-    extent[alone] = max(float(np.ptp(X, axis=0).max()), 1e-300)
+    extent[alone] = max(float(np.ptp(X, axis=0).max()), TINY)
     return Bodies(home, shared, centre, extent, moves)
 
 
@@ -196,7 +204,7 @@ def null_space(C: sparse.csr_array, columns: Ints) -> Floats:
     part = C[:, columns]
     gram = (part.T @ part).toarray()
     values, vectors = np.linalg.eigh(gram)
-    return np.asarray(vectors[:, values <= RANK_TOLERANCE * max(values[-1], 1.0)])
+    return np.asarray(vectors[:, values <= ACCUMULATED * max(values[-1], 1.0)])
 
 
 # 7 arguments: the parts of a structure that can hold a motion.
@@ -277,9 +285,9 @@ def _describe(
     """Message that names the nodes that move, how, and a likely reason."""
     share = np.zeros((len(bodies.extent), 6))
     share.ravel()[columns] = (N**2).sum(1)
-    moving = np.flatnonzero(share.max(1) > 1e-6)
+    moving = np.flatnonzero(share.max(1) > INVOLVED)
     total = share[moving].sum(0)
-    ways = ", ".join(DIRECTIONS[d] for d in np.flatnonzero(total > 0.05 * total.max()))
+    ways = ", ".join(DIRECTIONS[d] for d in np.flatnonzero(total > NAMED * total.max()))
     nodes = np.flatnonzero(np.isin(bodies.home, moving))
     names = ", ".join(map(str, nodes[:8].tolist())) + (", ..." if len(nodes) > 8 else "")
     centre = ", ".join(f"{c:.4g}" for c in X[nodes].mean(0))
@@ -293,7 +301,7 @@ def _describe(
     others = np.flatnonzero((bodies.home >= 0) & ~np.isin(bodies.home, moving))
     if len(others):
         distance, first = KDTree(X[others]).query(X[nodes])
-        near = np.flatnonzero(distance <= 1e-6 * np.ptp(X, axis=0).max())
+        near = np.flatnonzero(distance <= SAME_PLACE * np.ptp(X, axis=0).max())
         if len(near):
             message += (
                 f". Nodes {nodes[near[0]]} and {others[first[near[0]]]} are at the same place but"

@@ -19,8 +19,8 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.errors import InputError, reason
 from modefront.fem.errors import FemError
-from modefront.inputs import available_memory, file_size, is_hdf5, refuse_holes
-from modefront.isolated import IsolatedError, isolated
+from modefront.inputs import MOST_DATA, available_memory, file_size, is_hdf5, refuse_holes
+from modefront.isolated import IsolatedError, isolated, seconds_for
 from modefront.text import one_line
 
 Kind = Literal["beam", "shell", "solid"]
@@ -31,12 +31,6 @@ CELL_TYPES: Mapping[Kind, tuple[str, ...]] = {
 }
 
 READER = "modefront.fem.mesh_reader:read_with_meshio"
-
-LARGEST = 2 * 10**9
-"""Bytes of a mesh file, at most."""
-
-SECONDS, SPEED = 60.0, 10**6
-"""Time that reading may take, and bytes that are read a second at least besides."""
 
 MEMORY, PER_BYTE = 2 * 10**9, 40
 """Memory that reading may take, in bytes, and that for each byte of the file besides."""
@@ -146,12 +140,12 @@ def read_mesh(path: str | Path) -> Mesh:
         raise FemError("reading meshes needs meshio: install it with `pip install modefront[mesh]`")
     path = Path(path)
     try:
-        size = file_size(path, "a mesh", LARGEST)
+        size = file_size(path, "a mesh", MOST_DATA)
         refuse_holes(path, "a mesh", size)
         if reference := refers_to(path):
             raise FemError(f"{path}: expected a mesh that is one file, found {reference}")
         memory = min(available_memory(), MEMORY + PER_BYTE * size)
-        arrays, parts = isolated(READER, path, SECONDS + size / SPEED, memory)
+        arrays, parts = isolated(READER, path, seconds_for(size), memory)
     except IsolatedError as error:
         raise FemError(f"{path}: expected a mesh that meshio can read, found {error}") from None
     except InputError as error:

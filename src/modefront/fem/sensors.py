@@ -14,7 +14,7 @@ from scipy import sparse
 from scipy.spatial import KDTree
 
 from modefront._typing import Floats, Ints
-from modefront.fem.check import node_list, unit_vector
+from modefront.fem.check import SAME_PLACE, node_list, unit_vector
 from modefront.fem.dofs import Dofs
 from modefront.fem.errors import Checks, FemError
 from modefront.fem.structure import Sensor
@@ -101,7 +101,7 @@ def _node(
         raise FemError(f"{place}: expected a node of an element, found none at all")
     distance, nearest = tree.query(point)
     node = int(used[nearest])
-    tolerance = 1e-6 * diagonal if sensor.tolerance is None else sensor.tolerance
+    tolerance = SAME_PLACE * diagonal if sensor.tolerance is None else sensor.tolerance
     if distance > tolerance:
         raise FemError(
             f"{place}: no node within {tolerance:.3g} of {tuple(point.tolist())}; the nearest is"

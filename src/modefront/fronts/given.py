@@ -21,9 +21,14 @@ WEIGHTS = Requirement(
 
 @dataclass(frozen=True)
 class Weighted:
-    """Weights w_i of the objectives; the name labels the model that minimises sum w_i J_i.
+    """Given weights of the objectives, which lead to a model of the results.
 
     Raises InputError for weights that are not numbers above 0.
+
+    Attributes
+    ----------
+    name : label of the model that minimises sum w_i J_i
+    weights : w_i, above 0, by the name of each group
     """
 
     name: Annotated[str, text("a label for the model found with these weights")]

@@ -23,12 +23,15 @@ class Pareto:
 
     Attributes
     ----------
-    method : normal-boundary intersection, weight sweep, or one of the evolutionary methods
-    points : along each edge of the simplex of objectives; None leaves it to their number
-    tolerance : share by which an edge may exceed the least value of its group
-    population, evaluations : size of a generation and budget of an evolutionary method
-    refined : distance of neighbours on the front, over the ranges of the objectives, above which
-        points are added between them; None for no refinement
+    method : ``"nbi"``, normal-boundary intersection; ``"weights"``, a sweep of the weights;
+        ``"spea2"`` or ``"nsga2"``, which need pymoo
+    points : number of points along each edge of the simplex of objectives, 2 at least; None for 20,
+        or as many as make 300 points in all
+    tolerance : share from 0 to 1 by which an edge may exceed the least value of its group
+    population : models in a generation of an evolutionary method, 4 at least
+    evaluations : models in all generations together, as many as ``population`` at least
+    refined : distance of neighbours on the front of two groups, over the ranges of the objectives,
+        above which points are added between them, from 0.001 to 1; None for no refinement
     """
 
     method: Annotated[str, one_of(*METHODS)] = "nbi"

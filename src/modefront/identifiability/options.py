@@ -19,10 +19,11 @@ class Identifiability:
 
     Attributes
     ----------
-    flat : share by which an objective may exceed its least value in a flat part of the front; 0
-        for no search of flat parts
+    flat : share from 0 to 1 by which an objective may exceed its least value in a flat part of the
+        front; 0 for no search of flat parts
     models : greatest number of equivalent models on each manifold; 0 for no manifolds
-    step : distance of neighbours on a manifold, over the ranges of the parameters
+    step : distance of neighbours on a manifold, over the ranges of the parameters, from 0.001 to
+        0.5
     """
 
     flat: Annotated[float, SHARE] = 0.01

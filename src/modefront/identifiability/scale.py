@@ -52,6 +52,9 @@ from modefront.residuals.problem import UpdatingProblem
 STEPS = 12
 """Steps of the power iteration, after which the greatest eigenvalue is known to a tenth."""
 
+SINGULAR = 1e-13
+"""Eigenvalue of K with a unit diagonal, over the greatest and their number, that is rounding."""
+
 WHOLE = 1e-6
 """Remainder of a matrix, over all of it, below which a combination of parameters scales it."""
 
@@ -147,7 +150,7 @@ def _dense(
     K = stiffness.at(theta)
     d = 1 / np.sqrt(np.maximum(np.diag(K), np.finfo(float).tiny))
     lam = scipy.linalg.eigvalsh(K * np.outer(d, d), check_finite=False)
-    if lam[0] <= 1e-13 * lam.size * lam[-1]:
+    if lam[0] <= SINGULAR * lam.size * lam[-1]:
         K = K + shift * _dense_at(mass, theta)
     try:
         L = scipy.linalg.cholesky(K, lower=True, check_finite=False)

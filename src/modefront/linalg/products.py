@@ -109,7 +109,7 @@ def times(A: scipy.sparse.csr_array, X: Floats) -> Floats:
 
 def _share(work: Callable[[int, int], None], count: int, multiplications: int) -> None:
     """Do some work on all of ``count`` pieces, from a first one to before a last one at a time."""
-    pool, threads = _pool()
+    pool, threads = shared_pool()
     if multiplications < SHARED or threads == 1 or count < threads:
         work(0, count)
         return
@@ -119,7 +119,8 @@ def _share(work: Callable[[int, int], None], count: int, multiplications: int) -
 
 
 @cache
-def _pool() -> tuple[ThreadPoolExecutor, int]:
+def shared_pool() -> tuple[ThreadPoolExecutor, int]:
+    """Return the threads that products are shared among, and their number."""
     threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     return ThreadPoolExecutor(threads, "products"), threads or 1
 

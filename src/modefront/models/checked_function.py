@@ -26,8 +26,8 @@ from numpy.typing import NDArray
 
 from modefront._typing import Floats, Ints32
 from modefront.errors import InputError, ModelError, wrong
-from modefront.models.files import LARGEST, SYMMETRY
 from modefront.models.matrices import DENSE
+from modefront.rounding import LARGEST, SYMMETRY
 
 Matrix: TypeAlias = Any
 """A matrix (N, N): an array, nested lists of numbers, or a sparse matrix of scipy."""

@@ -15,6 +15,7 @@ from modefront._typing import Floats, Ints
 from modefront.errors import Fault, InputError, reason
 from modefront.fem.dofs import DIRECTIONS
 from modefront.inputs import file_size
+from modefront.rounding import ACCUMULATED
 
 COLUMNS = ("node", "direction", "weight")
 """Header of a file of degrees of freedom."""
@@ -131,17 +132,15 @@ def name_of(direction: int) -> str:
     return DIRECTIONS[direction - 1] if 0 < direction <= len(DIRECTIONS) else str(direction)
 
 
-NOTHING = 1e-12
-"""Component of a unit vector that is the rounding of one turned by a right angle."""
-
-
 def _components(direction: str | Sequence[float]) -> list[tuple[int, float]]:
     if isinstance(direction, str):
         name = direction.removeprefix("-")
         return [(number_of(name), -1.0 if name != direction else 1.0)]
     vector = np.asarray(direction, dtype=float)
     unit = vector / np.linalg.norm(vector)
-    return [(i + 1, float(x)) for i, x in enumerate(unit) if abs(x) > NOTHING]
+    return [
+        (i + 1, float(x)) for i, x in enumerate(unit) if abs(x) > ACCUMULATED
+    ]  # a vector turned by a right angle leaves rounding
 
 
 def is_direction(value: object) -> bool:

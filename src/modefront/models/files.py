@@ -14,12 +14,7 @@ from modefront.errors import InputError, reason
 from modefront.inputs import file_size
 from modefront.models.formats import FORMATS
 from modefront.models.formats.base import MatrixFormat, check_header, wrong
-
-LARGEST = 1e100
-"""Entries above it overflow in products."""
-
-SYMMETRY = 1e-8
-"""Greatest difference of A and its transpose, over the greatest entry, that passes for rounding."""
+from modefront.rounding import LARGEST, SYMMETRY
 
 R = TypeVar("R")
 

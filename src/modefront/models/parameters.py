@@ -24,8 +24,8 @@ class Parameter:
     Attributes
     ----------
     name : name of the parameter in the model
-    nominal : nominal value, at which the search starts
-    bounds : lower and upper bound
+    nominal : nominal value, at which the search starts, in the unit of the model
+    bounds : lower and upper bound, finite, in the same unit
     """
 
     name: Annotated[str, text("the name of the parameter")]

@@ -51,7 +51,18 @@ SHIFT = 1e-5
 RIGID = 1e-4
 """Eigenvalue over the shift, below which a mode counts as a rigid-body mode."""
 
+INFINITE = 1e-13
+"""Share of the greatest mu = 1 / (lambda + sigma) below which a mode has no finite frequency: what
+rounding leaves of the zeros of a singular M."""
+
+NEGATIVE = 1e-10
+"""Negative mu over the greatest one that passes for rounding; below it, M is indefinite."""
+
+INDEFINITE = 1e-2
+"""Negative eigenvalue over the shift that passes for rounding; below it, K is indefinite."""
+
 _ROUNDING = 10 * np.finfo(float).eps
+"""Error of a sum of products, relative, of some ten terms of like size."""
 
 
 def modes(
@@ -127,18 +138,18 @@ def decompose(K: Floats, M: Floats) -> Decomposition:
         mu, X = _inverse_eigensolve(K + shift * M, M)
         if mu.size == 0:
             raise ModelError("the stiffness matrix is indefinite")
-        elastic = mu[(mu > 1e-13 * mu[-1]) & (mu < (1 - RIGID) * mu[-1])]
+        elastic = mu[(mu > INFINITE * mu[-1]) & (mu < (1 - RIGID) * mu[-1])]
         if elastic.size:
             # A shift of the size of the lowest elastic mode costs no digits of the others.
             shift = float(1 / elastic[-1] - shift)
             mu, X = _inverse_eigensolve(K + shift * M, M)
-    if mu[0] < -1e-10 * mu[-1]:
+    if mu[0] < -NEGATIVE * mu[-1]:
         raise ModelError("the mass matrix is indefinite")
     mu, X = mu[::-1], X[:, ::-1]
-    lam = 1 / mu[mu > 1e-13 * mu[0]] - shift
+    lam = 1 / mu[mu > INFINITE * mu[0]] - shift
     if not lam.size:
         raise ModelError("no mode has a finite frequency: a stiffness vanishes; check its units")
-    if lam[0] < -1e-2 * shift:
+    if lam[0] < -INDEFINITE * shift:
         raise ModelError("the stiffness matrix is indefinite")
     return Decomposition(mu, X, shift, lam)
 

@@ -50,6 +50,7 @@ from modefront.errors import ModelError
 from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, gram, times
 from modefront.modes.spectrum import Shifted, Spectrum
+from modefront.rounding import TINY
 
 COINCIDENT = 1e-6
 """Relative error of a quotient, as bounded by rounding in its gap, above which it is left out.
@@ -154,7 +155,7 @@ def _nearest(spectrum: Spectrum, count: int, tolerance: float) -> tuple[Ints, Fl
     """Return the better factor for each mode, and how many steps it is expected to take."""
     sigma = np.array([shifted.sigma for shifted in spectrum.factors])
     tau = sigma[:, None] - spectrum.lam[:count]
-    condition = 1 + tau / np.maximum(spectrum.beyond - sigma, 1e-300)[:, None]
+    condition = 1 + tau / np.maximum(spectrum.beyond - sigma, TINY)[:, None]
     condition = np.maximum(condition, 1 / condition)
     root = np.sqrt(condition)
     nearest = np.argmin(condition, axis=0)

@@ -38,6 +38,7 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.linalg.products import combine, gram, times
+from modefront.modes.dense import NEGATIVE
 
 TOLERANCE = 1e-7
 """Residual of a Ritz pair over its mu; modes are usually refined once more with another shift."""
@@ -109,7 +110,7 @@ def greatest(
             continue
         mu, Y = np.linalg.eigh(H[:d, :d])
         mu, Y = mu[::-1], Y[:, ::-1]
-        if mu[-1] < -1e-10 * mu[0]:
+        if mu[-1] < -NEGATIVE * mu[0]:
             raise ModelError("the mass matrix is indefinite")
         good = np.linalg.norm(R @ Y[new], axis=0) <= np.maximum(TOLERANCE * mu, LOST * mu[0])
         leading = d if good.all() else int(np.argmin(good))

@@ -12,10 +12,22 @@ def mac(phi: Floats | Complexes, psi: Floats | Complexes) -> Floats:
 
     .. math:: \mathrm{MAC} = |\varphi^H \psi|^2 / (\varphi^H \varphi\; \psi^H \psi)
 
-    Shapes may be complex; arrays are (sensors, modes) and (sensors, other modes), the result is
-    (modes, other modes), between 0 and 1; 0 where a shape vanishes at all sensors
-    (Allemang, Sound and Vibration 37 (8), 2003, equation 2).
+    Source: Allemang, Sound and Vibration 37 (8), 2003, equation 2.
 
+    Parameters
+    ----------
+    phi
+        Mode shapes (sensors, modes), real or complex, in any scale.
+    psi
+        Other mode shapes (sensors, other modes).
+
+    Returns
+    -------
+    Floats
+        MAC values (modes, other modes), from 0 to 1; 0 where a shape vanishes at all sensors.
+
+    Examples
+    --------
     >>> mac(np.array([[1.0], [1.0j]]), np.array([[1.0, 1.0], [1.0j, -1.0j]])).round(6).tolist()
     [[1.0, 0.0]]
     """

@@ -17,6 +17,7 @@ from scipy.optimize import linear_sum_assignment
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
 from modefront.options import check_fields, number, whole
+from modefront.rounding import TINY
 
 OUTSIDE = 1e3
 """Cost of a candidate outside the window of frequencies."""
@@ -35,9 +36,11 @@ class Pairing:
 
     Attributes
     ----------
-    method : by MAC, or by the order of the modes
-    window : greatest ratio of frequencies of a pair, above 1; None is no limit
-    spare : number of model modes that are candidates, beyond the number of measured ones
+    method : ``"mac"``, one to one with the greatest sum of MAC values; ``"order"``, measured mode r
+        is model mode r
+    window : greatest ratio of frequencies of a pair, above 1, where others are left; None for no
+        limit
+    spare : number of model modes, 0 or more, that are candidates beyond the number of measured ones
     """
 
     method: Literal["mac", "order"] = "mac"
@@ -83,7 +86,7 @@ def match(pairing: Pairing, data: ModalData, frequency: Floats, phi: Floats) -> 
     if q < m:
         raise ValueError(f"{m} measured modes cannot be paired with {q} model modes")
     with np.errstate(divide="ignore"):
-        distance = np.abs(np.log(np.maximum(frequency, 1e-300) / data.mean_frequency[:, None]))
+        distance = np.abs(np.log(np.maximum(frequency, TINY) / data.mean_frequency[:, None]))
     cost = np.where(np.isnan(values), distance, 1 - values)
     if pairing.window is not None:
         cost = cost + OUTSIDE * (distance > np.log(pairing.window))

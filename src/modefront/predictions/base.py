@@ -178,7 +178,14 @@ class Kind:
 
 
 class Prediction(Protocol):
-    """A quantity or probability that models predict."""
+    """A quantity or probability that models predict: `PeakResponse`, `Passage` or one of a user.
+
+    A prediction is a frozen dataclass with these properties and methods.
+
+    Attributes
+    ----------
+    kind : variables of the results and wording, the same for all predictions of the class
+    """
 
     kind: ClassVar[Kind]
 

@@ -53,9 +53,10 @@ from modefront.reliability import (
     WhiteNoise,
     step_effect,
 )
-from modefront.reliability.problem import LARGEST_ANGLE
+from modefront.reliability.problem import LARGEST_ANGLE, WHOLE
 from modefront.residuals.problem import UpdatingProblem
 from modefront.response import ModalSystem
+from modefront.rounding import ACCUMULATED
 
 MOST_WORKERS = 8
 """Threads at most; each takes some 100 MB."""
@@ -64,6 +65,7 @@ STEPS_A_PERIOD = 20
 """Time steps in the shortest period, where the step is not given."""
 
 MOST_STEPS = 10**6
+"""Time steps at most: convolutions of more fill the memory."""
 
 SIDES = {"one": Sided.ONE, "two": Sided.TWO}
 
@@ -98,9 +100,14 @@ MODULATION = Requirement(
 
 @dataclass(frozen=True)
 class SoilFilter:
-    """A filter of Kanai and Tajimi: frequency of the soil in Hz, and its damping ratio.
+    """A filter of white noise by a layer of soil, after Kanai and Tajimi.
 
     Raises InputError for values that are not possible.
+
+    Attributes
+    ----------
+    frequency : of the soil in Hz, above 0
+    damping : damping ratio of the soil, above 0
     """
 
     frequency: Annotated[float, SOIL_FREQUENCY]
@@ -142,16 +149,17 @@ class Passage:
     response : a sensor or output, a list of them, or weighted sums of them by their names; failure
         is that any of these leaves [-b, b]
     density : spectral density of the white noise at every input, (unit of load)²/(rad/s)
-    sided : whether it is a one- or a two-sided density
-    levels : barriers b
-    duration : T in s
+    sided : ``"one"`` or ``"two"``: whether the density is for frequencies above 0 only
+    levels : barriers b, above 0, in the unit of the responses, the same for all of them
+    duration : T in s, above 0
     force : where forces act, each with noise of its own; this or ``base``
     base : direction in which the base accelerates
-    step : time step in s; None for a twentieth of the shortest period
+    step : time step in s, a whole part of the duration and at most a quarter of the shortest
+        period; None for a twentieth of it
     filter : filter of the noise, such as that of a soil; None for white noise
     modulation : times in s and factors on the noise, linear between them; None for a constant 1
-    samples : number of samples for each model
-    method : one of `modefront.reliability.METHODS`
+    samples : number of samples for each model, 2 at least
+    method : ``"importance"``, ``"directional"``, ``"additive"`` or ``"monte-carlo"``
     modes : number of modes superposed; None for as many as reach 1.5 times the default band's end
     damping : a ratio, a list of ratios, one a mode, or ``"measured"``
     """
@@ -234,7 +242,7 @@ class Passage:
             steps = self.duration / self.step
             if steps > MOST_STEPS:
                 yield Fault("", "step", f"at most {MOST_STEPS} time steps", f"{steps:.6g}")
-            elif steps < 0.5 or abs(steps - round(steps)) > 1e-6:
+            elif steps < 0.5 or abs(steps - round(steps)) > WHOLE:
                 expected = f"a whole number of steps of {self.step:g} s in {self.duration:g} s"
                 yield Fault("", "step", expected, f"{steps:.6g} of them")
 
@@ -294,7 +302,7 @@ class Passage:
         highest = max(float(system.omega.max()), soil)
         if self.step is not None:
             limit = LARGEST_ANGLE / highest
-            if self.step > limit * (1 + 1e-12):
+            if self.step > limit * (1 + ACCUMULATED):
                 period = f"a quarter of the shortest period ({highest / (2 * np.pi):.4g} Hz)"
                 expected = f"at most {limit:.4g} s, {period}"
                 raise wrong("step", expected, f"{self.step:g}")

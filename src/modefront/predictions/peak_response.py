@@ -66,7 +66,8 @@ class PeakResponse:
     response : a sensor or output, a list of them, or weighted sums of them by their names
     force : where a force acts: a sensor or output, or weights of them; this or ``base``
     base : direction in which the base accelerates
-    quantity : response over load, such as receptance
+    quantity : response over load: ``"receptance"``, ``"mobility"``, ``"accelerance"`` or, with a
+        base that moves, ``"absolute accelerance"``
     band : lowest and highest frequency in Hz; None for up to 1.1 times the highest measured one
     static : whether the static response of the modes left out is added
     modes : number of modes superposed; None for as many as reach 1.5 times the end of the band

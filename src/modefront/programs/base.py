@@ -14,15 +14,10 @@ from modefront.errors import Fault, InputError, reason
 from modefront.inputs import file_size
 from modefront.models.dofs import DofTable
 from modefront.programs.mesh import ProgramMesh
-
-SYMMETRY = 1e-8
-"""Greatest difference of A and its transpose, over the greatest entry, that passes for rounding."""
-
-LARGEST = 1e100
-"""Entries above it overflow in products."""
+from modefront.rounding import LARGEST, SYMMETRY
 
 DOUBLE = 1e-15
-"""Relative error of numbers that are written as binary doubles."""
+"""Relative error of numbers that are written as binary doubles: a few roundings of the program."""
 
 
 @dataclass(frozen=True, eq=False)

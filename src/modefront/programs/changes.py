@@ -24,6 +24,9 @@ COMMENTS = ("**", "$", "!", "#")
 SAME = 1e-6
 """Relative difference from the factor that passes for the digits of a deck."""
 
+OTHER = 1e-5
+"""Relative difference of two factors from which on they are others: that of six digits."""
+
 LARGEST = 2**26
 """Bytes of a deck above which it is not compared."""
 
@@ -92,7 +95,7 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
     if len(factors) != 1:
         return None
     ((value, line),) = factors.items()
-    return None if value <= 0 or abs(value / factor - 1) < 1e-5 else (value, line)
+    return None if value <= 0 or abs(value / factor - 1) < OTHER else (value, line)
 
 
 def _different_lines(nominal: Path, run: Path) -> tuple[str, list[tuple[int, str, str]]]:

@@ -40,6 +40,7 @@ from modefront.linalg.affine import Monomials
 from modefront.models.dofs import DofTable
 from modefront.models.terms import BASE, term_exponents
 from modefront.programs.base import Job, whole
+from modefront.rounding import ACCUMULATED
 
 DROPPED = 1e-13
 """Entries of a difference below it, over the greatest entry of the matrix, are dropped."""
@@ -52,6 +53,9 @@ AFFINE = 1e-10
 
 ROUNDING = 20.0
 """Roundings that may add up in an entry."""
+
+CANCELLED = 1e-14
+"""Size over the greatest of what has cancelled: some fifty roundings of one operation."""
 
 SMALL = 60
 """Degrees of freedom up to which the rank of a term is found."""
@@ -211,7 +215,7 @@ class Differences:
     ) -> Matrix:
         out = scipy.sparse.csr_array(A.shape)
         for weight, D in zip(weights, differences, strict=True):
-            if abs(weight) > 1e-14 * np.abs(weights).max():
+            if abs(weight) > CANCELLED * np.abs(weights).max():
                 out = out + weight * D
         return _above(_reduced(_above(out.tocsr(), A, noise), A, noise)[0], A, 0.0)
 
@@ -409,13 +413,13 @@ def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]
         return term, None if dofs.size else 0
     dense = whole(term)[dofs][:, dofs].toarray()
     values, vectors = np.linalg.eigh(dense)
-    limit = max(noise * float(np.abs(A.diagonal()[dofs]).max()), 1e-12 * np.abs(values).max())
+    limit = max(noise * float(np.abs(A.diagonal()[dofs]).max()), ACCUMULATED * np.abs(values).max())
     strong = np.abs(values) > limit
     rank = int(strong.sum())
     if rank in (0, dofs.size):
         return term, rank or dofs.size
     part = (vectors[:, strong] * values[strong]) @ vectors[:, strong].T
-    part[np.abs(part) <= 1e-14 * np.abs(part).max()] = 0.0
+    part[np.abs(part) <= CANCELLED * np.abs(part).max()] = 0.0
     small = scipy.sparse.coo_array(np.triu(part))
     places = dofs[small.row], dofs[small.col]
     return scipy.sparse.coo_array((small.data, places), shape=term.shape).tocsr(), rank

@@ -14,8 +14,8 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.errors import InputError, reason
 from modefront.inputs import available_memory
-from modefront.isolated import IsolatedError, isolated
-from modefront.models.formats.matrix_market import NUMERIC, SECONDS, SPEED, read_entries
+from modefront.isolated import IsolatedError, isolated, seconds_for
+from modefront.models.formats.matrix_market import NUMERIC, read_entries
 from modefront.programs.base import Entries, wrong
 
 READER = f"{__name__}:lines_of_entries"
@@ -59,7 +59,7 @@ def coordinates(path: Path, size: int, *, skip: int = 0) -> Entries:
         if end != b"\n":
             raise wrong(path, "whole lines to the end", "a file that is cut off")
     given = [str(size), str(count), str(skip)]
-    seconds = SECONDS + path.stat().st_size / SPEED
+    seconds = seconds_for(path.stat().st_size)
     try:
         arrays, _ = isolated(READER, path, seconds, available_memory(), given)
     except IsolatedError as error:

@@ -30,6 +30,10 @@ import numpy as np
 from modefront.errors import Fault, InputError, wrong
 from modefront.response.checks import FloatArray, positive, real_array
 from modefront.response.system import ModalSystem
+from modefront.rounding import ACCUMULATED
+
+WHOLE = 1e-6
+"""Difference from a whole number of time steps that passes for the digits of their length."""
 
 LARGEST_ANGLE = np.pi / 2
 """Largest ω Δt: a quarter of a period. Beyond it the times t_j miss the peaks of the response."""
@@ -146,10 +150,10 @@ class FirstPassage:
         """Check the times against each other and against the frequencies."""
         positive("duration", self.duration, "s")
         positive("time_step", self.time_step, "s")
-        if self.time_step > LARGEST_ANGLE / self.highest_omega() * (1 + 1e-12):
+        if self.time_step > LARGEST_ANGLE / self.highest_omega() * (1 + ACCUMULATED):
             raise StepError(self.time_step, self.highest_omega())
         steps = self.duration / self.time_step
-        if steps < 0.5 or abs(steps - round(steps)) > 1e-6:
+        if steps < 0.5 or abs(steps - round(steps)) > WHOLE:
             expected = f"a whole number of time steps of {self.time_step} s"
             found = f"{self.duration} s, which is {steps:.6g} of them"
             raise wrong("duration", expected, found)

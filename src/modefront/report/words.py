@@ -11,7 +11,7 @@ import xarray as xr
 
 from modefront.fronts.methods import METHODS
 from modefront.predictions import KINDS
-from modefront.results.remarks import cautions, failures, quality, single
+from modefront.results.remarks import cautions, failures, misfit, single
 from modefront.results.selection import front_points
 
 FEW = 8
@@ -38,7 +38,7 @@ def topics(data: xr.Dataset) -> list[Topic]:
     """Return the sentences on the study, its results and its open questions."""
     all_topics = (
         Topic("What was studied", tuple(_study(data))),
-        Topic("How well the best models do", _sentences(quality(data))),
+        Topic("How well the best models do", _sentences(misfit(data))),
         Topic("What the data leave open", tuple(_open(data))),
         Topic("What to beware of", tuple(_caution(data))),
     )

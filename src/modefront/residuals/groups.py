@@ -24,13 +24,18 @@ class Group:
 
     Each kind of residual (`modefront.residuals.kinds`) is a keyword that names its measured modes:
     numbers, counted from 1, or ``"all"``. Kinds may be given by position too, in the order of their
-    registration: frequencies, then shapes. Raises ValueError where anything else is given.
+    registration: frequencies, then shapes.
+
+    Raises
+    ------
+    ValueError
+        For a kind that there is not, anything but mode numbers, and another scale.
 
     Attributes
     ----------
     name : name of the objective in results
-    scale : unit of the residuals: the measured values, as in equation (1), or their standard
-        deviations
+    scale : unit of the residuals: ``"measured"`` values, as in equation (1), or their standard
+        deviations, ``"std"``
     chosen : measured modes by the name of the kind, of the kinds that the group has
 
     >>> Group("low modes", frequency=[1, 2], shape="all").chosen

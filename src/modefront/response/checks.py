@@ -23,8 +23,8 @@ def real_array(
     """
     array = np.array(value, dtype=np.float64)
     fits = array.ndim == len(shape) and all(
-        size == wanted or (wanted is None and size > 0)
-        for size, wanted in zip(array.shape, shape, strict=True)
+        size == required or (required is None and size > 0)
+        for size, required in zip(array.shape, shape, strict=True)
     )
     if not fits:
         sizes = ", ".join("n" if size is None else str(size) for size in shape)

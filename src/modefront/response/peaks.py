@@ -39,6 +39,16 @@ DEGREE = 24
 RESOLVED = 1e-12
 """The series is done when its last coefficients are below this, relative to its largest."""
 
+TOUCH = 1e-6
+"""Distance of a root from the interval, over its half length, up to which it may be a zero in it:
+the root of `RESOLVED`, by which rounding parts a double zero."""
+
+SETTLED = 1e-8
+"""Relative length of the last step of Newton's method at a zero; elsewhere steps stay long."""
+
+TWICE = 1e-10
+"""Relative distance of two zeros up to which they are the same, found twice."""
+
 NEWTON_STEPS = 6
 """From the accuracy of the series, two or three do; more than enough even for merging peaks."""
 
@@ -156,7 +166,7 @@ def _zeros(slope: Slope, a: float, b: float) -> FloatArray:
         return np.empty(0)
     roots = chebyshev.chebroots(trimmed)
     # A touch beyond the ends: a zero on a break must not fall between two intervals.
-    real = (abs(roots.imag) < 1e-6) & (abs(roots.real) < 1 + 1e-6)
+    real = (abs(roots.imag) < TOUCH) & (abs(roots.real) < 1 + TOUCH)
     zeros: FloatArray = middle + half * roots.real[real]
     return zeros
 
@@ -171,6 +181,6 @@ def _polish(slope: Slope, omega: FloatArray, low: float, high: float) -> FloatAr
         with np.errstate(divide="ignore", invalid="ignore"):
             moved = np.clip(omega - g / g1, low, high)
         omega, step = moved, moved - omega
-    inside = (omega > low) & (omega < high) & (abs(step) < 1e-8 * omega)
+    inside = (omega > low) & (omega < high) & (abs(step) < SETTLED * omega)
     omega = np.sort(omega[inside])
-    return omega[np.diff(omega, prepend=-np.inf) > 1e-10 * omega]
+    return omega[np.diff(omega, prepend=-np.inf) > TWICE * omega]

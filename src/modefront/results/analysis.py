@@ -22,11 +22,15 @@ from modefront.identifiability.combinations import (
 )
 from modefront.identifiability.scale import Scale, scale_at
 from modefront.residuals.problem import UpdatingProblem
+from modefront.rounding import TINY
 from modefront.solvers.sqp import Solution
 from modefront.uncertainty.prediction import linear
 
 Values = dict[str, object]
 """Values of variables by name; `modefront.results.schema` describes them."""
+
+PART = 1e-9
+"""Component of a direction over the greatest that is rounding of its basis."""
 
 ALL = "all data"
 """Name of all groups together."""
@@ -179,7 +183,7 @@ def _std(covariance: Floats, free: Floats) -> Floats:
 
 def left_open(free: Floats) -> Bools:
     """Return the parameters that have a part in directions (p, d)."""
-    out: Bools = (np.abs(free) > 1e-9 * np.abs(free).max(initial=1e-300)).any(axis=1)
+    out: Bools = (np.abs(free) > PART * np.abs(free).max(initial=TINY)).any(axis=1)
     return out
 
 

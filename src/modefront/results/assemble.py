@@ -30,7 +30,7 @@ def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     """Return a front and its analysis as a dataset with names, units and meanings."""
     front = replace(front, points=[*front.points, *analysis.points])
     values = _points(problem, front, analysis) | _data(problem, front) | _minima(problem, front)
-    values |= _branches(front) | _lattice(front)
+    values |= _branches(front) | lattice_values(front)
     determined = determinations(problem, front)
     values |= analysis_values(problem, front, analysis, determined)
     values["finding"] = findings(problem, front, analysis, determined)
@@ -129,7 +129,7 @@ def _branches(front: Front) -> Values:
     }
 
 
-def _lattice(front: Front) -> Values:
+def lattice_values(front: Front) -> Values:
     """Return the lattice of normal-boundary intersection and the point that each place led to."""
     if not len(front.places):
         return {}

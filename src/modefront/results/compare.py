@@ -121,7 +121,21 @@ class Comparison:
 def compare(folders: Sequence[Path]) -> Comparison:
     """Return the comparison of the results in folders.
 
-    Raises InputError where there are none, or where their groups are not the same.
+    Parameters
+    ----------
+    folders
+        Folders with a ``results.nc`` each, of studies with the same groups.
+
+    Returns
+    -------
+    Comparison
+        Groups, one summary a front, and the distance of each two fronts, all in the space of the
+        errors sqrt(J / a).
+
+    Raises
+    ------
+    InputError
+        Where there are no results, or their groups are not the same.
     """
     results = read_together(folders, whole=False)
     groups = tuple(map(str, results[0][1]["group"].values))

@@ -22,8 +22,8 @@ from modefront.identifiability.words import (
 )
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Determination
-from modefront.results.schema import AT_BOUND
 from modefront.solvers.manifold import Extent, Manifold
+from modefront.solvers.tangents import AT_BOUND
 from modefront.uncertainty.validity import LinearisationWarning
 
 
@@ -39,7 +39,7 @@ class Rank(IntEnum):
     SPENT = 6
     ALIKE = 7
     SCATTER = 8
-    DOUBTFUL = 9
+    LINEARISATION = 9
     DETERMINED = 10
 
 
@@ -251,7 +251,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
     missing = [name for name in labels if name not in analysis.scatter]
     if missing:
         where = _places(missing, len(labels))
-        yield Rank.DOUBTFUL, f"no standard deviations are known at {where}"
+        yield Rank.LINEARISATION, f"no standard deviations are known at {where}"
     for warning in LinearisationWarning:
         warned = [
             name
@@ -261,7 +261,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
         if warned:
             where = _places(warned, len(labels))
             yield (
-                Rank.DOUBTFUL,
+                Rank.LINEARISATION,
                 f"standard deviations may not be valid at {where}: {warning.value}",
             )
 

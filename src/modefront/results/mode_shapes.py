@@ -35,6 +35,7 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values
 from modefront.results.schema import described
 from modefront.results.shapes import unit_scale
+from modefront.rounding import TINY
 from modefront.work.codec import record
 
 TOLERANCE = 1e-3
@@ -199,10 +200,10 @@ class _Basis:
         C = np.hstack([np.pad(row, ((0, n - len(row)), (0, 0))) for row in rows])
         W, sigma, V = np.linalg.svd(C, full_matrices=False)
         lacking = np.cumsum((sigma[:, None] * V)[::-1] ** 2, axis=0)[::-1]
-        needed = (lacking > TOLERANCE**2 * np.maximum(lacking[0], 1e-300)).any(axis=1)
+        needed = (lacking > TOLERANCE**2 * np.maximum(lacking[0], TINY)).any(axis=1)
         kept = max(1, int(needed.sum()))
         c = sigma[:kept, None] * V[:kept]
-        most = np.maximum(np.abs(c).max(axis=1), 1e-300)
+        most = np.maximum(np.abs(c).max(axis=1), TINY)
         B: Floats = (self.Q @ W[:, :kept]) * most
         return B, (c / most[:, None]).T.reshape(len(rows), modes, kept)
 

@@ -13,6 +13,8 @@ import xarray as xr
 from modefront._typing import Bools, Floats
 from modefront.fronts.point import Kind
 from modefront.results.selection import front_points, not_converged, uncertified
+from modefront.rounding import ACCUMULATED
+from modefront.solvers.tangents import AT_BOUND
 
 MOST = 10
 """Findings that are printed, at most, unless all are asked for."""
@@ -22,6 +24,14 @@ NAMED = 6
 
 FEW = 2
 """Modes whose pairs change, and parameters at bounds, that a first screen names one by one."""
+
+NEGATIVE = 1e-6
+"""Size of a negative weight, the sum of all being 1, that solutions do not leave by rounding: ten
+times the tolerance of a step (`modefront.solvers.sqp.Options`)."""
+
+ARRIVED = 1e-5
+"""Distance of two optimally weighted models, over the ranges, below which they are the same: a
+hundred times the tolerance of a step, which minima that are nearly flat miss by as much."""
 
 POOR = 0.5
 """MAC below which a pair is poor."""
@@ -42,7 +52,7 @@ def digest(findings: Sequence[str], where: str, most: int | None = MOST) -> list
 def remarks(data: xr.Dataset) -> list[str]:
     """Return all remarks on the results."""
     return [
-        *quality(data),
+        *misfit(data),
         *single(data),
         *_exact(data),
         *_iteration(data),
@@ -67,7 +77,7 @@ def headlines(data: xr.Dataset) -> list[str]:
     """
     return [
         *failures(data),
-        *quality(data),
+        *misfit(data),
         *single(data),
         *_gaps(data),
         *_poor_pairs(data, FEW),
@@ -136,7 +146,7 @@ def places(data: xr.Dataset, chosen: Bools) -> str:
     return ", ".join(parts)
 
 
-def quality(data: xr.Dataset) -> Iterator[str]:
+def misfit(data: xr.Dataset) -> Iterator[str]:
     """Yield how far models are from the data: all Pareto-optimal ones, the reference, the nominal.
 
     Pareto-optimal are edges and weighted models too: the best models are never left out.
@@ -181,7 +191,7 @@ def _percent(value: float) -> str:
     if not np.isfinite(value) or value < 0.01:
         return "0.01" if value < 0.01 else f"{value}"
     decimals = max(1 - int(np.floor(np.log10(value))), 0)
-    up = np.ceil(10**decimals * value * (1 - 1e-12)) / 10**decimals
+    up = np.ceil(10**decimals * value * (1 - ACCUMULATED)) / 10**decimals
     return f"{up:.2g}" if up < 10 else f"{up:.0f}"
 
 
@@ -236,7 +246,7 @@ def _iteration(data: xr.Dataset) -> Iterator[str]:
         yield "the iteration w = a / J runs into the singularity and confirms nothing"
         return
     away = np.abs((theta[of == "iterated-weights"][0] - optimal) / span).max(initial=0.0)
-    if away < 1e-5:
+    if away < ARRIVED:
         yield "the iteration w = a / J arrives at the same optimally weighted model"
     else:
         yield f"the iteration w = a / J arrives elsewhere, {away:.2g} of the ranges away"
@@ -280,7 +290,7 @@ def _spacing(data: xr.Dataset) -> Iterator[str]:
 
 def _not_optimal(data: xr.Dataset) -> Iterator[str]:
     """Yield which points are no local Pareto optima."""
-    negative = (data["stationary_weight"].values < -1e-6).any(axis=1)
+    negative = (data["stationary_weight"].values < -NEGATIVE).any(axis=1)
     negative &= ~np.isnan(data["stationary_weight"].values).any(axis=1)
     if negative.any():
         yield f"{places(data, negative)}: no local Pareto optimum (a weight is negative)"
@@ -345,7 +355,7 @@ def _at_bounds(data: xr.Dataset, most: int | None = None) -> Iterator[str]:
     """Yield which parameters are at a bound and where, of more than ``most`` only how many."""
     theta, bounds = data["theta"].values, data["bounds"].values
     span = bounds[:, 1] - bounds[:, 0]
-    at_bound = (np.abs(theta[:, :, None] - bounds) <= 1e-9 * span[:, None]).any(axis=2)
+    at_bound = (np.abs(theta[:, :, None] - bounds) <= AT_BOUND * span[:, None]).any(axis=2)
     names = data["parameter"].values[at_bound.any(axis=0)].tolist()
     if most is not None and len(names) > most:
         some = ", ".join(names[:most])

@@ -51,9 +51,10 @@ class ReportedModel:
 
     Attributes
     ----------
-    label, kind : name of the point, and why it is reported
-    theta : parameter values by name
-    objective : J by group
+    label : name of the point, such as ``nbi-3`` or ``optimal-weights``
+    kind : why it is reported, such as ``front`` or ``edge``
+    theta : parameter values by name, in the units of the model
+    objective : J by group, without unit
     frequency : (modes,) frequencies in Hz paired with the measured modes
     mac : (modes,) MAC values of the pairs
     problem : the updating problem; None where the results were read without their study
@@ -271,9 +272,20 @@ class Results:
 
 
 def read_results(folder: Path | str, problem: UpdatingProblem | None = None) -> Results:
-    """Return the results in a folder; with their problem, models have matrices and modes.
+    """Return the results in a folder.
 
-    Raises InputError where there are none, where they are not those of modefront, and where they
-    are of another format.
+    Parameters
+    ----------
+    folder
+        Folder with a ``results.nc``.
+    problem
+        The updating problem, with which models have matrices and modes; ``load(path).problem`` of a
+        study file. None for results alone.
+
+    Raises
+    ------
+    InputError
+        Where there are no results, where they are not those of modefront or are damaged, and where
+        they are of another format.
     """
     return Results(read_dataset(Path(folder)), problem)

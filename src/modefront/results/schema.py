@@ -16,6 +16,7 @@ import xarray as xr
 
 from modefront._typing import Ints
 from modefront.predictions import KINDS
+from modefront.solvers.tangents import AT_BOUND
 from modefront.variables import Values, Variable
 
 FORMAT = 2
@@ -77,11 +78,6 @@ DIMENSIONS: Mapping[str, str] = {
     "statistic": "`mean`, `standard deviation`, `5 %`, `50 %`, `95 %`",
 }
 """Dimensions of the variables."""
-
-
-AT_BOUND = 1e-9
-"""Distance from a bound, over the range, up to which a parameter is at it: solvers set it exactly
-there, and files in text lose less."""
 
 
 def _at_bound(values: Mapping[str, Any]) -> Ints:

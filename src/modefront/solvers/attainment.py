@@ -44,7 +44,7 @@ import numpy as np
 from modefront._typing import Bools, Floats
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
-from modefront.solvers.scalarisation import Achievement
+from modefront.solvers.scalarisation import Linear, achievement
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 
 SHARE = 1e-6
@@ -106,11 +106,11 @@ class Attainment:
         """Return the coordinates (n,) of the point of the plane that is projected onto J."""
         return self.target.place(J)
 
-    def subproblem(self, beta: Floats) -> Achievement:
+    def subproblem(self, beta: Floats) -> Linear:
         """Return the programme of the point at beta."""
         unit = self.scale * self.r
         point = (self.target.utopia / self.scale + self.target.Phi @ beta) / self.r
-        return Achievement(SHARE / unit, np.diag(1 / unit), point)
+        return achievement(SHARE / unit, np.diag(1 / unit), point)
 
     def excess(self, beta: Floats, J: Floats) -> Floats:
         """Return c, shape (n,)."""

@@ -21,7 +21,7 @@ from modefront.solvers.attainment import SAME, Attainment, active_bounds
 from modefront.solvers.lexicographic import Lexicographic
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
-from modefront.solvers.scalarisation import Linear
+from modefront.solvers.scalarisation import constrained
 from modefront.solvers.sqp import Options, Solution, begin, solve
 from modefront.work.task import IMMEDIATE, Executor, Task
 
@@ -132,7 +132,9 @@ def _lowered(problem: Problem, target: Payoff, start: Solution, lowered: Bools) 
             else start
         )
     held = np.eye(J.size)[~lowered] / scale
-    return solve(problem, Linear(np.where(lowered, 1 / scale, 0.0), held, held @ J), start, _FEW)
+    return solve(
+        problem, constrained(np.where(lowered, 1 / scale, 0.0), held, held @ J), start, _FEW
+    )
 
 
 def _around(problem: Problem, order: Lexicographic, start: Solution, lowered: Bools) -> Solution:

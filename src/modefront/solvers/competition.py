@@ -92,7 +92,7 @@ def from_points_beside(
     """
     current = list(points)
     kept = [k for k, pair in enumerate(zip(points, before, strict=False)) if same(*pair)]
-    tried = {(k, points[j].theta.tobytes()) for k in kept for j in kept}
+    attempts = {(k, points[j].theta.tobytes()) for k in kept for j in kept}
     gained = 0
     for turn in range(ROUNDS):
         comparison = _Comparison.of(problem, target, lattice, current)
@@ -100,8 +100,8 @@ def from_points_beside(
         for k in comparison.open.tolist():
             for j in comparison.starts(k, MANY if gained else NEAREST):
                 key = (k, current[j].theta.tobytes())
-                if key not in tried:
-                    tried.add(key)
+                if key not in attempts:
+                    attempts.add(key)
                     starts.append((k, j))
         if not starts:
             break

@@ -16,7 +16,7 @@ from modefront._typing import Floats
 from modefront.solvers.explore import Search, distinct, explore
 from modefront.solvers.lexicographic import EXACT, Lexicographic
 from modefront.solvers.problem import Problem
-from modefront.solvers.scalarisation import Linear
+from modefront.solvers.scalarisation import constrained
 from modefront.solvers.sqp import Options, Solution, begin, solve
 from modefront.work.task import IMMEDIATE, Executor, Task
 
@@ -124,7 +124,7 @@ def near_best(
     unit = np.eye(sizes.size)[[objective]] / value
     closest = sorted(known, key=lambda solution: abs(np.log(solution.J[objective] / value)))
     for start in closest[:ATTEMPTS]:
-        solved = solve(problem, Linear(others, unit, np.ones(1)), start)
+        solved = solve(problem, constrained(others, unit, np.ones(1)), start)
         if solved.converged:
             return solved
     return best

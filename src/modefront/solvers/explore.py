@@ -71,11 +71,12 @@ class Search:
 
     Attributes
     ----------
-    starts : local searches at least, where no starts are known
-    limit : local searches at most; unless given, 60 or as many as ``starts``
-    evolutions : runs of the evolution strategy at most, where the limit did not suffice
-    generations : generations of one run at most
-    spread : standard deviation, over the range of the parameters, at which a run hands over
+    starts : local searches at least, 1 or more, where no starts are known
+    limit : local searches at most, as many as ``starts`` or more; unless given, 60 or ``starts``
+    evolutions : runs of the evolution strategy at most, where the limit did not suffice; 0 for none
+    generations : generations of one run at most, 1 or more
+    spread : standard deviation, over the range of the parameters, at which a run ends and its best
+        model starts a local search; above 0
     """
 
     starts: Annotated[int, whole(1, MOST)] = 12

@@ -47,7 +47,7 @@ from modefront.solvers.problem import (
     Wrapped,
     infeasible,
 )
-from modefront.solvers.scalarisation import Linear, weighted
+from modefront.solvers.scalarisation import Linear, constrained, weighted
 from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 
 EXACT = 1e-10
@@ -213,7 +213,7 @@ class Lexicographic:
         rows = np.eye(k + n - 1)[np.concatenate([np.ones(k, dtype=np.bool_), held[others]])]
         unit = np.concatenate([np.full(k, root), self.sizes[others]])
         values = np.concatenate([Q.T @ aim, start.J[others]])
-        programme = Linear(
+        programme = constrained(
             np.concatenate([np.zeros(k), w[others]]), rows / unit, rows @ (values / unit)
         )
         solution = solve(

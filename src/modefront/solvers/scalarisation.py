@@ -78,21 +78,11 @@ class Scalarisation(Protocol):
 
 @dataclass(frozen=True)
 class Linear:
-    """f = w^T J subject to A J = b."""
+    """f = w^T J, with linear constraints or a maximum of linear functions."""
 
     w: Floats
-    A: Floats
-    b: Floats
-
-    @property
-    def constraints(self) -> Rows:
-        """A J - b."""
-        return Rows(self.A, self.b)
-
-    @property
-    def maximised(self) -> Rows:
-        """No maximum."""
-        return no_rows(self.w.size)
+    constraints: Rows
+    maximised: Rows
 
     def value(self, J: Floats) -> float:
         """Return w^T J."""
@@ -176,43 +166,22 @@ class Squares:
         return np.diag(np.broadcast_to(self.w, J.shape))
 
 
-@dataclass(frozen=True)
-class Achievement:
-    """f = w^T J, to which the maximum of C J - d is added: an achievement function.
+def weighted(w: Floats) -> Linear:
+    """Return min w^T J."""
+    return Linear(w, no_rows(w.size), no_rows(w.size))
+
+
+def constrained(w: Floats, A: Floats, b: Floats) -> Linear:
+    """Return min w^T J subject to A J = b."""
+    return Linear(w, Rows(A, b), no_rows(w.size))
+
+
+def achievement(w: Floats, C: Floats, d: Floats) -> Linear:
+    """Return min w^T J + max (C J - d), an achievement function.
 
     Wierzbicki 1980, doi:10.1007/978-3-642-48782-8_32.
     """
-
-    w: Floats
-    C: Floats
-    d: Floats
-
-    @property
-    def constraints(self) -> Rows:
-        """No constraints."""
-        return no_rows(self.w.size)
-
-    @property
-    def maximised(self) -> Rows:
-        """C J - d."""
-        return Rows(self.C, self.d)
-
-    def value(self, J: Floats) -> float:
-        """Return w^T J."""
-        return float(self.w @ J)
-
-    def gradient(self, J: Floats) -> Floats:
-        """Return w, whatever J is."""
-        return np.broadcast_to(self.w, J.shape)
-
-    def hessian(self, J: Floats) -> Floats:
-        """Return zeros."""
-        return np.zeros((J.size, J.size))
-
-
-def weighted(w: Floats) -> Linear:
-    """Return min w^T J."""
-    return Linear(w, np.zeros((0, w.size)), np.zeros(0))
+    return Linear(w, no_rows(w.size), Rows(C, d))
 
 
 def boundary(point: Floats, normal: Floats, utopia: Floats, scale: Floats) -> Linear:
@@ -225,10 +194,10 @@ def boundary(point: Floats, normal: Floats, utopia: Floats, scale: Floats) -> Li
     """
     across = scipy.linalg.null_space(normal[None]).T
     w = -normal / (normal @ normal)
-    return Linear(w / scale, across / scale, across @ (point + utopia / scale))
+    return constrained(w / scale, across / scale, across @ (point + utopia / scale))
 
 
 def level(minimised: int, fixed: int, value: float, scale: Floats) -> Linear:
     """Return min J_minimised subject to J_fixed = value, in units of ``scale``."""
     unit = np.eye(scale.size) / scale
-    return Linear(unit[minimised], unit[[fixed]], np.array([value / scale[fixed]]))
+    return constrained(unit[minimised], unit[[fixed]], np.array([value / scale[fixed]]))

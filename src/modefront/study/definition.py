@@ -56,9 +56,9 @@ class Study:
 
     Attributes
     ----------
-    problem : model, data, groups and parameters
-    name : a title
-    seed : of all random numbers
+    problem : model, data, groups and parameters; `updating_problem` makes it
+    name : title of the study in results and reports
+    seed : of all random numbers, 0 or more; the same seed gives the same digits
     pareto : method and resolution of the front
     weighted : given weights of models, besides equal and optimal weights
     search : extent of the search for global minima

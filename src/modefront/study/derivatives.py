@@ -19,6 +19,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.residuals.problem import UpdatingProblem
+from modefront.rounding import TINY
 
 AGREEMENT = 1e-5
 """Greatest relative error of derivatives that finite differences explain."""
@@ -157,7 +158,7 @@ def _mode_and_cause(problem: UpdatingProblem, theta: Floats, step: Floats) -> tu
     for of in values.values():
         # Fourth differences: what is left of a smooth curve is close to nothing.
         fourth = of[0] - 4 * of[1] + 6 * of[2] - 4 * of[3] + of[4]
-        bend = np.maximum(bend, np.abs(np.nan_to_num(fourth / np.abs(of[2]).clip(1e-300))))
+        bend = np.maximum(bend, np.abs(np.nan_to_num(fourth / np.abs(of[2]).clip(TINY))))
     r = int(np.argmax(bend))
     mode = problem.data.modes[r]
     pairs = {int(x.quantities["paired_mode"][r]) for x in points}
@@ -179,7 +180,7 @@ def _mode_and_cause(problem: UpdatingProblem, theta: Floats, step: Floats) -> tu
             f"parameters differ by {known.max() / known.min():.0e} in their effect: check units "
             "of the matrices, and whether a stiffness vanishes"
         )
-    if (np.abs(step) > np.abs(theta) + 1e-300).any():
+    if (np.abs(step) > np.abs(theta) + TINY).any():
         return mode, (
             "the parameter has so little effect that a step beyond its own size is needed to see "
             "any: check its value, its units, and whether a stiffness vanishes"

@@ -18,7 +18,7 @@ from modefront.diagnosis.places import DataDirection
 from modefront.errors import Fault, InputError, ModelError, reason
 from modefront.fronts.options import Pareto
 from modefront.identifiability.options import Identifiability
-from modefront.inputs import read_text_bytes
+from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
@@ -36,9 +36,6 @@ from modefront.study.tables.predict import complete, read_predictions
 from modefront.study.tables.weighted import read_weights
 from modefront.toml import Table
 from modefront.uncertainty.options import Uncertainty
-
-LARGEST = 64 * 10**6
-"""Bytes of a study file, at most."""
 
 
 def load(path: Path | str) -> Study:
@@ -130,7 +127,7 @@ def _place(root: Table, place: str) -> Table:
 
 
 def _parse(path: Path) -> tuple[dict[str, Any], bytes]:
-    content = read_text_bytes(path, "a study file", LARGEST)
+    content = read_text_bytes(path, "a study file", MOST_TABLES)
     try:
         return tomllib.loads(content.decode("utf-8-sig")), content
     except (ValueError, RecursionError) as error:

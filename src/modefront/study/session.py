@@ -150,8 +150,7 @@ def run(
     scheduler
         Address of the scheduler of a Dask cluster that does the work, like ``tcp://HOST:PORT``.
 
-    The digits of the results do not depend on who does the work. The arguments are more than six
-    because each is an option of its own.
+    The digits of the results do not depend on who does the work.
 
     Raises
     ------

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 from modefront.errors import Fault, InputError
+from modefront.inputs import MOST_TABLES
 from modefront.study.definition import Study
 from modefront.study.file import load
 from modefront.work.store import FOLDER
@@ -17,9 +18,6 @@ NOTE = "study"
 
 LONGEST = 4096
 """Bytes of a path that is believed."""
-
-LARGEST = 10**7
-"""Bytes of a study file, at most."""
 
 ABOVE = 3
 """Folders above the results in which a study is sought."""
@@ -112,7 +110,7 @@ def _text(file: Path) -> str:
 
 def _is_named(file: Path, name: str) -> bool:
     try:
-        if not file.is_file() or file.stat().st_size > LARGEST:
+        if not file.is_file() or file.stat().st_size > MOST_TABLES:
             return False
         return bool(tomllib.loads(file.read_text("utf-8-sig"))["study"]["name"] == name)
     except (OSError, ValueError, KeyError, TypeError):

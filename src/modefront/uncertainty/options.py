@@ -26,10 +26,11 @@ class Uncertainty:
 
     Attributes
     ----------
-    source : standard deviations, the scatter of several data sets, neither, or, with ``"auto"``,
-        the first of these that the data have
-    bootstrap : number of bootstrap samples of the data, with each of which all points are solved
-    draws : number of models drawn from the posterior for predictions
+    source : errors of the data: ``"std"``, their standard deviations; ``"sets"``, the scatter of
+        several data sets; ``"none"``; ``"auto"``, the first of these that the data have
+    bootstrap : number of bootstrap samples of the data, with each of which all points are solved;
+        0 for none, and with the source ``"none"``
+    draws : number of models drawn from the posterior for predictions; 0 for none
     """
 
     source: Literal["auto", "std", "sets", "none"] = "auto"

@@ -54,12 +54,16 @@ import scipy.linalg
 from modefront._typing import Bools, Floats
 from modefront.solvers.curvature import ERROR, SecondOrder
 from modefront.solvers.problem import Problem
+from modefront.solvers.tangents import AT_BOUND
 from modefront.uncertainty.conditions import Conditions
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.validity import LinearisationWarning, std
 
 FLAT = 1e-12
 """Eigenvalue over the greatest one below which a direction changes no residual."""
+
+DEPENDENT = 1e-14
+"""Singular value of equations of size one, over the greatest, that is their rounding."""
 
 PRESSED = 1e-6
 """Slope of the Lagrangian at a bound, over the slopes of its terms, from which the bound holds."""
@@ -100,8 +104,7 @@ def held_at_bounds(problem: Problem, point: SecondOrder, w: Floats) -> Bools:
     slope = w @ evaluation.dJ * span
     curved = np.abs(np.tensordot(np.abs(w), evaluation.H, axes=1) * np.outer(span, span)).max()
     pressed = np.abs(slope) > PRESSED * (parts.sum(axis=0).max() + curved)
-    near = 1e-9
-    held: Bools = pressed & np.where(slope > 0, u <= near, u >= 1 - near)
+    held: Bools = pressed & np.where(slope > 0, u <= AT_BOUND, u >= 1 - AT_BOUND)
     return held
 
 
@@ -201,5 +204,5 @@ def _solve_scaled(A: Floats, b: Floats) -> Floats:
     scaled = A / rows[:, None]
     columns = np.abs(scaled).max(axis=0, initial=0.0)
     columns = np.where(columns > 0, columns, 1.0)
-    x = scipy.linalg.lstsq(scaled / columns, b / rows[:, None], cond=1e-14)[0]
+    x = scipy.linalg.lstsq(scaled / columns, b / rows[:, None], cond=DEPENDENT)[0]
     return np.asarray(x / columns[:, None])

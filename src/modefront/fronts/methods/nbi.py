@@ -76,7 +76,7 @@ class NormalBoundaryIntersection:
         )
         if len(setting.edges) > 2:
             along = _settled(problem, target, lattice, along, setting.work)
-        front = _without_copies(lattice, solved, along, target)
+        front = without_copies(lattice, solved, along, target)
         return _branches(setting, front) if len(setting.edges) == 2 else front
 
 
@@ -102,7 +102,7 @@ def _settled(
     return lowered
 
 
-def _without_copies(
+def without_copies(
     lattice: Simplex, solved: Sequence[Solution], along: Sequence[Solution], target: Payoff
 ) -> Along:
     """Return the points of a front, each once, with the lattice points that led to them.

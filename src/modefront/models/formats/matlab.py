@@ -9,14 +9,11 @@ import scipy.sparse
 
 from modefront.errors import suggestion
 from modefront.inputs import available_memory, is_hdf5
-from modefront.isolated import Read, isolated
+from modefront.isolated import Read, isolated, seconds_for
 from modefront.models.formats.base import Header, MatrixFormat, check_header, wrong
 from modefront.models.formats.matlab_5 import Variable, read_variable, variables
 
 READER = "modefront.models.formats.matlab_7_3"
-
-SECONDS, SPEED = 60.0, 10**6
-"""Time that reading may take, and bytes that are read a second at least besides."""
 
 
 def header(path: Path, name: str | None) -> Header:
@@ -75,7 +72,7 @@ def _from_hdf5(path: Path, name: str) -> Any:
 
 def _isolated(path: Path, function: str, *arguments: str) -> Read:
     """Return contents read by the HDF5 library, in a process that damaged files may end."""
-    seconds = SECONDS + path.stat().st_size / SPEED
+    seconds = seconds_for(path.stat().st_size)
     return isolated(f"{READER}:{function}", path, seconds, available_memory(), arguments)
 
 

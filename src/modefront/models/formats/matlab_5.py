@@ -55,6 +55,7 @@ HEAD = 4096
 """Bytes of a variable in which its flags, dimensions and name are sought; names have 63 letters."""
 
 MOST_VARIABLES = 10_000
+"""Variables that are looked at: a damaged file must not be read without an end."""
 
 
 @dataclass(frozen=True)

@@ -15,7 +15,7 @@ import scipy.io
 import scipy.sparse
 
 from modefront.inputs import available_memory
-from modefront.isolated import isolated
+from modefront.isolated import isolated, seconds_for
 from modefront.models.formats.base import Header, MatrixFormat, check_header, wrong
 
 SHORTEST = {"pattern": 4, "integer": 6, "real": 6, "complex": 8}
@@ -24,9 +24,6 @@ SHORTEST = {"pattern": 4, "integer": 6, "real": 6, "complex": 8}
 SYMMETRIES = ("general", "symmetric", "skew-symmetric", "hermitian")
 
 READER = f"{__name__}:entries"
-
-SECONDS, SPEED = 60.0, 10**6
-"""Time that reading may take, and bytes that are read a second at least besides."""
 
 LONGEST = 2**16
 """Characters of a line of the header, at most; the format allows 1024."""
@@ -38,6 +35,7 @@ NUMERIC = b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"
 """Bytes of numbers, of nan and infinity among them, and of what separates them."""
 
 CHUNK = 2**24
+"""Bytes that are checked at once."""
 
 WHAT = "a readable matrix"
 
@@ -84,7 +82,7 @@ def read_entries(path: Path, *, square: bool = True) -> Any:
         while chunk := stream.read(CHUNK):
             if other := chunk.translate(None, NUMERIC):
                 raise wrong(path, WHAT, f"the byte {other[:1]!r} among the entries")
-    seconds = SECONDS + path.stat().st_size / SPEED
+    seconds = seconds_for(path.stat().st_size)
     arrays, shape = isolated(READER, path, seconds, available_memory())
     if "values" in arrays:
         return arrays["values"]

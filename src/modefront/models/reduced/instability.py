@@ -56,5 +56,5 @@ def unstable(pencil: Pencil, basis: Basis, factor: Factor, theta: Floats) -> Flo
         if not new.shape[1]:
             break
         S = np.hstack([S, new])
-    there = nu[: Y.shape[1]] < -NEGATIVE * np.abs(nu).max()
-    return combine(S[:, : len(Y)], Y[:, there][:, :COLUMNS]) if there.any() else S[:, :0]
+    below = nu[: Y.shape[1]] < -NEGATIVE * np.abs(nu).max()
+    return combine(S[:, : len(Y)], Y[:, below][:, :COLUMNS]) if below.any() else S[:, :0]

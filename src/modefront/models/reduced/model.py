@@ -243,7 +243,7 @@ class ReducedModel:
     @property
     def columns(self) -> int:
         """Columns that the basis has."""
-        return self._ready().space.basis.columns
+        return self.ready().space.basis.columns
 
     @property
     def first(self) -> SnapshotRequest:
@@ -272,7 +272,7 @@ class ReducedModel:
         before = self._wanted
         self._wanted = (*before, what)
         try:
-            last = self._ready().taken[-1]
+            last = self.ready().taken[-1]
         except ModelError:
             self._wanted = before
             raise
@@ -283,7 +283,7 @@ class ReducedModel:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         if count > self.count:
             return self.full.modes(theta, count, derivatives=derivatives)
-        small = self._at_hand() or self._projected(self._ready())
+        small = self._at_hand() or self._projected(self.ready())
         started = time.perf_counter()
         modes = dense.modes(small.K, small.M, small.sensed, theta, count, derivatives)
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
@@ -296,7 +296,7 @@ class ReducedModel:
         """
         if count > self.count:
             return self.full.full_modes(theta, count)
-        basis = self._ready().space.basis
+        basis = self.ready().space.basis
         started = time.perf_counter()
         pairs = dense.lowest(basis.K.at(theta), basis.M.at(theta), count)
         if pairs.lam.size < count:
@@ -321,7 +321,7 @@ class ReducedModel:
         That is looked for by a factorisation where it is in doubt, and what it proves speaks for
         the other models nearby.
         """
-        space = self._ready().space
+        space = self.ready().space
         started = time.perf_counter()
         proofs = list(space.proofs)
         counts = [max(lowest, int(wanted.max()) + 1) for _, wanted in asked]
@@ -341,7 +341,7 @@ class ReducedModel:
         no search in the basis would ever see that. Where it is not proved that none of the
         ``lowest`` modes does so, a factorisation tells, of the most doubtful models.
         """
-        space = self._ready().space
+        space = self.ready().space
         basis, proofs, doubtful = space.basis, list(space.proofs), []
         for pair in combinations(range(self.nominal.size), 2):
             theta = self.nominal.copy()
@@ -435,7 +435,7 @@ class ReducedModel:
         basis = state.space.basis
         return _Projected(self._wanted, basis.K, basis.M, state.sensed)
 
-    def _ready(self) -> _State:
+    def ready(self) -> _State:
         """Return the basis of the snapshots wanted; only those not yet in it are computed."""
         if not self._wanted:
             self.take(self.first)

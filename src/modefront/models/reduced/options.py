@@ -42,9 +42,9 @@ class Reduction:
 
     Attributes
     ----------
-    reduction : relative error of eigenvalues that a basis has to keep to; ``"auto"`` takes a basis
-        where it pays, ``"off"`` none
-    memory : GiB that a basis may take
+    reduction : relative error of eigenvalues that a basis has to keep to, from 1e-12 to 1e-2;
+        ``"auto"`` takes a basis with 1e-8 where it pays, ``"off"`` none
+    memory : GiB that a basis may take, above 0
     """
 
     reduction: Annotated[float | Literal["auto", "off"], REDUCTION] = "auto"

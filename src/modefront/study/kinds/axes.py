@@ -10,6 +10,9 @@ from modefront._typing import Floats
 from modefront.fem.dofs import DIRECTIONS
 from modefront.toml import Table, is_number
 
+PARALLEL = 1e-9
+"""Sine of the angle of two axes below which they are one."""
+
 
 def read_axes(place: Table) -> Floats | None:
     """Return local axes (3, 3), x, y and z in rows; None for those of the model."""
@@ -22,7 +25,7 @@ def read_axes(place: Table) -> Floats | None:
             and len(x) == 2
             and all(isinstance(v, list) and len(v) == 3 and all(map(is_number, v)) for v in x)
             and float(np.linalg.norm(np.cross(*x)))
-            > 1e-9 * float(np.prod(np.linalg.norm(x, axis=1)))
+            > PARALLEL * float(np.prod(np.linalg.norm(x, axis=1)))
         ),
         None,
     )

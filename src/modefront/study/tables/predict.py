@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from modefront.data.modal import ModalData
 from modefront.errors import InputError
+from modefront.identifiability.words import enumeration
 from modefront.models.base import Model
 from modefront.options import each_once
 from modefront.predictions import KINDS, Prediction
@@ -19,7 +20,7 @@ Drafts = Sequence[tuple[Table, Prediction]]
 
 def read_predictions(root: Table, model: Model | None, data: ModalData | None) -> Drafts:
     """Return the predictions that a study asks for, as far as nothing is wrong with them."""
-    expected = "tables " + " and ".join(f"[[predict.{kind.kind.table}]]" for kind in KINDS)
+    expected = f"tables {enumeration([f'[[predict.{kind.kind.table}]]' for kind in KINDS])}"
     table = root.table("predict", expected, None)
     if table is None:
         return []
