@@ -70,6 +70,7 @@ class ModalData:
         return MeasuredShapes(measured, shape, squares, measured.any(axis=2).sum(axis=0)[:, None])
 
 
+# 7 arguments: the parts of modal data, the optional ones by keyword.
 def modal_data(
     frequency: Floats,
     shape: Floats,
