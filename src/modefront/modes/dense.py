@@ -46,6 +46,15 @@ COINCIDENT = 1e-8
 SHIFT = 1e-5
 """sigma over trace(K) / trace(M), where K is singular: balances rounding in low and high modes."""
 
+LOST = 1e-13
+"""mu over the greatest one, below which it is rounding."""
+
+PRECISE = 1e-8
+"""mu over the greatest one, below which digits of it are lost that can be had otherwise."""
+
+MIDDLE = 100.0
+"""Factor around the middle of the spectrum within which the two ways of solving are joined."""
+
 RIGID = 1e-4
 """Eigenvalue over the shift, below which a mode counts as a rigid-body mode."""
 
@@ -61,7 +70,7 @@ def modes(
     frequency than asked for.
     """
     Kt, Mt = K.at(theta), M.at(theta)
-    decomposition = decompose(Kt, Mt)
+    decomposition = decompose(Kt, Mt, count)
     lam = decomposition.lam
     if lam.size < count:
         raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")
@@ -98,8 +107,13 @@ class Decomposition:
         return out
 
 
-def decompose(K: Floats, M: Floats) -> Decomposition:
-    """Return all modes. Raises ModelError where K or M is indefinite."""
+def decompose(K: Floats, M: Floats, count: int = 0) -> Decomposition:
+    """Return all modes, the ``count`` lowest of which are to be precise.
+
+    Where the mu of one of these lacks digits, or any mu is lost beside the greatest one, the high
+    modes are solved for as those of K phi = lam M phi, if M is positive definite. Raises ModelError
+    where K or M is indefinite.
+    """
     if not np.diag(M).any():
         raise ModelError("the mass matrix has no mass on its diagonal")
     scale = np.abs(np.diag(K)).sum() / np.abs(np.diag(M)).sum()
@@ -118,12 +132,50 @@ def decompose(K: Floats, M: Floats) -> Decomposition:
     if mu[0] < -1e-10 * mu[-1]:
         raise ModelError("the mass matrix is indefinite")
     mu, X = mu[::-1], X[:, ::-1]
-    lam = 1 / mu[mu > 1e-13 * mu[0]] - shift
+    known = mu > LOST * mu[0]
+    lowest = mu[min(count, mu.size) - 1] / mu[0] if count else 1.0
+    if (lowest < PRECISE or mu[-1] < LOST * mu[0]) and (high := _high_modes(K, M)):
+        mu, X = _joined(mu, X, shift, *high)
+        known = np.ones(mu.size, bool)
+    lam = 1 / mu[known] - shift
     if not lam.size:
         raise ModelError("no mode has a finite frequency: a stiffness vanishes; check its units")
     if lam[0] < -1e-2 * shift:
         raise ModelError("the stiffness matrix is indefinite")
     return Decomposition(mu, X, shift, lam)
+
+
+def _high_modes(K: Floats, M: Floats) -> tuple[Floats, Floats] | None:
+    """Solve K phi = lam M phi, precise in the highest modes; None where M is singular.
+
+    M is judged with a diagonal of ones, as units and slender elements have nothing to do with it.
+    """
+    diagonal = np.diag(M)
+    if diagonal.min() <= 0:
+        return None
+    scale = 1 / np.sqrt(diagonal)
+    if scipy.linalg.eigvalsh(M * np.outer(scale, scale), check_finite=False)[0] < LOST:
+        return None
+    scaled = np.outer(scale, scale)
+    lam, Phi = scipy.linalg.eigh(K * scaled, M * scaled, check_finite=False)
+    return lam, scale[:, None] * Phi
+
+
+def _joined(mu: Floats, X: Floats, shift: float, lam: Floats, Phi: Floats) -> tuple[Floats, Floats]:
+    """Return mu and X with the modes above the middle of the spectrum from lam and Phi.
+
+    They are joined at the widest relative gap there, where both ways have half of all digits.
+    """
+    middle = np.sqrt((lam[-1] + shift) / mu[0])
+    near = np.flatnonzero((lam[1:] > middle / MIDDLE) & (lam[1:] < middle * MIDDLE)) + 1
+    if not near.size:
+        near = np.array([np.searchsorted(lam, middle)])
+    start = int(near[np.argmax(lam[near] / np.maximum(lam[near - 1], middle / MIDDLE**2))])
+    high = lam[start:] + shift
+    return (
+        np.concatenate([mu[:start], 1 / high]),
+        np.hstack([X[:, :start], Phi[:, start:] / np.sqrt(high)]),
+    )
 
 
 def is_singular(K: Floats) -> bool:

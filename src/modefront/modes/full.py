@@ -50,7 +50,7 @@ def dense_modes(
     Raises ModelError where K or M is indefinite, or there are fewer modes with a finite frequency.
     """
     Kt = K.at(theta)
-    decomposition = dense.decompose(Kt, M.at(theta))
+    decomposition = dense.decompose(Kt, M.at(theta), count)
     lam, Phi = decomposition.lam, decomposition.Phi
     if lam.size < count:
         raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")

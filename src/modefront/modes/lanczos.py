@@ -122,6 +122,7 @@ def greatest(
             if complete:
                 break
     keep = min(d, max(leading, wanted) + 1)
+    complete = complete or d == n
     return Ritz(mu[:keep], combine(V[:, :d], Y[:, :keep]), min(leading, keep), complete)
 
 
