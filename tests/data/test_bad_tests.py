@@ -125,7 +125,7 @@ def test_a_fault_far_down_a_long_file_is_found_by_its_line(tmp_path: Path) -> No
     rows = [f"{k},1.0,2.0" for k in range(1, 30_001)]
     rows[25_000] = "25001,x,2.0"
     path.write_text("\n".join(["frequency,a_re,a_im", *rows]))
-    with pytest.raises(InputError, match="line 25002, column 'a_re'.*found 'x'"):
+    with pytest.raises(InputError, match=r"line 25002, column 'a_re'.*found 'x'"):
         read_test_csv(path, "a")
 
 
