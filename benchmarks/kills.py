@@ -68,7 +68,7 @@ response = { top = "floor3" }
 band = [0.5, 20.0]
 damping = 0.02
 """
-EVOLUTION = '[pareto]\nmethod = "nsga2"\npopulation = 20\nevaluations = 200\n'
+EVOLUTION = '[pareto]\nmethod = "nsga2"\npopulation = 20\nevaluations = 120\n'
 
 
 def pareto(text: str, table: str) -> str:
@@ -77,7 +77,7 @@ def pareto(text: str, table: str) -> str:
 
 
 STUDIES: dict[str, tuple[str, Callable[[str], str]]] = {
-    "chain": ("three-story-c0", lambda text: text),
+    "chain": ("three-story-c0", lambda text: pareto(text, "[pareto]\npoints = 5\n")),
     "mesh": ("three-story-fe-c0", lambda text: pareto(text, "[pareto]\npoints = 4\n") + FEW),
     "reduced": (
         "three-story-fe-c0",
@@ -91,11 +91,11 @@ STUDIES: dict[str, tuple[str, Callable[[str], str]]] = {
     ),
     "three": (
         "three-story-c0",
-        lambda text: pareto(GROUPS.sub(THREE, text), "[pareto]\npoints = 4\n"),
+        lambda text: pareto(GROUPS.sub(THREE, text), "[pareto]\npoints = 3\n"),
     ),
     "predictions": (
         "three-story-c0",
-        lambda text: pareto(text, "[pareto]\npoints = 5\n") + PREDICTIONS,
+        lambda text: pareto(text, "[pareto]\npoints = 3\n") + PREDICTIONS,
     ),
     "evolutionary": ("three-story-c0", lambda text: pareto(text, EVOLUTION)),
 }

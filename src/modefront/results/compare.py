@@ -260,12 +260,16 @@ def _apart(first_results: tuple[str, xr.Dataset], second_results: tuple[str, xr.
     away = cdist(scaled(_best(a)), scaled(_best(b)))
     best = [_optimally_weighted(a), _optimally_weighted(b)]
     between = [scaled(data) for data in best if data is not None]
+    nearest, farthest = nan, nan
+    if away.size:  # no model is Pareto optimal where none has converged
+        nearest = float(away.min())
+        farthest = float(max(away.min(axis=0).max(), away.min(axis=1).max()))
     return Apart(
         first,
         second,
         tuple(common),
-        float(away.min()),
-        float(max(away.min(axis=0).max(), away.min(axis=1).max())),
+        nearest,
+        farthest,
         float(np.linalg.norm(between[0] - between[1])) if len(between) == 2 else nan,
         float(np.linalg.norm(scaled(_reference(a)) - scaled(_reference(b)))),
     )
