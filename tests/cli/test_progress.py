@@ -12,7 +12,7 @@ from rich.console import Console
 import modefront as mf
 from modefront.cli.progress import _Lines, _Log
 from modefront.solvers.explore import Search
-from modefront.study.estimate import SHORT, duration, estimate, expected_tasks
+from modefront.study.estimate import SHORT, Estimate, duration, estimate, expected_tasks
 from modefront.study.examples import write_example
 from modefront.work.costs import Costs
 from modefront.work.progress import State
@@ -84,6 +84,14 @@ def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Pat
     points = estimate(replace(study, pareto=mf.Pareto(points=9000)))
     assert points is not None
     assert points.evaluations > 10 * short.evaluations
+
+
+def test_steps_in_many_parameters_are_a_part_of_the_estimate() -> None:
+    long = Estimate(8400.0, 20_000, 0.04, 7600.0, (), {})
+    assert "2.1 h for steps in so many parameters" in long.text
+    assert "predictions" not in long.text
+    short = Estimate(840.0, 20_000, 0.04, 40.0, (), {})
+    assert "steps" not in short.text
 
 
 def test_predictions_are_timed_with_few_samples_and_expected_from_the_start(tmp_path: Path) -> None:

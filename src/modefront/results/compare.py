@@ -120,9 +120,14 @@ class Comparison:
 def compare(folders: Sequence[Path]) -> Comparison:
     """Return the comparison of the results in folders.
 
-    Raises InputError where there are none, or where their groups are not the same.
+    Raises InputError where there are none, where their groups are not the same, and where no model
+    is Pareto optimal.
     """
     found = read_together(folders, whole=False)
+    for folder, (_, data) in zip(folders, found, strict=True):
+        if not _best(data).sizes["point"]:
+            expected = "at least one Pareto-optimal model"
+            raise InputError(Fault(str(folder), "variable 'pareto'", expected, "none"))
     groups = tuple(map(str, found[0][1]["group"].values))
     fronts = [_summary(name, data, _length(found[0][1])) for name, data in found]
     pairs = [_apart(one, other) for one, other in combinations(found, 2)]
