@@ -16,7 +16,7 @@ from modefront.study.estimate import SHORT, Estimate, duration, estimate, expect
 from modefront.study.examples import write_example
 from modefront.work.costs import Costs
 from modefront.work.progress import State
-from modefront.work.steps import listening, note
+from modefront.work.steps import listening, note, note_iteration
 
 
 def drawn(lines: _Lines, width: int) -> list[str]:
@@ -34,12 +34,17 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     now, costs.eigenproblems = 30.0, 143
     with listening(lines.hear):
         note("search 7 of at most 60")
+        note_iteration(12)
     note("heard by nobody")
     first, second = drawn(lines, 80)
     assert len(first) <= 80
     assert first.startswith("a study of a bridge ")
     assert first.rstrip().endswith("2 of about 27 tasks  0:00:30")
-    assert second == "edges, search 7 of at most 60, 143 models solved, about 70 s left"
+    words = "edges, search 7 of at most 60, iteration 12, 143 models solved, about 70 s left"
+    assert second == words
+    with listening(lines.hear):
+        note("search 8 of at most 60")
+    assert "search 8 of at most 60, 143 models" in drawn(lines, 80)[1], "a new one has no steps yet"
     lines.take(State("edge", 3, 0, 27, 30.0, 50.0))
     now = 40.0
     assert drawn(lines, 80)[1] == "edges, 143 models solved, about 40 s left"
