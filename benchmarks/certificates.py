@@ -59,11 +59,11 @@ def springs(ends: Ints, k: Floats, member: Ints, mass: Floats, members: int) -> 
     for j in range(members):
         K = scipy.sparse.lil_array((size, size))
         for (a, b), stiffness in zip(ends[member == j], k[member == j], strict=True):
-            for one, other in ((a, b), (b, a)):
-                if one >= 0:
-                    K[one, one] += stiffness
+            for first, other in ((a, b), (b, a)):
+                if first >= 0:
+                    K[first, first] += stiffness
                     if other >= 0:
-                        K[one, other] -= stiffness
+                        K[first, other] -= stiffness
         terms.append(K.tocoo())
     return affine_model(
         [f"k{j + 1}" for j in range(members)],
@@ -186,30 +186,32 @@ def quotients(K: Floats, M: Floats, X: Floats) -> Floats:
 
 def compared(model: ReducedModel, thetas: Floats) -> list[Comparison]:
     """Return estimated and true errors at some parameters (models, p)."""
-    wanted = np.arange(MODES)
-    certificates = model.certify([(theta, wanted) for theta in thetas], MODES + SPARE)
+    requested = np.arange(MODES)
+    certificates = model.certify([(theta, requested) for theta in thetas], MODES + SPARE)
     basis, pencil, out = model._ready().space.basis, model.full.pencil, []
-    for theta, one in zip(thetas, certificates, strict=True):
+    for theta, certificate in zip(thetas, certificates, strict=True):
         K, M = pencil.K.at(theta).toarray(), pencil.M.at(theta).toarray()
         X = scipy.linalg.eigh(M, K)[1][:, ::-1]
         try:
-            found = dense.decompose(basis.K.at(theta), basis.M.at(theta))
+            result = dense.decompose(basis.K.at(theta), basis.M.at(theta))
         except ModelError:
             continue
-        ritz = basis.combine(found.Phi[:, wanted])
-        exact = quotients(K, M, X[:, wanted])
+        ritz = basis.combine(result.Phi[:, requested])
+        exact = quotients(K, M, X[:, requested])
         size = np.sqrt(np.einsum("nr,nr->r", ritz, M @ ritz))
-        inside = X[:, wanted] / np.sqrt(np.einsum("nr,nr->r", X[:, wanted], M @ X[:, wanted]))
+        inside = X[:, requested] / np.sqrt(
+            np.einsum("nr,nr->r", X[:, requested], M @ X[:, requested])
+        )
         along = (inside * (M @ ritz)).sum(axis=0) / size
         off = ritz / size - inside * along
         rounding = np.finfo(float).eps * (
-            np.abs(K) @ np.abs(X[:, wanted]) * np.abs(X[:, wanted])
+            np.abs(K) @ np.abs(X[:, requested]) * np.abs(X[:, requested])
         ).sum(axis=0)
         out.append(
             Comparison(
-                one.eigenvalue,
-                one.shape,
-                np.abs(found.lam[wanted] / exact - 1).astype(float),
+                certificate.eigenvalue,
+                certificate.shape,
+                np.abs(result.lam[requested] / exact - 1).astype(float),
                 np.sqrt(np.einsum("nr,nr->r", off, M @ off)) / np.abs(along),
                 rounding,
             )
@@ -226,7 +228,7 @@ def models(rng: np.random.Generator, lower: Floats, upper: Floats, count: int) -
 
 def box(bounds: tuple[float, float], structures: int, count: int, seed: int) -> dict[str, float]:
     """Return what is measured of one box."""
-    found: list[Comparison] = []
+    result: list[Comparison] = []
     factorisations = 0
     for number in range(structures):
         rng = np.random.default_rng([seed, number])
@@ -245,21 +247,21 @@ def box(bounds: tuple[float, float], structures: int, count: int, seed: int) -> 
         thetas = models(rng, lower, upper, count)
         with counted() as costs:
             for some in [thetas] if number % 2 else thetas[:, None]:
-                found += compared(model, some)
+                result += compared(model, some)
         factorisations += costs.factorisations
     estimate, shape, truth, true_shape, rounding = (
-        np.concatenate([getattr(one, name) for one in found])
+        np.concatenate([getattr(comparison, name) for comparison in result])
         for name in ("eigenvalue", "shape", "true_eigenvalue", "true_shape", "rounding")
     )
     finite = np.isfinite(estimate)
-    told = finite & (truth > ROUNDING * rounding)
-    ratio = estimate[told] / truth[told]
+    reported = finite & (truth > ROUNDING * rounding)
+    ratio = estimate[reported] / truth[reported]
     seen = finite & (true_shape > np.maximum(1e-6, np.sqrt(rounding)))
     shapes = shape[seen] / np.minimum(true_shape[seen], 1.0)
     return {
         "modes": truth.size,
         "infinite": int((~finite).sum()),
-        "told": int(told.sum()),
+        "told": int(reported.sum()),
         "least": ratio.min(),
         "1 %": np.quantile(ratio, 0.01),
         "median": np.median(ratio),

@@ -89,15 +89,15 @@ def random_frame(rng: np.random.Generator) -> MatrixModel:
     storeys, bays = int(rng.integers(2, 5)), int(rng.integers(1, 3))
     height, width = rng.uniform(2.5, 4.0), rng.uniform(3.0, 6.0)
     nodes = [(width * b, 0.0, height * s) for s in range(storeys + 1) for b in range(bays + 1)]
-    at = {(s, b): s * (bays + 1) + b for s in range(storeys + 1) for b in range(bays + 1)}
+    position = {(s, b): s * (bays + 1) + b for s in range(storeys + 1) for b in range(bays + 1)}
     column, beam = fem.rectangle(0.08, 0.1), fem.rectangle(0.07, 0.14)
     groups = []
     for s in range(storeys):
-        cells = [(at[s, b], at[s + 1, b]) for b in range(bays + 1)]
+        cells = [(position[s, b], position[s + 1, b]) for b in range(bays + 1)]
         groups.append(fem.Beams(f"columns{s + 1}", cells, STEEL, column, (1.0, 0.0, 0.0)))
-        cells = [(at[s + 1, b], at[s + 1, b + 1]) for b in range(bays)]
+        cells = [(position[s + 1, b], position[s + 1, b + 1]) for b in range(bays)]
         groups.append(fem.Beams(f"beams{s + 1}", cells, STEEL, beam, (0.0, 1.0, 0.0)))
-    floors = [at[s, b] for s in range(1, storeys + 1) for b in range(bays + 1)]
+    floors = [position[s, b] for s in range(1, storeys + 1) for b in range(bays + 1)]
     sensors = [
         fem.Sensor(f"x{node}", node, str(rng.choice(["x", "-x"])))
         for node in floors
@@ -112,7 +112,7 @@ def random_frame(rng: np.random.Generator) -> MatrixModel:
         sensors=sensors,
         parameters=parameters,
     )
-    return mesh_model(structure, [one.name for one in parameters])
+    return mesh_model(structure, [parameter.name for parameter in parameters])
 
 
 def random_plate(rng: np.random.Generator) -> MatrixModel:
@@ -140,8 +140,8 @@ def simulated(model: MatrixModel, rng: np.random.Generator) -> ModalData:
     """Return the modal data of a structure like the model, in one to three data sets."""
     p = len(model.parameters)
     theta = np.clip(np.exp(0.25 * rng.standard_normal(p)), 0.4, 2.5)
-    wanted = int(rng.integers(2, 7))
-    count = min(wanted, model.size)
+    requested = int(rng.integers(2, 7))
+    count = min(requested, model.size)
     modes = model.full_modes(theta, count)
     # What no parameter describes: each mode takes in a little of the others.
     mixing = np.eye(count) + 0.04 * rng.standard_normal((count, count))
@@ -184,8 +184,8 @@ def random_case(seed: int) -> Case:
             break
     p = len(model.parameters)
     groups = (Group("frequencies", frequency="all"), Group("shapes", shape="all"))
-    one = np.ones(p)
-    return Case(UpdatingProblem(model, data, groups, 0.2 * one, 5.0 * one, one), rng)
+    unit = np.ones(p)
+    return Case(UpdatingProblem(model, data, groups, 0.2 * unit, 5.0 * unit, unit), rng)
 
 
 def in_rad(case: Case) -> UpdatingProblem:
@@ -304,8 +304,8 @@ def counted_from_one(case: Case) -> UpdatingProblem | None:
 
 def _moves_alike(model: MatrixModel, selection: scipy.sparse.csr_array) -> bool:
     """Return whether other places move as the sensors do: no mistake, as far as data can tell."""
-    one = np.ones(len(model.parameters))
-    Phi = model.full_modes(one, min(4, model.size)).Phi
+    unit = np.ones(len(model.parameters))
+    Phi = model.full_modes(unit, min(4, model.size)).Phi
     values = np.diag(mac(model.selection @ Phi, selection @ Phi))
     return bool(np.mean(1 - values) < 0.05)
 
@@ -387,13 +387,13 @@ def rates(name: str, studies: int, *, verbose: bool) -> str:
         if spoilt is None:
             continue
         tried += 1
-        found = diagnose(compare(spoilt))
-        names = {type(one).__name__ for one in found}
+        result = diagnose(compare(spoilt))
+        names = {type(finding).__name__ for finding in result}
         is_hit = bool(names & set(kinds))
         hits += is_hit
         alone += is_hit and names <= {*kinds, "DistantPair"}
         if verbose and not (is_hit and names <= {*kinds, "DistantPair"}):
-            print(f"  {seed}: {[in_words(one) for one in found]}")
+            print(f"  {seed}: {[in_words(finding) for finding in result]}")
     return f"{name}: found in {hits} of {studies}, alone in {alone}"
 
 
@@ -407,12 +407,12 @@ def main() -> None:
     started = time.process_time()
     clean = paired = 0
     for seed in range(options.studies if not options.mistake else 0):
-        found = diagnose(compare(random_case(seed).problem))
-        names = {type(one).__name__ for one in found}
-        clean += not found
+        result = diagnose(compare(random_case(seed).problem))
+        names = {type(finding).__name__ for finding in result}
+        clean += not result
         paired += names <= {"DistantPair", "BeyondCandidates"}
-        if found and options.verbose:
-            print(f"  {seed}: {[in_words(one) for one in found]}")
+        if result and options.verbose:
+            print(f"  {seed}: {[in_words(finding) for finding in result]}")
     if not options.mistake:
         print(
             f"correct studies without a finding: {clean} of {options.studies}; without any but "

@@ -43,9 +43,9 @@ BOUNDS = 0.4, 2.5
 def chain(size: int, members: int) -> MatrixModel:
     """Return a chain of masses, fixed at one end, of members one after the other."""
     terms = []
-    for own in np.array_split(np.arange(size), members):
+    for chosen in np.array_split(np.arange(size), members):
         K = scipy.sparse.lil_array((size, size))
-        for i in own:
+        for i in chosen:
             K[i, i] += size**2
             if i:
                 K[i - 1, i - 1] += size**2

@@ -27,18 +27,18 @@ def run(structure: Structure, pairing: Pairing, starts: Floats, *, reduced: bool
     """Print what became of all starts."""
     problem = frequencies_and_shapes(structure, pairing, reduced=reduced)
     assert structure.true is not None
-    found, seconds, costs = [], [], []
+    hits, seconds, costs = [], [], []
     for theta in starts:
         began = time.perf_counter()
         with counted() as spent:
             last = weighted_minimum(problem, np.ones(2), theta, 150)
         seconds.append(time.perf_counter() - began)
         costs.append(spent)
-        found.append(bool(np.abs(last.theta - structure.true).max() < 1e-3))
+        hits.append(bool(np.abs(last.theta - structure.true).max() < 1e-3))
     cost = [spent.model_evaluations for spent in costs]
     print(
         f"pairing by {pairing.method}{', reduced' * reduced}: "
-        f"{sum(found)} of {len(starts)} starts find the truth; "
+        f"{sum(hits)} of {len(starts)} starts find the truth; "
         f"seconds a start: median {np.median(seconds):.2f}, greatest {max(seconds):.2f}; "
         f"eigenproblems a start: median {np.median(cost):.0f}, greatest {max(cost)}, "
         f"{total(costs).eigenproblems} of all in full"

@@ -113,14 +113,16 @@ def _share(x: float) -> str:
 # ---- comparison ------------------------------------------------------------------------------
 
 
-def compare(case: Case, data: xr.Dataset, found: Reference, equation: Equation) -> Line:
+def compare(case: Case, data: xr.Dataset, best_known: Reference, equation: Equation) -> Line:
     """Return how much worse the results of modefront are than the best of either."""
     line = Line(case, solved=int(data.attrs["model_evaluations"]))
     labels = [str(label) for label in data["label"].values]
     theta, J = data["theta"].values, data["objective"].values
     pareto = data["pareto"].values
-    own = [Known(x, y, f"modefront {label}") for x, y, label in zip(theta, J, labels, strict=True)]
-    known = Reference([*found.known, *own], found.sizes, found.a)
+    computed = [
+        Known(x, y, f"modefront {label}") for x, y, label in zip(theta, J, labels, strict=True)
+    ]
+    known = Reference([*best_known.known, *computed], best_known.sizes, best_known.a)
     for i, name in enumerate(case.problem.objectives):
         if f"edge-{name}" in labels:
             k = labels.index(f"edge-{name}")
@@ -128,20 +130,20 @@ def compare(case: Case, data: xr.Dataset, found: Reference, equation: Equation) 
         else:
             line.edges[f"edge-{name} missing"] = np.inf
     _weighted(line, labels, _least_regular(data, known), J, known)
-    line.behind = behind(case, dict(zip(labels, J, strict=True)), found)
+    line.behind = behind(case, dict(zip(labels, J, strict=True)), best_known)
     polished: list[Known] = []
     points = np.flatnonzero((data["kind"].values == "front") & pareto).tolist()
     for k in points:
-        share, models = better(equation, J[k], theta[k], found.known, found.floor)
+        share, models = better(equation, J[k], theta[k], best_known.known, best_known.floor)
         polished += models
         line.front[labels[k]] = share
         if share > WORSE:
             of_range = (J[k, -1] - models[0].J[-1]) / np.ptp(J[pareto][:, -1])
             line.better.append((f"{labels[k]} ({of_range:.0e} of the range)", share, models[0]))
-    everything = [*found.known, *polished]
-    JJ = np.array([one.J for one in everything])
+    everything = [*best_known.known, *polished]
+    JJ = np.array([known.J for known in everything])
     for k in map(int, np.flatnonzero(pareto)):
-        beaten = dominance(JJ, J[k], found.floor)
+        beaten = dominance(JJ, J[k], best_known.floor)
         if beaten.max() > WORSE:
             line.dominated[f"{labels[k]}*"] = float(beaten.max())
             line.better.append((f"{labels[k]}*", beaten.max(), everything[int(beaten.argmax())]))
@@ -149,24 +151,26 @@ def compare(case: Case, data: xr.Dataset, found: Reference, equation: Equation) 
     return line
 
 
-def behind(case: Case, J: dict[str, Floats], found: Reference) -> dict[str, float]:
+def behind(case: Case, J: dict[str, Floats], best_known: Reference) -> dict[str, float]:
     """Return where the independent optimiser is worse than modefront by more than 0.2 %."""
     out = {}
     for i, name in enumerate(case.problem.objectives):
-        own = J.get(f"edge-{name}")
-        if own is not None:
-            least = found.least(i)
-            value = max(own[i], least)
-            more = (least - own[i]) / max(own[i], found.floor[i])
-            if value <= found.floor[i] or more <= WORSE:
-                others = float(found.others(i, own))
-                second = found.edge(i, max(value * (1 + WORSE), found.floor[i]))[0] - others
-                more = second / max(others, float(found.others(i, found.floor)))
+        chosen = J.get(f"edge-{name}")
+        if chosen is not None:
+            least = best_known.least(i)
+            value = max(chosen[i], least)
+            more = (least - chosen[i]) / max(chosen[i], best_known.floor[i])
+            if value <= best_known.floor[i] or more <= WORSE:
+                others = float(best_known.others(i, chosen))
+                second = (
+                    best_known.edge(i, max(value * (1 + WORSE), best_known.floor[i]))[0] - others
+                )
+                more = second / max(others, float(best_known.others(i, best_known.floor)))
             out[f"edge-{name}"] = more
     if "equal-weights" in J:
         own_sum = float(J["equal-weights"].sum())
-        least = found.weighted(np.ones(found.sizes.size))[0]
-        out["equal-weights"] = (least - own_sum) / max(own_sum, float(found.floor.max()))
+        least = best_known.weighted(np.ones(best_known.sizes.size))[0]
+        out["equal-weights"] = (least - own_sum) / max(own_sum, float(best_known.floor.max()))
     return {name: x for name, x in out.items() if x > WORSE}
 
 
@@ -187,12 +191,12 @@ def _edge(
         best = known.known[int(np.argmin(known.J[:, i]))]
         line.better.append((label, excess, best))
     others, model = known.edge(i, float(J[i]))
-    own = float(known.others(i, J))
+    chosen = float(known.others(i, J))
     floor = known.others(i, known.floor)
-    second = (own - others) / max(others, float(floor))
+    second = (chosen - others) / max(others, float(floor))
     if second > WORSE:
         allowed = worth(equation, i, theta, float(model.J[i] - J[i]))
-        second = max(own - others - allowed, 0.0) / max(others, float(floor))
+        second = max(chosen - others - allowed, 0.0) / max(others, float(floor))
     if second > WORSE:
         line.better.append((f"{label} (others)", second, model))
     line.edges[label] = max(excess, second)
@@ -212,10 +216,10 @@ def _weighted(line: Line, labels: list[str], along: float, J: Floats, known: Ref
         line.weighted["equal-weights missing"] = np.inf
     regular = known.regular()
     if "optimal-weights" in labels:
-        own = J[labels.index("optimal-weights")]
-        share = dominance(known.J, own, known.floor)
+        chosen = J[labels.index("optimal-weights")]
+        share = dominance(known.J, chosen, known.floor)
         excess, model = float(share.max()), known.known[int(share.argmax())]
-        value = float(known.a @ np.log(np.maximum(own, known.floor)))
+        value = float(known.a @ np.log(np.maximum(chosen, known.floor)))
         least = min(along, np.inf if regular is None else regular[0])
         more = float(np.expm1((value - least) / known.a.sum()))
         if more > excess:
@@ -272,38 +276,45 @@ class Cache:
                 entry = json.loads(text)
                 if entry["key"] == name:
                     known = [
-                        Known(np.array(one["theta"]), np.array(one["J"]), one["label"])
-                        for one in entry["known"]
+                        Known(np.array(known["theta"]), np.array(known["J"]), known["label"])
+                        for known in entry["known"]
                     ]
                     return Reference(known, np.array(entry["sizes"]), np.array(entry["a"]))
         return None
 
-    def write(self, name: str, case: Case, found: Reference) -> None:
+    def write(self, name: str, case: Case, best_known: Reference) -> None:
         """Add the models of a reference that no other one dominates, and its regular minima."""
         entry = {
             "key": name,
             "case": case.name,
-            "sizes": found.sizes.tolist(),
-            "a": found.a.tolist(),
+            "sizes": best_known.sizes.tolist(),
+            "a": best_known.a.tolist(),
             "known": [
-                {"theta": one.theta.tolist(), "J": one.J.tolist(), "label": one.label}
-                for one in worth_keeping(found)
+                {
+                    "theta": known_point.theta.tolist(),
+                    "J": known_point.J.tolist(),
+                    "label": known_point.label,
+                }
+                for known_point in worth_keeping(best_known)
             ],
         }
         with self.path.open("a") as file:
             file.write(json.dumps(entry) + "\n")
 
 
-def worth_keeping(found: Reference) -> list[Known]:
+def worth_keeping(best_known: Reference) -> list[Known]:
     """Return models that none dominates in earnest, and the logarithmic minima."""
-    J, out = found.J, []
+    J, out = best_known.J, []
     seen: list[Floats] = []
-    for one in found.known:
-        beaten = dominance(J, one.J, found.floor).max() > 1e-7
-        ratio = [np.abs(np.log((one.J + found.floor) / (x + found.floor))).max() for x in seen]
-        if one.label == "logarithmic" or (not beaten and min(ratio, default=1.0) > 1e-7):
-            out.append(one)
-            seen.append(one.J)
+    for known_point in best_known.known:
+        beaten = dominance(J, known_point.J, best_known.floor).max() > 1e-7
+        ratio = [
+            np.abs(np.log((known_point.J + best_known.floor) / (x + best_known.floor))).max()
+            for x in seen
+        ]
+        if known_point.label == "logarithmic" or (not beaten and min(ratio, default=1.0) > 1e-7):
+            out.append(known_point)
+            seen.append(known_point.J)
     return out
 
 
@@ -330,7 +341,7 @@ def limited(seconds: int) -> Iterator[None]:
         signal.signal(signal.SIGVTALRM, before)
 
 
-def measured(case: Case, found: Reference, points: int, limit: int) -> Line:
+def measured(case: Case, best_known: Reference, points: int, limit: int) -> Line:
     """Run modefront on a problem and compare; any exception is a failure."""
     began = time.process_time()
     try:
@@ -345,7 +356,7 @@ def measured(case: Case, found: Reference, points: int, limit: int) -> Line:
         text = str(error).replace("\n", " ")
         return Line(case, failure=f"{type(error).__name__}: {text}")
     seconds = time.process_time() - began
-    line = compare(case, data, found, Equation(case))
+    line = compare(case, data, best_known, Equation(case))
     line.seconds = seconds
     return line
 
@@ -353,28 +364,28 @@ def measured(case: Case, found: Reference, points: int, limit: int) -> Line:
 def referenced(case: Case, cache: Cache, starts: int) -> Reference:
     """Return the reference of a problem, from the cache if it is there."""
     name = key(case, starts)
-    found = cache.read(name)
-    if found is None:
+    best_known = cache.read(name)
+    if best_known is None:
         equation = Equation(case)
         difference = agreement(equation, np.random.default_rng(1))
         if difference > AGREE:
             print(f"{case.name}: evaluations of equation (1) differ by {difference:.1e}")
-        found = reference(equation, starts)
-        cache.write(name, case, found)
-        found = Reference(worth_keeping(found), found.sizes, found.a)
-    return found
+        best_known = reference(equation, starts)
+        cache.write(name, case, best_known)
+        best_known = Reference(worth_keeping(best_known), best_known.sizes, best_known.a)
+    return best_known
 
 
 def study(cache: Cache, starts: int) -> str:
     """Return what the whole study of 18 storeys with 4 modes costs, and how good it is."""
     case = chain_case(18, 4, 0)
-    found = referenced(case, cache, starts)
+    best_known = referenced(case, cache, starts)
     began = time.process_time()
     try:
         data = mf.solve(case.problem, points=20, seed=SEED).dataset
     except mf.UnfinishedError as error:
         return f"18 storeys, 4 modes: {error}"
-    line = compare(case, data, found, Equation(case))
+    line = compare(case, data, best_known, Equation(case))
     line.seconds = time.process_time() - began
     return f"{line}\n18 storeys, 4 modes: {line.solved} eigenproblems in all (limit 20000)"
 
@@ -413,11 +424,11 @@ def details(line: Line) -> str:
             {
                 "than": than,
                 "by": by,
-                "J": one.J.tolist(),
-                "theta": one.theta.tolist(),
-                "from": one.label,
+                "J": point.J.tolist(),
+                "theta": point.theta.tolist(),
+                "from": point.label,
             }
-            for than, by, one in line.better
+            for than, by, point in line.better
         ],
     }
     return json.dumps(entry)
@@ -449,12 +460,12 @@ def main() -> None:
         for seed in seeds:
             case = make(kind, seed, arguments.data)
             began = time.process_time()
-            found = referenced(case, cache, arguments.starts)
+            best_known = referenced(case, cache, arguments.starts)
             if arguments.only_cache:
                 seconds = time.process_time() - began
-                print(f"{case.name}: {len(found.known)} models, {seconds:.1f} s", flush=True)
+                print(f"{case.name}: {len(best_known.known)} models, {seconds:.1f} s", flush=True)
                 continue
-            lines.append(measured(case, found, arguments.points, arguments.limit))
+            lines.append(measured(case, best_known, arguments.points, arguments.limit))
             print(lines[-1], flush=True)
             if arguments.details:
                 with arguments.details.open("a") as file:

@@ -87,8 +87,8 @@ def curved(n: int, surface: str, triangles: bool, h: float) -> tuple[float, str]
     cells = fem.grids.triangles(cells) if triangles else cells
     shells = (fem.Shells("shell", cells, STEEL, h),)
     structure = fem.Structure(X, shells, (fem.Support(clamp),))
-    said = [text for text in limits_of(structure, X).warnings(0.0) if "radius" in text]
-    return first(structure), said[0][said[0].index("up to") : -8] if said else ""
+    messages = [text for text in limits_of(structure, X).warnings(0.0) if "radius" in text]
+    return first(structure), messages[0][messages[0].index("up to") : -8] if messages else ""
 
 
 def cantilever(count: int, distortion: float) -> tuple[float, str]:
@@ -113,11 +113,11 @@ def main() -> None:
     print("thick plates of shells, 24 x 24: error of the eigenvalue")
     for h in (0.02, 0.05, 0.1, 0.2):
         expected = 100 * 2 * np.pi**2 * h**2 / (5 * 0.7)
-        found = 100 * ((thick(h, False) / mindlin(h)) ** 2 - 1)
-        print(f"  simply supported, h = {h:g} a: {found:5.1f} %  (closed form {expected:.1f} %)")
+        result = 100 * ((thick(h, False) / mindlin(h)) ** 2 - 1)
+        print(f"  simply supported, h = {h:g} a: {result:5.1f} %  (closed form {expected:.1f} %)")
     for h in (0.1, 0.2):
-        found = 100 * ((thick(h, True) / clamped_bricks(h)) ** 2 - 1)
-        print(f"  clamped, h = {h:g} a: {found:5.1f} %  (against bricks)")
+        result = 100 * ((thick(h, True) / clamped_bricks(h)) ** 2 - 1)
+        print(f"  clamped, h = {h:g} a: {result:5.1f} %  (against bricks)")
     print("rhombic plates of quadrilaterals: error of the frequency (against 64 x 64)")
     for angle in (30.0, 45.0, 60.0):
         for clamped in (False, True):
@@ -132,16 +132,16 @@ def main() -> None:
         for h in (0.01, 0.001):
             fine = curved(64, surface, False, h)[0]
             for n in (4, 8, 16, 32):
-                found, warned = curved(n, surface, True, h)
+                result, warned = curved(n, surface, True, h)
                 quads = (curved(n, surface, False, h)[0] / fine) ** 2
-                ratio = (found / fine) ** 2
+                ratio = (result / fine) ** 2
                 print(f"  {surface}, {h:g}, {n} x {n}: {ratio:.2f}, {quads:.2f} {warned}")
     print("cantilevers of bricks: error of the frequency (against 80 bricks)")
     fine = cantilever(80, 0.0)[0]
     for count in (5, 10, 20):
         for distortion in (0.0, 0.1, 0.2, 0.3):
-            found, warned = cantilever(count, distortion)
-            print(f"  {count} bricks, {distortion:g}: {100 * (found / fine - 1):+.1f} %  {warned}")
+            result, warned = cantilever(count, distortion)
+            print(f"  {count} bricks, {distortion:g}: {100 * (result / fine - 1):+.1f} %  {warned}")
 
 
 if __name__ == "__main__":

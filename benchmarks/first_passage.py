@@ -104,12 +104,12 @@ def evaluations_needed(runs: int) -> None:
         f"{spread:.2f}\n    -> {subset:.0f} evaluations ({time.perf_counter() - start:.0f} s)"
     )
     for method in (importance_sampling, directional_importance_sampling):
-        (found,) = method(problem, [LEVEL], 20_000, np.random.SeedSequence(0))
-        needed = (found.unit_coefficient_of_variation / 0.1) ** 2
+        (result,) = method(problem, [LEVEL], 20_000, np.random.SeedSequence(0))
+        needed = (result.unit_coefficient_of_variation / 0.1) ** 2
         print(
-            f"  {found.method}: P = {found.probability:.3e} ± "
-            f"{100 * found.coefficient_of_variation:.1f} %, unit c.o.v. "
-            f"{found.unit_coefficient_of_variation:.3f}\n"
+            f"  {result.method}: P = {result.probability:.3e} ± "
+            f"{100 * result.coefficient_of_variation:.1f} %, unit c.o.v. "
+            f"{result.unit_coefficient_of_variation:.3f}\n"
             f"    -> {needed:.0f} evaluations: {subset / needed:.0f} times fewer"
         )
 

@@ -62,9 +62,9 @@ class Same(ElementwiseProblem):
 
 @dataclass
 class Race(Callback):
-    """Notes when a share of the wanted hypervolume is reached."""
+    """Notes when a share of the target hypervolume is reached."""
 
-    wanted: float
+    target: float
     scale: Floats
     shares: tuple[float, ...] = (0.99, 0.999, 1.0)
 
@@ -76,10 +76,10 @@ class Race(Callback):
 
     def notify(self, algorithm: Any) -> None:
         """Measure the present population."""
-        found = volume(algorithm.opt.get("F"), self.scale)
-        self.best = max(self.best, found / self.wanted)
+        result = volume(algorithm.opt.get("F"), self.scale)
+        self.best = max(self.best, result / self.target)
         for share in self.shares:
-            if share not in self.reached and found >= share * self.wanted:
+            if share not in self.reached and result >= share * self.target:
                 n = algorithm.evaluator.n_eval
                 self.reached[share] = n, time.perf_counter() - self.started
         if len(self.reached) == len(self.shares):
@@ -102,12 +102,12 @@ def main() -> None:
         seconds = time.perf_counter() - started
         J = data["objective"].values[:20]
         scale = J.max(axis=0)
-        wanted = volume(J, scale)
+        target = volume(J, scale)
         total, along = data.attrs["model_evaluations"], data.attrs["nbi_evaluations"]
         print(f"{model}: NBI {along} eigenproblems for 20 points, {along / 20:.1f} a point;")
         print(f"    with global edges and weighted models {total} in {seconds:.2f} s")
         for name, method in (("NSGA-II", NSGA2), ("SPEA2", SPEA2)):
-            race = Race(wanted, scale)
+            race = Race(target, scale)
             minimize(
                 Same(problem_of(model)),
                 method(pop_size=100),

@@ -109,10 +109,10 @@ def draw(rows: list[dict[str, Any]], file: Path) -> None:
 
     figure, axes = plt.subplots(2, 3, figsize=(10, 6), layout="constrained")
     for ax, (over, name) in zip(axes.flat, NAMES.items(), strict=True):
-        own = [row for row in rows if row["over"] == over]
-        size = np.array([row["size"] for row in own])
+        chosen = [row for row in rows if row["over"] == over]
+        size = np.array([row["size"] for row in chosen])
         for key, label, mark in (("seconds", "study", "o-"), ("each", "evaluation", "s--")):
-            value = np.array([row[key] for row in own])
+            value = np.array([row[key] for row in chosen])
             ax.loglog(size, value / value[0], mark, label=label)
         ax.loglog(size, size / size[0], ":", color="grey", label="proportional")
         ax.set(xlabel=name, ylabel="time over that of the first")

@@ -143,19 +143,19 @@ def measured_functions(
     return frequency_responses(F, mean, coherence=coherence)
 
 
-def is_right(found: Identification, structure: Structure) -> bool:
+def is_right(result: Identification, structure: Structure) -> bool:
     """Return whether the modes are exactly those of the structure."""
-    f = np.array([mode.frequency for mode in found.modes])
+    f = np.array([mode.frequency for mode in result.modes])
     true = structure.frequency
     return len(f) == len(true) and bool((np.abs(f - true) < 0.02 * true).all())
 
 
-def scores(found: Identification, structure: Structure) -> tuple[list[float], ...]:
+def scores(result: Identification, structure: Structure) -> tuple[list[float], ...]:
     """Return errors over standard deviations of frequencies, damping ratios and shapes."""
     f: list[float] = []
     zeta: list[float] = []
     phi: list[float] = []
-    for r, mode in enumerate(found.modes):
+    for r, mode in enumerate(result.modes):
         true = structure.shape[r] / np.linalg.norm(structure.shape[r])
         true = true * np.sign(true @ mode.shape.shape)
         f.append((mode.frequency - structure.frequency[r]) / mode.frequency_std)
@@ -201,11 +201,11 @@ def main(runs: int, only: str = "") -> None:
             rng = np.random.default_rng([seed, 18])
             given = measured_functions(structure, kind, level, data, rng)
             before = time.process_time()
-            found = identify(given, structure.band)
+            result = identify(given, structure.band)
             spent += time.process_time() - before
-            if is_right(found, structure):
+            if is_right(result, structure):
                 right += 1
-                for total, part in zip(errors, scores(found, structure), strict=True):
+                for total, part in zip(errors, scores(result, structure), strict=True):
                     total.extend(part)
         held = [f"{np.mean(np.abs(z) < 1.96):.1%} ({np.std(z):.2f})" for z in map(np.array, errors)]
         print(

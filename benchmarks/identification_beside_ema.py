@@ -43,11 +43,11 @@ Modes = tuple[Floats, Floats, Floats]
 
 def by_modefront(measured: Complexes, structure: Structure) -> Modes:
     """Return frequencies, damping ratios and shapes that are found."""
-    found = identify(frequency_responses(F, measured), structure.band).modes
+    result = identify(frequency_responses(F, measured), structure.band).modes
     return (
-        np.array([mode.frequency for mode in found]),
-        np.array([mode.damping for mode in found]),
-        np.array([mode.shape.shape for mode in found]),
+        np.array([mode.frequency for mode in result]),
+        np.array([mode.damping for mode in result]),
+        np.array([mode.shape.shape for mode in result]),
     )
 
 
@@ -88,9 +88,9 @@ def fitted_by_ema(H: Complexes, f: Floats, known: Floats, low: float, order: int
     return model
 
 
-def errors(found: Modes, structure: Structure) -> Floats:
+def errors(result: Modes, structure: Structure) -> Floats:
     """Return the mean square errors of frequencies, damping ratios and shapes."""
-    f, zeta, phi = found
+    f, zeta, phi = result
     if len(f) != len(structure.frequency):
         return np.full(3, np.nan)
     true = structure.shape / np.linalg.norm(structure.shape, axis=1, keepdims=True)
@@ -140,9 +140,9 @@ def main(runs: int) -> None:
                 for seed in range(runs):
                     measured = noisy(H, "white", level, np.random.default_rng([seed, 18]))
                     before = time.process_time()
-                    found = identified(measured, structure)
+                    computed = identified(measured, structure)
                     spent += time.process_time() - before
-                    squares.append(errors(found, structure))
+                    squares.append(errors(computed, structure))
                 f, zeta, phi = np.sqrt(np.mean(squares, axis=0))
                 print(
                     f"{name:<12} {level:<6} {program:<15} {f:9.1e} {zeta:9.1e} {phi:9.1e} "

@@ -109,10 +109,10 @@ def write_nastran(job: Path, A: scipy.sparse.csr_array) -> None:
                 starts = np.flatnonzero(np.append(True, np.diff(rows) != 1))
                 lengths = np.diff(np.append(starts, rows.size))
                 words = np.zeros(2 * starts.size + 2 * rows.size, "<i4")
-                at = 2 * np.arange(starts.size) + 2 * starts
-                words[at], words[at + 1] = 2 * lengths + 1, rows[starts] + 1
+                position = 2 * np.arange(starts.size) + 2 * starts
+                words[position], words[position + 1] = 2 * lengths + 1, rows[starts] + 1
                 body = np.ones(words.size, bool)
-                body[at] = body[at + 1] = False
+                body[position] = body[position + 1] = False
                 words[body] = values.view("<i4")
                 head = np.array([j + 1, 0, words.size], "<i4")
                 _record(file, head.tobytes() + words.tobytes())
@@ -177,10 +177,10 @@ WRITERS: dict[str, Callable[[Path, scipy.sparse.csr_array], None]] = {
 def measure(program: str, job: Path, out: multiprocessing.Queue[tuple[float, ...]]) -> None:
     """Read a job and report time and memory."""
     clock, processor = time.perf_counter(), time.process_time()
-    found = PROGRAMS[program].read(job, JobOptions())
+    result = PROGRAMS[program].read(job, JobOptions())
     times = time.process_time() - processor, time.perf_counter() - clock
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
-    out.put((found.size, found.stiffness.nnz, found.mass.nnz, *times, memory))
+    out.put((result.size, result.stiffness.nnz, result.mass.nnz, *times, memory))
 
 
 def measure_import(program: str, job: Path, out: multiprocessing.Queue[tuple[float, ...]]) -> None:

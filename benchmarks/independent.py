@@ -123,7 +123,7 @@ class Equation:
         says what the best in the others is.
         """
         rng = np.random.default_rng(seed_sequence(SEED, "sample"))
-        thetas = [one.theta for one in sample(self.case.problem, rng=rng)]
+        thetas = [known_point.theta for known_point in sample(self.case.problem, rng=rng)]
         J = np.array([self.J(theta) for theta in thetas])
         return np.maximum(np.median(J[np.isfinite(J).all(axis=1)], axis=0), np.finfo(float).tiny)
 
@@ -221,13 +221,13 @@ def agreement(equation: Equation, rng: np.random.Generator, points: int = 3) -> 
     worst = 0.0
     for _ in range(points):
         theta = equation.lower + equation.span * rng.uniform(0.2, 0.8, equation.span.size)
-        parts, there = equation.parts(theta), equation.case.problem.evaluate(theta)
-        if parts is None or not there.feasible:
+        parts, other = equation.parts(theta), equation.case.problem.evaluate(theta)
+        if parts is None or not other.feasible:
             continue
         J = np.array([part.r @ part.r for part in parts])
         dJ = np.array([2 * part.r @ part.dr for part in parts])
-        worst = max(worst, float((np.abs(J - there.J) / equation.sizes).max()))
-        error = np.abs(dJ - there.dJ).max(axis=1) / np.abs(dJ).max(axis=1)
+        worst = max(worst, float((np.abs(J - other.J) / equation.sizes).max()))
+        error = np.abs(dJ - other.dJ).max(axis=1) / np.abs(dJ).max(axis=1)
         worst = max(worst, 1e-3 * float(error.max()))
     return worst
 
@@ -297,16 +297,16 @@ def least_squares(
             z_upper,
         )
         trial = np.clip(theta + step * span, lower, upper)
-        there = stacked(trial)
+        other = stacked(trial)
         predicted = value - float(np.sum((r + dr @ step) ** 2))
-        if there is None or there[0] @ there[0] >= value:
+        if other is None or other[0] @ other[0] >= value:
             mu = max(mu, 1e-9) * 6
             if mu > 10 or predicted <= 1e-15 * value:
                 break
             continue
-        ratio = (value - float(there[0] @ there[0])) / max(predicted, 1e-300)
-        gain = value - float(there[0] @ there[0])
-        theta, here = trial, there
+        ratio = (value - float(other[0] @ other[0])) / max(predicted, 1e-300)
+        gain = value - float(other[0] @ other[0])
+        theta, here = trial, other
         if ratio > 0.75:
             mu = mu / 8 if mu > 1e-10 else 0.0
         elif ratio < 0.25:
@@ -323,8 +323,8 @@ def _bounded(A: Floats, b: Floats, lower: Floats, upper: Floats) -> Floats:
     if ((x >= lower) & (x <= upper)).all():
         return x
     held = np.minimum(lower, 0.0) - 1e-15, np.maximum(upper, 0.0) + 1e-15
-    found: Floats = lsq_linear(A, b, bounds=held, method="bvls").x
-    return found
+    result: Floats = lsq_linear(A, b, bounds=held, method="bvls").x
+    return result
 
 
 def programme(
@@ -337,36 +337,36 @@ def programme(
     """Return where SLSQP ends from ``theta``; derivatives are with respect to theta."""
     lower, span = equation.lower, equation.span
 
-    def at(z: Floats) -> list[Part] | None:
+    def parts_at(z: Floats) -> list[Part] | None:
         return equation.parts(lower + span * np.clip(z, 0.0, 1.0))
 
     def value(z: Floats) -> float:
-        parts = at(z)
+        parts = parts_at(z)
         return 1e10 if parts is None else objective(parts)[0]
 
     def slope(z: Floats) -> Floats:
-        parts = at(z)
+        parts = parts_at(z)
         return np.zeros(span.size) if parts is None else objective(parts)[1] * span
 
     def constraint(
         kind: str, function: Callable[[list[Part]], tuple[Floats, Floats]], rows: int
     ) -> dict[str, object]:
         def fun(z: Floats) -> Floats:
-            parts = at(z)
+            parts = parts_at(z)
             return np.full(rows, -1e5) if parts is None else function(parts)[0]
 
         def jac(z: Floats) -> Floats:
-            parts = at(z)
+            parts = parts_at(z)
             return np.zeros((rows, span.size)) if parts is None else function(parts)[1] * span
 
         return {"type": kind, "fun": fun, "jac": jac}
 
     z = np.clip((theta - lower) / span, 0.0, 1.0)
-    first = at(z)
+    first = parts_at(z)
     if first is None:
         return theta
     held = [constraint(kind, f, f(first)[0].size) for kind, f in constraints]
-    found = minimize(
+    result = minimize(
         value,
         z,
         jac=slope,
@@ -375,7 +375,7 @@ def programme(
         method="SLSQP",
         options={"maxiter": iterations, "ftol": 1e-12},
     )
-    out: Floats = lower + span * np.clip(found.x, 0.0, 1.0)
+    out: Floats = lower + span * np.clip(result.x, 0.0, 1.0)
     return theta if not np.isfinite(out).all() else out
 
 
@@ -469,7 +469,7 @@ class Reference:
     @property
     def J(self) -> Floats:
         """Objectives (models, groups)."""
-        return np.array([one.J for one in self.known])
+        return np.array([known_point.J for known_point in self.known])
 
     @property
     def floor(self) -> Floats:
@@ -508,14 +508,14 @@ class Reference:
         """
         J = self.J
         best: tuple[float, Known] | None = None
-        for one in self.known:
-            if one.label != "logarithmic" or not (self.floor < one.J).all():
+        for known_point in self.known:
+            if known_point.label != "logarithmic" or not (self.floor < known_point.J).all():
                 continue
-            if (dominance(J, one.J, self.floor) > 0.002).any():
+            if (dominance(J, known_point.J, self.floor) > 0.002).any():
                 continue
-            value = float(self.a @ np.log(one.J))
+            value = float(self.a @ np.log(known_point.J))
             if best is None or value < best[0]:
-                best = value, one
+                best = value, known_point
         return best
 
 
@@ -547,9 +547,9 @@ class _Collection:
     def best(self, w: Floats, count: int) -> list[Floats]:
         """Return the best models in a weighted sum that are far from one another."""
         out: list[Floats] = []
-        for one in sorted(self.known, key=lambda one: float(one.J @ w)):
-            if all(np.abs((one.theta - x) / self.equation.span).max() > 1e-3 for x in out):
-                out.append(one.theta)
+        for known_point in sorted(self.known, key=lambda known_point: float(known_point.J @ w)):
+            if all(np.abs((known_point.theta - x) / self.equation.span).max() > 1e-3 for x in out):
+                out.append(known_point.theta)
             if len(out) == count:
                 break
         return out
@@ -557,42 +557,45 @@ class _Collection:
 
 def reference(equation: Equation, starts: int = 4, seed: int = 0) -> Reference:
     """Return all that is found of a problem from the nominal model and from random starts."""
-    found = _started(equation, starts, seed)
+    result = _started(equation, starts, seed)
     n, c = equation.sizes.size, equation.sizes
     weights, equal = _weights(n) / c, np.ones(n)
-    found.add(least_squares(equation, equal, found.best(equal, 1)[0]), "weighted")
+    result.add(least_squares(equation, equal, result.best(equal, 1)[0]), "weighted")
     for ordered in (weights, weights[::-1]):
         for w in ordered:
-            found.add(least_squares(equation, w, found.best(w, 1)[0], 30), "weighted")
+            result.add(least_squares(equation, w, result.best(w, 1)[0], 30), "weighted")
     for i in range(n):
-        _edge(found, i, starts, seed)
+        _edge(result, i, starts, seed)
     for w in [equal, 1 / c]:
-        theta = found.best(w, 1)[0]
+        theta = result.best(w, 1)[0]
         scaled = w / max(float(w @ equation.J(theta)), 1e-12)
-        found.add(programme(equation, _sum(scaled), [], theta), "weighted")
+        result.add(programme(equation, _sum(scaled), [], theta), "weighted")
     shares = weights * c
     balanced = weights[shares.max(axis=1) / shares.min(axis=1) < 101]
-    near = [int(np.argmin([one.J @ w for one in found.known])) for w in [equal, *balanced]]
+    near = [
+        int(np.argmin([known_point.J @ w for known_point in result.known]))
+        for w in [equal, *balanced]
+    ]
     for k in sorted(set(near))[:5]:
-        theta, regular = logarithmic(equation, found.known[k].theta)
-        found.add(theta, "logarithmic" if regular else "weighted")
-    return Reference(found.known, c, equation.a)
+        theta, regular = logarithmic(equation, result.known[k].theta)
+        result.add(theta, "logarithmic" if regular else "weighted")
+    return Reference(result.known, c, equation.a)
 
 
 def edge_reference(equation: Equation, i: int, starts: int = 4, seed: int = 0) -> Reference:
     """Return what is found of the edge of one group only."""
-    found = _started(equation, starts, seed)
-    _edge(found, i, starts, seed)
-    return Reference(found.known, equation.sizes, equation.a)
+    result = _started(equation, starts, seed)
+    _edge(result, i, starts, seed)
+    return Reference(result.known, equation.sizes, equation.a)
 
 
 def _started(equation: Equation, starts: int, seed: int) -> _Collection:
     """Return minima of the sum of J over their sizes, from many starts."""
-    found = _Collection(equation)
+    result = _Collection(equation)
     nominal = equation.case.problem.start
     for theta in [nominal, equation.case.true, *_random(equation, starts, seed)]:
-        found.add(least_squares(equation, 1 / equation.sizes, theta), "weighted")
-    return found
+        result.add(least_squares(equation, 1 / equation.sizes, theta), "weighted")
+    return result
 
 
 def _random(equation: Equation, starts: int, seed: int) -> list[Floats]:
@@ -600,26 +603,26 @@ def _random(equation: Equation, starts: int, seed: int) -> list[Floats]:
     return [equation.lower + equation.span * rng.random(equation.span.size) for _ in range(starts)]
 
 
-def _edge(found: _Collection, i: int, starts: int, seed: int) -> None:
+def _edge(result: _Collection, i: int, starts: int, seed: int) -> None:
     """Add minima of J_i, and models at its edge: by epsilon, and at equal residuals."""
-    equation, c = found.equation, found.equation.sizes
+    equation, c = result.equation, result.equation.sizes
     unit = np.eye(c.size)[i] / c
     nearly = np.where(np.arange(c.size) == i, 1.0, 1e-6) / c
     nominal = equation.case.problem.start
-    for theta in [nominal, *_random(equation, starts, seed)[:2], *found.best(unit, 2)]:
-        found.add(least_squares(equation, unit, theta, 60, 1e-11), f"least-{i}")
-    for theta in found.best(nearly, 2):
+    for theta in [nominal, *_random(equation, starts, seed)[:2], *result.best(unit, 2)]:
+        result.add(least_squares(equation, unit, theta, 60, 1e-11), f"least-{i}")
+    for theta in result.best(nearly, 2):
         for epsilon in EPSILON:
             w = np.where(np.arange(c.size) == i, 1.0, epsilon) / c
             theta = least_squares(equation, w, theta, 25, 1e-10)
-            found.add(theta, f"edge-{i}")
-        found.add(least_squares(equation, unit, theta, 20, 1e-12), f"edge-{i}")
-    for theta in found.best(nearly, 2):
+            result.add(theta, f"edge-{i}")
+        result.add(least_squares(equation, unit, theta, 20, 1e-12), f"edge-{i}")
+    for theta in result.best(nearly, 2):
         for rank in RANKS:
             equal = equal_residuals(equation, i, theta, rank, c)
-            found.add(equal, f"edge-{i}")
+            result.add(equal, f"edge-{i}")
             if equal is not None:
-                found.add(least_squares(equation, unit, equal, 20, 1e-12), f"edge-{i}")
+                result.add(least_squares(equation, unit, equal, 20, 1e-12), f"edge-{i}")
 
 
 def _weights(n: int) -> Floats:
@@ -641,17 +644,20 @@ def better(
     The starts are the point itself and the nearest ``known`` models; returns the models, too.
     """
     near = sorted(
-        known, key=lambda one: float(np.abs(np.log((one.J + floor) / (point + floor))).max())
+        known,
+        key=lambda known_point: float(
+            np.abs(np.log((known_point.J + floor) / (point + floor))).max()
+        ),
     )
     k = point.size - 1
-    found: list[Known] = []
-    for start in [theta, *(one.theta for one in near[:2])]:
-        at = bounded(equation, k, np.maximum(point, floor), start)
-        J = equation.J(at)
+    result: list[Known] = []
+    for start in [theta, *(near.theta for near in near[:2])]:
+        position = bounded(equation, k, np.maximum(point, floor), start)
+        J = equation.J(position)
         if np.isfinite(J).all():
-            found.append(Known(at, J, "bounded"))
-    found.sort(key=lambda one: float(one.J[k]))
-    J = np.array([one.J for one in [*found, *near]])
+            result.append(Known(position, J, "bounded"))
+    result.sort(key=lambda known_point: float(known_point.J[k]))
+    J = np.array([known_point.J for known_point in [*result, *near]])
     held = (point * (1 + TIE) + ROUNDING / EXACT * floor >= J)[:, :k].all(axis=1)
     gain = np.where(held, (point[k] - J[:, k]) / max(point[k], floor[k]), 0.0)
-    return max(0.0, float(gain.max())), [[*found, *near][int(gain.argmax())], *found]
+    return max(0.0, float(gain.max())), [[*result, *near][int(gain.argmax())], *result]

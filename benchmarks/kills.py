@@ -241,7 +241,9 @@ class Trials:
     def compare(self, folder: Path, before: dict[Path, int], name: str) -> None:
         """Compare the files that were written before with those that are there."""
         now = written(folder)
-        again = [path.name for path, at in before.items() if now.get(path, at) != at]
+        again = [
+            path.name for path, position in before.items() if now.get(path, position) != position
+        ]
         if again:
             self.differences.append(f"{name}: done again {again}")
 
@@ -263,8 +265,8 @@ def running(group: int) -> Iterator[int]:
     """Yield the processes of a group that have not ended."""
     for path in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
-            state, _, own = path.read_text().rpartition(")")[2].split()[:3]
-            if int(own) == group and state != "Z":
+            state, _, chosen = path.read_text().rpartition(")")[2].split()[:3]
+            if int(chosen) == group and state != "Z":
                 yield int(path.parent.name)
 
 

@@ -93,8 +93,8 @@ def _model(
     low, high = X.min(axis=0), X.max(axis=0)
     flat = X[:, :2]
     nodes = [
-        int(np.argmin(((flat - low[:2] - np.array(at) * (high - low)[:2]) ** 2).sum(axis=1)))
-        for at in along
+        int(np.argmin(((flat - low[:2] - np.array(position) * (high - low)[:2]) ** 2).sum(axis=1)))
+        for position in along
     ]
     structure = fem.Structure(
         X,
@@ -154,37 +154,39 @@ def reduced_model(full: MatrixModel, count: int) -> ReducedModel:
     return ReducedModel(full, count, np.ones(REGIONS), lower, upper, spare=count - MODES)
 
 
-def modal_error(full: MatrixModel, columns: int, found: xr.Dataset) -> float:
+def modal_error(full: MatrixModel, columns: int, result: xr.Dataset) -> float:
     """Return the greatest error of eigenvalues from so many modes of the nominal model."""
     pencil = full.pencil
     Phi = lowest(pencil, np.ones(REGIONS), columns).Phi[:, :columns]
     K, M = (DenseAffine(A.project([Phi], Phi), A.coefficients) for A in (pencil.K, pencil.M))
     errors = []
-    for i in range(found.sizes["point"]):
-        theta = found["theta"].values[i]
+    for i in range(result.sizes["point"]):
+        theta = result["theta"].values[i]
         lam = dense.decompose(K.at(theta), M.at(theta)).lam
-        exact = (2 * np.pi * found["frequency"].values[i]) ** 2
-        errors.append(lam[found["paired_mode"].values[i].astype(int) - 1] / exact - 1)
+        exact = (2 * np.pi * result["frequency"].values[i]) ** 2
+        errors.append(lam[result["paired_mode"].values[i].astype(int) - 1] / exact - 1)
     return float(np.max(errors))
 
 
-def asked(found: xr.Dataset) -> list[tuple[Floats, Ints]]:
+def requests_of(result: xr.Dataset) -> list[tuple[Floats, Ints]]:
     """Return the parameters and the paired modes of the models that were found."""
-    paired = found["paired_mode"].values.astype(int) - 1
-    return [(theta, np.unique(r)) for theta, r in zip(found["theta"].values, paired, strict=True)]
+    paired = result["paired_mode"].values.astype(int) - 1
+    return [(theta, np.unique(r)) for theta, r in zip(result["theta"].values, paired, strict=True)]
 
 
-def sharpness(full: MatrixModel, model: ReducedModel, found: xr.Dataset) -> Floats:
+def sharpness(full: MatrixModel, model: ReducedModel, result: xr.Dataset) -> Floats:
     """Return estimated errors over true ones, wherever these can be told from rounding."""
     basis = model._ready().space.basis
-    models = asked(found)
+    models = requests_of(result)
     ratios = []
-    for (theta, r), one in zip(models, model.certify(models), strict=True):
+    for (theta, r), certificate in zip(models, model.certify(models), strict=True):
         K, M = full.pencil.K.at(theta), full.pencil.M.at(theta)
         exact = lowest(full.pencil, theta, model.count)
         ritz = basis.combine(dense.decompose(basis.K.at(theta), basis.M.at(theta)).Phi[:, r])
         truth = quotients(K, M, ritz) / quotients(K, M, exact.Phi[:, r]) - 1
-        ratios.append((one.eigenvalue / truth)[truth > TOLD * exact.noise[r] / exact.lam[r]])
+        ratios.append(
+            (certificate.eigenvalue / truth)[truth > TOLD * exact.noise[r] / exact.lam[r]]
+        )
     return np.concatenate(ratios)
 
 
@@ -213,11 +215,11 @@ def line(
     out["memory_modes"] = memory()
     out["derivatives"], _ = timed(lambda: full.modes(np.ones(REGIONS), count))
     model = reduced_model(full, count)
-    found: list[xr.Dataset] = []
+    result: list[xr.Dataset] = []
     with counted() as costs:
-        out["work"], out["work_elapsed"] = timed(lambda: found.append(work(model, data)))
+        out["work"], out["work_elapsed"] = timed(lambda: result.append(work(model, data)))
     out["memory_work"] = memory()
-    data_of = found[0]
+    data_of = result[0]
     out["ratio"] = out["work"] / out["modes"]
     out["ratio_elapsed"] = out["work_elapsed"] / out["modes_elapsed"]
     out["ratio_memory"] = out["memory_work"] / out["memory_factor"]
@@ -229,16 +231,16 @@ def line(
     out["error"] = float(data_of["eigenvalue_error"].max())
     out["converged"] = float(data_of["converged"].mean())
     alone = reduced_model(full, count)
-    nominal = alone.certify(asked(data_of))
-    out["error_nominal"] = max(float(one.eigenvalue.max()) for one in nominal)
+    nominal = alone.certify(requests_of(data_of))
+    out["error_nominal"] = max(float(certificate.eigenvalue.max()) for certificate in nominal)
     out |= {name: value for name, value in vars(costs).items() if name.endswith("_time")}
     if exact:
         ratios = sharpness(full, model, data_of)
         out["sharpness_least"] = float(ratios.min())
         out["sharpness_greatest"] = float(ratios.max())
     if compare:
-        out["work_full"], _ = timed(lambda: found.append(work(full, data)))
-        difference = found[1]["theta"].values - found[0]["theta"].values
+        out["work_full"], _ = timed(lambda: result.append(work(full, data)))
+        difference = result[1]["theta"].values - result[0]["theta"].values
         out["difference"] = float(np.abs(difference).max() / (BOUNDS[1] - BOUNDS[0]))
         out["error_modal"] = modal_error(full, model.columns, data_of)
     return out

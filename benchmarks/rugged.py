@@ -98,8 +98,8 @@ def thinned(J: Floats, size: float = 1e-3) -> Floats:
 def sum_of_fronts(fronts: list[Floats]) -> Floats:
     """Return the front of a sum of objectives each of which has parameters of its own."""
     total = thinned(fronts[0])
-    for one in fronts[1:]:
-        part = thinned(one)
+    for values in fronts[1:]:
+        part = thinned(values)
         total = thinned((total[:, None] + part[None]).reshape(-1, 2))
     return total
 
@@ -186,16 +186,16 @@ def crossing() -> Case:
     def chain(k1: Any, k2: Any) -> tuple[list[Any], list[Any]]:
         half = np.sqrt((k1 / 2) ** 2 + k2**2)
         lam = [k2 + k1 / 2 - half, k2 + k1 / 2 + half]
-        angle = [np.arctan((k1 + k2 - one) / k2) for one in lam]
-        return lam, [[np.cos(one), np.sin(one)] for one in angle]
+        angle = [np.arctan((k1 + k2 - value) / k2) for value in lam]
+        return lam, [[np.cos(values), np.sin(values)] for values in angle]
 
     def modes(theta: Any) -> tuple[Any, Any]:
         """Return eigenvalues (..., 4) and shapes (..., 4, 4) of theta (..., 4), unsorted."""
         t1, t2, t3, t4 = np.moveaxis(theta, -1, 0)
         (lam_x, phi_x), (lam_y, phi_y) = chain(t1, t2), chain(1.1 * t3, 0.9 * t4)
         none = 0 * t1
-        rows = [np.stack([*one, none, none], axis=-1) for one in phi_x]
-        rows += [np.stack([none, none, *one], axis=-1) for one in phi_y]
+        rows = [np.stack([*values, none, none], axis=-1) for values in phi_x]
+        rows += [np.stack([none, none, *values], axis=-1) for values in phi_y]
         return np.stack([*lam_x, *lam_y], axis=-1), np.stack(rows, axis=-2)
 
     def order(theta: Floats) -> Any:
@@ -227,16 +227,16 @@ def crossing() -> Case:
     def truth() -> Floats:
         grid = np.linspace(0.4, 2.5, 32)
         rest = np.stack(np.meshgrid(grid, grid, grid), axis=-1).reshape(-1, 3)
-        found = np.empty((0, 4 + 2))
+        result = np.empty((0, 4 + 2))
         for t1 in grid:
             theta = np.column_stack([np.full(len(rest), t1), rest])
-            found = best_rows(np.vstack([found, rows(theta)]), 2e-3)
+            result = best_rows(np.vstack([result, rows(theta)]), 2e-3)
         rng = np.random.default_rng(0)
         for width in 0.07 * 0.7 ** np.arange(18):
-            near = np.repeat(found[:, :4], 40, axis=0)
+            near = np.repeat(result[:, :4], 40, axis=0)
             theta = np.clip(near + width * rng.normal(size=near.shape), lower, upper)
-            found = best_rows(np.vstack([found, rows(theta)]), 1e-3)
-        return found[:, 4:]
+            result = best_rows(np.vstack([result, rows(theta)]), 1e-3)
+        return result[:, 4:]
 
     return Case("crossing modes", function, lower, upper, truth)
 
@@ -336,13 +336,13 @@ class Described(ElementwiseProblem):
 def evolution(case: Case, method: Any, population: int, evaluations: int, seed: int) -> Floats:
     """Return the objectives of the last population."""
     algorithm = method(pop_size=population)
-    found = minimize(Described(case), algorithm, ("n_eval", evaluations), seed=seed, verbose=False)
-    return np.atleast_2d(found.F)
+    result = minimize(Described(case), algorithm, ("n_eval", evaluations), seed=seed, verbose=False)
+    return np.atleast_2d(result.F)
 
 
 def behind(J: Floats, truth: Floats) -> Floats:
     """Return by how much one row of the truth is better in all objectives, at most, (points,)."""
-    return np.array([(one - truth).min(axis=1).max() for one in J])
+    return np.array([(values - truth).min(axis=1).max() for values in J])
 
 
 def volume(J: Floats, utopia: Floats, scale: Floats) -> float:

@@ -42,36 +42,36 @@ class Structure:
 def read(name: str) -> Structure:
     """Return ``concrete_frame_sim``, ``steel_bridge_exp`` or ``story18_exp``."""
     with np.load(FOLDER / f"{name}.npz") as file:
-        found = dict(file)
-    size = int(found["N"])
+        result = dict(file)
+    size = int(result["N"])
 
     def matrix(key: str) -> scipy.sparse.csr_array:
-        place = found[f"{key}_row"], found[f"{key}_col"]
-        return scipy.sparse.csr_array((found[f"{key}_val"], place), shape=(size, size))
+        place = result[f"{key}_row"], result[f"{key}_col"]
+        return scipy.sparse.csr_array((result[f"{key}_val"], place), shape=(size, size))
 
-    terms = [matrix(f"K{j}") for j in range(int(found["n_par"]))]
-    fixed = matrix("Kfixed") if "Kfixed_row" in found else scipy.sparse.csr_array((size, size))
-    labels = found.get("names", np.array([f"alpha{j + 1}" for j in range(len(terms))]))
+    terms = [matrix(f"K{j}") for j in range(int(result["n_par"]))]
+    fixed = matrix("Kfixed") if "Kfixed_row" in result else scipy.sparse.csr_array((size, size))
+    labels = result.get("names", np.array([f"alpha{j + 1}" for j in range(len(terms))]))
     parameters = [str(label) for label in labels]
-    dofs = {f"dof{dof}": int(dof) for dof in found["meas_dofs0"]}
+    dofs = {f"dof{dof}": int(dof) for dof in result["meas_dofs0"]}
     model = matrices(
         parameters,
         {"base": sum(terms, fixed), **dict(zip(parameters, terms, strict=True))},
         {"base": matrix("M")},
         dofs,
     )
-    true = found.get("alpha_true")
+    true = result.get("alpha_true")
     if true is not None:
-        modes = model.modes(true, int(found["n_modes"]), derivatives=False)
+        modes = model.modes(true, int(result["n_modes"]), derivatives=False)
         data = modal_data(modes.frequency, modes.phi.T, tuple(dofs))
-        return Structure(model, data, found["lb"], found["ub"], true)
-    frequency = np.sqrt(found["lambda_exp"]) / (2 * np.pi)
+        return Structure(model, data, result["lb"], result["ub"], true)
+    frequency = np.sqrt(result["lambda_exp"]) / (2 * np.pi)
     std = {}
-    if "std_lambda" in found:
-        of_frequency = frequency * found["std_lambda"] / (2 * found["lambda_exp"])
-        std = {"frequency_std": of_frequency, "shape_std": found["std_psi"].T}
-    data = modal_data(frequency, found["psi_exp"].T, tuple(dofs), **std)
-    return Structure(model, data, found["lb"], found["ub"], None)
+    if "std_lambda" in result:
+        of_frequency = frequency * result["std_lambda"] / (2 * result["lambda_exp"])
+        std = {"frequency_std": of_frequency, "shape_std": result["std_psi"].T}
+    data = modal_data(frequency, result["psi_exp"].T, tuple(dofs), **std)
+    return Structure(model, data, result["lb"], result["ub"], None)
 
 
 def frequencies_and_shapes(
@@ -118,15 +118,15 @@ def weighted_minimum(
     were poor, they have led astray, and it begins again.
     """
     model = problem.model
-    found = begin(problem.evaluate(theta))
+    result = begin(problem.evaluate(theta))
     while True:
-        found = solve(problem, weighted(w), found, Options(iterations=iterations))
+        result = solve(problem, weighted(w), result, Options(iterations=iterations))
         if not isinstance(model, ReducedModel):
-            return found
-        wanted = np.unique(found.evaluation.quantities["paired_mode"].astype(int) - 1)
-        (certificate,) = model.certify([(found.theta, wanted)])
+            return result
+        requested = np.unique(result.evaluation.quantities["paired_mode"].astype(int) - 1)
+        (certificate,) = model.certify([(result.theta, requested)])
         if certificate.eigenvalue.max() <= model.tolerance:
-            return found
-        model.take(SnapshotRequest(found.theta, model.count))
+            return result
+        model.take(SnapshotRequest(result.theta, model.count))
         poor = certificate.eigenvalue.max() > POOR
-        found = begin(problem.evaluate(theta if poor else found.theta))
+        result = begin(problem.evaluate(theta if poor else result.theta))

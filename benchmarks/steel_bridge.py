@@ -51,13 +51,13 @@ def main() -> None:
     parser.add_argument("--searches", type=int, default=1)
     given = parser.parse_args()
     structure = read("steel_bridge_exp")
-    one, other = (
+    first, other = (
         front(structure, given.points, given.searches, reduced=reduced) for reduced in (True, False)
     )
     span = structure.upper - structure.lower
     for i, label in enumerate(other["label"].values):
-        apart = np.abs(one["theta"].values[i] - other["theta"].values[i]) / span
-        J = one["objective"].values[i] / other["objective"].values[i] - 1
+        apart = np.abs(first["theta"].values[i] - other["theta"].values[i]) / span
+        J = first["objective"].values[i] / other["objective"].values[i] - 1
         print(f"{label:18s} theta {apart.max():.1e}   J {J[0]: .1e} {J[1]: .1e}")
 
 

@@ -206,9 +206,11 @@ def _frame(rng: np.random.Generator) -> _Structure:
     bays, levels = int(rng.integers(1, 4)), int(rng.integers(2, 6))
     x = np.append(0.0, np.cumsum(rng.uniform(4.0, 7.0, bays)))
     z = np.append(0.0, np.cumsum(rng.uniform(3.0, 4.5, levels)))
-    at = np.arange((bays + 1) * (levels + 1)).reshape(levels + 1, bays + 1)
-    columns = [(at[i, j], at[i + 1, j]) for i in range(levels) for j in range(bays + 1)]
-    beams = [(at[i + 1, j], at[i + 1, j + 1]) for i in range(levels) for j in range(bays)]
+    position = np.arange((bays + 1) * (levels + 1)).reshape(levels + 1, bays + 1)
+    columns = [(position[i, j], position[i + 1, j]) for i in range(levels) for j in range(bays + 1)]
+    beams = [
+        (position[i + 1, j], position[i + 1, j + 1]) for i in range(levels) for j in range(bays)
+    ]
     members = np.array(columns + beams)
     nodes = np.array([(x[j], z[i]) for i in range(levels + 1) for j in range(bays + 1)])
     p = int(rng.integers(6, min(17, len(members)) + 1))
@@ -225,7 +227,7 @@ def _frame(rng: np.random.Generator) -> _Structure:
     if rng.random() < 0.3:  # pinned
         free = np.append(np.arange(2, 3 * (bays + 1), 3), free)
     K, M = (A[:, free][:, :, free] for A in (K, M))
-    sideways = [int(np.flatnonzero(free == 3 * at[i, 0])[0]) for i in range(1, levels + 1)]
+    sideways = [int(np.flatnonzero(free == 3 * position[i, 0])[0]) for i in range(1, levels + 1)]
     others = [k for k in range(len(free)) if free[k] % 3 < 2 and k not in sideways]
     extra = rng.choice(others, min(len(others), int(rng.integers(0, 5))), replace=False)
     dofs = np.sort(np.append(sideways, extra)).astype(int)
@@ -275,16 +277,16 @@ def _terms(path: Path, count: int) -> tuple[Floats, Floats, Floats, Floats, Floa
     Above 100 degrees of freedom these are Ritz coordinates: ``count`` modes of every model.
     """
     with np.load(path) as file:
-        found = dict(file)
-    size, p = int(found["N"]), int(found["n_par"])
+        result = dict(file)
+    size, p = int(result["N"]), int(result["n_par"])
 
     def matrix(key: str) -> scipy.sparse.csc_array:
-        place = found[f"{key}_row"], found[f"{key}_col"]
-        return scipy.sparse.csc_array((found[f"{key}_val"], place), shape=(size, size))
+        place = result[f"{key}_row"], result[f"{key}_col"]
+        return scipy.sparse.csc_array((result[f"{key}_val"], place), shape=(size, size))
 
     K = [matrix(f"K{j}") for j in range(p)]
-    base = matrix("Kfixed") if "Kfixed_row" in found else scipy.sparse.csc_array((size, size))
-    M, sensors = matrix("M"), found["meas_dofs0"].astype(int)
+    base = matrix("Kfixed") if "Kfixed_row" in result else scipy.sparse.csc_array((size, size))
+    M, sensors = matrix("M"), result["meas_dofs0"].astype(int)
     nominal = sum(K, base)
     if size > 100:
         changed = [nominal, *(nominal + sign * 0.6 * A for A in K for sign in (-1.0, 1.0))]
@@ -294,7 +296,7 @@ def _terms(path: Path, count: int) -> tuple[Floats, Floats, Floats, Floats, Floa
     stiffness, mass = (np.array([T.T @ (A @ T) for A in terms]) for terms in ((nominal, *K), (M,)))
     mass = np.concatenate([mass, np.zeros((p, *mass.shape[1:]))])
     stiffness, mass = ((A + A.transpose(0, 2, 1)) / 2 for A in (stiffness, mass))
-    return stiffness, mass, T[sensors], found["lb"], found["ub"]
+    return stiffness, mass, T[sensors], result["lb"], result["ub"]
 
 
 def _ritz(

@@ -151,9 +151,9 @@ def main() -> None:
     for name in given.studies:
         with tempfile.TemporaryDirectory() as folder:
             study = STUDIES[name](Path(folder) / name)
-            one, alone = done(study, 1)
+            serial, alone = done(study, 1)
             many, shared = done(study, given.workers)
-        print(f"{name}: same digits {one.identical(many)}")
+        print(f"{name}: same digits {serial.identical(many)}")
         for stage, seconds in alone.items():
             if seconds >= 1:
                 print(

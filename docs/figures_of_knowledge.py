@@ -123,8 +123,8 @@ def example(name: str) -> mf.UpdatingProblem:
 
 def finish(path: Path, *axes: Axes) -> None:
     """Write a figure that is the same at every build."""
-    for one in axes:
-        one.spines[["top", "right"]].set_visible(False)
+    for axis in axes:
+        axis.spines[["top", "right"]].set_visible(False)
     plt.rcParams["svg.hashsalt"] = "modefront"
     plt.gcf().tight_layout()
     plt.savefig(path, metadata={"Date": None} if path.suffix == ".svg" else None, dpi=110)

@@ -65,9 +65,9 @@ def page(text: str) -> str:
     Raises ValueError where a table is missing on the page, or is none of the schema.
     """
     made = tables()
-    there = [match["name"] for match in TABLE.finditer(text)]
-    if sorted(there) != sorted(made):
-        raise ValueError(f"expected one table each of {sorted(made)}, found {sorted(there)}")
+    other = [match["name"] for match in TABLE.finditer(text)]
+    if sorted(other) != sorted(made):
+        raise ValueError(f"expected one table each of {sorted(made)}, found {sorted(other)}")
     text = TABLE.sub(lambda match: f"{match[1]}{made[match['name']]}{match[3]}", text)
     return re.sub(r"(<!-- format -->)\d+", rf"\g<1>{FORMAT}", text)
 

@@ -62,8 +62,8 @@ def main(folder: Path) -> None:
         if not (place / "study.toml").exists():
             command("init", str(place), "--example", f"three-story-{configuration}")
         command("run", str(place / "study.toml"), "-o", str(place / "results"))
-        found = front(place / "results")
-        for name, values in found.items():
+        result = front(place / "results")
+        for name, values in result.items():
             published = PUBLISHED[model].get(name, [20])
             table.add_row(f"{model}: {name}", text(published), text(values))
     Console(width=100).print(table)

@@ -22,8 +22,8 @@ ROWS, ACROSS = 6, 2  # plates along and across a column in a story
 def levels() -> Floats:
     """Return the heights of the rows of nodes."""
     inner = STIFF_END + (STORY - 2 * STIFF_END) * np.arange(1, ROWS - 1) / (ROWS - 2)
-    one = np.array([STIFF_END, *inner, STORY])
-    return np.concatenate([[0.0], *(story * STORY + one for story in range(3))])
+    column = np.array([STIFF_END, *inner, STORY])
+    return np.concatenate([[0.0], *(story * STORY + column for story in range(3))])
 
 
 def building() -> tuple[meshio.Mesh, Ints]:
@@ -32,25 +32,25 @@ def building() -> tuple[meshio.Mesh, Ints]:
     z = levels()
     grid = np.stack(np.meshgrid(x, z, y, indexing="ij"), axis=-1)  # x, z, y
     nodes = grid[..., [0, 2, 1]].reshape(-1, 3)
-    at = np.arange(len(nodes)).reshape(2, len(z), ACROSS + 1)
+    position = np.arange(len(nodes)).reshape(2, len(z), ACROSS + 1)
     quads, tags = [], []
     for column in range(2):
         for row in range(3 * ROWS):
             story, place = divmod(row, ROWS)
             joint = place in (0, ROWS - 1)
             for j in range(ACROSS):
-                low, high = at[column, row], at[column, row + 1]
+                low, high = position[column, row], position[column, row + 1]
                 quads.append([low[j], low[j + 1], high[j + 1], high[j]])
                 tags.append(4 if joint else story + 1)
     middle = ACROSS // 2
-    floors = [at[:, ROWS * (story + 1), middle] for story in range(3)]
+    floors = [position[:, ROWS * (story + 1), middle] for story in range(3)]
     physical = [np.array(tags), np.full(3, 5), np.full(2 * (ACROSS + 1), 6)]
     return meshio.Mesh(
         nodes,
         [
             ("quad", np.array(quads)),
             ("line", np.array(floors)),
-            ("vertex", at[:, 0].reshape(-1, 1)),
+            ("vertex", position[:, 0].reshape(-1, 1)),
         ],
         cell_data={"gmsh:physical": physical, "gmsh:geometrical": physical},
         field_data={
@@ -59,18 +59,20 @@ def building() -> tuple[meshio.Mesh, Ints]:
             "floors": np.array([5, 1]),
             "base": np.array([6, 0]),
         },
-    ), at
+    ), position
 
 
 def main() -> None:
     """Write the mesh into both examples and print the nodes at the ends of the floors."""
-    mesh, at = building()
+    mesh, position = building()
     for configuration in ("c0", "c1"):
         path = EXAMPLES / f"three-story-fe-{configuration}" / "building.msh"
         path.parent.mkdir(exist_ok=True)
         meshio.write(path, mesh, file_format="gmsh22", binary=False)
     for story in range(3):
-        print(f"floor {story + 1}: nodes of the two joints {at[:, ROWS * (story + 1)].tolist()}")
+        print(
+            f"floor {story + 1}: nodes of the two joints {position[:, ROWS * (story + 1)].tolist()}"
+        )
 
 
 if __name__ == "__main__":

@@ -38,9 +38,9 @@ SOURCE = Path(modefront.__file__).parent
 
 def part(name: str) -> int:
     """Return the layer of a part of the package."""
-    found = [i for i, names in enumerate(LAYERS) if name in names]
-    assert len(found) == 1, f"{name}: expected in one layer, found in {len(found)}"
-    return found[0]
+    result = [i for i, names in enumerate(LAYERS) if name in names]
+    assert len(result) == 1, f"{name}: expected in one layer, found in {len(result)}"
+    return result[0]
 
 
 def imported(file: Path) -> Iterator[str]:
@@ -50,9 +50,11 @@ def imported(file: Path) -> Iterator[str]:
         if isinstance(node, ast.ImportFrom):
             assert node.level == 0, f"{file}: expected absolute imports, found a relative one"
             root = node.module or ""
-            names = [f"{root}.{one.name}" for one in node.names] if root == "modefront" else [root]
+            names = (
+                [f"{root}.{name.name}" for name in node.names] if root == "modefront" else [root]
+            )
         elif isinstance(node, ast.Import):
-            names = [one.name for one in node.names]
+            names = [name.name for name in node.names]
         for name in names:
             package, _, rest = name.partition(".")
             if package == "modefront":
@@ -64,9 +66,9 @@ FILES = sorted(SOURCE.rglob("*.py"))
 
 @pytest.mark.parametrize("file", FILES, ids=[str(file.relative_to(SOURCE)) for file in FILES])
 def test_no_part_imports_from_one_beside_or_above_it(file: Path) -> None:
-    own = file.relative_to(SOURCE).parts[0].removesuffix(".py")
+    chosen = file.relative_to(SOURCE).parts[0].removesuffix(".py")
     for name in imported(file):
-        assert name == own or part(name) < part(own), f"{own} imports {name}"
+        assert name == chosen or part(name) < part(chosen), f"{chosen} imports {name}"
 
 
 def test_no_modules_import_each_other() -> None:
@@ -81,6 +83,8 @@ def test_no_modules_import_each_other() -> None:
         for node in ast.parse(file.read_text(encoding="utf-8")).body:
             if isinstance(node, ast.ImportFrom):
                 root = node.module or ""
-                inner = {f"{root}.{one.name}" for one in node.names}
-                graph[name] |= {one if one in names else root for one in inner} & set(names)
+                inner = {f"{root}.{name.name}" for name in node.names}
+                graph[name] |= {module if module in names else root for module in inner} & set(
+                    names
+                )
     list(TopologicalSorter(graph).static_order())  # raises CycleError

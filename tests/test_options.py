@@ -128,9 +128,9 @@ def test_what_solve_is_given_is_checked_before_any_work(study: Path) -> None:
 
 def test_one_group_cannot_be_refined_nor_can_a_simplex_have_too_many_points(study: Path) -> None:
     problem = mf.load(study).problem
-    one = mf.Group("all", frequency="all", shape="all")
+    group = mf.Group("all", frequency="all", shape="all")
     with pytest.raises(mf.InputError, match=r"refined: expected two groups .* found 1 group, meth"):
-        mf.solve(replace(problem, groups=(one,)), refined=0.1)
+        mf.solve(replace(problem, groups=(group,)), refined=0.1)
     three = tuple(mf.Group(f"mode {r}", frequency=[r], shape=[r]) for r in (1, 2, 3))
     with pytest.raises(mf.InputError, match=r"points: .* the simplex of 3 groups, found 500"):
         mf.solve(replace(problem, groups=three), points=500)
@@ -278,9 +278,9 @@ def test_options_that_take_the_place_of_those_of_a_file_are_other_inputs(study: 
 def test_pareto_and_its_options_may_be_given_together(study: Path) -> None:
     problem = mf.load(study).problem
     quick: dict[str, Any] = {"search": mf.Search(1, 1, 0), "seed": 2}
-    one = mf.solve(problem, pareto=mf.Pareto("weights", 9), points=3, **quick).dataset
+    group = mf.solve(problem, pareto=mf.Pareto("weights", 9), points=3, **quick).dataset
     other = mf.solve(problem, method="weights", points=3, **quick).dataset
-    np.testing.assert_array_equal(one["theta"], other["theta"])
+    np.testing.assert_array_equal(group["theta"], other["theta"])
 
 
 def test_a_reduction_takes_a_basis_or_says_why_not(study: Path) -> None:

@@ -73,9 +73,9 @@ def test_the_page_of_python_runs_and_prints_what_it_says(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    found = blocks(DOCS / "python.md")
-    assert len(found) >= 12
+    result = blocks(DOCS / "python.md")
+    assert len(result) >= 12
     names: dict[str, object] = {}
-    for code, output in found:
+    for code, output in result:
         exec(compile(code, "docs/python.md", "exec"), names)
         assert capsys.readouterr().out == output, code

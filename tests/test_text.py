@@ -61,10 +61,10 @@ def test_terminals_of_any_encoding(encoding: str, monkeypatch: pytest.MonkeyPatc
 
 
 def test_messages_have_a_limit() -> None:
-    one = Fault("f" * 5000, "p" * 5000, "e" * 5000, HOSTILE * 1000)
-    many = mf.InputError(one for _ in range(100_000))
-    assert len(str(one)) < MOST_CHARACTERS
-    assert str(one).isprintable()
+    fault = Fault("f" * 5000, "p" * 5000, "e" * 5000, HOSTILE * 1000)
+    many = mf.InputError(fault for _ in range(100_000))
+    assert len(str(fault)) < MOST_CHARACTERS
+    assert str(fault).isprintable()
     for text in (str(many), str(mf.InputError([Fault("a", "b", "c", "d")] * 1000))):
         assert len(text) <= MOST_CHARACTERS
         assert len(text.splitlines()) <= MOST_LINES

@@ -50,7 +50,7 @@ SYSTEM = {
 
 @dataclass(frozen=True)
 class Fault:
-    """One thing that is wrong: the file, the place in it, what was expected, what was found.
+    """A fault of an input: the file, the place in it, the expected and the found value.
 
     The file is empty where an option was given in Python; the place is the option's name then.
     """

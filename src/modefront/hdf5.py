@@ -60,5 +60,5 @@ def check_tree(group: h5py.Group) -> None:
     """Raise ForeignError where any part of a group, at any depth, is kept elsewhere."""
     waiting = [group]
     while waiting:
-        here = waiting.pop()
-        waiting += [item for name in here if isinstance(item := inner(here, name), h5py.Group)]
+        node = waiting.pop()
+        waiting += [item for name in node if isinstance(item := inner(node, name), h5py.Group)]

@@ -21,13 +21,13 @@ KINDS = (
     (stat.S_ISCHR, "a device"),
     (stat.S_ISBLK, "a device"),
 )
-"""What is no regular file, in words."""
+"""Names of the kinds of files that are not regular."""
 
 HDF5, USER_BLOCK = b"\x89HDF\r\n\x1a\n", 512
-"""What HDF5 begins with, and the size of the smallest block of the user's before it."""
+"""Signature of HDF5, and the size of the smallest user block before it."""
 
 SAMPLES, SAMPLE = 32, 4096
-"""How many parts of a file are looked at for holes, and how long these are."""
+"""Number and length of the parts of a file that are checked for holes."""
 
 
 def file_size(path: Path, expected: str, most: int | None = None) -> int:
@@ -49,18 +49,18 @@ def file_size(path: Path, expected: str, most: int | None = None) -> int:
         large.
     """
     try:
-        found = path.stat()
+        status = path.stat()
     except (FileNotFoundError, NotADirectoryError):
         raise _wrong(path, expected, "no such file") from None
     except (OSError, ValueError) as error:  # ValueError where the name holds a null
         raise _wrong(path, expected, reason(error)) from None
     for is_kind, words in KINDS:
-        if is_kind(found.st_mode):
+        if is_kind(status.st_mode):
             raise _wrong(path, expected, words)
-    if most is not None and found.st_size > most:
+    if most is not None and status.st_size > most:
         limit = f"{expected} of up to {most / MEGABYTE:g} MB"
-        raise _wrong(path, limit, f"{found.st_size / MEGABYTE:.6g} MB")
-    return found.st_size
+        raise _wrong(path, limit, f"{status.st_size / MEGABYTE:.6g} MB")
+    return status.st_size
 
 
 def read_text_bytes(path: Path, expected: str, most: int) -> bytes:
@@ -95,30 +95,30 @@ def is_hdf5(path: Path) -> bool:
         start = 0
         while True:
             stream.seek(start)
-            found = stream.read(len(HDF5))
-            if len(found) < len(HDF5):
+            signature = stream.read(len(HDF5))
+            if len(signature) < len(HDF5):
                 return False
-            if found == HDF5:
+            if signature == HDF5:
                 return True
             start = 2 * start or USER_BLOCK
 
 
 def available_memory() -> int:
     """Return the memory in bytes that may be taken, 8 GB where the system does not say."""
-    found = 8 * 10**9
+    memory = 8 * 10**9
     try:
         with Path("/proc/meminfo").open(encoding="ascii") as stream:
             for line in stream:
                 if line.startswith("MemAvailable:"):
-                    found = int(line.split()[1]) * 1024
+                    memory = int(line.split()[1]) * 1024
         limit = Path("/sys/fs/cgroup/memory.max")
         if limit.is_file() and (text := limit.read_text(encoding="ascii").strip()).isdigit():
             used = int(Path("/sys/fs/cgroup/memory.current").read_text(encoding="ascii"))
-            found = min(found, max(int(text) - used, 0))
+            memory = min(memory, max(int(text) - used, 0))
     except (OSError, ValueError):
         if hasattr(os, "sysconf") and "SC_PHYS_PAGES" in os.sysconf_names:
-            found = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2
-    return found
+            memory = os.sysconf("SC_PHYS_PAGES") * os.sysconf("SC_PAGE_SIZE") // 2
+    return memory
 
 
 def _wrong(path: Path, expected: str, found: str) -> InputError:

@@ -51,7 +51,7 @@ class IsolatedError(RuntimeError):
 def isolated(
     function: str, path: Path, seconds: float, memory: int, arguments: Sequence[str] = ()
 ) -> Read:
-    """Return what a function reads from a file, called in another process.
+    """Return the arrays and texts that a function reads from a file in another process.
 
     Parameters
     ----------
@@ -73,14 +73,14 @@ def isolated(
         folder = Path(name)
         called = [str(path.absolute()), *arguments]
         status = _SERVER.status([function, called, name, seconds, memory], seconds)
-        said = _beginning(folder / OUTPUT)
+        output = _beginning(folder / OUTPUT)
         if status is None or status == -getattr(signal, "SIGALRM", 0):
             text = f"nothing within {seconds:.0f} s, after which reading was given up"
             raise IsolatedError(text)
         if status < 0 or status > CRASHED:
             raise IsolatedError(f"a file that ends its reader (signal {abs(status)})")
         if status:
-            raise IsolatedError(one_line(said, 400) or f"status {status} of the reader")
+            raise IsolatedError(one_line(output, 400) or f"status {status} of the reader")
         try:
             with np.load(folder / ARRAYS, allow_pickle=False) as file:
                 arrays = {each: file[each] for each in file.files}

@@ -1,6 +1,6 @@
 """Options that check themselves, with the same words in Python and in a study file.
 
-An option is a field of a frozen dataclass. Its annotation says what it may be: a ``Literal``, or
+An option is a field of a frozen dataclass. Its annotation has its requirement: a ``Literal``, or
 ``Annotated`` with a `Requirement`; ``None`` besides, where the annotation has it. `check_fields`,
 called from ``__post_init__``, compares all fields with their requirements and brings their values
 into plain Python: the same record is made from TOML, from literals and from numpy scalars. A reader
@@ -104,7 +104,7 @@ class Option:
     required: bool
 
     def fault(self, value: object) -> Fault | None:
-        """Return what is wrong with a value, None where nothing is."""
+        """Return the fault of a value, None where it has none."""
         if (value is None and self.optional) or self.requirement.holds(plain(value)):
             return None
         return Fault("", self.name, self.requirement.expected, shown(value))
@@ -124,7 +124,7 @@ def options(record: type) -> tuple[Option, ...]:
 
 
 def _requirement(hint: Any) -> Requirement | None:
-    """Return what an annotation requires, None where it says nothing."""
+    """Return the requirement in an annotation, None where it has none."""
     if get_origin(hint) is Literal:
         return one_of(*get_args(hint))
     if get_origin(hint) is Annotated:

@@ -55,7 +55,7 @@ SPELLED: Mapping[str, str] = {
     "σ": "sigma",
     "ζ": "zeta",
 }
-"""What is written where an encoding lacks a character that the program itself writes."""
+"""Replacements for characters of the program that an encoding lacks."""
 
 SPELL = "modefront-spell"
 """Name of the error handler of encodings that spells what they lack, see `SPELLED`."""
@@ -94,7 +94,7 @@ def shortened(text: str, most: int) -> str:
 
 
 def one_line(text: object, most: int | None = None) -> str:
-    r"""Return what another program says, on one line and clean.
+    r"""Return the output of another program on one line, clean.
 
     >>> one_line("cannot be read:\n   line 3")
     'cannot be read: line 3'
@@ -130,7 +130,7 @@ def _escape(character: str) -> str:
 
 
 def _spell(error: UnicodeError) -> tuple[str, int]:
-    """Return what is written in place of characters that an encoding lacks, and where to go on."""
+    """Return the replacement of characters that an encoding lacks, and the position behind them."""
     if not isinstance(error, UnicodeEncodeError):
         raise error
     lacking = error.object[error.start : error.end]

@@ -1,4 +1,4 @@
-"""Typed access to the tables of a TOML file that collects everything that is wrong."""
+"""Typed access to the tables of a TOML file, which collects the faults."""
 
 from __future__ import annotations
 
@@ -51,7 +51,7 @@ class Table:
     place : where the table is in it, for messages; empty for the top level
     values : what the table holds
     faults : all that is wrong with the file, shared by its tables
-    asked : keys that were read or are known
+    requested : keys that were read or are known
     files : paths of the files that the tables name, shared by them; see `path`
     notes : records of what was found beside faults, shared by the tables
     """
@@ -60,7 +60,7 @@ class Table:
     place: str
     values: dict[str, Any]
     faults: list[Fault]
-    asked: list[str] = field(default_factory=list)
+    requested: list[str] = field(default_factory=list)
     files: list[Path] = field(default_factory=list)
     notes: list[object] = field(default_factory=list)
 
@@ -85,7 +85,7 @@ class Table:
 
         A default of ``...`` says that the key is required; None is returned in its place.
         """
-        self.asked.append(key)
+        self.requested.append(key)
         if key not in self.values:
             if default is ...:
                 self.fault(key, expected, "nothing")
@@ -163,10 +163,12 @@ class Table:
         ]
 
     def close(self) -> None:
-        """Note every key that nobody has asked for."""
-        known = set(self.asked)
+        """Note every unknown key."""
+        known = set(self.requested)
         for number, key in enumerate(key for key in self.values if key not in known):
-            found = suggestion(key, self.asked) if number < SUGGESTED else repr(clean(key, NAME))
+            found = (
+                suggestion(key, self.requested) if number < SUGGESTED else repr(clean(key, NAME))
+            )
             self.fault("", "a known key", found)
 
 

@@ -107,16 +107,16 @@ def done(study: Path, whole: Path) -> Path:
     return Path(shutil.copytree(whole, study.with_name("study-results")))
 
 
-def assert_same(one: xr.Dataset, other: xr.Dataset) -> None:
+def assert_same(first: xr.Dataset, other: xr.Dataset) -> None:
     """Assert that two results agree to the last bit, in what they cost as well."""
-    assert one.attrs == other.attrs
-    assert set(one.variables) == set(other.variables)
-    for name in one.variables:
-        assert one[name].dims == other[name].dims
-        if one[name].dtype.kind in "fib":
-            assert one[name].values.tobytes() == other[name].values.tobytes(), name
+    assert first.attrs == other.attrs
+    assert set(first.variables) == set(other.variables)
+    for name in first.variables:
+        assert first[name].dims == other[name].dims
+        if first[name].dtype.kind in "fib":
+            assert first[name].values.tobytes() == other[name].values.tobytes(), name
         else:
-            assert one[name].values.tolist() == other[name].values.tolist(), name
+            assert first[name].values.tolist() == other[name].values.tolist(), name
 
 
 def contents(folder: Path) -> list[bytes]:
@@ -169,9 +169,9 @@ def test_results_lie_where_they_are_wanted(modefront_: Run, study: Path, done: P
     mine = data.isel(point=labels.index("mine"))
     assert mine["weight"].values.tolist() == [2.0, 1.0]
 
-    wanted = study.with_name("elsewhere") / "deep"
-    assert modefront_("run", study, "-o", wanted)[0] == 0
-    assert_same(read_dataset(wanted), data)
+    requested = study.with_name("elsewhere") / "deep"
+    assert modefront_("run", study, "-o", requested)[0] == 0
+    assert_same(read_dataset(requested), data)
 
 
 def test_show_prints_tables_and_json_without_nan(modefront_: Run, whole: Path) -> None:
@@ -185,14 +185,14 @@ def test_show_prints_tables_and_json_without_nan(modefront_: Run, whole: Path) -
 
     status, out, err = modefront_("show", whole, "--format", "json")
     assert (status, err) == (0, "")
-    found = json.loads(out, parse_constant=refuse)
+    result = json.loads(out, parse_constant=refuse)
     data = read_dataset(whole)
-    assert set(found["variables"]) == set(data.variables)
-    for name, value in found["variables"].items():
+    assert set(result["variables"]) == set(data.variables)
+    for name, value in result["variables"].items():
         assert tuple(value["dimensions"]) == data[name].dims
-    assert found["variables"]["theta"]["values"] == data["theta"].values.tolist()
-    assert found["variables"]["weight"]["values"][0] == [None, None]
-    assert found["attributes"]["model_evaluations"] == data.attrs["model_evaluations"]
+    assert result["variables"]["theta"]["values"] == data["theta"].values.tolist()
+    assert result["variables"]["weight"]["values"][0] == [None, None]
+    assert result["attributes"]["model_evaluations"] == data.attrs["model_evaluations"]
 
 
 def test_compare_prints_tables_and_json(modefront_: Run, whole: Path) -> None:
@@ -202,10 +202,10 @@ def test_compare_prints_tables_and_json(modefront_: Run, whole: Path) -> None:
         assert text in out
     status, out, err = modefront_("compare", whole, whole, "--format", "json")
     assert (status, err) == (0, "")
-    found = json.loads(out)
-    assert found["groups"] == ["frequencies", "shapes"]
-    assert found["fronts"][1]["length_ratio"] == 1.0
-    assert found["pairs"][0]["common"] == ["k1", "k2"]
+    result = json.loads(out)
+    assert result["groups"] == ["frequencies", "shapes"]
+    assert result["fronts"][1]["length_ratio"] == 1.0
+    assert result["pairs"][0]["common"] == ["k1", "k2"]
 
 
 def test_a_front_is_refined_where_neighbours_are_far_apart(
@@ -351,8 +351,8 @@ def test_what_goes_wrong_on_the_way_is_one_message(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
     monkeypatch.setattr(session, "run", failing(error))
-    found, out, err = modefront_("run", study)
-    assert (found, out) == (status, "")
+    result, out, err = modefront_("run", study)
+    assert (result, out) == (status, "")
     assert says in err
 
 

@@ -22,15 +22,15 @@ def _invoke(*arguments: object) -> str:
 def test_the_example_gives_the_modal_data_it_comes_with(tmp_path: Path) -> None:
     write_example("hammer-test", tmp_path)
     output = tmp_path / "again.csv"
-    said = _invoke(tmp_path / "test-m0.toml", "-o", output)
-    found, kept = read_csv(output), read_csv(tmp_path / "modes-m0.csv")
-    np.testing.assert_allclose(found.frequency, kept.frequency, rtol=1e-6)
-    np.testing.assert_allclose(found.shape, kept.shape, atol=1e-5)
-    assert (found.frequency_std > 0).all()
-    assert (found.shape_std > 0).all()
-    assert "residual of each function" in said
+    text = _invoke(tmp_path / "test-m0.toml", "-o", output)
+    result, kept = read_csv(output), read_csv(tmp_path / "modes-m0.csv")
+    np.testing.assert_allclose(result.frequency, kept.frequency, rtol=1e-6)
+    np.testing.assert_allclose(result.shape, kept.shape, atol=1e-5)
+    assert (result.frequency_std > 0).all()
+    assert (result.shape_std > 0).all()
+    assert "residual of each function" in text
     report = json.loads((tmp_path / "again-identification.json").read_text())
-    assert [len(one["modes"]) for one in report["sets"]] == [3, 3, 3]
+    assert [len(identified["modes"]) for identified in report["sets"]] == [3, 3, 3]
 
 
 def test_universal_files_are_written(tmp_path: Path) -> None:
@@ -40,7 +40,7 @@ def test_universal_files_are_written(tmp_path: Path) -> None:
     _invoke(tmp_path / "m0-set1-floor3.csv", "-o", tmp_path / "m.uff", "--figures", pictures)
     assert len(list(pictures.iterdir())) == 3
     sets = pyuff.UFF(str(tmp_path / "m.uff")).read_sets()
-    assert [one["type"] for one in sets] == [55, 55, 55]
+    assert [part["type"] for part in sets] == [55, 55, 55]
     assert abs(sets[0]["eig"]) / (2 * np.pi) == pytest.approx(4.7357, rel=1e-3)
 
 

@@ -96,13 +96,13 @@ def test_pairs_that_change_on_a_lattice_are_said_once(three: xr.Dataset) -> None
     front = np.flatnonzero(three["kind"].values == "front")
     paired[front[::2], 0] = 2
     changed = three.assign(paired_mode=(("point", "mode"), paired))
-    said = [text for text in remarks(changed) if "paired with" in text]
+    messages = [text for text in remarks(changed) if "paired with" in text]
     count = front[::2].size
-    assert said == [
+    assert messages == [
         "measured mode 1 is paired with different model modes along the front: "
         f"2 at {count}, 1 at {front.size - count} of {front.size} points"
     ]
-    assert said[0] in headlines(changed)
+    assert messages[0] in headlines(changed)
 
 
 def test_many_points_are_counted_and_neighbours_joined(two: xr.Dataset) -> None:
@@ -138,8 +138,8 @@ def test_no_model_is_worse_than_the_sentence_on_all_models_says(two: xr.Dataset)
     frequency = np.where(two["frequency"].values > 0, 1.0104 * measured, np.nan)
     mac = np.full(frequency.shape, 0.9988)
     some = two.assign(frequency=(("point", "mode"), frequency), mac=(("point", "mode"), mac))
-    (said,) = [line for line in headlines(some) if "Pareto-optimal models have" in line]
-    assert "within 1.1 % of the measured ones and MAC values of 0.998 or more" in said
+    (message,) = [line for line in headlines(some) if "Pareto-optimal models have" in line]
+    assert "within 1.1 % of the measured ones and MAC values of 0.998 or more" in message
 
 
 def wide(groups: int, parameters: int, modes: int) -> xr.Dataset:

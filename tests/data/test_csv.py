@@ -100,8 +100,8 @@ def test_what_is_not_measured_drops_out_of_residuals_and_counts(tmp_path: Path) 
 
     def problem(rows: str, *groups: Group) -> UpdatingProblem:
         data = read(tmp_path, header + rows, model.sensors)
-        one = np.ones(1)
-        return UpdatingProblem(model, data, groups, 0.5 * one, 2 * one, one)
+        unit = np.ones(1)
+        return UpdatingProblem(model, data, groups, 0.5 * unit, 2 * unit, unit)
 
     frequency, shape = Group("f", frequency="all"), Group("s", shape="all")
     whole = problem("a,1,2.5,,0.6,1\na,2,7,,1,-0.6\n", frequency, shape)
@@ -112,11 +112,11 @@ def test_what_is_not_measured_drops_out_of_residuals_and_counts(tmp_path: Path) 
     assert twice.properties.tolist() == [1.0, 1.5]
 
     f = whole.model.modes(np.ones(1), 2).frequency
-    at = gaps.evaluate(np.ones(1))
-    np.testing.assert_allclose(at.J[0], (f[1] / 7 - 1) ** 2, rtol=1e-12)
+    evaluation = gaps.evaluate(np.ones(1))
+    np.testing.assert_allclose(evaluation.J[0], (f[1] / 7 - 1) ** 2, rtol=1e-12)
     # A shape at one sensor fits exactly: what is left is the first mode.
     alone = problem("a,1,2.5,,0.6,1\n", frequency, shape)
-    np.testing.assert_allclose(at.J[1], alone.evaluate(np.ones(1)).J[1], rtol=1e-9)
+    np.testing.assert_allclose(evaluation.J[1], alone.evaluate(np.ones(1)).J[1], rtol=1e-9)
 
 
 def test_arrays_make_the_same_data_as_a_file(tmp_path: Path) -> None:

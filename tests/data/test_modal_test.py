@@ -32,7 +32,9 @@ def _ascii58(values: str, count: int, kind: int = 4, quantity: int = 12) -> str:
 
 def _values(letter: str, count: int = 9) -> str:
     numbers = [f"{k + 1:13.5E}".replace("E", letter) for k in range(2 * count)]
-    return "".join("".join(numbers[at : at + 6]) + "\n" for at in range(0, 2 * count, 6))
+    return "".join(
+        "".join(numbers[position : position + 6]) + "\n" for position in range(0, 2 * count, 6)
+    )
 
 
 @pytest.mark.parametrize("letter", ["E", "D"])
@@ -54,9 +56,9 @@ def test_binary_functions_are_read(tmp_path: Path) -> None:
     header = f"{58:6d}b{1:6d}{2:6d}{len(lines):12d}{len(body):12d}{0:6d}{0:6d}{0:12d}{0:12d}"
     text = "\n".join(["    -1", header, *lines]) + "\n"
     path.write_bytes(text.encode() + body + b"\n    -1\n")
-    (found,) = read_uff(path).channels
-    assert found.quantity == "receptance"
-    assert found.H == pytest.approx(-H, rel=1e-6)
+    (result,) = read_uff(path).channels
+    assert result.quantity == "receptance"
+    assert result.H == pytest.approx(-H, rel=1e-6)
 
 
 @pytest.mark.parametrize("even", [0, 1])
@@ -127,9 +129,9 @@ def test_other_files_are_answered(tmp_path: Path, content: str, message: str) ->
     ],
 )
 def test_datasets_of_real_files_are_found(name: str, first: int, count: int) -> None:
-    found = blocks((UFF / name).read_bytes(), name)
-    assert found[0].number == first
-    assert len(found) >= count
+    result = blocks((UFF / name).read_bytes(), name)
+    assert result[0].number == first
+    assert len(result) >= count
     with pytest.raises(InputError, match="frequency response functions"):
         read_uff(UFF / name)
 
@@ -160,8 +162,8 @@ def test_references_and_blows_are_told_apart(tmp_path: Path) -> None:
     for k in range(3):
         _csv(tmp_path / f"{k}.csv", f, _functions(k))
     path = _test_file(tmp_path, ["0.csv", "1.csv", "2.csv"], ["a", "a", "b"])
-    (one,) = read_test(path).sets
-    data = one.assembled.data
+    (data_set,) = read_test(path).sets
+    data = data_set.assembled.data
     assert data.H.shape == (2, 2, 30)
     assert (data.references, data.responses, data.quantity) == (("a", "b"), ("a", "b"), "mobility")
     assert data.H[0, 0] == pytest.approx((_functions(0)["a"] + _functions(1)["a"]) / 2)
@@ -185,11 +187,11 @@ def test_odd_channels_are_pointed_out(tmp_path: Path) -> None:
     H = _functions(0)
     _csv(tmp_path / "0.csv", f, {"a": H["a"], "b": H["b"], "c": 0 * H["a"]})
     _csv(tmp_path / "1.csv", f, {"a": -H["b"], "b": H["a"], "c": 1000 * H["a"]})
-    (one,) = read_test(_test_file(tmp_path, ["0.csv", "1.csv"], ["a", "b"])).sets
-    said = "\n".join(one.assembled.warnings)
+    (data_set,) = read_test(_test_file(tmp_path, ["0.csv", "1.csv"], ["a", "b"])).sets
+    message = "\n".join(data_set.assembled.warnings)
     for text in ("looks like rad/s", "only zeros", "check its unit", "opposite signs"):
-        assert text in said
-    assert np.isnan(one.assembled.data.H[0, 2]).all()
+        assert text in message
+    assert np.isnan(data_set.assembled.data.H[0, 2]).all()
 
 
 @pytest.mark.parametrize("bad", ["nan", "x", "", "1e999"])

@@ -154,8 +154,8 @@ def test_a_study_takes_modes_from_a_universal_file(tmp_path: Path) -> None:
     plain = tmp_path / "plain"
     write_example("three-story-c0", plain)
     shape = load(plain / "study.toml").problem.data.shape[0] * [1, -1, 1]
-    found = loaded.problem.data.shape[0]
-    np.testing.assert_allclose(found / found[:, :1], shape / shape[:, :1], rtol=1e-4)
+    result = loaded.problem.data.shape[0]
+    np.testing.assert_allclose(result / result[:, :1], shape / shape[:, :1], rtol=1e-4)
     assert any("reversing floor2" in text for text in check(loaded).warnings)
 
 

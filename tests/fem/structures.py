@@ -140,9 +140,9 @@ def solve_inner(model: fem.StructureMatrices, u: Floats, given: Floats) -> Float
     free = np.flatnonzero(~fixed)
     rhs = -(K @ q)[free]
     q[free] = sparse.linalg.spsolve(K[free][:, free].tocsc(), rhs)
-    found = np.zeros_like(u)
-    found[node, direction] = q
-    return found
+    result = np.zeros_like(u)
+    result[node, direction] = q
+    return result
 
 
 def rate(errors: list[float], refinement: float = 2.0) -> Floats:

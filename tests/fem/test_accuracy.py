@@ -31,16 +31,16 @@ def test_cantilever_beam_of_8_elements() -> None:
     theory = np.concatenate(
         [CANTILEVER**2 * np.sqrt(STEEL.E * b**2 / 12 / STEEL.rho) for b in (b_y, b_z)]
     )
-    found = frequencies(model, 3)
-    assert found == pytest.approx(np.sort(theory)[:3], rel=5e-4)
+    result = frequencies(model, 3)
+    assert result == pytest.approx(np.sort(theory)[:3], rel=5e-4)
 
 
 def _hinged_errors(section: fem.Section, theory: float) -> list[float]:
     errors = []
     for n in (2, 4, 8, 16):
         supports = (fem.Support(0, ("x", "y", "z", "rx")), fem.Support(n, ("y", "z", "rx")))
-        found = frequencies(_beam_model(n, section, supports, np.eye(3)), 1)[0]
-        errors.append(found / theory - 1)
+        result = frequencies(_beam_model(n, section, supports, np.eye(3)), 1)[0]
+        errors.append(result / theory - 1)
     return errors
 
 

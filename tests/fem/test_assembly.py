@@ -74,11 +74,11 @@ def test_affine_form_is_the_direct_build(values: tuple[float, ...]) -> None:
     theta = np.array(values)
     affine = fem.assemble(replace(_frame(np.ones(6)), parameters=PARAMETERS))
     direct = fem.assemble(_frame(theta))
-    for found, expected in (
+    for result, expected in (
         (affine.stiffness.at(theta), direct.stiffness.at(NONE)),
         (affine.mass.at(theta), direct.mass.at(NONE)),
     ):
-        assert abs(found - expected).max() < 1e-11 * abs(expected).max()
+        assert abs(result - expected).max() < 1e-11 * abs(expected).max()
 
 
 def test_terms_are_merged_and_the_constant_comes_first() -> None:
@@ -115,9 +115,9 @@ def test_pattern_and_matrices_are_symmetric_to_the_last_digit() -> None:
 
 
 def test_turning_the_structure_changes_no_frequency_and_no_sensor() -> None:
-    one = np.ones(6)
-    rest = fem.assemble(_frame(one))
-    turned = fem.assemble(_frame(one, rotation(np.random.default_rng(2))))
+    unit = np.ones(6)
+    rest = fem.assemble(_frame(unit))
+    turned = fem.assemble(_frame(unit, rotation(np.random.default_rng(2))))
     w, w_turned = frequencies(rest, 8), frequencies(turned, 8)
     assert w_turned == pytest.approx(w, rel=1e-8)
     flexibility = [
@@ -132,9 +132,9 @@ def test_total_mass_is_exact_with_links_and_offsets() -> None:
     model = fem.assemble(structure, floating=True)
     X = np.asarray(structure.nodes)
     q = rigid_motions(X, 6).reshape(len(X), 6, 6)[*model.dofs.free.T]
-    found = np.diag(q.T @ model.mass.at(NONE) @ q)[:3]
+    result = np.diag(q.T @ model.mass.at(NONE) @ q)[:3]
     deck, legs, block = 0.8 * 0.02 * 7850, 2 * 0.05 * 0.03 * 7850, 0.4 * 0.3 * 0.2 * 2400
-    assert found == pytest.approx(deck + legs + block + 9.5, rel=1e-12)
+    assert result == pytest.approx(deck + legs + block + 9.5, rel=1e-12)
     K = model.stiffness.at(NONE)
     assert np.abs(K @ q).max() < 1e-12 * abs(K).max()
 
@@ -184,9 +184,11 @@ def test_mass_with_offset_is_a_mass_on_a_rigid_arm() -> None:
     ground, inertia = (fem.Support(0),), (0.1, 0.2, 0.3)
     offset = fem.Mass("m", [1], 5.0, inertia, offset=X[2] - X[1])
     arm = fem.Mass("m", [2], 5.0, inertia)
-    one = fem.assemble(fem.Structure(X, beam, ground, masses=(offset,)))
+    assembled = fem.assemble(fem.Structure(X, beam, ground, masses=(offset,)))
     two = fem.assemble(fem.Structure(X, beam, ground, masses=(arm,), links=(fem.Link(1, [2]),)))
-    assert one.mass.at(NONE).toarray() == pytest.approx(two.mass.at(NONE).toarray(), rel=1e-12)
+    assert assembled.mass.at(NONE).toarray() == pytest.approx(
+        two.mass.at(NONE).toarray(), rel=1e-12
+    )
 
 
 def test_springs_and_masses_make_the_chain() -> None:

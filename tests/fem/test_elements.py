@@ -73,8 +73,8 @@ def test_total_mass_is_exact(name: str) -> None:
     X, directions, element = ELEMENTS[name]
     M = total(element(X[None]).mass)
     motions = rigid_motions(X, directions)
-    found = np.diag(motions.T @ M @ motions)[:3]
-    assert found == pytest.approx(STEEL.rho * MEASURES[name], rel=1e-13)
+    result = np.diag(motions.T @ M @ motions)[:3]
+    assert result == pytest.approx(STEEL.rho * MEASURES[name], rel=1e-13)
 
 
 def test_rigid_inertia_of_a_box_and_a_plate() -> None:
@@ -102,8 +102,8 @@ def test_quadrature_integrates_the_degree_it_promises() -> None:
     xi, w = gauss_simplex(3, 3)
     for p, q, r in [(5, 0, 0), (2, 2, 1), (0, 1, 4), (1, 1, 3)]:
         exact = factorial(p) * factorial(q) * factorial(r) / factorial(p + q + r + 3)
-        found = (w * xi[:, 0] ** p * xi[:, 1] ** q * xi[:, 2] ** r).sum()
-        assert found == pytest.approx(exact, rel=1e-13)
+        result = (w * xi[:, 0] ** p * xi[:, 1] ** q * xi[:, 2] ** r).sum()
+        assert result == pytest.approx(exact, rel=1e-13)
     xi, w = gauss_box(2, 2)
     assert (w * xi[:, 0] ** 2 * xi[:, 1] ** 2).sum() == pytest.approx(4 / 9)
 

@@ -107,8 +107,8 @@ def test_second_order_tetrahedra_keep_their_node_order(tmp_path: Path) -> None:
         path = tmp_path / f"box.{suffix}"
         meshio.Mesh(nodes, [("tetra10", cells)]).write(path, file_format=form)
         mesh = read_mesh(path)
-        (found,) = mesh.cells_of("all", "solid")
-        assert np.array_equal(found, cells)
+        (result,) = mesh.cells_of("all", "solid")
+        assert np.array_equal(result, cells)
 
 
 INCLUDING = [

@@ -22,8 +22,8 @@ NAMES = ("k1", "k2", "k3")
 
 def chain() -> mf.UpdatingProblem:
     model = mf.chain(NAMES, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=NAMES)
-    at = model.modes(np.array([1.2, 0.8, 1.1]), 3)
-    data = mf.modal_data(at.frequency * [1.01, 0.98, 1.02], at.phi.T, model.sensors)
+    modes = model.modes(np.array([1.2, 0.8, 1.1]), 3)
+    data = mf.modal_data(modes.frequency * [1.01, 0.98, 1.02], modes.phi.T, model.sensors)
     groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     return mf.updating_problem(
         model, data, groups, dict.fromkeys(NAMES, (0.1, 9.0)), dict.fromkeys(NAMES, 1.0)
@@ -33,27 +33,27 @@ def chain() -> mf.UpdatingProblem:
 def test_shapes_leave_the_scale_of_all_stiffnesses() -> None:
     problem = chain()
     theta = np.array([1.3, 0.7, 2.0])
-    found = combinations(problem, theta, 1)
-    assert [one.share > NONE for one in found] == [True, True, False]
-    assert found[-1].direction == pytest.approx(np.ones(3) / np.sqrt(3), abs=1e-9)
-    said = summary("shapes", "shape", found, NAMES)
-    assert said.endswith("; k1, k2 and k3 can be scaled together: no shape changes")
-    assert said.startswith("shapes determine 2 of 3 combinations of parameters")
+    result = combinations(problem, theta, 1)
+    assert [combination.share > NONE for combination in result] == [True, True, False]
+    assert result[-1].direction == pytest.approx(np.ones(3) / np.sqrt(3), abs=1e-9)
+    text = summary("shapes", "shape", result, NAMES)
+    assert text.endswith("; k1, k2 and k3 can be scaled together: no shape changes")
+    assert text.startswith("shapes determine 2 of 3 combinations of parameters")
 
 
 def test_the_second_derivatives_tell_the_same_without_another_evaluation() -> None:
     problem = chain()
-    at = problem.evaluate(np.array([1.3, 0.7, 2.0]))
-    weights = optimal_weights(problem.properties, at.J)
+    evaluation = problem.evaluate(np.array([1.3, 0.7, 2.0]))
+    weights = optimal_weights(problem.properties, evaluation.J)
     with counted() as costs:
-        found = combinations_at(problem, at, weights=weights)
+        result = combinations_at(problem, evaluation, weights=weights)
     assert costs.eigenproblems == 0
-    expected = combinations(problem, at.theta, weights=weights)
-    for one, other in zip(found, expected, strict=True):
-        assert one.sensitivity == pytest.approx(other.sensitivity, rel=1e-7)
-        assert abs(one.direction @ other.direction) == pytest.approx(1, abs=1e-7)
-    shapes = combinations_at(problem, at, 1)
-    assert [one.share > NONE for one in shapes] == [True, True, False]
+    expected = combinations(problem, evaluation.theta, weights=weights)
+    for first, other in zip(result, expected, strict=True):
+        assert first.sensitivity == pytest.approx(other.sensitivity, rel=1e-7)
+        assert abs(first.direction @ other.direction) == pytest.approx(1, abs=1e-7)
+    shapes = combinations_at(problem, evaluation, 1)
+    assert [shape.share > NONE for shape in shapes] == [True, True, False]
 
 
 def test_weights_of_groups_move_what_is_determined_best() -> None:
@@ -75,8 +75,10 @@ def test_directions_not_determined_span_the_null_space(seed: int, p: int, d: int
     rng = np.random.default_rng(seed)
     N = np.linalg.qr(rng.normal(size=(p, d)))[0]
     G = rng.normal(size=(p + 2, p)) @ (np.eye(p) - N @ N.T)
-    found = decompose(G)
-    free = np.array([one.direction for one in found if one.share <= NONE]).T
+    result = decompose(G)
+    free = np.array(
+        [combination.direction for combination in result if combination.share <= NONE]
+    ).T
     assert free.shape == (p, d)
     basis = sparse_basis(free)
     assert basis.shape == (p, d)
@@ -90,23 +92,23 @@ def test_a_basis_is_made_of_what_can_be_said() -> None:
     mixed = np.linalg.qr(known)[0] @ np.linalg.qr(np.random.default_rng(1).normal(size=(3, 3)))[0]
     basis = sparse_basis(mixed)
     names = ("a", "b", "c", "d", "m")
-    said = [direction_in_words(v, names) for v in basis.T]
-    assert said[:2] == ["m can be changed alone", "a, b, c and d can be scaled together"]
-    assert len(said) == 3
+    messages = [direction_in_words(v, names) for v in basis.T]
+    assert messages[:2] == ["m can be changed alone", "a, b, c and d can be scaled together"]
+    assert len(messages) == 3
 
 
 def test_long_lists_are_cut() -> None:
     names = tuple(f"k{i}" for i in range(6))
-    said = summary("data", "residual", decompose(np.eye(6)[:1]), names)
-    assert said == (
+    text = summary("data", "residual", decompose(np.eye(6)[:1]), names)
+    assert text == (
         "data determine 1 of 6 combinations of parameters; k1 can be changed alone; "
         "k2 can be changed alone; k3 can be changed alone; and 2 more: no residual changes"
     )
 
 
 def test_what_is_hardly_determined_is_said() -> None:
-    said = summary("data", "shape", decompose(np.diag([1.0, 1e-3])), ("a", "b"))
-    assert said == (
+    text = summary("data", "shape", decompose(np.diag([1.0, 1e-3])), ("a", "b"))
+    assert text == (
         "data determine 2 of 2 combinations of parameters, "
         "1 of them hardly (below 1 % of the best): +1.00 b"
     )
@@ -118,7 +120,7 @@ def test_the_collinearity_index_of_known_angles() -> None:
     assert cosines(gram)[0, 1] == pytest.approx(c)
     assert index(gram) == pytest.approx(1 / np.sqrt(1 - c))
     assert index(gram, (0, 2)) == 1.0
-    assert [one[:2] for one in pairs(gram)] == [(0, 1)]
+    assert [pair[:2] for pair in pairs(gram)] == [(0, 1)]
     parallel = np.ones((2, 2))
     assert index(parallel) == np.inf
     assert cosines(np.diag([1.0, 0.0])).tolist() == [[1.0, 0.0], [0.0, 0.0]]

@@ -61,7 +61,7 @@ def problem_of(
     springs = [spring(n, i) for i in range(n)] if springs is None else springs
     names = [f"k{i + 1}" for i in range(len(springs))]
     unit = 1.0 if form == "N/m" else K0
-    K = {name: unit * one for name, one in zip(names, springs, strict=True)}
+    K = {name: unit * spring for name, spring in zip(names, springs, strict=True)}
     if form == "alpha":
         K = {"base": sum(K.values(), np.zeros((n, n))), **K}
     M = {"base": np.diag([2.0] * n if masses is None else masses)}
@@ -70,9 +70,9 @@ def problem_of(
     rng = np.random.default_rng(5)
     true = in_form(form, rng.uniform(0.8, 1.2, len(names)))
     count = modes or sum(np.diag(M["base"]) > 0)
-    at = model.modes(true, int(count))
-    f = at.frequency * (1 + noise * rng.normal(size=at.frequency.shape))
-    phi = at.phi.T * (1 + noise * rng.normal(size=at.phi.T.shape))
+    position = model.modes(true, int(count))
+    f = position.frequency * (1 + noise * rng.normal(size=position.frequency.shape))
+    phi = position.phi.T * (1 + noise * rng.normal(size=position.phi.T.shape))
     data = mf.modal_data(f, phi, model.sensors)
     ends = in_form(form, np.array([lower, upper]))
     bounds = dict.fromkeys(names, (float(ends[0]), float(ends[1])))
@@ -99,10 +99,10 @@ def by_differences(problem: mf.UpdatingProblem, theta: Floats, group: int) -> Fl
 def test_the_unit_of_a_spring_is_what_it_is(form: str, k: Floats) -> None:
     problem = problem_of(form)
     theta = in_form(form, k)
-    found = scale_at(problem, theta)
+    result = scale_at(problem, theta)
     expected = K0 * k if form == "N/m" else k
-    assert found.unit == pytest.approx(expected, rel=1e-9)
-    (scaling,) = found.scalings
+    assert result.unit == pytest.approx(expected, rel=1e-9)
+    (scaling,) = result.scalings
     assert scaling.change == pytest.approx(expected, rel=1e-7)
     assert scaling.of == "stiffness matrix"
 
@@ -117,8 +117,8 @@ def test_the_unit_is_that_of_the_generalised_eigenproblem_for_sparse_matrices_to
     K["base"] = scipy.sparse.csr_array(K0 * extra)
     model = mf.matrices(names, K, {"base": scipy.sparse.eye_array(n).tocsr()}, {"top": n - 1})
     assert model.is_sparse
-    at = model.modes(np.ones(3), 2)
-    data = mf.modal_data(at.frequency, at.phi.T, model.sensors)
+    modes = model.modes(np.ones(3), 2)
+    data = mf.modal_data(modes.frequency, modes.phi.T, model.sensors)
     groups = [mf.Group("frequencies", frequency="all")]
     bounds = dict.fromkeys(names, (0.01, 100.0))
     problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(names, 1.0))
@@ -146,8 +146,8 @@ def test_the_unit_of_a_mass_is_what_its_degree_of_freedom_weighs() -> None:
         stiffness_parameters=["k", "k"],
         mass_parameters=["m", None],
     )
-    at = model.modes(np.ones(2), 2)
-    data = mf.modal_data(at.frequency, at.phi.T, model.sensors)
+    modes = model.modes(np.ones(2), 2)
+    data = mf.modal_data(modes.frequency, modes.phi.T, model.sensors)
     wide = dict.fromkeys(names, (0.1, 50.0))
     problem = mf.updating_problem(model, data, GROUPS, wide, dict.fromkeys(names, 1.0))
     assert scale_at(problem, np.array([1.0, 2.0])).unit == pytest.approx([1.0, (2 * 2 + 3) / 2])
@@ -159,9 +159,9 @@ def test_a_weak_member_beside_a_strong_one_is_measured_by_its_range() -> None:
     weak = np.diag([0.0, 0.0, 1e-4])
     for form in FORMS:
         problem = problem_of(form, 3, springs=[*strong, weak])
-        found = combinations(problem, problem.start, weights=np.ones(2))
-        assert 1e-5 < found[-1].share < 1e-2, "hardly determined"
-        assert abs(found[-1].direction[3]) > 0.9
+        result = combinations(problem, problem.start, weights=np.ones(2))
+        assert 1e-5 < result[-1].share < 1e-2, "hardly determined"
+        assert abs(result[-1].direction[3]) > 0.9
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -173,20 +173,22 @@ def test_shapes_leave_the_scale_of_the_stiffness_in_every_form(
     problem = problem_of(form, upper=upper)
     theta = in_form(form, k)
     scale = scale_at(problem, theta)
-    found = combinations(problem, theta, 1, scale=scale)
-    assert [one.share > 1e-3 for one in found] == [True, True, True, False]
+    result = combinations(problem, theta, 1, scale=scale)
+    assert [combination.share > 1e-3 for combination in result] == [True, True, True, False]
     jacobian = by_differences(problem, theta, 1)
     sigma = np.linalg.svd(jacobian, compute_uv=False)
-    assert [one.sensitivity for one in found] == pytest.approx(sigma, abs=1e-6 * sigma[0])
-    (said,) = free_in_words(found, problem.model.parameters, scale)
+    assert [combination.sensitivity for combination in result] == pytest.approx(
+        sigma, abs=1e-6 * sigma[0]
+    )
+    (message,) = free_in_words(result, problem.model.parameters, scale)
     if form != "alpha":
-        assert said == "k1, k2, k3 and k4 can be scaled together"
+        assert message == "k1, k2, k3 and k4 can be scaled together"
     else:
         equal = "equal amounts" if (k == 1).all() else r"amounts in the ratio ([-\d. :e]+)"
         match = re.fullmatch(
             f"k1, k2, k3 and k4 can be changed by {equal}, "
             "which scales the stiffness matrix as a whole",
-            said,
+            message,
         )
         assert match
         if match.groups():
@@ -194,16 +196,16 @@ def test_shapes_leave_the_scale_of_the_stiffness_in_every_form(
             assert ratio == pytest.approx(k / k.max(), rel=1e-2)
     # What is claimed holds far away, in both directions.
     for factor in (0.7, 1.5):
-        there = in_form(form, factor * k)
-        assert residuals(problem, there, 1) == pytest.approx(residuals(problem, theta, 1), abs=1e-9)
+        other = in_form(form, factor * k)
+        assert residuals(problem, other, 1) == pytest.approx(residuals(problem, theta, 1), abs=1e-9)
 
 
 @pytest.mark.parametrize("form", FORMS)
 def test_frequencies_and_all_data_determine_all_in_every_form(form: str) -> None:
     problem = problem_of(form)
-    said = determined(problem)
-    assert said[0] == "frequencies determine 4 of 4 combinations of parameters"
-    assert said[2] == "all data together determine 4 of 4 combinations of parameters"
+    text = determined(problem)
+    assert text[0] == "frequencies determine 4 of 4 combinations of parameters"
+    assert text[2] == "all data together determine 4 of 4 combinations of parameters"
 
 
 @pytest.mark.parametrize("form", FORMS)
@@ -213,18 +215,18 @@ def test_two_springs_in_series_are_said_as_a_pair(form: str) -> None:
     theta = in_form(form, np.array([2.0, 0.8, 1.0, 1.1]))
     scale = scale_at(problem, theta)
     for group in (0, 1, None):
-        found = combinations(problem, theta, group, scale=scale)
-        said = free_in_words(found, problem.model.parameters, scale)
-        (pair,) = [text for text in said if text.startswith("k1 and k2 ")]
+        result = combinations(problem, theta, group, scale=scale)
+        message = free_in_words(result, problem.model.parameters, scale)
+        (pair,) = [text for text in message if text.startswith("k1 and k2 ")]
         ratio = [float(x) for x in pair.rpartition("ratio ")[2].split(" : ")]
         assert ("powers" in pair) == (form != "alpha")
         # d(1/k1 + 1/k2) = 0: amounts are as k1**2 : -k2**2, powers as k1 : -k2.
         expected = -(0.8**2) / 2.0**2 if form == "alpha" else -0.8 / 2.0
         assert ratio[1] / ratio[0] == pytest.approx(expected, rel=1e-2)
     for k1 in (1.6, 2.5):
-        there = in_form(form, np.array([k1, 1 / (1 / 2.0 + 1 / 0.8 - 1 / k1), 1.0, 1.1]))
+        other = in_form(form, np.array([k1, 1 / (1 / 2.0 + 1 / 0.8 - 1 / k1), 1.0, 1.1]))
         for group in (0, 1):
-            assert residuals(problem, there, group) == pytest.approx(
+            assert residuals(problem, other, group) == pytest.approx(
                 residuals(problem, theta, group), abs=1e-9
             )
 
@@ -236,20 +238,20 @@ def test_null_directions_of_few_data_hold_in_both_directions(form: str) -> None:
     problem = problem_of(form, n, sensors=range(1, n, 2), modes=4, lower=0.5, upper=2.0)
     theta = in_form(form, np.random.default_rng(2).uniform(0.8, 1.3, n))
     scale = scale_at(problem, theta)
-    found = combinations(problem, theta, 0, scale=scale)
-    free = np.array([one.direction for one in found if one.share <= 1e-7])
+    result = combinations(problem, theta, 0, scale=scale)
+    free = np.array([combination.direction for combination in result if combination.share <= 1e-7])
     assert len(free) == 8
     sigma = np.linalg.svd(by_differences(problem, theta, 0), compute_uv=False)
-    assert [one.sensitivity for one in found[:4]] == pytest.approx(sigma, rel=1e-5)
+    assert [combination.sensitivity for combination in result[:4]] == pytest.approx(sigma, rel=1e-5)
     here = residuals(problem, theta, 0)
     for v in free:
         for h in (1e-3, -1e-3):
-            there = residuals(problem, theta + h * scale.unit * v, 0)
-            assert np.abs(there - here).max() < 10 * h**2, "to first order"
-    said = summary("frequencies", "frequency", found, problem.model.parameters, scale)
-    assert said.startswith("frequencies determine 4 of 12 combinations of parameters; ")
-    assert said.endswith("; and 5 more: no frequency changes")
-    assert "alone" not in said
+            other = residuals(problem, theta + h * scale.unit * v, 0)
+            assert np.abs(other - here).max() < 10 * h**2, "to first order"
+    text = summary("frequencies", "frequency", result, problem.model.parameters, scale)
+    assert text.startswith("frequencies determine 4 of 12 combinations of parameters; ")
+    assert text.endswith("; and 5 more: no frequency changes")
+    assert "alone" not in text
 
 
 def idle_problem() -> mf.UpdatingProblem:
@@ -263,21 +265,23 @@ def idle_problem() -> mf.UpdatingProblem:
 
 def test_a_parameter_without_effect_is_said_once_and_is_like_no_other() -> None:
     problem = idle_problem()
-    at = problem.evaluate(problem.start)
+    evaluation = problem.evaluate(problem.start)
     scale = scale_at(problem, problem.start)
-    assert without_effect(problem, at, scale) == [3]
+    assert without_effect(problem, evaluation, scale) == [3]
     for k4 in (0.3, 4.0):
-        there = np.array([1.0, 1.0, 1.0, k4])
+        other = np.array([1.0, 1.0, 1.0, k4])
         for group in (0, 1):
-            assert (residuals(problem, there, group) == residuals(problem, at.theta, group)).all()
-    said = determined(problem)
-    assert said == (
+            assert (
+                residuals(problem, other, group) == residuals(problem, evaluation.theta, group)
+            ).all()
+    text = determined(problem)
+    assert text == (
         "frequencies determine 3 of 3 combinations of parameters that have an effect",
         "shapes determine 2 of 3 combinations of parameters that have an effect; "
         "k1, k2 and k3 can be scaled together: no shape changes",
         "all data together determine 3 of 3 combinations of parameters that have an effect",
     )
-    H = at.H.sum(axis=0) / 2
+    H = evaluation.H.sum(axis=0) / 2
     noise = 1e-30 * np.ones((4, 4))
     assert alike_in_words(H + noise, problem.model.parameters, [3]) == []
 
@@ -286,8 +290,8 @@ def test_many_parameters_alike_are_said_at_once() -> None:
     names = tuple("abcdef")
     gram = np.ones((6, 6))
     gram[5, :5] = gram[:5, 5] = 0.0
-    (said,) = alike_in_words(gram, names)
-    assert said.startswith("a, b, c, d and e all act nearly alike on the residuals")
+    (message,) = alike_in_words(gram, names)
+    assert message.startswith("a, b, c, d and e all act nearly alike on the residuals")
     assert len(alike_in_words(gram[:4, :4][1:, 1:], names)) == 3
 
 
@@ -311,8 +315,8 @@ def test_a_derivative_that_vanishes_for_symmetry_is_no_reason_to_refuse() -> Non
     A = np.array([[2.0, -1.0], [-1.0, 2.0]])
     tilt = np.diag([1.0, -1.0])
     model = mf.matrices(["x"], {"base": A, "x": tilt}, {"base": np.eye(2)}, {"a": 0, "b": 1})
-    at = model.modes(np.zeros(1), 2)
-    data = mf.modal_data(at.frequency, at.phi.T, model.sensors)
+    modes = model.modes(np.zeros(1), 2)
+    data = mf.modal_data(modes.frequency, modes.phi.T, model.sensors)
     groups = [mf.Group("frequencies", frequency="all")]
     problem = mf.updating_problem(model, data, groups, {"x": (-0.5, 0.5)}, {"x": 0.0})
     assert np.abs(problem.evaluate(problem.start).H).max() < 1e-20
@@ -322,9 +326,12 @@ def test_a_derivative_that_vanishes_for_symmetry_is_no_reason_to_refuse() -> Non
 def test_rounding_determines_nothing() -> None:
     springs = [sum((spring(3, i) for i in range(3)), np.zeros((3, 3)))]
     problem = problem_of("k", 3, springs=springs)
-    at = problem.evaluate(problem.start)
-    for found in (combinations(problem, problem.start, 1), combinations_at(problem, at, 1)):
-        assert [one.share for one in found] == [0.0]
+    evaluation = problem.evaluate(problem.start)
+    for result in (
+        combinations(problem, problem.start, 1),
+        combinations_at(problem, evaluation, 1),
+    ):
+        assert [combination.share for combination in result] == [0.0]
 
 
 def test_a_base_that_stays_leaves_no_scaling_of_the_stiffness() -> None:
@@ -342,13 +349,13 @@ def test_a_base_that_stays_leaves_no_scaling_of_the_stiffness() -> None:
         stiffness_parameters=["k"] * 2,
         mass_parameters=["m"] * 2,
     )
-    found = whole_scalings(both, np.array([2.0, 3.0]), np.ones(2))
-    assert [one.of for one in found] == [
+    result = whole_scalings(both, np.array([2.0, 3.0]), np.ones(2))
+    assert [combination.of for combination in result] == [
         "stiffness matrix",
         "mass matrix",
         "stiffness matrix and the mass matrix",
     ]
-    assert found[2].change == pytest.approx([2.0, 3.0])
+    assert result[2].change == pytest.approx([2.0, 3.0])
 
 
 def test_without_matrices_changes_are_over_the_range() -> None:
@@ -368,6 +375,6 @@ def test_without_matrices_changes_are_over_the_range() -> None:
     scale = scale_at(opaque, opaque.start)
     assert scale.unit == pytest.approx(problem.upper - problem.lower)
     assert scale.scalings == ()
-    found = combinations(opaque, opaque.start, 1)
-    said = free_in_words(found, problem.model.parameters, scale)
-    assert said == ["k1, k2, k3 and k4 can be changed by equal amounts"]
+    result = combinations(opaque, opaque.start, 1)
+    text = free_in_words(result, problem.model.parameters, scale)
+    assert text == ["k1, k2, k3 and k4 can be changed by equal amounts"]

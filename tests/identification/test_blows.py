@@ -73,7 +73,7 @@ def test_records_in_universal_files_are_grouped_into_blows(tmp_path: Path) -> No
     sets = []
     for b in range(3):
         time, force, y = _records(2, b)
-        for node, (kind, values) in enumerate([(13, force), *((12, one) for one in y)]):
+        for node, (kind, values) in enumerate([(13, force), *((12, row) for row in y)]):
             sets.append(
                 pyuff.prepare_58(
                     func_type=1,

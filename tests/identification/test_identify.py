@@ -19,10 +19,10 @@ def _scores(level: float, known: bool, force: float, runs: int) -> Floats:
     for seed in range(runs):
         measured = blows(H, level, np.random.default_rng(seed), force=force)
         data = frequency_responses(F, measured if known else measured.mean(axis=0))
-        found = identify(data, (1, 30))
-        assert [round(mode.frequency, 1) for mode in found.modes] == [4.6, 12.8, 17.9]
+        result = identify(data, (1, 30))
+        assert [round(mode.frequency, 1) for mode in result.modes] == [4.6, 12.8, 17.9]
         row = []
-        for r, mode in enumerate(found.modes):
+        for r, mode in enumerate(result.modes):
             true = phi[r] / np.linalg.norm(phi[r])
             true = true * np.sign(true @ mode.shape.shape)
             row.append((mode.frequency - THREE_STORY[r]) / mode.frequency_std)
@@ -58,11 +58,11 @@ def test_close_local_heavily_damped_and_edge_modes_are_found(high: float) -> Non
     f = np.arange(0.05, 30.05, 0.05)
     H = accelerance(f, f0, zeta, phi, [0, 2, 9])
     data = frequency_responses(f, blows(H, 0.05, np.random.default_rng(0)))
-    found = identify(data, (2, high))
-    assert len(found.modes) == 8
-    assert [mode.frequency for mode in found.modes] == pytest.approx(f0, rel=0.005)
-    assert found.modes[5].damping == pytest.approx(0.08, rel=0.05)
-    assert found.converged
+    result = identify(data, (2, high))
+    assert len(result.modes) == 8
+    assert [mode.frequency for mode in result.modes] == pytest.approx(f0, rel=0.005)
+    assert result.modes[5].damping == pytest.approx(0.08, rel=0.05)
+    assert result.converged
 
 
 def test_coherence_weights_and_tells_the_variance() -> None:
@@ -73,9 +73,9 @@ def test_coherence_weights_and_tells_the_variance() -> None:
     deviation = 0.03**2 * np.mean(np.abs(H) ** 2, axis=-1, keepdims=True)
     coherence = np.abs(H) ** 2 / (np.abs(H) ** 2 + deviation)
     data = frequency_responses(F, measured.mean(axis=0), coherence=coherence, blows=10)
-    found = identify(data, (1, 30))
-    assert len(found.modes) == 3
-    assert found.residuals.chi2 == pytest.approx(1, abs=0.15)
+    result = identify(data, (1, 30))
+    assert len(result.modes) == 3
+    assert result.residuals.chi2 == pytest.approx(1, abs=0.15)
 
 
 def test_a_dead_channel_and_gaps_are_left_out() -> None:
@@ -83,10 +83,10 @@ def test_a_dead_channel_and_gaps_are_left_out() -> None:
     H = accelerance(F, THREE_STORY, THREE_STORY_DAMPING, phi, [1, 2])
     measured = blows(H, 0.01, np.random.default_rng(0)).mean(axis=0)
     measured[:, 1] = np.nan
-    found = identify(frequency_responses(F, measured), (1, 30))
-    assert len(found.modes) == 3
-    assert np.isnan(found.modes[0].shape_std[1])
-    assert np.isfinite(found.modes[0].shape_std[[0, 2]]).all()
+    result = identify(frequency_responses(F, measured), (1, 30))
+    assert len(result.modes) == 3
+    assert np.isnan(result.modes[0].shape_std[1])
+    assert np.isfinite(result.modes[0].shape_std[[0, 2]]).all()
 
 
 def test_a_mode_that_drifts_from_blow_to_blow_stays_one_mode() -> None:
@@ -96,16 +96,16 @@ def test_a_mode_that_drifts_from_blow_to_blow_stays_one_mode() -> None:
         [accelerance(F, d * THREE_STORY, THREE_STORY_DAMPING, phi, [1, 2]) for d in drift], axis=0
     )
     measured = blows(H, 0.002, np.random.default_rng(0)).mean(axis=0)
-    found = identify(frequency_responses(F, measured), (1, 30))
-    assert [mode.frequency for mode in found.modes] == pytest.approx(THREE_STORY, rel=2e-4)
-    assert all(mode.shape.collinearity > 0.99 for mode in found.modes)
+    result = identify(frequency_responses(F, measured), (1, 30))
+    assert [mode.frequency for mode in result.modes] == pytest.approx(THREE_STORY, rel=2e-4)
+    assert all(mode.shape.collinearity > 0.99 for mode in result.modes)
 
 
 def test_noise_alone_has_no_modes() -> None:
     rng = np.random.default_rng(0)
     H = rng.standard_normal((1, 3, 300)) + 1j * rng.standard_normal((1, 3, 300))
-    found = identify(frequency_responses(np.arange(1, 301.0), H))
-    assert found.modes == ()
+    result = identify(frequency_responses(np.arange(1, 301.0), H))
+    assert result.modes == ()
 
 
 def test_too_few_lines_are_an_error() -> None:

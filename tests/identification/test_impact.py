@@ -19,26 +19,26 @@ def _records(blows: int) -> tuple[Floats, Floats]:
     rng = np.random.default_rng(0)
     x = np.zeros((blows, SAMPLES))
     x[:, 10:16] = np.sin(np.pi * np.arange(1, 7) / 7) * rng.uniform(5, 9, (blows, 1))
-    y = np.array([np.convolve(one, h)[:SAMPLES] for one in x])[:, None]
+    y = np.array([np.convolve(row, h)[:SAMPLES] for row in x])[:, None]
     return x, y
 
 
 @pytest.mark.parametrize("estimator", ["H1", "H2", "Hv"])
 def test_all_estimators_are_the_transfer_function_without_noise(estimator: Estimator) -> None:
     x, y = _records(3)
-    found = impact_responses(x, y, RATE, "receptance", Windows(estimator, exponential=np.inf))
-    s = 2j * np.pi * found.data.frequency
+    result = impact_responses(x, y, RATE, "receptance", Windows(estimator, exponential=np.inf))
+    s = 2j * np.pi * result.data.frequency
     omega, zeta = 2 * np.pi * 10.0, 0.02
     exact = 1 / (s**2 + 2 * zeta * omega * s + omega**2)
-    band = (found.data.frequency > 5) & (found.data.frequency < 15)
-    assert np.abs(found.data.H[0, 0] - exact)[band].max() < 0.01 * np.abs(exact).max()
-    assert found.coherence[0, band] == pytest.approx(1)
+    band = (result.data.frequency > 5) & (result.data.frequency < 15)
+    assert np.abs(result.data.H[0, 0] - exact)[band].max() < 0.01 * np.abs(exact).max()
+    assert result.coherence[0, band] == pytest.approx(1)
 
 
 def test_the_damping_of_the_exponential_window_is_taken_off() -> None:
     x, y = _records(3)
-    found = impact_responses(x, y, RATE, "receptance", Windows(exponential=1.0))
-    modes = identify(found.data, (5, 15)).modes
+    result = impact_responses(x, y, RATE, "receptance", Windows(exponential=1.0))
+    modes = identify(result.data, (5, 15)).modes
     assert len(modes) == 1
     assert modes[0].frequency == pytest.approx(10.0, rel=1e-3)
     assert modes[0].damping == pytest.approx(0.02, rel=0.01)
@@ -48,10 +48,10 @@ def test_double_hits_and_overloads_are_left_out() -> None:
     x, y = _records(4)
     x[1, 60:64] = 3.0
     y[2] = np.clip(y[2], -0.5 * y[2].max(), 0.5 * y[2].max())
-    found = impact_responses(x, y, RATE, "receptance")
-    assert [bool(why) for why in found.left_out] == [False, True, True, False]
-    assert "second hit" in found.left_out[1]
-    assert "overloaded" in found.left_out[2]
+    result = impact_responses(x, y, RATE, "receptance")
+    assert [bool(why) for why in result.left_out] == [False, True, True, False]
+    assert "second hit" in result.left_out[1]
+    assert "overloaded" in result.left_out[2]
 
 
 def test_filters_that_ring_and_coarse_digits_are_no_faults() -> None:
@@ -75,7 +75,7 @@ def test_the_variance_is_that_of_the_mean_also_where_hard_blows_are_noisy() -> N
     y = np.zeros((300, 4, 1, 64))
     y[..., 0] = size[:, None]
     y += 0.01 * size[:, None, None] * rng.standard_normal(y.shape)
-    parts = [impact_responses(x, one, 64.0, windows=Windows(exponential=np.inf)) for one in y]
+    parts = [impact_responses(x, row, 64.0, windows=Windows(exponential=np.inf)) for row in y]
     known = [part.data.variance for part in parts if part.data.variance is not None]
     given = np.mean([np.mean(variance[0, 0, 1:-1]) for variance in known])
     true = np.mean([np.mean(np.abs(part.data.H[0, 0, 1:-1] - 1) ** 2) for part in parts])

@@ -104,9 +104,9 @@ def test_exact_data_give_exact_modes() -> None:
     task, omega, size = problem(data, np.full(data.H.shape, 1e-18), 1)
     fit = maximise(task, *_somewhere(omega)[:2])
     assert fit.converged
-    found = fit.model.lam * omega / (2 * np.pi)
-    assert np.abs(found) == pytest.approx(THREE_STORY, rel=1e-8)
-    assert -found.real / np.abs(found) == pytest.approx(THREE_STORY_DAMPING, rel=1e-7)
+    result = fit.model.lam * omega / (2 * np.pi)
+    assert np.abs(result) == pytest.approx(THREE_STORY, rel=1e-8)
+    assert -result.real / np.abs(result) == pytest.approx(THREE_STORY_DAMPING, rel=1e-7)
     assert np.abs(synthesise(task, fit.model) * size - data.H).max() < 1e-8 * np.abs(data.H).max()
 
 
@@ -130,10 +130,10 @@ def test_lscf_finds_the_poles_of_exact_data_at_the_first_order_that_holds_them(
     rate = 2 * np.pi * ARC / (omega[-1] - omega[0])
     z = generalised_frequency(omega, omega[0], rate)
     sums = moments(H, np.ones(H.shape[1:]), z, 16)
-    found = poles(sums, [16], omega[0], rate)[0]
+    result = poles(sums, [16], omega[0], rate)[0]
     for f0, zeta in zip(THREE_STORY, THREE_STORY_DAMPING, strict=True):
         true = 2 * np.pi * f0 * (-zeta + 1j * np.sqrt(1 - zeta**2))
-        assert np.abs(found.value - true).min() < 1e-4 * abs(true)
+        assert np.abs(result.value - true).min() < 1e-4 * abs(true)
 
 
 def test_correlated_lines_have_the_gram_matrix_of_their_covariance() -> None:
@@ -143,6 +143,6 @@ def test_correlated_lines_have_the_gram_matrix_of_their_covariance() -> None:
     covariance = la.toeplitz(rho, rho.conj())
     a = np.sqrt(task.weight[1, 2]) * E
     expected = (a.conj() @ covariance @ a.T).real
-    found = correlated_gram(task, E, rho)[1, 2]
+    result = correlated_gram(task, E, rho)[1, 2]
     size = np.sqrt(np.outer(expected.diagonal(), expected.diagonal()))
-    assert (np.abs(found - expected) < 1e-10 * size).all()
+    assert (np.abs(result - expected) < 1e-10 * size).all()

@@ -14,8 +14,8 @@ from modefront._typing import Floats
 from modefront.linalg import products
 
 
-def close(found: Floats, expected: Floats) -> None:
-    np.testing.assert_allclose(found, expected, rtol=0, atol=1e-10)
+def close(result: Floats, expected: Floats) -> None:
+    np.testing.assert_allclose(result, expected, rtol=0, atol=1e-10)
 
 
 @given(st.integers(1, 3000), st.integers(1, 40), st.integers(1, 40))
@@ -53,15 +53,15 @@ def test_sharing_among_threads_changes_no_digit(
     X, Y = rng.standard_normal((5001, columns)), rng.standard_normal((5001, 25))
     C = rng.standard_normal((columns, 40))
 
-    def found() -> list[Floats]:
+    def products_of() -> list[Floats]:
         every = products.combine_all([X, Y], np.vstack([C, C[:1].repeat(25, axis=0)]))
         return [products.gram(X, Y), products.combine(X, C), products.times(A, X), every]
 
-    whole = found()
+    whole = products_of()
     monkeypatch.setattr(products, "SHARED", 0)
     for threads in (1, 2, 3):
         with ThreadPoolExecutor(threads) as pool:
             monkeypatch.setattr(products, "_pool", lambda pool=pool, n=threads: (pool, n))
-            for expected, shared in zip(whole, found(), strict=True):
+            for expected, shared in zip(whole, products_of(), strict=True):
                 assert np.array_equal(expected, shared)
     close(whole[2], A @ X)

@@ -14,13 +14,13 @@ from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse
 def pair(size: int, terms: int, parameters: int, seed: int) -> tuple[SparseAffine, DenseAffine]:
     """Return the same random matrix in both forms; some terms may be zero."""
     rng = np.random.default_rng(seed)
-    found = []
+    result = []
     for _ in range(terms):
         half = scipy.sparse.random_array((size, size), density=2 / size**2, rng=rng)
-        found.append(scipy.sparse.coo_array(half + half.T))
+        result.append(scipy.sparse.coo_array(half + half.T))
     coefficients = Monomials(rng.integers(-1, 4, (terms, parameters)).astype(float))
-    full = np.array([A.toarray() for A in found]).reshape(terms, size, size)
-    return sparse_affine(found, coefficients, size), DenseAffine(full, coefficients)
+    full = np.array([A.toarray() for A in result]).reshape(terms, size, size)
+    return sparse_affine(result, coefficients, size), DenseAffine(full, coefficients)
 
 
 sizes = st.tuples(st.integers(2, 12), st.integers(1, 5), st.integers(1, 4), st.integers(0, 10**6))
@@ -40,7 +40,7 @@ def test_same_as_dense(case: tuple[int, int, int, int]) -> None:
     rows = sparse.derivative_rows(theta, V).toarray().reshape(3, case[2], case[0])
     assert rows == pytest.approx(expected.transpose(1, 2, 0), abs=1e-12)
     thetas = rng.uniform(0.5, 2.0, (3, case[2]))
-    each = [dense.at(at) @ v for at, v in zip(thetas, V.T, strict=True)]
+    each = [dense.at(position) @ v for position, v in zip(thetas, V.T, strict=True)]
     assert sparse.each(thetas, V) == pytest.approx(np.transpose(each), abs=1e-12)
     projected = np.concatenate([V[:, :2].T, V[:, 2:].T]) @ (dense.terms @ V)
     assert sparse.project([V[:, :2], V[:, 2:]], V) == pytest.approx(projected, abs=1e-12)
@@ -50,9 +50,9 @@ def test_same_as_dense(case: tuple[int, int, int, int]) -> None:
 def test_terms_that_touch_scattered_rows(stride: int) -> None:
     """Rows next to each other are a range, others are copied, or filled up where they are near."""
     size, rng = 4000, np.random.default_rng(stride)
-    there = np.arange(0, size - 1, stride)
-    values = np.concatenate([rng.standard_normal((2, there.size)).ravel(), np.ones(there.size)])
-    row, column = np.tile(there, 3), np.concatenate([there, there + 1, there])
+    other = np.arange(0, size - 1, stride)
+    values = np.concatenate([rng.standard_normal((2, other.size)).ravel(), np.ones(other.size)])
+    row, column = np.tile(other, 3), np.concatenate([other, other + 1, other])
     half = scipy.sparse.coo_array((values, (row, column)), shape=(size, size))
     A = sparse_affine([scipy.sparse.coo_array(half + half.T)], Monomials(np.eye(1)), size)
     X, theta = rng.standard_normal((size, 3)), np.array([0.7])
@@ -67,13 +67,13 @@ def test_derivatives_against_complex_step(case: tuple[int, int, int, int]) -> No
     sparse, _ = pair(*case)
     rng = np.random.default_rng(case[3])
     theta, V = rng.uniform(0.5, 2.0, case[2]), rng.standard_normal((case[0], 2))
-    found = sparse.derivatives_times(theta, V)
+    result = sparse.derivatives_times(theta, V)
     for i in range(case[2]):
         step = theta + 1e-30j * np.eye(case[2])[i]
         values = sparse.terms @ np.prod(step**sparse.coefficients.exponents, axis=1)
         parts = values.imag / 1e-30, sparse.indices, sparse.indptr
         slope = scipy.sparse.csr_array(parts, shape=(case[0], case[0]))
-        assert found[:, :, i] == pytest.approx(slope @ V, abs=1e-10)
+        assert result[:, :, i] == pytest.approx(slope @ V, abs=1e-10)
 
 
 def test_pattern_is_the_union_and_does_not_depend_on_theta() -> None:

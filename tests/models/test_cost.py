@@ -17,9 +17,9 @@ def chain(size: int, members: int) -> MatrixModel:
     """Return a chain of springs of members one after the other."""
     ends = np.arange(size)
     terms = {}
-    for j, own in enumerate(np.array_split(ends, members)):
-        B = scipy.sparse.csr_array((np.ones(own.size), (own, own)), shape=(size, size))
-        below = own[own > 0]
+    for j, chosen in enumerate(np.array_split(ends, members)):
+        B = scipy.sparse.csr_array((np.ones(chosen.size), (chosen, chosen)), shape=(size, size))
+        below = chosen[chosen > 0]
         B -= scipy.sparse.csr_array((np.ones(below.size), (below, below - 1)), shape=(size, size))
         terms[f"k{j + 1}"] = size**2 * (B.T @ B)
     mass = {"base": scipy.sparse.eye_array(size)}
@@ -75,7 +75,7 @@ def test_a_basis_of_a_dense_model_has_its_modes() -> None:
     reduced = problem(model, mf.Reduction(1e-8)).model
     assert isinstance(reduced, ReducedModel)
     theta = np.array([1.3, 0.7, 1.1])
-    one, other = model.modes(theta, 3), reduced.modes(theta, 3)
-    np.testing.assert_allclose(other.lam, one.lam, rtol=1e-3)
-    assert (other.lam >= one.lam * (1 - 1e-9)).all(), "of Rayleigh and Ritz"
+    first, other = model.modes(theta, 3), reduced.modes(theta, 3)
+    np.testing.assert_allclose(other.lam, first.lam, rtol=1e-3)
+    assert (other.lam >= first.lam * (1 - 1e-9)).all(), "of Rayleigh and Ritz"
     assert model.sparse().sparse().is_sparse

@@ -113,9 +113,9 @@ def plate(divisions: int) -> tuple[MatrixModel, Callable[[NDArray[Any]], Any]]:
     def term(of: str, exponent: float) -> Any:
         """Return the term of the model with this power of the thickness."""
         matrix = getattr(model, of)
-        at = {x: matrix.at(np.array([x])) for x in (1.0, 2.0)}
-        cubic = (at[2.0] - 2 * at[1.0]) / 6
-        return cubic if exponent == 3 else at[1.0] - cubic
+        theta = {x: matrix.at(np.array([x])) for x in (1.0, 2.0)}
+        cubic = (theta[2.0] - 2 * theta[1.0]) / 6
+        return cubic if exponent == 3 else theta[1.0] - cubic
 
     terms = {(of, e): term(of, e) for of in ("stiffness", "mass") for e in (1, 3)}
 
@@ -163,11 +163,11 @@ def test_a_study_of_a_function_finds_the_front_of_the_chain() -> None:
         mf.updating_problem(model, data, groups, parameters=PARAMETERS)
         for model in (CHAIN, function)
     ]
-    chain, own = (mf.solve(x, points=5, search=few, predictions=[peak]) for x in results)
-    assert own["label"].values.tolist() == chain["label"].values.tolist()
+    chain, chosen = (mf.solve(x, points=5, search=few, predictions=[peak]) for x in results)
+    assert chosen["label"].values.tolist() == chain["label"].values.tolist()
     for name in ("objective", "theta", "frequency", "frf_peak", "combination_unit"):
-        assert own[name].values == pytest.approx(chain[name].values, rel=1e-6, abs=1e-9), name
-    optimal, known = own.optimal, chain.optimal
+        assert chosen[name].values == pytest.approx(chain[name].values, rel=1e-6, abs=1e-9), name
+    optimal, known = chosen.optimal, chain.optimal
     assert optimal is not None
     assert known is not None
     K, M = building(np.array(list(optimal.theta.values())))

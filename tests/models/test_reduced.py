@@ -79,9 +79,9 @@ def elastic(lam: Floats) -> Ints:
 
 def test_derivatives_everywhere_are_those_at_the_sensors(full: MatrixModel) -> None:
     theta = np.array([1.1, 0.9, 1.3])
-    found = lowest(full.pencil, theta, 8)
+    result = lowest(full.pencil, theta, 8)
     everywhere = scipy.sparse.eye_array(full.size, format="csr")
-    _, dPhi, _ = exact.at_sensors(full.pencil, everywhere, theta, found, 8)
+    _, dPhi, _ = exact.at_sensors(full.pencil, everywhere, theta, result, 8)
     expected = full.modes(theta, 8)
     at_sensors = np.tensordot(full.selection.toarray(), dPhi, axes=1)
     assert at_sensors == pytest.approx(expected.dphi, abs=1e-8 * np.abs(expected.dphi).max())
@@ -109,27 +109,27 @@ def test_the_basis_is_orthonormal_in_energy_and_grows_without_change(full: Matri
 def test_a_snapshot_is_exact_with_its_derivatives(full: MatrixModel) -> None:
     model, theta = reduced(full), np.array([0.7, 1.4, 2.1])
     model.take(SnapshotRequest(theta, 10))
-    found, expected = model.modes(theta, 8), full.modes(theta, 8)
+    result, expected = model.modes(theta, 8), full.modes(theta, 8)
     r = elastic(expected.lam)
-    assert found.lam[r] == pytest.approx(expected.lam[r], rel=1e-9)
-    assert found.dlam[r] == pytest.approx(
+    assert result.lam[r] == pytest.approx(expected.lam[r], rel=1e-9)
+    assert result.dlam[r] == pytest.approx(
         expected.dlam[r], rel=1e-6, abs=1e-8 * expected.lam[r[-1]]
     )
-    sign = np.sign((found.phi * expected.phi).sum(axis=0))[r]
+    sign = np.sign((result.phi * expected.phi).sum(axis=0))[r]
     scale = np.abs(expected.phi[:, r]).max()
-    assert found.phi[:, r] * sign == pytest.approx(expected.phi[:, r], abs=1e-6 * scale)
-    error = np.abs(found.dphi[:, r] * sign[:, None] - expected.dphi[:, r]).max()
+    assert result.phi[:, r] * sign == pytest.approx(expected.phi[:, r], abs=1e-6 * scale)
+    error = np.abs(result.dphi[:, r] * sign[:, None] - expected.dphi[:, r]).max()
     assert error <= 0.1 * np.abs(expected.dphi[:, r]).max()
 
 
 def test_derivatives_are_those_of_the_reduced_problem(full: MatrixModel) -> None:
     model, theta, h = reduced(full), np.array([0.7, 1.4, 2.1]), 1e-3
-    found = model.modes(theta, 8)
-    r = elastic(found.lam)
+    result = model.modes(theta, 8)
+    r = elastic(result.lam)
     for i, step in enumerate(h * np.eye(3)):
         near = {k: model.modes(theta + k * step, 8, derivatives=False).lam for k in (-2, -1, 1, 2)}
         slope = (8 * (near[1] - near[-1]) - near[2] + near[-2]) / (12 * h)
-        assert found.dlam[r, i] == pytest.approx(slope[r], rel=1e-7, abs=1e-9 * found.lam[r[-1]])
+        assert result.dlam[r, i] == pytest.approx(slope[r], rel=1e-7, abs=1e-9 * result.lam[r[-1]])
 
 
 @pytest.mark.parametrize("snapshots", [1, 2, 3])
@@ -140,12 +140,12 @@ def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int)
     for _ in range(snapshots - 1):
         model.take(SnapshotRequest(rng.uniform(0.5, 2.3, 3), 10))
     for theta in rng.uniform(0.5, 2.3, (3, 3)):
-        exact_modes, found = lowest(full.pencil, theta, 8), model.modes(theta, 8)
-        r = elastic(found.lam)
+        exact_modes, result = lowest(full.pencil, theta, 8), model.modes(theta, 8)
+        r = elastic(result.lam)
         (certificate,) = model.certify([(theta, r)])
         shift = model._ready().space.factor.below.sigma
         noise = 1e2 * exact_modes.noise[r] / exact_modes.lam[r]
-        truth = (found.lam[r] - exact_modes.lam[r]) / (found.lam[r] - shift)
+        truth = (result.lam[r] - exact_modes.lam[r]) / (result.lam[r] - shift)
         sure = truth > 10 * noise
         assert (certificate.eigenvalue[sure] <= 2 * truth[sure]).all()
         assert (certificate.eigenvalue[sure] >= truth[sure] / 2).all()
@@ -191,7 +191,7 @@ def truth(model: ReducedModel, thetas: Floats) -> Floats:
     """Return the greatest relative error of six eigenvalues at each of some parameters."""
     with uncounted():
         pairs = [(model.modes(x, 6).lam, model.full.modes(x, 6).lam) for x in thetas]
-    return np.array([np.max(found / expected - 1) for found, expected in pairs])
+    return np.array([np.max(result / expected - 1) for result, expected in pairs])
 
 
 def test_a_snapshot_of_several_models_is_exact_at_each(costs: Costs) -> None:
@@ -204,10 +204,10 @@ def test_a_snapshot_of_several_models_is_exact_at_each(costs: Costs) -> None:
     assert costs.corrected == before + 3
     assert costs.eigenproblems == 1
     for theta in thetas:
-        found, expected = model.modes(theta, 6), full.modes(theta, 6)
-        assert found.lam == pytest.approx(expected.lam, rel=1e-9)
-        sign = np.sign((found.phi * expected.phi).sum(axis=0))
-        off.append(np.abs(found.dphi * sign[:, None] - expected.dphi).max())
+        result, expected = model.modes(theta, 6), full.modes(theta, 6)
+        assert result.lam == pytest.approx(expected.lam, rel=1e-9)
+        sign = np.sign((result.phi * expected.phi).sum(axis=0))
+        off.append(np.abs(result.dphi * sign[:, None] - expected.dphi).max())
         off[-1] /= np.abs(expected.dphi).max()
         assert model.distance(theta) == 0
     assert np.argmin(off) == np.argmax(errors), "the worst one has its derivatives"
@@ -223,8 +223,8 @@ def test_a_snapshot_leaves_models_as_they_are_that_are_good_enough(costs: Costs)
     assert 1e-9 < errors[1] < 0.2 * errors[[0, 2]].min()
     middle = float(np.sqrt(errors[1] * errors[[0, 2]].min()))
     corrected, columns = costs.corrected, model.columns
-    found = model.take(SnapshotRequest(thetas, 6, middle))
-    assert 0.5 * errors.max() <= found <= errors.max() * (1 + 1e-6)
+    result = model.take(SnapshotRequest(thetas, 6, middle))
+    assert 0.5 * errors.max() <= result <= errors.max() * (1 + 1e-6)
     assert costs.corrected == corrected + 2
     after = truth(model, thetas)
     assert after[[0, 2]].max() < 1e-9
@@ -247,8 +247,8 @@ def test_models_too_far_for_the_factor_are_solved_in_full_and_the_others_are_not
     assert costs.eigenproblems == 2
     assert costs.corrected == corrected + 1
     for theta in ([0.015, 2.0, 2.0], [0.9, 1.1, 1.0]):
-        at = np.array(theta)
-        assert model.modes(at, 6).lam == pytest.approx(full.modes(at, 6).lam, rel=1e-8)
+        point = np.array(theta)
+        assert model.modes(point, 6).lam == pytest.approx(full.modes(point, 6).lam, rel=1e-8)
 
 
 def test_what_takes_too_many_steps_is_solved_in_full_where_it_must_be_exact(
@@ -268,13 +268,13 @@ def test_what_takes_too_many_steps_is_solved_in_full_where_it_must_be_exact(
 
 def test_the_order_of_computing_snapshots_changes_no_digit(costs: Costs) -> None:
     full, thetas = plate(), [np.ones(3), np.array([0.5, 1.0, 2.0])]
-    one, other = reduced(full), reduced(plate())
+    first, other = reduced(full), reduced(plate())
     with uncounted():
         for theta in thetas:
-            one.take(SnapshotRequest(theta, 10))
+            first.take(SnapshotRequest(theta, 10))
     other.resume([SnapshotRequest(theta, 10) for theta in thetas])
-    at = np.array([0.9, 0.6, 1.4])
-    assert one.modes(at, 8).lam.tolist() == other.modes(at, 8).lam.tolist()
+    point = np.array([0.9, 0.6, 1.4])
+    assert first.modes(point, 8).lam.tolist() == other.modes(point, 8).lam.tolist()
     assert costs.eigenproblems == 0, "what was counted before is not counted again"
 
 
@@ -293,8 +293,8 @@ def test_a_single_mode_is_a_basis_where_there_is_no_room_for_more() -> None:
     model.take(SnapshotRequest(np.ones(3), 1))
     model.take(SnapshotRequest(np.array([0.9, 1.0, 1.1]), 1))
     assert model.columns == 1
-    found, expected = model.modes(np.ones(3), 1), model.full.modes(np.ones(3), 1)
-    assert found.lam == pytest.approx(expected.lam, rel=1e-9)
+    result, expected = model.modes(np.ones(3), 1), model.full.modes(np.ones(3), 1)
+    assert result.lam == pytest.approx(expected.lam, rel=1e-9)
 
 
 def test_a_snapshot_that_fails_leaves_the_model_as_it_was(costs: Costs) -> None:
@@ -334,9 +334,9 @@ def test_a_mode_that_the_basis_misses_is_found_by_inertia(costs: Costs) -> None:
     theta = np.array([1e-4, 1.0])
     with uncounted():
         assert model.modes(theta, 4).lam[0] > 1.5 * full.modes(theta, 4).lam[0]
-    first, there = model.certify([(np.ones(2), np.arange(3)), (theta, np.arange(3))])
+    first, other = model.certify([(np.ones(2), np.arange(3)), (theta, np.arange(3))])
     assert np.isfinite(first.eigenvalue).all()
-    assert np.isinf(there.eigenvalue).all()
+    assert np.isinf(other.eigenvalue).all()
     assert costs.factorisations == 3
     (alone,) = model.certify([(theta, np.arange(3))])
     assert np.isinf(alone.eigenvalue).all()
@@ -349,35 +349,35 @@ def test_a_proof_that_no_mode_is_missing_speaks_for_models_nearby(
     monkeypatch: pytest.MonkeyPatch,
     costs: Costs,
 ) -> None:
-    at, wanted = np.array([2.4, 0.6, 2.4]), np.arange(9)
+    point, requested = np.array([2.4, 0.6, 2.4]), np.arange(9)
     model = reduced(plate())
-    (one,) = model.certify([(at, wanted)])
-    assert one.known
+    (certificate,) = model.certify([(point, requested)])
+    assert certificate.known
     assert costs.factorisations == 2, "the first snapshot has twice the modes for that"
     monkeypatch.setattr("modefront.models.reduced.model.WIDE", 1)
     model, before = reduced(plate()), costs.factorisations
-    thetas = [at, 0.995 * at, 1.005 * at, np.ones(3)]
-    for one in model.certify([(theta, wanted) for theta in thetas]):
-        assert np.isfinite(one.eigenvalue).all()
+    thetas = [point, 0.995 * point, 1.005 * point, np.ones(3)]
+    for certificate in model.certify([(theta, requested) for theta in thetas]):
+        assert np.isfinite(certificate.eigenvalue).all()
     assert costs.factorisations - before == 3, "two of the snapshot, one where it was in doubt"
-    model.certify([(np.ones(3), wanted)])
+    model.certify([(np.ones(3), requested)])
     assert costs.factorisations - before == 3, "the snapshot speaks for itself"
 
 
 def test_ratios_of_eigenvalues_are_bounded_by_those_of_coefficients() -> None:
     full, rng = plate(), np.random.default_rng(0)
     pencil = full.pencil
-    one = snapshot(pencil, np.ones(3), 10)
+    unit = snapshot(pencil, np.ones(3), 10)
     model = reduced(full)
     model.take(SnapshotRequest(np.ones(3), 10))
     basis = model._ready().space.basis
     assert completeness.semidefinite(basis.K)
     for theta in rng.uniform(0.4, 2.5, (5, 3)):
-        ratio = completeness.lower_bound(basis.K, basis.M, theta, one.theta)
+        ratio = completeness.lower_bound(basis.K, basis.M, theta, unit.theta)
         assert ratio == pytest.approx(theta.min())
-        now, then = (full.modes(at, 8, derivatives=False).lam for at in (theta, one.theta))
+        now, then = (full.modes(modes, 8, derivatives=False).lam for modes in (theta, unit.theta))
         assert (now >= ratio * then * (1 - 1e-9)).all()
-    assert completeness.lower_bound(basis.K, basis.M, np.array([1.0, -1.0, 1.0]), one.theta) == 0
+    assert completeness.lower_bound(basis.K, basis.M, np.array([1.0, -1.0, 1.0]), unit.theta) == 0
 
 
 def test_an_estimate_that_does_not_settle_takes_a_factor_of_its_own(
@@ -387,36 +387,36 @@ def test_an_estimate_that_does_not_settle_takes_a_factor_of_its_own(
     full = plate()
     bounds = np.full(3, 0.05), np.full(3, 2.5)
     model = ReducedModel(full, 10, np.ones(3), *bounds)
-    theta, wanted = np.array([1.0, 0.2, 2.4]), np.arange(6)
+    theta, requested = np.array([1.0, 0.2, 2.4]), np.arange(6)
     lam, exact = model.modes(theta, 6).lam, full.modes(theta, 6).lam
-    (settled,) = model.certify([(theta, wanted)])
+    (settled,) = model.certify([(theta, requested)])
     factorisations = costs.factorisations
     monkeypatch.setattr("modefront.models.reduced.certificate.STEPS", 0)
-    (own,) = model.certify([(theta, wanted)])
+    (chosen,) = model.certify([(theta, requested)])
     assert costs.factorisations == factorisations + 1
     assert settled.eigenvalue == pytest.approx(lam / exact - 1, rel=0.3)
-    assert own.eigenvalue == pytest.approx(lam / exact - 1, rel=1e-3)
+    assert chosen.eigenvalue == pytest.approx(lam / exact - 1, rel=1e-3)
 
     def singular(*_: object) -> None:
         raise SingularMatrixError("pivot of zero")
 
     monkeypatch.setattr("modefront.linalg.pencil.Pencil.factor", singular)
-    (unknown,) = model.certify([(theta, wanted)])
+    (unknown,) = model.certify([(theta, requested)])
     assert np.isinf(unknown.eigenvalue).all(), "no number is better than a wrong one"
 
 
 def test_certificates_asked_for_together_are_sharper_than_alone() -> None:
-    model, wanted = reduced(plate()), np.arange(6)
+    model, requested = reduced(plate()), np.arange(6)
     thetas = np.random.default_rng(1).uniform(0.5, 2.3, (4, 3))
-    together = model.certify([(theta, wanted[: 6 - k]) for k, theta in enumerate(thetas)])
-    for k, (theta, one) in enumerate(zip(thetas, together, strict=True)):
-        (alone,) = model.certify([(theta, wanted[: 6 - k])])
-        found = model.modes(theta, 6 - k).lam
-        truth = found / model.full.modes(theta, 6 - k).lam - 1
-        assert (0.999 * alone.eigenvalue <= one.eigenvalue).all(), "but for the steps taken"
-        assert (one.eigenvalue <= 1.01 * truth).all()
-        assert (alone.shape <= 1.5 * one.shape).all()
-        assert (one.shape <= 1.5 * alone.shape).all()
+    together = model.certify([(theta, requested[: 6 - k]) for k, theta in enumerate(thetas)])
+    for k, (theta, certificate) in enumerate(zip(thetas, together, strict=True)):
+        (alone,) = model.certify([(theta, requested[: 6 - k])])
+        result = model.modes(theta, 6 - k).lam
+        truth = result / model.full.modes(theta, 6 - k).lam - 1
+        assert (0.999 * alone.eigenvalue <= certificate.eigenvalue).all(), "but for the steps taken"
+        assert (certificate.eigenvalue <= 1.01 * truth).all()
+        assert (alone.shape <= 1.5 * certificate.shape).all()
+        assert (certificate.shape <= 1.5 * alone.shape).all()
 
 
 def extended_quotients(K: Floats, M: Floats, X: Floats) -> Floats:
@@ -444,29 +444,31 @@ def chain(members: int, seed: int) -> MatrixModel:
 
 @pytest.mark.parametrize("bounds", [(0.1, 10.0), (0.01, 100.0), (1e-9, 1e-2)])
 def test_a_third_of_every_error_is_found_over_many_decades(bounds: tuple[float, float]) -> None:
-    wanted, told = np.arange(5), 0
+    requested, reported = np.arange(5), 0
     for members, seed in ((2, 0), (5, 1), (5, 2)):
         full, rng = chain(members, seed), np.random.default_rng(seed)
         lower, upper = (np.full(members, bound) for bound in bounds)
         model = ReducedModel(full, 8, np.sqrt(lower * upper), lower, upper, spare=3)
         thetas = np.exp(rng.uniform(np.log(lower), np.log(upper), (5, members)))
         thetas[-1] = np.where(rng.uniform(size=members) < 0.5, lower, upper)
-        for theta, one in zip(thetas, model.certify([(x, wanted) for x in thetas]), strict=True):
+        for theta, certificate in zip(
+            thetas, model.certify([(x, requested) for x in thetas]), strict=True
+        ):
             K, M = full.pencil.K.at(theta).toarray(), full.pencil.M.at(theta).toarray()
-            X = scipy.linalg.eigh(M, K)[1][:, ::-1][:, wanted]
+            X = scipy.linalg.eigh(M, K)[1][:, ::-1][:, requested]
             exact = extended_quotients(K, M, X)
             truth = np.abs(model.modes(theta, 5, derivatives=False).lam / exact - 1)
             rounding = np.finfo(float).eps * (np.abs(K) @ np.abs(X) * np.abs(X)).sum(axis=0)
-            sure = np.isfinite(one.eigenvalue) & (truth > 100 * rounding)
-            assert (one.eigenvalue[sure] >= truth[sure] / 3).all()
-            told += int(sure.sum())
-    assert told > 5
+            sure = np.isfinite(certificate.eigenvalue) & (truth > 100 * rounding)
+            assert (certificate.eigenvalue[sure] >= truth[sure] / 3).all()
+            reported += int(sure.sum())
+    assert reported > 5
 
 
 def test_bounds_of_ratios_hold_for_terms_that_are_not_there() -> None:
     K = DenseAffine(np.tile(np.eye(2), (3, 1, 1)), Monomials(np.eye(3)))
-    at = np.array([2.0, 0.5, 0.0])
-    assert completeness.ratios(K, at, np.array([1.0, 1.0, 0.0])) == (0.5, 2.0)
+    theta = np.array([2.0, 0.5, 0.0])
+    assert completeness.ratios(K, theta, np.array([1.0, 1.0, 0.0])) == (0.5, 2.0)
     assert completeness.ratios(K, np.array([1.0, 1.0, 1.0]), np.array([1.0, 1.0, 0.0])) == (
         1.0,
         np.inf,
@@ -499,12 +501,12 @@ def test_a_mode_that_enters_where_two_stiffnesses_drop_is_looked_for() -> None:
     scale = 1e3
     lower, nominal = np.array([0.5, 1e-3, 1e-3]), np.array([1.0, scale, scale])
     model = ReducedModel(full, 3, nominal, lower, np.array([2.0, scale, scale]), spare=1)
-    (there,) = model.lacking(3)
-    assert there.tolist() == [1.0, 1e-3, 1e-3]
-    expected = full.modes(there, 3, derivatives=False).lam
-    assert model.modes(there, 3, derivatives=False).lam[0] > 2 * expected[0]
-    model.take(SnapshotRequest(there, 3))
-    assert model.modes(there, 3, derivatives=False).lam == pytest.approx(expected, rel=1e-8)
+    (other,) = model.lacking(3)
+    assert other.tolist() == [1.0, 1e-3, 1e-3]
+    expected = full.modes(other, 3, derivatives=False).lam
+    assert model.modes(other, 3, derivatives=False).lam[0] > 2 * expected[0]
+    model.take(SnapshotRequest(other, 3))
+    assert model.modes(other, 3, derivatives=False).lam == pytest.approx(expected, rel=1e-8)
     assert not model.lacking(3)
 
 
@@ -530,9 +532,9 @@ def test_a_model_without_modes_ends_nothing() -> None:
     good, bad = np.array([-0.5, 0.5]), np.array([0.5, -1.1])
     with pytest.raises(ModelError):
         full.modes(bad, 3)
-    here, there = model.certify([(good, np.arange(3)), (bad, np.arange(3))])
+    here, other = model.certify([(good, np.arange(3)), (bad, np.arange(3))])
     assert np.isfinite(here.eigenvalue).all()
-    assert np.isinf(there.eigenvalue).all()
+    assert np.isinf(other.eigenvalue).all()
     model.take(SnapshotRequest(np.array([good, bad]), 4))
     assert model.modes(good, 3).lam == pytest.approx(full.modes(good, 3).lam, rel=1e-8)
     model.take(SnapshotRequest(bad, 0))
@@ -552,6 +554,6 @@ def test_models_survive_pickle_without_their_factors(full: MatrixModel) -> None:
     model.take(SnapshotRequest(theta, COUNT))
     other = pickle.loads(pickle.dumps(model))
     with counted() as costs:
-        found = other.modes(theta, COUNT)
+        result = other.modes(theta, COUNT)
     assert costs.eigenproblems == 0, "snapshots were counted when they were taken"
-    assert found.lam.tolist() == model.modes(theta, COUNT).lam.tolist()
+    assert result.lam.tolist() == model.modes(theta, COUNT).lam.tolist()

@@ -34,8 +34,8 @@ NAMES = ("E", "t", "a*b", "k 1", "1/x")
     ],
 )
 def test_names_of_terms(term: str, exponents: list[float] | None) -> None:
-    found = exponents_of(term, NAMES)
-    assert (None if found is None else found.tolist()) == exponents
+    result = exponents_of(term, NAMES)
+    assert (None if result is None else result.tolist()) == exponents
 
 
 def test_a_model_with_functions_of_its_parameters_and_its_derivatives() -> None:
@@ -61,6 +61,6 @@ def test_a_model_with_functions_of_its_parameters_and_its_derivatives() -> None:
 
 
 def test_a_term_that_is_none_is_named() -> None:
-    one = np.eye(2)
+    identity = np.eye(2)
     with pytest.raises(mf.InputError, match=r"a product of powers of parameters, found 'q.2'"):
-        mf.matrices(["k"], {"q^2": one}, {"base": one}, {"a": 0})
+        mf.matrices(["k"], {"q^2": identity}, {"base": identity}, {"a": 0})

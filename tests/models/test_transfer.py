@@ -44,21 +44,21 @@ def spring_chain(*, grounded: bool = True, dense: bool) -> MatrixModel:
     )
 
 
-def products(found: Transfer) -> Floats:
+def products(result: Transfer) -> Floats:
     """Return the products of modal loads and shapes, which no sign changes: (o, i, modes)."""
-    out: Floats = np.einsum("om,mi->oim", found.output, found.input)
+    out: Floats = np.einsum("om,mi->oim", result.output, result.input)
     return out
 
 
-def agree(one: Transfer, other: Transfer) -> None:
-    assert one.modes.lam == pytest.approx(other.modes.lam, rel=1e-9, abs=1e-9)
+def agree(first: Transfer, other: Transfer) -> None:
+    assert first.modes.lam == pytest.approx(other.modes.lam, rel=1e-9, abs=1e-9)
     scale = np.abs(products(other)).max()
-    assert products(one) == pytest.approx(products(other), abs=1e-9 * scale)
-    assert (one.static is None) == (other.static is None)
-    if one.static is not None and other.static is not None:
-        assert one.static == pytest.approx(other.static, rel=1e-9)
-    if one.rigid is not None and other.rigid is not None:
-        assert one.rigid == pytest.approx(other.rigid, rel=1e-12)
+    assert products(first) == pytest.approx(products(other), abs=1e-9 * scale)
+    assert (first.static is None) == (other.static is None)
+    if first.static is not None and other.static is not None:
+        assert first.static == pytest.approx(other.static, rel=1e-9)
+    if first.rigid is not None and other.rigid is not None:
+        assert first.rigid == pytest.approx(other.rigid, rel=1e-12)
 
 
 @pytest.mark.parametrize("load_case", [SHAKEN, PUSHED], ids=["base", "forces"])
@@ -66,14 +66,14 @@ def agree(one: Transfer, other: Transfer) -> None:
 def test_sparse_and_dense_models_agree(load_case: LoadCase, grounded: bool, costs: Costs) -> None:
     dense = spring_chain(grounded=grounded, dense=True)
     sparse = spring_chain(grounded=grounded, dense=False)
-    one = dense.transfer(THETA, 6, load_case)
+    transfer = dense.transfer(THETA, 6, load_case)
     assert costs.eigenproblems == 1
     other = sparse.transfer(THETA, 6, load_case)
     assert costs.eigenproblems == 2
-    agree(one, other)
-    assert (one.static is None) == (not grounded)
+    agree(transfer, other)
+    assert (transfer.static is None) == (not grounded)
     if not grounded:
-        assert one.modes.lam[0] == other.modes.lam[0] == 0
+        assert transfer.modes.lam[0] == other.modes.lam[0] == 0
 
 
 @pytest.mark.parametrize("dense", [True, False])
@@ -84,14 +84,14 @@ def test_few_modes_and_the_static_response_are_the_direct_solution(dense: bool) 
     K, M = (scipy.sparse.csr_array(A).toarray() for A in parts)
     columns = [1.0 * np.eye(N)[N - 1], 1.5 * (np.eye(N)[40] + np.eye(N)[41]) - np.eye(N)[20]]
     rows = np.array([np.eye(N)[N - 1], np.eye(N)[N - 1] - np.eye(N)[3], 2 * np.eye(N)[20]])
-    found = model.transfer(THETA, 12, PUSHED)
-    assert found.static == pytest.approx(rows @ np.linalg.solve(K, np.array(columns).T), rel=1e-9)
-    omega = np.sqrt(found.modes.lam)
-    system = ModalSystem(omega, np.full(12, 1e-6), found.input, found.output, found.static)
+    result = model.transfer(THETA, 12, PUSHED)
+    assert result.static == pytest.approx(rows @ np.linalg.solve(K, np.array(columns).T), rel=1e-9)
+    omega = np.sqrt(result.modes.lam)
+    system = ModalSystem(omega, np.full(12, 1e-6), result.input, result.output, result.static)
     w = 0.5 * (omega[0] + omega[1])
     exact = rows @ np.linalg.solve(K - w**2 * M, np.array(columns).T)
     error = abs(frequency_response(system, [w])[0].real - exact).max()
-    bare = ModalSystem(omega, np.full(12, 1e-6), found.input, found.output)
+    bare = ModalSystem(omega, np.full(12, 1e-6), result.input, result.output)
     # What the correction leaves is smaller by (w / omega_13)^2.
     assert error < 0.02 * abs(frequency_response(bare, [w])[0].real - exact).max()
 
@@ -99,8 +99,8 @@ def test_few_modes_and_the_static_response_are_the_direct_solution(dense: bool) 
 def test_rigid_body_motion_is_that_of_newtons_law() -> None:
     """Far below its first elastic mode, a free structure is one mass."""
     model = spring_chain(grounded=False, dense=True)
-    found = model.transfer(THETA, N - 5, PUSHED)
-    system = ModalSystem(np.sqrt(found.modes.lam), np.zeros(N - 5), found.input, found.output)
+    result = model.transfer(THETA, N - 5, PUSHED)
+    system = ModalSystem(np.sqrt(result.modes.lam), np.zeros(N - 5), result.input, result.output)
     w = 1e-3 * system.omega[1]
     mass = 1 + 0.2 * np.sin(np.arange(N))
     mass[20:25] = 0.0
@@ -112,11 +112,11 @@ def test_rigid_body_motion_is_that_of_newtons_law() -> None:
 def test_a_base_that_moves_everything_moves_the_whole_mass() -> None:
     """The squares of the modal loads of base motion add up to the mass that can move."""
     model = spring_chain(dense=True)
-    found = model.transfer(THETA, N - 5, SHAKEN)
+    result = model.transfer(THETA, N - 5, SHAKEN)
     mass = 1 + 0.2 * np.sin(np.arange(N))
     mass[20:25] = 0.0
-    assert (found.input**2).sum() == pytest.approx(mass.sum(), rel=1e-10)
-    assert found.rigid == pytest.approx(np.array([[1.0], [0.0], [2.0]]))
+    assert (result.input**2).sum() == pytest.approx(mass.sum(), rel=1e-10)
+    assert result.rigid == pytest.approx(np.array([[1.0], [0.0], [2.0]]))
 
 
 def cantilever(elements: int) -> MatrixModel:
@@ -162,21 +162,21 @@ def test_a_mesh_is_what_its_matrices_are(elements: int) -> None:
     )
     outputs = ({"top": 1.0}, {"top": 1.0, "middle": -2.0})
     for load_case in (LoadCase(outputs, base="x"), LoadCase(outputs, ({"middle": 5.0},))):
-        one, other = (model.transfer(np.array([1.2]), 5, load_case) for model in (mesh, given))
-        assert one.modes.lam == pytest.approx(other.modes.lam, rel=1e-8)
-        assert one.static == pytest.approx(other.static, rel=1e-7)
-        assert products(one) == pytest.approx(products(other), rel=1e-6, abs=1e-9)
+        first, other = (model.transfer(np.array([1.2]), 5, load_case) for model in (mesh, given))
+        assert first.modes.lam == pytest.approx(other.modes.lam, rel=1e-8)
+        assert first.static == pytest.approx(other.static, rel=1e-7)
+        assert products(first) == pytest.approx(products(other), rel=1e-6, abs=1e-9)
 
 
 def test_static_deflection_of_a_cantilever() -> None:
     """F (3 L x^2 - x^3) / 6EI half-way up; shear adds less than a thousandth."""
     model = cantilever(20)
-    found = model.transfer(np.ones(1), 2, LoadCase(({"middle": 1.0},), ({"top": 1.0},)))
-    assert found.static is not None
+    result = model.transfer(np.ones(1), 2, LoadCase(({"middle": 1.0},), ({"top": 1.0},)))
+    assert result.static is not None
     inertia, F, L, x = 0.04**3 * 0.03 / 12, 1.0, 2.0, 1.0
     bending = F * (3 * L * x**2 - x**3) / (6 * 210e9 * inertia)
     # The link at the top makes the last tenth of a metre rigid, which does not change this.
-    assert found.static[0, 0] == pytest.approx(bending, rel=1e-3)
+    assert result.static[0, 0] == pytest.approx(bending, rel=1e-3)
 
 
 def test_how_many_modes_reach_a_frequency() -> None:

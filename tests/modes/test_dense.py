@@ -27,14 +27,14 @@ def random_affine(
 def precise_modes(
     K: DenseAffine, M: DenseAffine, theta: list[mp.mpf]
 ) -> tuple[list[mp.mpf], mp.matrix]:
-    def at(A: DenseAffine) -> mp.matrix:
+    def matrix_at(A: DenseAffine) -> mp.matrix:
         out = mp.matrix(A.terms[0].tolist())
         for value, term in zip(theta, A.terms[1:], strict=True):
             out += value * mp.matrix(term.tolist())
         return out
 
-    inverse = mp.cholesky(at(M)) ** -1
-    lam, Q = mp.eigsy(inverse * at(K) * inverse.T)
+    inverse = mp.cholesky(matrix_at(M)) ** -1
+    lam, Q = mp.eigsy(inverse * matrix_at(K) * inverse.T)
     return list(lam), inverse.T * Q
 
 
@@ -73,8 +73,8 @@ def test_derivatives_agree_with_50_digit_arithmetic(
     K, M = random_affine(rng, size, parameters, scale), random_affine(rng, size, parameters, 1.0)
     theta = rng.uniform(0.5, 2.0, parameters)
     count = min(size, 4)
-    found = modes(K, M, np.eye(size), theta, count, derivatives=True)
-    if found.coincident.any():
+    result = modes(K, M, np.eye(size), theta, count, derivatives=True)
+    if result.coincident.any():
         return
     # Where eigenvalues are close, the problem itself amplifies rounding by this factor.
     lam = modes(K, M, np.eye(size), theta, size, derivatives=False).lam
@@ -82,9 +82,9 @@ def test_derivatives_agree_with_50_digit_arithmetic(
     tolerance = max(1e-8, 1e-13 / gap)
     with mp.workdps(50):
         for i in range(parameters):
-            dlam, dphi = precise_derivatives(K, M, theta, i, found)
-            assert np.abs(found.dlam[:, i] - dlam).max() <= 1e-8 * np.abs(dlam).max()
-            error = np.linalg.norm(found.dphi[:, :, i] - dphi, axis=0)
+            dlam, dphi = precise_derivatives(K, M, theta, i, result)
+            assert np.abs(result.dlam[:, i] - dlam).max() <= 1e-8 * np.abs(dlam).max()
+            error = np.linalg.norm(result.dphi[:, :, i] - dphi, axis=0)
             assert (error <= tolerance * np.linalg.norm(dphi, axis=0) + 1e-13).all()
 
 
@@ -95,14 +95,14 @@ def test_close_modes_have_exact_derivatives(gap: float) -> None:
     lam = np.array([1.0, 1.0 + gap, 4.0])
     K = DenseAffine(np.array([np.diag(lam), C]), Monomials(np.array([[0.0], [1.0]])))
     M = DenseAffine(np.eye(3)[None], Monomials(np.zeros((1, 1))))
-    found = modes(K, M, np.eye(3), np.zeros(1), 2, derivatives=True)
+    result = modes(K, M, np.eye(3), np.zeros(1), 2, derivatives=True)
     for r in range(2):
         expected = sum(
             C[j, r] / (lam[r] - lam[j]) * np.eye(3)[j] for j in range(3) if j != r
-        ) * np.sign(found.phi[r, r])
-        assert found.dlam[r, 0] == pytest.approx(C[r, r], rel=1e-8)
-        assert np.abs(found.dphi[:, r, 0] - expected).max() <= 1e-8 / gap
-    assert not found.coincident.any()
+        ) * np.sign(result.phi[r, r])
+        assert result.dlam[r, 0] == pytest.approx(C[r, r], rel=1e-8)
+        assert np.abs(result.dphi[:, r, 0] - expected).max() <= 1e-8 / gap
+    assert not result.coincident.any()
 
 
 def test_coincident_modes_say_so_and_keep_what_is_defined() -> None:
@@ -114,12 +114,12 @@ def test_coincident_modes_say_so_and_keep_what_is_defined() -> None:
     K = DenseAffine(terms, Monomials(np.eye(3)))
     M = DenseAffine(np.eye(3)[None], Monomials(np.zeros((1, 3))))
     theta = np.array([1.0, 1.0, 0.0])
-    found = modes(K, M, np.eye(3), theta, 3, derivatives=True)
-    assert found.coincident.tolist() == [True, True, False]
+    result = modes(K, M, np.eye(3), theta, 3, derivatives=True)
+    assert result.coincident.tolist() == [True, True, False]
     # Along each parameter alone, the eigenvalues leave at these rates, in ascending order.
-    assert found.dlam[:2] == pytest.approx(np.array([[0, 0, 0], [1, 1, 2]]), abs=1e-12)
+    assert result.dlam[:2] == pytest.approx(np.array([[0, 0, 0], [1, 1, 2]]), abs=1e-12)
     # The subspace does not turn: nothing of the derivative leaves it.
-    assert found.dphi[2, :2] == pytest.approx(0, abs=1e-12)
+    assert result.dphi[2, :2] == pytest.approx(0, abs=1e-12)
 
 
 def test_the_derivative_of_a_coincident_subspace_is_exact() -> None:
@@ -130,13 +130,13 @@ def test_the_derivative_of_a_coincident_subspace_is_exact() -> None:
     lam = np.array([2.0, 2.0, 3.0, 5.0, 7.0])
     K = DenseAffine(np.array([Q @ np.diag(lam) @ Q.T, C]), Monomials(np.array([[0.0], [1.0]])))
     M = DenseAffine(np.eye(5)[None], Monomials(np.zeros((1, 1))))
-    found = modes(K, M, np.eye(5), np.zeros(1), 1, derivatives=True)
-    assert found.coincident.all()
+    result = modes(K, M, np.eye(5), np.zeros(1), 1, derivatives=True)
+    assert result.coincident.all()
     # The derivative of the projector applied to the mode: the sum over the modes outside.
-    phi = found.phi[:, 0]
+    phi = result.phi[:, 0]
     outside = Q[:, 2:]
     expected = outside @ ((outside.T @ C @ phi) / (2.0 - lam[2:]))
-    assert found.dphi[:, 0, 0] == pytest.approx(expected, rel=1e-10, abs=1e-12)
+    assert result.dphi[:, 0, 0] == pytest.approx(expected, rel=1e-10, abs=1e-12)
 
 
 def test_massless_degrees_of_freedom_are_condensed() -> None:
@@ -145,11 +145,11 @@ def test_massless_degrees_of_freedom_are_condensed() -> None:
     K = DenseAffine(terms, Monomials(np.eye(2)))
     M = DenseAffine(np.diag([0.0, 2.0])[None], Monomials(np.zeros((1, 2))))
     k1, k2 = theta = np.array([3.0, 5.0])
-    found = modes(K, M, np.eye(2), theta, 1, derivatives=True)
-    assert found.lam[0] == pytest.approx(k1 * k2 / (k1 + k2) / 2, rel=1e-13)
+    result = modes(K, M, np.eye(2), theta, 1, derivatives=True)
+    assert result.lam[0] == pytest.approx(k1 * k2 / (k1 + k2) / 2, rel=1e-13)
     expected = np.array([k2**2, k1**2]) / (k1 + k2) ** 2 / 2
-    assert found.dlam[0] == pytest.approx(expected, rel=1e-12)
-    assert found.phi[0, 0] / found.phi[1, 0] == pytest.approx(k2 / (k1 + k2), rel=1e-12)
+    assert result.dlam[0] == pytest.approx(expected, rel=1e-12)
+    assert result.phi[0, 0] / result.phi[1, 0] == pytest.approx(k2 / (k1 + k2), rel=1e-12)
     with pytest.raises(ModelError, match="only 1 have a finite frequency"):
         modes(K, M, np.eye(2), theta, 2, derivatives=True)
 
@@ -158,11 +158,11 @@ def test_rigid_body_modes_have_zero_frequency() -> None:
     spring = np.array([[1.0, -1, 0], [-1, 2, -1], [0, -1, 1]])
     K = DenseAffine(1e6 * spring[None], Monomials(np.ones((1, 1))))
     M = DenseAffine(np.eye(3)[None], Monomials(np.zeros((1, 1))))
-    found = modes(K, M, np.eye(3), np.ones(1), 3, derivatives=True)
-    assert found.lam == pytest.approx([0, 1e6, 3e6], rel=1e-9, abs=1e-3)
-    assert found.dlam[:, 0] == pytest.approx([0, 1e6, 3e6], rel=1e-9, abs=1e-3)
-    assert found.frequency[0] == pytest.approx(0, abs=1e-2)
-    assert np.isfinite(found.dfrequency).all()
+    result = modes(K, M, np.eye(3), np.ones(1), 3, derivatives=True)
+    assert result.lam == pytest.approx([0, 1e6, 3e6], rel=1e-9, abs=1e-3)
+    assert result.dlam[:, 0] == pytest.approx([0, 1e6, 3e6], rel=1e-9, abs=1e-3)
+    assert result.frequency[0] == pytest.approx(0, abs=1e-2)
+    assert np.isfinite(result.dfrequency).all()
 
 
 @pytest.mark.parametrize(

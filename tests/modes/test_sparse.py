@@ -102,24 +102,24 @@ def both(
 ) -> tuple[Modes, Modes]:
     """Return the modes of the sparse and of the dense engine, with the same signs."""
     S = np.eye(K.size) if sensors is None else sensors
-    found = sparse.modes(pencil(K, M), scipy.sparse.csr_array(S), theta, count, True)
+    result = sparse.modes(pencil(K, M), scipy.sparse.csr_array(S), theta, count, True)
     expected = dense.modes(K.dense(), M.dense(), S, theta, count, True)
-    sign = np.where(np.sum(found.phi * expected.phi, axis=0) < 0, -1.0, 1.0)
-    slopes = ModeDerivatives(found.dlam, found.dphi * sign[:, None], found.coincident)
-    return Modes(found.lam, found.phi * sign, slopes), expected
+    sign = np.where(np.sum(result.phi * expected.phi, axis=0) < 0, -1.0, 1.0)
+    slopes = ModeDerivatives(result.dlam, result.dphi * sign[:, None], result.coincident)
+    return Modes(result.lam, result.phi * sign, slopes), expected
 
 
-def agree(found: Modes, expected: Modes, tolerance: float = 1e-8) -> None:
+def agree(result: Modes, expected: Modes, tolerance: float = 1e-8) -> None:
     """Check all that is defined: single modes, and subspaces of coinciding ones."""
     scale = np.abs(expected.lam).max()
-    assert found.lam == pytest.approx(expected.lam, rel=1e-11, abs=1e-11 * scale)
-    assert found.coincident.tolist() == expected.coincident.tolist()
-    assert found.dlam == pytest.approx(expected.dlam, abs=tolerance * np.abs(expected.dlam).max())
-    one = ~expected.coincident
-    for r in np.flatnonzero(one):
+    assert result.lam == pytest.approx(expected.lam, rel=1e-11, abs=1e-11 * scale)
+    assert result.coincident.tolist() == expected.coincident.tolist()
+    assert result.dlam == pytest.approx(expected.dlam, abs=tolerance * np.abs(expected.dlam).max())
+    distinct = ~expected.coincident
+    for r in np.flatnonzero(distinct):
         size = np.abs(expected.dphi[:, r]).max() + np.abs(expected.phi[:, r]).max()
-        assert found.phi[:, r] == pytest.approx(expected.phi[:, r], abs=tolerance)
-        assert found.dphi[:, r] == pytest.approx(expected.dphi[:, r], abs=tolerance * size)
+        assert result.phi[:, r] == pytest.approx(expected.phi[:, r], abs=tolerance)
+        assert result.dphi[:, r] == pytest.approx(expected.dphi[:, r], abs=tolerance * size)
 
 
 @given(
@@ -145,11 +145,11 @@ def test_close_and_repeated_modes(split: float) -> None:
         [two((A, B)).tocoo() for A, B in zip(_terms(K), scaled, strict=True)], K.coefficients, 40
     )
     M2 = sparse_affine([two((A, A)).tocoo() for A in _terms(M)], M.coefficients, 40)
-    found, expected = both(K2, M2, np.ones(5), 3)
-    assert found.coincident.all() == (split == 0.0)
-    agree(found, expected, 1e-7 if split else 1e-8)
+    result, expected = both(K2, M2, np.ones(5), 3)
+    assert result.coincident.all() == (split == 0.0)
+    agree(result, expected, 1e-7 if split else 1e-8)
     if split == 0.0:
-        outer = [np.einsum("srp,tr->stp", m.dphi[:, :2], m.phi[:, :2]) for m in (found, expected)]
+        outer = [np.einsum("srp,tr->stp", m.dphi[:, :2], m.phi[:, :2]) for m in (result, expected)]
         assert outer[0] == pytest.approx(outer[1], abs=1e-8)
 
 
@@ -179,14 +179,14 @@ def nelson(K: SparseAffine, M: SparseAffine, theta: Floats, lam: float, phi: Flo
     right = np.outer(Mt @ phi, phi @ force) - force
     fixed = int(np.argmax(np.abs(phi * (Mt @ phi))))
     keep = scipy.sparse.diags_array((np.arange(phi.size) != fixed).astype(float))
-    one = scipy.sparse.diags_array((np.arange(phi.size) == fixed).astype(float))
+    distinct = scipy.sparse.diags_array((np.arange(phi.size) == fixed).astype(float))
     right[fixed] = 0.0
-    A = (keep @ (Kt - lam * Mt) @ keep + one).tocsc()
+    A = (keep @ (Kt - lam * Mt) @ keep + distinct).tocsc()
     factor = scipy.sparse.linalg.splu(A)
     v = factor.solve(right)
     v += factor.solve(right - A @ v)
-    own = -(Mt @ phi) @ v - 0.5 * phi @ dM
-    out: Floats = v + np.outer(phi, own)
+    chosen = -(Mt @ phi) @ v - 0.5 * phi @ dM
+    out: Floats = v + np.outer(phi, chosen)
     return out
 
 
@@ -196,21 +196,21 @@ def test_nelson(analyse: Callable[..., Any], monkeypatch: pytest.MonkeyPatch) ->
     K, M = lattice(9, 4, 3)
     theta = np.array([1.0, 1.3, 0.8])
     engine = pencil(K, M)
-    found = sparse.modes(engine, np.eye(K.size), theta, 4, True)
+    result = sparse.modes(engine, np.eye(K.size), theta, 4, True)
     for r in range(4):
-        expected = nelson(K, M, theta, found.lam[r], found.phi[:, r])
+        expected = nelson(K, M, theta, result.lam[r], result.phi[:, r])
         scale = np.abs(expected).max()
-        assert found.dphi[:, r] == pytest.approx(expected, abs=1e-8 * scale)
+        assert result.dphi[:, r] == pytest.approx(expected, abs=1e-8 * scale)
 
 
 def test_large_enough_to_restart_and_to_be_shared_between_threads() -> None:
     K, M = lattice(24, 4, 4)
     theta = np.array([1.0, 1.3, 0.8])
-    found = sparse.lowest(pencil(K, M), theta, 12)
+    result = sparse.lowest(pencil(K, M), theta, 12)
     expected = scipy.sparse.linalg.eigsh(
         K.at(theta), 12, M.at(theta), 0.0, return_eigenvectors=False
     )
-    assert found.lam[:12] == pytest.approx(np.sort(expected), rel=1e-10)
+    assert result.lam[:12] == pytest.approx(np.sort(expected), rel=1e-10)
 
 
 def model(K: Floats, M: Floats) -> MatrixModel:
@@ -230,24 +230,24 @@ def test_superlu_alone_gives_the_same(monkeypatch: pytest.MonkeyPatch) -> None:
     theta = np.array([1.0, 1.3, 0.8]) * 1e9
     expected = sparse.modes(pencil(K, M), np.eye(K.size), theta, 4, True)
     monkeypatch.setattr("modefront.linalg.pencil.analyse", superlu.analyse)
-    found = sparse.modes(pencil(K, M), np.eye(K.size), theta, 4, True)
-    assert found.lam == pytest.approx(expected.lam, rel=1e-11)
-    assert np.abs(found.dphi) == pytest.approx(np.abs(expected.dphi), abs=1e-17)
+    result = sparse.modes(pencil(K, M), np.eye(K.size), theta, 4, True)
+    assert result.lam == pytest.approx(expected.lam, rel=1e-11)
+    assert np.abs(result.dphi) == pytest.approx(np.abs(expected.dphi), abs=1e-17)
 
 
 def test_two_factorisations_an_evaluation(costs: Costs) -> None:
-    found = model(np.diag(np.arange(1.0, 41.0)), np.eye(40))
+    result = model(np.diag(np.arange(1.0, 41.0)), np.eye(40))
     for evaluation in range(1, 4):
-        assert found.modes(np.ones(2), 3).lam == pytest.approx([1, 2, 3])
+        assert result.modes(np.ones(2), 3).lam == pytest.approx([1, 2, 3])
         assert costs.eigenproblems == evaluation
         assert costs.factorisations == 2 * evaluation
 
 
 def test_eigenvalues_repeated_more_often_than_a_block_is_wide() -> None:
-    found = model(np.diag([1.0] * 9 + [2.0] * 30), np.eye(39)).modes(np.ones(2), 9)
-    assert found.lam == pytest.approx(np.ones(9))
-    assert found.coincident.all()
-    assert found.dlam == pytest.approx(np.tile([1.0, -1.0], (9, 1)))
+    result = model(np.diag([1.0] * 9 + [2.0] * 30), np.eye(39)).modes(np.ones(2), 9)
+    assert result.lam == pytest.approx(np.ones(9))
+    assert result.coincident.all()
+    assert result.dlam == pytest.approx(np.tile([1.0, -1.0], (9, 1)))
 
 
 def blind(calls: int) -> Callable[..., Ritz]:
@@ -271,8 +271,8 @@ def blind(calls: int) -> Callable[..., Ritz]:
 
 def test_a_missed_mode_is_found(monkeypatch: pytest.MonkeyPatch, costs: Costs) -> None:
     monkeypatch.setattr(sparse, "greatest", blind(1))
-    found = model(np.diag(np.arange(1.0, 41.0)), np.eye(40))
-    assert found.modes(np.ones(2), 3).lam == pytest.approx([1, 2, 3])
+    result = model(np.diag(np.arange(1.0, 41.0)), np.eye(40))
+    assert result.modes(np.ones(2), 3).lam == pytest.approx([1, 2, 3])
     assert costs.factorisations == 4
 
 
@@ -290,28 +290,28 @@ def test_rigid_body_modes_only() -> None:
     K[:3, :3] = [[1.0, -1.0, 0.0], [-1.0, 2.0, -1.0], [0.0, -1.0, 1.0]]
     K[3:, 3:] = np.diag(np.arange(2.0, 11.0))
     K[3:5, 3:5] = [[1.0, -1.0], [-1.0, 1.0]]
-    found = model(K, np.eye(12)).modes(np.ones(2), 2)
-    assert found.lam == pytest.approx([0.0, 0.0], abs=1e-12)
-    assert found.dlam == pytest.approx(np.zeros((2, 2)), abs=1e-12)
+    result = model(K, np.eye(12)).modes(np.ones(2), 2)
+    assert result.lam == pytest.approx([0.0, 0.0], abs=1e-12)
+    assert result.dlam == pytest.approx(np.zeros((2, 2)), abs=1e-12)
 
 
 @pytest.mark.parametrize("count", [1, 3, 6, 8])
 def test_six_rigid_body_modes(count: int) -> None:
     K, M = lattice(6, 3, 3, clamped=False)
     theta = np.array([1.0, 1.3, 0.8])
-    found = sparse.modes(pencil(K, M), np.eye(K.size), theta, count, True)
+    result = sparse.modes(pencil(K, M), np.eye(K.size), theta, count, True)
     expected = dense.decompose(K.at(theta).toarray(), M.at(theta).toarray()).lam[:count]
-    assert found.lam == pytest.approx(expected, rel=1e-10, abs=1e-12)
-    assert found.dlam[:6] == pytest.approx(np.zeros((min(count, 6), 3)), abs=1e-12)
+    assert result.lam == pytest.approx(expected, rel=1e-10, abs=1e-12)
+    assert result.dlam[:6] == pytest.approx(np.zeros((min(count, 6), 3)), abs=1e-12)
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])
 @pytest.mark.parametrize("free", [True, False])
 def test_units_do_not_matter(scale: float, free: bool) -> None:
     K, M = (A.at(np.ones(5)).toarray() for A in network(40, 3, massless=0.4, free=free))
-    expected, found = (model(s * K, M).modes(np.ones(2), 4) for s in (1.0, scale))
+    expected, result = (model(s * K, M).modes(np.ones(2), 4) for s in (1.0, scale))
     top = expected.lam[-1]
-    assert found.lam / scale == pytest.approx(expected.lam, rel=1e-10, abs=1e-12 * top)
+    assert result.lam / scale == pytest.approx(expected.lam, rel=1e-10, abs=1e-12 * top)
 
 
 BROKEN = {
@@ -330,8 +330,8 @@ def test_broken_models(K: Floats, M: Floats, message: str) -> None:
 
 
 def test_modes_without_derivatives_are_the_same() -> None:
-    found = model(np.diag(np.arange(1.0, 41.0)), np.eye(40))
-    with_, without = (found.modes(np.ones(2), 3, derivatives=d) for d in (True, False))
+    result = model(np.diag(np.arange(1.0, 41.0)), np.eye(40))
+    with_, without = (result.modes(np.ones(2), 3, derivatives=d) for d in (True, False))
     assert np.array_equal(with_.lam, without.lam)
     assert np.array_equal(with_.phi, without.phi)
     assert without.derivatives is None
@@ -344,9 +344,9 @@ def test_small_models_are_dense_and_large_ones_sparse() -> None:
     for size, expected in ((20, True), (400, False)):
         K = scipy.sparse.diags_array(np.arange(1.0, size + 1))
         M = scipy.sparse.eye_array(size)
-        found = matrices(["k"], {"k": K}, {"base": M}, {"a": 0, "b": [(1, 0.5), (2, 0.5)]})
+        result = matrices(["k"], {"k": K}, {"base": M}, {"a": 0, "b": [(1, 0.5), (2, 0.5)]})
         with counted() as costs:
-            assert found.modes(np.ones(1), 2).lam == pytest.approx([1, 2])
+            assert result.modes(np.ones(1), 2).lam == pytest.approx([1, 2])
         assert costs.factorisations == (0 if expected else 2)
 
 

@@ -51,7 +51,7 @@ def three() -> Results:
 
 
 @pytest.fixture(scope="module")
-def one() -> Results:
+def single_group() -> Results:
     return solved([FREQUENCIES])
 
 
@@ -90,10 +90,10 @@ def test_lattice_points_of_three_groups_are_not_joined(three: Results) -> None:
             assert n in sizes, "lines go across quantities of one model"
 
 
-def test_a_single_group_is_drawn_too(one: Results) -> None:
-    figure = one.plot.front()
+def test_a_single_group_is_drawn_too(single_group: Results) -> None:
+    figure = single_group.plot.front()
     ticks = [tick.get_text() for tick in figure.axes[0].get_yticklabels()]
-    assert [tick.replace("\\$", "$") for tick in ticks] == one["label"].values.tolist()
+    assert [tick.replace("\\$", "$") for tick in ticks] == single_group["label"].values.tolist()
 
 
 def test_standard_deviations_are_drawn_as_bars(two: Results) -> None:
@@ -149,8 +149,8 @@ def test_matplotlib_is_asked_for(two: Results, monkeypatch: pytest.MonkeyPatch) 
 
 def with_shapes(results: Results, *, geometry: bool) -> xr.Dataset:
     """Return results with mode shapes at sensors, and at the nodes of a frame in space."""
-    own = ["drawn_node", "line", "face", "basis", "sensor", "set", "model_mode"]
-    data = results.dataset.drop_dims(own, errors="ignore")
+    chosen = ["drawn_node", "line", "face", "basis", "sensor", "set", "model_mode"]
+    data = results.dataset.drop_dims(chosen, errors="ignore")
     count = data.sizes["point"], data.sizes["mode"]
     shape = np.tile([[0.5, 1.0], [1.0, -0.7]], (count[0], 1, 1))
     out = data.assign(

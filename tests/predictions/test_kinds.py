@@ -156,12 +156,12 @@ def test_every_kind_returns_what_it_says_it_does(problem: mf.UpdatingProblem) ->
     for prediction in given:
         ready = prediction.complete(problem)
         n = len(ready.places)
-        found = ready.evaluate(problem, problem.start, SEED)
-        assert set(found) == {variable.key for variable in ready.kind.variables}
+        result = ready.evaluate(problem, problem.start, SEED)
+        assert set(result) == {variable.key for variable in ready.kind.variables}
         checked = ready.check(problem, problem.start, SEED)
         expected = ready.kind.check.variables if ready.kind.check else ()
         assert set(checked) == {variable.key for variable in expected}
-        assert all(values.shape == (n,) for values in [*found.values(), *checked.values()])
+        assert all(values.shape == (n,) for values in [*result.values(), *checked.values()])
         assert all(len(values) == n for values in ready.settings.values())
         assert set(ready.settings) == {setting.name for setting in ready.kind.settings}
         names = [variable.name for variable in (*ready.kind.variables, *expected)]

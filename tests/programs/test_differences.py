@@ -53,9 +53,9 @@ def imported(
     return read_jobs(request)
 
 
-def at(found: Imported, quantity: Quantity, theta: Sequence[float]) -> Array:
+def matrix_of(result: Imported, quantity: Quantity, theta: Sequence[float]) -> Array:
     """Return a matrix of the imported terms at theta."""
-    model = model_of(found.terms)
+    model = model_of(result.terms)
     matrix = model.stiffness if quantity == "stiffness" else model.mass
     A = matrix.at(np.array(theta, dtype=float))
     return A if isinstance(A, np.ndarray) else A.toarray()
@@ -66,18 +66,20 @@ THREE = {"base": {}, "E": {"E": 2.0}, "k": {"k": 2.0}, "rho": {"rho": 3.0}}
 
 def test_terms_give_the_matrices_at_other_values(tmp_path: Path) -> None:
     jobs(tmp_path, THREE | {"check": {"E": 0.7, "k": 1.9, "rho": 0.4}})
-    found = imported(
+    result = imported(
         tmp_path,
         [("E", "E"), ("k", "k"), ("rho", "rho")],
         factors=[("rho", 3.0)],
         checks=[("check", {"E": 0.7, "k": 1.9, "rho": 0.4})],
     )
-    assert found.errors[0] < 1e-14
+    assert result.errors[0] < 1e-14
     K, M = structure(E=1.3, k=0.6, rho=1.7)
-    assert np.abs(at(found, "stiffness", [1.3, 0.6, 1.7]) - K).max() < 1e-12 * K.max()
-    assert np.abs(at(found, "mass", [1.3, 0.6, 1.7]) - M).max() < 1e-12 * M.max()
-    assert found.frequencies == pytest.approx(frequencies(*structure())[:6])
-    ranks = {term.name: (sorted(term.matrices), term.dofs, term.rank) for term in found.terms.terms}
+    assert np.abs(matrix_of(result, "stiffness", [1.3, 0.6, 1.7]) - K).max() < 1e-12 * K.max()
+    assert np.abs(matrix_of(result, "mass", [1.3, 0.6, 1.7]) - M).max() < 1e-12 * M.max()
+    assert result.frequencies == pytest.approx(frequencies(*structure())[:6])
+    ranks = {
+        term.name: (sorted(term.matrices), term.dofs, term.rank) for term in result.terms.terms
+    }
     assert ranks["k"] == (["stiffness"], 2, 1), "a spring has the rank 1"
     assert ranks["E"] == (["stiffness"], 9, 3)
     assert ranks["rho"] == (["mass"], 3, 3)
@@ -89,9 +91,9 @@ def test_orders_of_rows_are_matched_by_node_and_direction(tmp_path: Path) -> Non
     K, M = structure(E=2.0)
     names = [labels()[k] for k in order]
     write_opensees(tmp_path / "E", K[np.ix_(order, order)], M[np.ix_(order, order)], names)
-    found = imported(tmp_path, [("E", "E")])
+    result = imported(tmp_path, [("E", "E")])
     right = structure(E=0.5)[0]
-    assert np.abs(at(found, "stiffness", [0.5]) - right).max() < 1e-12 * right.max()
+    assert np.abs(matrix_of(result, "stiffness", [0.5]) - right).max() < 1e-12 * right.max()
     names[3] = (99, 2)
     write_opensees(tmp_path / "E", K, M, names)
     with pytest.raises(InputError, match=r"expected the degrees of freedom of .*, found none at"):
@@ -109,16 +111,16 @@ def test_the_parameter_that_is_not_affine_is_named(tmp_path: Path) -> None:
     with pytest.raises(InputError, match=r"check: expected matrices that are affine in 't' to"):
         imported(tmp_path, runs, checks=[("check", values)])
     jobs(tmp_path, {"three": {"t": 3.0}})
-    found = imported(
+    result = imported(
         tmp_path,
         [("t", "t"), ("t", "three"), ("k", "k")],
         factors=[("t", 2.0), ("t", 3.0)],
         functions={"t": ["t", "t^3"]},
         checks=[("check", values)],
     )
-    assert [term.name for term in found.terms.terms] == ["t", "t^3", "k"]
+    assert [term.name for term in result.terms.terms] == ["t", "t^3", "k"]
     K = structure(t=0.8)[0]
-    assert np.abs(at(found, "stiffness", [0.8, 1.0]) - K).max() < 1e-12 * K.max()
+    assert np.abs(matrix_of(result, "stiffness", [0.8, 1.0]) - K).max() < 1e-12 * K.max()
     with pytest.raises(InputError, match=r"only t, k to differ from .*other changes of the stiff"):
         imported(
             tmp_path,
@@ -139,15 +141,15 @@ def test_quotients_and_products_can_be_declared(tmp_path: Path) -> None:
     for name, L, E in (("base", 1, 1), ("L", 2, 1), ("E", 1, 2), ("check", 1.3, 0.6)):
         write(name, L, E)
     functions = {"L": ["E/L", "1/L^3"], "E": ["E/L"]}
-    found = imported(
+    result = imported(
         tmp_path,
         [("L", "L"), ("E", "E")],
         functions=functions,
         checks=[("check", {"L": 1.3, "E": 0.6})],
     )
     right = K + 3 / 0.7 * part + part / 0.7**3
-    assert np.abs(at(found, "stiffness", [0.7, 3.0]) - right).max() < 1e-11 * right.max()
-    model = model_of(found.terms)
+    assert np.abs(matrix_of(result, "stiffness", [0.7, 3.0]) - right).max() < 1e-11 * right.max()
+    model = model_of(result.terms)
     assert model.above_zero == ("L",)
 
 
@@ -183,8 +185,8 @@ def test_noise_is_dropped_and_hides_nothing_soft(tmp_path: Path) -> None:
         K[3, 3] += 1e16  # a penalty, as programs hold supports
         K += (noise * K.max() * 1e-16) if name == "k" else 0.0
         write_op4(tmp_path / f"{name}.op4", {"KAA": K, "MAA": M}, "dense")
-    found = imported(tmp_path, [("k", "k.op4")], program="nastran")
-    (term,) = found.terms.terms
+    result = imported(tmp_path, [("k", "k.op4")], program="nastran")
+    (term,) = result.terms.terms
     assert (term.dofs, term.rank) == (2, 1)
     block = dense(term.matrices["stiffness"])[np.ix_([2, 11], [2, 11])]
     assert block == pytest.approx(300 * np.array([[1, -1], [-1, 1]]), rel=1e-9)
@@ -194,14 +196,14 @@ def test_text_of_14_digits_gives_terms_without_noise(tmp_path: Path) -> None:
     for name, values in THREE.items():
         write_calculix(tmp_path / name, *structure(**values), labels())
     write_calculix(tmp_path / "check", *structure(E=0.3, k=4.0), labels())
-    found = imported(
+    result = imported(
         tmp_path,
         [("E", "E"), ("k", "k")],
         program="calculix",
         checks=[("check", {"E": 0.3, "k": 4.0})],
     )
-    assert [term.rank for term in found.terms.terms] == [3, 1]
-    assert found.errors[0] < 1e-12
+    assert [term.rank for term in result.terms.terms] == [3, 1]
+    assert result.errors[0] < 1e-12
 
 
 # Degrees of freedom that the program makes
@@ -229,8 +231,8 @@ INTERNAL = [*labels(), (-1, 1), (-1, 2), (-7, 1), (-7, 2)]
 def test_internal_degrees_of_freedom_are_never_dropped(tmp_path: Path, mass: float) -> None:
     for name, E, k in (("base", 1.0, 1.0), ("E", 2.0, 1.0), ("k", 1.0, 2.0)):
         write_abaqus(tmp_path / name, *with_internal(E, k, mass), INTERNAL)
-    found = imported(tmp_path, [("E", "E"), ("k", "k")], program="abaqus")
-    assert found.terms.dofs.size == (15 if mass == 0 else 17)
+    result = imported(tmp_path, [("E", "E"), ("k", "k")], program="abaqus")
+    assert result.terms.dofs.size == (15 if mass == 0 else 17)
     theta = np.array([0.6, 1.7])
     K, M = with_internal(0.6, 1.7, mass)
     live = np.flatnonzero(M.diagonal() > 0)
@@ -239,7 +241,7 @@ def test_internal_degrees_of_freedom_are_never_dropped(tmp_path: Path, mass: flo
         K[np.ix_(dead, dead)], K[np.ix_(dead, live)]
     )
     right = frequencies(S, M[np.ix_(live, live)])[:8]
-    lam = model_of(found.terms).full_modes(theta, 8).lam
+    lam = model_of(result.terms).full_modes(theta, 8).lam
     assert np.sqrt(lam) / (2 * np.pi) == pytest.approx(right, rel=1e-10)
 
 
@@ -248,9 +250,9 @@ def test_what_several_parameters_act_on_is_kept(tmp_path: Path) -> None:
         K, M = with_internal(E)
         K[16, 16] += 1.0  # does not scale with E
         write_abaqus(tmp_path / name, K, M, INTERNAL)
-    found = imported(tmp_path, [("E", "E")], program="abaqus")
-    assert found.terms.dofs.size == 17
-    assert any("2 degrees of freedom of the program are kept" in note for note in found.notes)
+    result = imported(tmp_path, [("E", "E")], program="abaqus")
+    assert result.terms.dofs.size == 17
+    assert any("2 degrees of freedom of the program are kept" in note for note in result.notes)
 
 
 def test_constraints_with_multipliers_are_refused(tmp_path: Path) -> None:
@@ -270,8 +272,8 @@ def test_rigid_bodies_and_massless_degrees_of_freedom_are_said(tmp_path: Path) -
     names = [(1, 1), (2, 1), (3, 1)]
     for name, factor in (("base", 1.0), ("k", 2.0)):
         write_opensees(tmp_path / name, factor * K, np.diag([1.0, 0.0, 1.0]), names)
-    found = imported(tmp_path, [("k", "k")])
-    assert found.floating
-    assert found.frequencies == pytest.approx([0.0, np.sqrt(1.0) / (2 * np.pi)], abs=1e-9)
-    assert all_terms(found.terms, "stiffness").keys() == {"k"}
-    assert any("1 degrees of freedom have no mass" in note for note in found.notes)
+    result = imported(tmp_path, [("k", "k")])
+    assert result.floating
+    assert result.frequencies == pytest.approx([0.0, np.sqrt(1.0) / (2 * np.pi)], abs=1e-9)
+    assert all_terms(result.terms, "stiffness").keys() == {"k"}
+    assert any("1 degrees of freedom have no mass" in note for note in result.notes)

@@ -65,10 +65,10 @@ def estimate(problem: UpdatingProblem) -> np.ndarray:
 
     bounds = problem.lower, problem.upper
     tolerances = {"ftol": 1e-15, "xtol": 1e-12, "gtol": 1e-15}
-    found = scipy.optimize.least_squares(
+    result = scipy.optimize.least_squares(
         residuals, problem.start, slopes, bounds=bounds, **tolerances
     )
-    return np.asarray(found.x)
+    return np.asarray(result.x)
 
 
 @pytest.fixture
@@ -111,7 +111,7 @@ def test_an_imported_study_needs_data_and_sensors_only(small: Path) -> None:
 
 
 @pytest.mark.parametrize(
-    ("deck", "said"),
+    ("deck", "text"),
     [
         (
             "set k 900.0\nset E 40.0\n",
@@ -123,15 +123,15 @@ def test_an_imported_study_needs_data_and_sensors_only(small: Path) -> None:
         ("set k 900.0\n", ""),
     ],
 )
-def test_a_factor_that_the_decks_contradict(small: Path, deck: str, said: str) -> None:
+def test_a_factor_that_the_decks_contradict(small: Path, deck: str, text: str) -> None:
     (small.parent / "k.tcl").write_text(deck)
     result = modefront(
         *("import", "opensees", small.parent / "base"),
         *("--parameter", f"k={small.parent / 'k'}", "-o", small.parent / "again"),
     )
     assert result.exit_code == 0, result.output + str(result.exception)
-    assert said in result.output
-    assert ("the decks differ" in result.output) == bool(said)
+    assert text in result.output
+    assert ("the decks differ" in result.output) == bool(text)
 
 
 def test_a_list_of_directions_makes_a_sensor_each(small: Path) -> None:
@@ -142,8 +142,8 @@ def test_a_list_of_directions_makes_a_sensor_each(small: Path) -> None:
     header, *rows = data.read_text().splitlines()
     header = ",".join("pz" if name == "a" else name for name in header.split(","))
     data.write_text("\n".join([f"{header},py", *(f"{row}," for row in rows)]))
-    found = load(file).problem.model
-    assert set(found.sensors) == {*single, "pz", "py"} - {"a"}
+    result = load(file).problem.model
+    assert set(result.sensors) == {*single, "pz", "py"} - {"a"}
 
 
 def test_sensors_in_local_axes(small: Path) -> None:
@@ -253,8 +253,8 @@ def test_parameters_of_quotients_stay_above_zero(small: Path) -> None:
 )
 def test_options_that_are_wrong(tmp_path: Path, arguments: list[str], message: str) -> None:
     result = modefront("import", "opensees", tmp_path / "base", *arguments, "-o", tmp_path / "o")
-    said = result.output + (str(result.exception) if result.exception else "")
-    assert message in said
+    text = result.output + (str(result.exception) if result.exception else "")
+    assert message in text
     assert not (tmp_path / "o").exists()
 
 
@@ -288,11 +288,11 @@ def test_a_model_is_exported(small: Path) -> None:
     assert {name: float(value) for name, value in rows[1:]} == values
     K, M = structure(E=values["E"], k=values["k"])
     for name, right in (("K", K), ("M", M)):
-        for found in (
+        for computed in (
             scipy.io.mmread(folder / f"{name}.mtx").toarray(),
             scipy.sparse.load_npz(folder / f"{name}.npz").toarray(),
         ):
-            assert np.abs(found - right).max() < 1e-12 * right.max()
+            assert np.abs(computed - right).max() < 1e-12 * right.max()
     assert read_dofs(folder / "dofs.csv").node.tolist() == [n for n, _ in labels()]
     deck = (folder / "deck.txt").read_text()
     assert f"set k {300 * values['k']:.9g}" in deck
@@ -307,8 +307,8 @@ def test_the_study_of_results_is_found_wherever_it_lies(
     text = study.read_text() + "\n[pareto]\npoints = 2\n[identifiability]\nmodels = 0\n"
     study.write_text(text + "[search]\nstarts = 1\nlimit = 1\nevolutions = 0\n")
     assert modefront("run", study, "-o", results).exit_code in (0, 1)
-    found = modefront("export", results, "-o", tmp_path / "a")
-    assert found.exit_code == 0, found.output + str(found.exception)
+    result = modefront("export", results, "-o", tmp_path / "a")
+    assert result.exit_code == 0, result.output + str(result.exception)
     shutil.rmtree(results / "tasks")
     lost = str(modefront("export", results, "-o", tmp_path / "b").exception)
     assert "found none: pass --study FILE" in lost
@@ -593,8 +593,8 @@ def test_a_deck_that_does_not_fit_its_matrices(tmp_path: Path) -> None:
         tmp_path / "o",
     ]
     (tmp_path / "plate.dat").write_text(deck.replace("SPC1,1,12,5,10", "SPC1,1,12,5"))
-    said = str(modefront(*command).exception)
-    assert "134 degrees of freedom, as the matrices have, in the deck (or --dofs FILE)" in said
+    text = str(modefront(*command).exception)
+    assert "134 degrees of freedom, as the matrices have, in the deck (or --dofs FILE)" in text
     (tmp_path / "plate.dat").write_text(deck.replace("SPC1,1,12,5,10", "SPC1,1,12,22,10"))
     assert "a stiffness matrix that fits the nodes" in str(modefront(*command).exception)
 

@@ -65,8 +65,8 @@ def test_opensees_hands_over_its_matrices(tmp_path: Path) -> None:
     frequencies = [float(x) for x in done.stdout.split()[:4]]
     runs = [("E", tmp_path / "E"), ("k", tmp_path / "k")]
     checks = [(tmp_path / "check", {"E": 0.7, "k": 3.0})]
-    found = read_jobs(Request(PROGRAMS["opensees"], tmp_path / "base", runs, checks=checks))
-    assert found.frequencies is not None
-    assert found.frequencies[:4] == pytest.approx(frequencies, rel=1e-8)
-    assert found.errors[0] < 1e-14
-    assert found.terms.dofs.sensor(6, "x") == [(24, 1.0)]
+    result = read_jobs(Request(PROGRAMS["opensees"], tmp_path / "base", runs, checks=checks))
+    assert result.frequencies is not None
+    assert result.frequencies[:4] == pytest.approx(frequencies, rel=1e-8)
+    assert result.errors[0] < 1e-14
+    assert result.terms.dofs.sensor(6, "x") == [(24, 1.0)]

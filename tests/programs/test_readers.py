@@ -40,8 +40,8 @@ def assert_same(job: Job, tolerance: float = 1e-13, K: Array = K, M: Array = M) 
     if job.labelled:
         rows = list(zip(job.dofs.node.tolist(), job.dofs.direction.tolist(), strict=True))
         order = np.array([rows.index(label) for label in labels()])
-    for found, right in ((job.stiffness, K), (job.mass, M)):
-        A = dense(found)[np.ix_(order, order)]
+    for result, right in ((job.stiffness, K), (job.mass, M)):
+        A = dense(result)[np.ix_(order, order)]
         assert np.abs(A - right).max() <= tolerance * np.abs(right).max()
 
 
@@ -87,8 +87,8 @@ def test_exponents_of_three_digits_have_no_letter_in_text(tmp_path: Path) -> Non
     small[3, 4] = small[4, 3] = -2.5e-123
     write_op4_text(tmp_path / "a.op4", {"KAA": small, "MAA": M}, "bigmat")
     assert "1.5000000000000000-105" in (tmp_path / "a.op4").read_text()
-    found = dense(read("nastran", tmp_path / "a.op4").stiffness)
-    assert (found[0, 1], found[3, 4]) == (1.5e-105, -2.5e-123)
+    result = dense(read("nastran", tmp_path / "a.op4").stiffness)
+    assert (result[0, 1], result[3, 4]) == (1.5e-105, -2.5e-123)
 
 
 def test_matrices_are_chosen_by_name(tmp_path: Path) -> None:

@@ -21,8 +21,8 @@ def test_the_frame_is_found_from_a_hundred_random_starts(costs: Costs) -> None:
     assert structure.true is not None
     for _ in range(100):
         start = rng.uniform(structure.lower, structure.upper)
-        found = weighted_minimum(problem, np.ones(2), start)
-        assert np.abs(found.theta - structure.true).max() < 1e-3
+        result = weighted_minimum(problem, np.ones(2), start)
+        assert np.abs(result.theta - structure.true).max() < 1e-3
     assert costs.eigenproblems <= 3
 
 
@@ -33,13 +33,13 @@ def test_models_of_the_bridge_are_the_same_with_and_without_reduction(weight: fl
         frequencies_and_shapes(structure, reduced=reduced) for reduced in (True, False)
     )
     with counted() as costs:
-        found = weighted_minimum(problem, w, problem.start)
+        result = weighted_minimum(problem, w, problem.start)
     assert costs.eigenproblems <= 3
     expected = weighted_minimum(full, w, full.start)
-    assert found.converged
+    assert result.converged
     assert expected.converged
     # Fits this poor ask for more of the derivatives of shapes than of the modes themselves.
-    assert (np.abs(found.theta - expected.theta) / (full.upper - full.lower)).max() < 1e-3
+    assert (np.abs(result.theta - expected.theta) / (full.upper - full.lower)).max() < 1e-3
     least = w @ full.evaluate(expected.theta).J
-    assert w @ full.evaluate(found.theta).J == pytest.approx(least, rel=1e-6)
-    assert w @ problem.evaluate(found.theta).J == pytest.approx(least, rel=1e-6)
+    assert w @ full.evaluate(result.theta).J == pytest.approx(least, rel=1e-6)
+    assert w @ problem.evaluate(result.theta).J == pytest.approx(least, rel=1e-6)

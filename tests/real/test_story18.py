@@ -26,17 +26,17 @@ def frame() -> mf.UpdatingProblem:
     if not FILE.is_file():
         pytest.skip(f"no {FILE}: measured data lie beside the project and are not part of it")
     with np.load(FILE, allow_pickle=False) as file:
-        found = {name: file[name] for name in file.files}
+        result = {name: file[name] for name in file.files}
 
     def matrix(name: str) -> scipy.sparse.csr_array:
-        entries = found[f"{name}_val"], (found[f"{name}_row"], found[f"{name}_col"])
+        entries = result[f"{name}_val"], (result[f"{name}_row"], result[f"{name}_col"])
         return scipy.sparse.csr_array(entries, shape=(STORIES, STORIES))
 
     stiffness = {name: matrix(f"K{i}") for i, name in enumerate(NAMES)}
-    sensors = {f"floor{dof + 1}": int(dof) for dof in found["meas_dofs0"]}
+    sensors = {f"floor{dof + 1}": int(dof) for dof in result["meas_dofs0"]}
     model = mf.matrices(NAMES, stiffness, {"base": matrix("M")}, sensors)
-    frequencies = np.sqrt(found["lambda_exp"]) / (2 * np.pi)
-    data = mf.modal_data(frequencies, found["psi_exp"].T, tuple(sensors))
+    frequencies = np.sqrt(result["lambda_exp"]) / (2 * np.pi)
+    data = mf.modal_data(frequencies, result["psi_exp"].T, tuple(sensors))
     groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     bounds = dict.fromkeys(NAMES, (0.7, 1.3))
     return mf.updating_problem(model, data, groups, bounds, dict.fromkeys(NAMES, 1.0))
@@ -50,8 +50,8 @@ def first_two(frame: mf.UpdatingProblem) -> mf.UpdatingProblem:
 
 
 def ranks(frame: mf.UpdatingProblem) -> list[int]:
-    found = [combinations(frame, frame.start, group) for group in (0, 1, None)]
-    return [sum(one.share > NONE for one in rows) for rows in found]
+    result = [combinations(frame, frame.start, group) for group in (0, 1, None)]
+    return [sum(row.share > NONE for row in rows) for rows in result]
 
 
 def test_each_measured_number_determines_one_combination(frame: mf.UpdatingProblem) -> None:
@@ -59,7 +59,7 @@ def test_each_measured_number_determines_one_combination(frame: mf.UpdatingProbl
     assert ranks(frame) == [3, 3 * 5, 18]
     assert ranks(first_two(frame)) == [2, 2 * 5, 12]
     scaled = combinations(frame, frame.start, 1)
-    free = np.array([one.direction for one in scaled if one.share <= NONE])
+    free = np.array([combination.direction for combination in scaled if combination.share <= NONE])
     together = np.ones(STORIES) / np.sqrt(STORIES)
     assert np.linalg.norm(free @ together) == pytest.approx(1, abs=1e-9)
 
@@ -82,10 +82,10 @@ def test_the_results_say_so_too(frame: mf.UpdatingProblem) -> None:
         first_two(frame), points=2, search=search, identifiability=mf.Identifiability(models=10)
     ).dataset
     share = data["combination_share"].values
-    at, of = data["combination_at"].values, data["combination_of"].values
+    position, of = data["combination_at"].values, data["combination_of"].values
     for place in ("optimal-weights", "edge-shapes"):
         counts = [
-            int((share[(at == place) & (of == name)] > NONE).sum())
+            int((share[(position == place) & (of == name)] > NONE).sum())
             for name in ("frequencies", "shapes", "all data")
         ]
         assert counts == [2, 10, 12]

@@ -37,8 +37,8 @@ def test_random_starts_find_the_true_concrete_frame(costs: Costs) -> None:
     problem = frequencies_and_shapes(frame, Pairing("order"))
     rng = np.random.default_rng(7)
     for theta in rng.uniform(frame.lower, frame.upper, (6, 12)):
-        found = descend(problem, weighted(np.ones(2)), begin(problem.evaluate(theta)))
-        np.testing.assert_allclose(found.theta, frame.true, atol=1e-5)
+        result = descend(problem, weighted(np.ones(2)), begin(problem.evaluate(theta)))
+        np.testing.assert_allclose(result.theta, frame.true, atol=1e-5)
     assert costs.eigenproblems < 6 * 25
 
 
@@ -52,11 +52,11 @@ def test_small_sensors_of_the_steel_bridge_that_are_reversed() -> None:
     for name in ("dof16", "dof936", "dof818", "dof300", "dof893", "dof887", "dof886", "dof851"):
         shape = problem.data.shape.copy()
         shape[..., problem.data.sensors.index(name)] *= -1
-        (found,) = diagnose(compare(replace(problem, data=replace(problem.data, shape=shape))))
-        assert isinstance(found, OpposedSensor)
-        assert (found.sensors, found.modes) == ((name,), 5)
-        assert found.agreement < -0.9 < 0.9 < found.usual
-        assert f"sensor {name} moves against the model in 5 modes" in in_words(found)
+        (result,) = diagnose(compare(replace(problem, data=replace(problem.data, shape=shape))))
+        assert isinstance(result, OpposedSensor)
+        assert (result.sensors, result.modes) == ((name,), 5)
+        assert result.agreement < -0.9 < 0.9 < result.usual
+        assert f"sensor {name} moves against the model in 5 modes" in in_words(result)
 
 
 def test_modes_of_the_steel_bridge_come_in_another_order_than_in_the_test() -> None:

@@ -50,7 +50,7 @@ def state_space(system, soil):
 def test_responses_are_those_of_the_whole_structure_integrated(soil, modulation):
     problem = FirstPassage(SYSTEM, NOISE, 8.0, 0.05, filter=soil, modulation=modulation)
     z = np.random.default_rng(3).standard_normal((2, 2, 160))
-    found = np.array([x.copy() for x in Convolution(gaussian_response(problem), 5).magnitudes(z)])
+    result = np.array([x.copy() for x in Convolution(gaussian_response(problem), 5).magnitudes(z)])
     a, b, c = state_space(SYSTEM, soil)
     middle = (np.arange(160) + 0.5) * 0.05
     q = np.ones(160) if modulation is None else modulation(middle)
@@ -59,7 +59,7 @@ def test_responses_are_those_of_the_whole_structure_integrated(soil, modulation)
         held = np.vstack([w[sample].T, np.zeros((1, 2))])
         plant = StateSpace(a, b, c, np.zeros((3, 2)))
         _, y, _ = lsim(plant, held, np.arange(161) * 0.05, interp=False)
-        np.testing.assert_allclose(found[:, sample], abs(y[1:].T), rtol=1e-9, atol=1e-11)
+        np.testing.assert_allclose(result[:, sample], abs(y[1:].T), rtol=1e-9, atol=1e-11)
 
 
 @pytest.mark.parametrize("soil", [None, SOIL], ids=["white", "filtered"])
@@ -77,7 +77,7 @@ def test_design_excitations_give_the_response_and_its_deviation(soil):
     np.testing.assert_allclose(length, response.deviation, atol=1e-7 * scale, rtol=1e-9)
 
 
-def one(omega, zeta):
+def oscillator(omega, zeta):
     return ModalSystem(np.array([omega]), np.array([zeta]), np.eye(1), np.eye(1))
 
 
@@ -88,7 +88,7 @@ def deviation_at_the_end(problem):
 def test_stationary_deviation_under_white_noise():
     """σ² = πS/(2ζω³) as Δt → 0, with an error that falls as Δt²."""
     exact = np.sqrt(np.pi * 1.3 / (2 * 0.05 * 7.85**3))
-    problem = FirstPassage(one(7.85, 0.05), WhiteNoise(1.3, Sided.TWO), 40.0, 0.04)
+    problem = FirstPassage(oscillator(7.85, 0.05), WhiteNoise(1.3, Sided.TWO), 40.0, 0.04)
     coarse = deviation_at_the_end(problem) / exact - 1
     fine = deviation_at_the_end(replace(problem, time_step=0.02)) / exact - 1
     assert abs(fine) < 3e-3
@@ -97,7 +97,7 @@ def test_stationary_deviation_under_white_noise():
 
 def test_stationary_deviation_behind_the_filter():
     """σ² = S ∫ |F|² |H|² dω."""
-    problem = FirstPassage(one(7.85, 0.05), NOISE, 40.0, 0.005, filter=SOIL)
+    problem = FirstPassage(oscillator(7.85, 0.05), NOISE, 40.0, 0.005, filter=SOIL)
 
     def density(w):
         soil = (15**2 + 2j * 0.6 * 15 * w) / (15**2 - w**2 + 2j * 0.6 * 15 * w)
@@ -109,7 +109,7 @@ def test_stationary_deviation_behind_the_filter():
 
 def test_modulation_is_taken_at_the_middle_of_a_step():
     """Noise that stops halfway leaves free vibration: the deviation of an earlier end, decayed."""
-    system = one(7.85, 0.02)
+    system = oscillator(7.85, 0.02)
     whole = FirstPassage(system, NOISE, 10.0, 0.02, modulation=lambda t: (t < 5.0).astype(float))
     half = FirstPassage(system, NOISE, 5.0, 0.02)
     early = gaussian_response(half).deviation[0]

@@ -38,17 +38,17 @@ def seed(number):
 
 @pytest.mark.parametrize("method", CONDITIONAL, ids=lambda m: m.__name__)
 def test_reference_values(method):
-    for found in method(REFERENCE, list(REFERENCE_VALUES), 4000, seed(7), 1):
-        expected = REFERENCE_VALUES[found.level]
-        assert abs(found.probability - expected) < 4 * found.standard_error
-        assert found.coefficient_of_variation < 0.05
+    for result in method(REFERENCE, list(REFERENCE_VALUES), 4000, seed(7), 1):
+        expected = REFERENCE_VALUES[result.level]
+        assert abs(result.probability - expected) < 4 * result.standard_error
+        assert result.coefficient_of_variation < 0.05
 
 
 def test_reference_values_by_counting():
-    found, _ = monte_carlo(REFERENCE, [1.6, 1.8], 20_000, seed(8), 1)
-    assert abs(found.probability - 8.37e-3) < 4 * found.standard_error
-    bernoulli = np.sqrt((1 - found.probability) / found.probability)
-    assert found.unit_coefficient_of_variation == pytest.approx(bernoulli, rel=1e-3)
+    result, _ = monte_carlo(REFERENCE, [1.6, 1.8], 20_000, seed(8), 1)
+    assert abs(result.probability - 8.37e-3) < 4 * result.standard_error
+    bernoulli = np.sqrt((1 - result.probability) / result.probability)
+    assert result.unit_coefficient_of_variation == pytest.approx(bernoulli, rel=1e-3)
 
 
 def test_unit_coefficients_of_variation_of_the_reference():
@@ -72,13 +72,13 @@ def test_one_time_step_is_known_exactly(method):
     """One response at one time: P = 2Φ(-b/σ), without any spread."""
     problem = FirstPassage(OSCILLATOR, WhiteNoise(1.0, Sided.TWO), 0.02, 0.02)
     sigma = gaussian_response(problem).deviation[0, 0]
-    for found, beta in zip(
+    for result, beta in zip(
         method(problem, sigma * np.array([0.1, 3.0, 30.0]), 50, seed(0), 1),
         (0.1, 3.0, 30.0),
         strict=True,
     ):
-        assert found.probability == pytest.approx(2 * norm.sf(beta), rel=1e-9)
-        assert found.unit_coefficient_of_variation < 1e-9
+        assert result.probability == pytest.approx(2 * norm.sf(beta), rel=1e-9)
+        assert result.unit_coefficient_of_variation < 1e-9
 
 
 @pytest.mark.parametrize("method", [*CONDITIONAL, monte_carlo], ids=lambda m: m.__name__)
@@ -96,8 +96,8 @@ def test_two_time_steps_against_quadrature(method, beta):
 
     bound = min(level / a[0, 0], 9.0)
     exact = 1 - quad(stays, -bound, bound, epsabs=1e-12)[0]
-    (found,) = method(problem, [level], 20_000, seed(4), 1)
-    assert abs(found.probability - exact) < 4 * found.standard_error + 1e-9
+    (result,) = method(problem, [level], 20_000, seed(4), 1)
+    assert abs(result.probability - exact) < 4 * result.standard_error + 1e-9
 
 
 @st.composite
@@ -129,9 +129,9 @@ def test_estimators_agree_with_counting(problem):
     (counted,) = monte_carlo(problem, [level], 20_000, seed(11))
     assert 3e-3 < counted.probability < 5.5e-2
     for method in CONDITIONAL:
-        (found,) = method(problem, [level], 2_000, seed(12), 1)
-        error = np.hypot(found.standard_error, counted.standard_error)
-        assert abs(found.probability - counted.probability) < 4 * error
+        (result,) = method(problem, [level], 2_000, seed(12), 1)
+        error = np.hypot(result.standard_error, counted.standard_error)
+        assert abs(result.probability - counted.probability) < 4 * error
 
 
 @settings(max_examples=12, deadline=None)
@@ -142,9 +142,9 @@ def test_responses_and_levels_scale_together(problem, power):
     scaled = replace(problem, system=replace(system, output=factor * system.output))
     level = 2 * gaussian_response(problem).deviation.max()
     for method in METHODS.values():
-        (found,) = method(problem, [level], 40, seed(5), 1)
+        (result,) = method(problem, [level], 40, seed(5), 1)
         (other,) = method(scaled, [factor * level], 40, seed(5), 1)
-        assert replace(other, level=level) == found
+        assert replace(other, level=level) == result
 
 
 def test_directions_never_have_the_larger_spread():
@@ -161,14 +161,14 @@ def test_directions_never_have_the_larger_spread():
 def test_a_response_counted_twice_fails_no_more_often():
     twice = replace(REFERENCE, system=replace(OSCILLATOR, output=np.array([[1.0], [-1.0]])))
     for method in CONDITIONAL:
-        (found,) = method(twice, [1.8], 4000, seed(3), 1)
-        assert abs(found.probability - 1.144e-3) < 4 * found.standard_error
+        (result,) = method(twice, [1.8], 4000, seed(3), 1)
+        assert abs(result.probability - 1.144e-3) < 4 * result.standard_error
 
 
 def test_an_input_split_in_two_is_the_same_input():
     split = replace(REFERENCE, system=replace(OSCILLATOR, input=np.array([[0.6, 0.8]])))
-    (found,) = directional_importance_sampling(split, [1.8], 4000, seed(3))
-    assert abs(found.probability - 1.144e-3) < 4 * found.standard_error
+    (result,) = directional_importance_sampling(split, [1.8], 4000, seed(3))
+    assert abs(result.probability - 1.144e-3) < 4 * result.standard_error
 
 
 @pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
@@ -189,23 +189,28 @@ def test_one_pass_serves_levels_far_apart():
 
 def test_result_says_what_it_depends_on():
     problem = replace(REFERENCE, duration=2.0, noise=WhiteNoise(2.0, Sided.ONE))
-    (found,) = directional_importance_sampling(problem, [0.8], 100, seed(0))
-    assert (found.level, found.samples, found.duration, found.time_step) == (0.8, 100, 2.0, 0.02)
-    assert (found.density, found.sided) == (2.0, Sided.ONE)
-    assert (found.barrier, found.start) == ("two-sided", "at rest")
-    assert found.method == "directional importance sampling"
-    delta = found.unit_coefficient_of_variation
-    assert found.coefficient_of_variation == pytest.approx(delta / 10)
-    assert found.standard_error == pytest.approx(found.probability * delta / 10)
+    (result,) = directional_importance_sampling(problem, [0.8], 100, seed(0))
+    assert (result.level, result.samples, result.duration, result.time_step) == (
+        0.8,
+        100,
+        2.0,
+        0.02,
+    )
+    assert (result.density, result.sided) == (2.0, Sided.ONE)
+    assert (result.barrier, result.start) == ("two-sided", "at rest")
+    assert result.method == "directional importance sampling"
+    delta = result.unit_coefficient_of_variation
+    assert result.coefficient_of_variation == pytest.approx(delta / 10)
+    assert result.standard_error == pytest.approx(result.probability * delta / 10)
 
 
 @pytest.mark.parametrize("method", METHODS.values(), ids=METHODS)
 def test_nothing_sampled_is_said(method):
     """A barrier beyond the range of floating point, or one that no sample reached."""
-    (found,) = method(replace(REFERENCE, duration=1.0), [100.0], 10, seed(0), 1)
-    assert found.probability == 0
-    assert found.coefficient_of_variation == np.inf
-    assert np.isnan(found.standard_error)
+    (result,) = method(replace(REFERENCE, duration=1.0), [100.0], 10, seed(0), 1)
+    assert result.probability == 0
+    assert result.coefficient_of_variation == np.inf
+    assert np.isnan(result.standard_error)
 
 
 def test_halving_the_step():

@@ -35,10 +35,10 @@ def chain() -> xr.Dataset:
     peak = mf.PeakResponse(
         name="hammer", force="floor3", response=["floor1"], damping=0.02, band=(1.0, 30.0)
     )
-    found = mf.solve(
+    result = mf.solve(
         problem, points=8, seed=1, search=mf.Search(starts=2, limit=4), predictions=[peak]
     )
-    return found.dataset.assign_attrs(study="three storeys", inputs="0123abcd")
+    return result.dataset.assign_attrs(study="three storeys", inputs="0123abcd")
 
 
 @cache
@@ -116,8 +116,8 @@ def hostile() -> xr.Dataset:
     out = out.drop_dims("finding").assign(finding=("finding", np.array(finding)))
     reference = str(data.attrs["reference"])
     where = data["label"].values.astype(str).tolist().index(reference)
-    found = str(out["label"].values[where])
-    return out.assign_attrs(study=f"</title>{HOSTILE}", inputs=HOSTILE, reference=found)
+    result = str(out["label"].values[where])
+    return out.assign_attrs(study=f"</title>{HOSTILE}", inputs=HOSTILE, reference=result)
 
 
 def written(folder: Path, *results: xr.Dataset) -> Path:

@@ -318,5 +318,5 @@ def test_a_page_fits_and_axe_finds_nothing(
     for details in page.page.locator("details").all():
         details.locator("summary").click()
     page.page.evaluate(AXE.read_text(encoding="utf-8"))
-    found = page.page.evaluate("axe.run().then((result) => result.violations)")
-    assert [(each["id"], [node["html"] for node in each["nodes"]]) for each in found] == []
+    result = page.page.evaluate("axe.run().then((result) => result.violations)")
+    assert [(each["id"], [node["html"] for node in each["nodes"]]) for each in result] == []

@@ -55,11 +55,11 @@ class Bidi:
     async def evaluate(self, script: str) -> Any:
         """Return a text, a number or a truth that a script gives."""
         target = {"context": self.context}
-        found = await self.command(
+        result = await self.command(
             "script.evaluate", expression=script, target=target, awaitPromise=True
         )
-        assert found["type"] == "success", found
-        return found["result"].get("value")
+        assert result["type"] == "success", result
+        return result["result"].get("value")
 
     async def keys(self, *keys: str) -> None:
         """Press keys, one after the other."""
@@ -124,8 +124,8 @@ def firefox(downloads: Path) -> Iterator[str]:
     try:
         assert process.stderr is not None
         for line in process.stderr:
-            if found := re.search(r"WebDriver BiDi listening on (ws://\S+)", line):
-                yield f"{found[1]}/session"
+            if result := re.search(r"WebDriver BiDi listening on (ws://\S+)", line):
+                yield f"{result[1]}/session"
                 break
         else:
             pytest.skip("this Firefox does not offer WebDriver BiDi")
@@ -207,10 +207,10 @@ async def walk(address: str, file: Path, markup: Path, downloads: Path) -> None:
 
     if AXE.is_file():
         await bidi.evaluate(AXE.read_text(encoding="utf-8") + "\n;0")
-        found = await bidi.evaluate(
+        result = await bidi.evaluate(
             "axe.run().then((r) => JSON.stringify(r.violations.map((each) => each.id)))"
         )
-        assert json.loads(found) == []
+        assert json.loads(result) == []
     url = markup.as_uri()
     await bidi.command("browsingContext.navigate", context=bidi.context, url=url, wait="complete")
     await bidi.evaluate(MARKS)

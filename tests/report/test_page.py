@@ -67,9 +67,9 @@ def test_the_page_holds_what_the_results_hold() -> None:
     assert front["order"] == front_points(data).tolist()
     np.testing.assert_array_equal(np.array(front["theta"]), data["theta"].values)
     assert front["label"][front["reference"]] == data.attrs["reference"]
-    (prediction, at) = front["predictions"]
+    (prediction, position) = front["predictions"]
     assert prediction["values"] == data["frf_peak"].values[:, 0].tolist()
-    assert (prediction["place"], at["unit"]) == ("hammer: floor1", "Hz")
+    assert (prediction["place"], position["unit"]) == ("hammer: floor1", "Hz")
     assert front["measuredStd"] == pytest.approx(
         (0.01 * data["measured_frequency"].values).tolist()
     )
@@ -89,10 +89,10 @@ def test_what_is_shipped_is_built_from_the_sources() -> None:
     for name in names:
         sources.update(name.encode() + b"\0" + (REPORT / name).read_bytes() + b"\0")
     style = (PACKAGE / "style.css").read_bytes()
-    said = re.search(rb"sources (\w+), built (\w+)", first)
-    assert said is not None
-    assert said[1].decode() == sources.hexdigest(), "npm run build in the folder report"
-    assert said[2].decode() == hashlib.sha256(script + style).hexdigest(), "it was edited by hand"
+    text = re.search(rb"sources (\w+), built (\w+)", first)
+    assert text is not None
+    assert text[1].decode() == sources.hexdigest(), "npm run build in the folder report"
+    assert text[2].decode() == hashlib.sha256(script + style).hexdigest(), "it was edited by hand"
 
 
 def test_what_is_not_known_is_null_and_what_is_infinite_is_infinite() -> None:
@@ -156,16 +156,16 @@ def test_a_common_basis_keeps_shapes_of_many_models_small() -> None:
     problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(bounds, 1.0))
     t = np.linspace(0, 1, 12)
     thetas = np.column_stack([0.8 + 0.4 * t, 1.2 - 0.4 * t])
-    found = mode_shapes(problem, thetas, np.tile([1.0, 2.0, 3.0], (len(t), 1)))
-    assert found.basis is not None
-    assert found.coefficient is not None
-    assert len(found.basis) <= 12
+    result = mode_shapes(problem, thetas, np.tile([1.0, 2.0, 3.0], (len(t), 1)))
+    assert result.basis is not None
+    assert result.coefficient is not None
+    assert len(result.basis) <= 12
     geometry = geometry_of(model)
     assert geometry is not None
     Phi = model.full_modes(thetas[5], 3).Phi
     u = geometry.displacement(Phi)[:, drawing(geometry).nodes]
     u /= np.sqrt((u**2).sum(axis=2)).max(axis=1)[:, None, None]
-    drawn = np.tensordot(found.coefficient[5], found.basis, 1)
+    drawn = np.tensordot(result.coefficient[5], result.basis, 1)
     drawn *= np.sign((drawn * u).sum(axis=(1, 2)))[:, None, None]
     np.testing.assert_allclose(drawn, u, atol=5e-3)
 
@@ -198,14 +198,14 @@ def test_only_the_surface_of_solids_is_drawn() -> None:
 
 
 def test_words_say_what_was_found_and_what_is_open() -> None:
-    said = {topic.heading: " ".join(topic.sentences) for topic in topics(chain())}
-    assert "3 measured modes in 2 groups" in said["What was studied"]
-    assert "normal-boundary intersection" in said["What was studied"]
-    assert "Pareto-optimal models have frequencies" in said["How well the best models do"]
-    assert "the nominal model has 8.2 %" in said["How well the best models do"]
-    assert "k1 from" in said["What the data leave open"]
-    assert "differ: peak of hammer: floor1 by" in said["What the data leave open"]
-    assert "converged" in said["What to beware of"]
+    text = {topic.heading: " ".join(topic.sentences) for topic in topics(chain())}
+    assert "3 measured modes in 2 groups" in text["What was studied"]
+    assert "normal-boundary intersection" in text["What was studied"]
+    assert "Pareto-optimal models have frequencies" in text["How well the best models do"]
+    assert "the nominal model has 8.2 %" in text["How well the best models do"]
+    assert "k1 from" in text["What the data leave open"]
+    assert "differ: peak of hammer: floor1 by" in text["What the data leave open"]
+    assert "converged" in text["What to beware of"]
 
 
 def test_what_did_not_converge_is_named() -> None:
@@ -213,8 +213,8 @@ def test_what_did_not_converge_is_named() -> None:
     converged = data["converged"].values.copy()
     converged[2] = False
     spoiled = data.assign(converged=("point", converged))
-    said = [text for topic in topics(spoiled) for text in topic.sentences]
-    assert f"Not converged: {data['label'].values[2]}." in said
+    messages = [text for topic in topics(spoiled) for text in topic.sentences]
+    assert f"Not converged: {data['label'].values[2]}." in messages
 
 
 def command(*arguments: object, monkeypatch: pytest.MonkeyPatch) -> int:

@@ -47,9 +47,9 @@ def precise_objectives(theta: list[mp.mpf]) -> list[mp.mpf]:
         measured = mp.mpf(float(FREQUENCY[r]))
         J[0] += (mp.sqrt(lam[r]) / (2 * mp.pi) - measured) ** 2 / measured**2
         psi = [mp.mpf(float(x)) for x in SHAPE[r]]
-        own = [phi[i, r] for i in range(3)]
-        beta = mp.fdot(psi, own) / mp.fdot(own, own)
-        misfit = [beta * a - b for a, b in zip(own, psi, strict=True)]
+        chosen = [phi[i, r] for i in range(3)]
+        beta = mp.fdot(psi, chosen) / mp.fdot(chosen, chosen)
+        misfit = [beta * a - b for a, b in zip(chosen, psi, strict=True)]
         J[1] += mp.fdot(misfit, misfit) / (mp.fdot(psi, psi) / 3)
     return J
 
@@ -59,12 +59,12 @@ def precise_objectives(theta: list[mp.mpf]) -> list[mp.mpf]:
 def test_objectives_and_gradients_agree_with_50_digit_arithmetic(values: list[float]) -> None:
     theta = np.array(values)
     problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
-    found = problem.evaluate(theta)
-    if (found.quantities["paired_mode"] != [1, 2, 3]).any():
+    result = problem.evaluate(theta)
+    if (result.quantities["paired_mode"] != [1, 2, 3]).any():
         return
     with mp.workdps(50):
         expected = precise_objectives([mp.mpf(x) for x in values])
-        assert found.J == pytest.approx([float(x) for x in expected], rel=1e-10)
+        assert result.J == pytest.approx([float(x) for x in expected], rel=1e-10)
         h = mp.mpf(10) ** -18
         for i in range(4):
             ahead, behind = ([mp.mpf(x) for x in values] for _ in "ab")
@@ -72,8 +72,8 @@ def test_objectives_and_gradients_agree_with_50_digit_arithmetic(values: list[fl
             behind[i] -= h
             pair = zip(precise_objectives(ahead), precise_objectives(behind), strict=True)
             slope = np.array([float((a - b) / (2 * h)) for a, b in pair])
-            scale = np.abs(found.dJ).max(axis=1)
-            assert (np.abs(found.dJ[:, i] - slope) <= 1e-8 * scale).all()
+            scale = np.abs(result.dJ).max(axis=1)
+            assert (np.abs(result.dJ[:, i] - slope) <= 1e-8 * scale).all()
 
 
 def test_counts_are_of_what_was_measured() -> None:
@@ -110,9 +110,9 @@ def test_objectives_are_means_over_data_sets() -> None:
         problem_of(modal_data(f, shape, FLOORS)).evaluate(theta).J
         for f, shape in ((FREQUENCY, SHAPE), (other_f, other_shape))
     ]
-    found = problem_of(both)
-    assert found.evaluate(theta).J == pytest.approx((J[0] + J[1]) / 2, rel=1e-12)
-    assert found.properties.tolist() == [3, 9]
+    result = problem_of(both)
+    assert result.evaluate(theta).J == pytest.approx((J[0] + J[1]) / 2, rel=1e-12)
+    assert result.properties.tolist() == [3, 9]
 
 
 @given(st.lists(st.floats(-10, 10).filter(lambda x: abs(x) > 1e-3), min_size=3, max_size=3))
@@ -140,12 +140,12 @@ def test_errors_of_modes_bound_those_of_objectives(step: list[float]) -> None:
     problem = problem_of(data, groups)
     theta = np.array([1.1, 0.9, 1.2, 1.0])
     other = theta + np.array(step)
-    (one, pairs), (two, _) = problem.modes(theta), problem.modes(other)
+    (first, pairs), (two, _) = problem.modes(theta), problem.modes(other)
     assert pairs.index.tolist() == [0, 1, 2]
-    away = two.phi * (np.einsum("sr,sr->r", two.phi, one.phi) / (two.phi**2).sum(axis=0))
-    shape = np.sqrt(((away - one.phi) ** 2).sum(axis=0) / (one.phi**2).sum(axis=0))
+    away = two.phi * (np.einsum("sr,sr->r", two.phi, first.phi) / (two.phi**2).sum(axis=0))
+    shape = np.sqrt(((away - first.phi) ** 2).sum(axis=0) / (first.phi**2).sum(axis=0))
     margins = problem.margins(
-        2 * np.abs(two.frequency / FREQUENCY - one.frequency / FREQUENCY), shape
+        2 * np.abs(two.frequency / FREQUENCY - first.frequency / FREQUENCY), shape
     )
     moved = np.abs(np.sqrt(problem.evaluate(other).J) - np.sqrt(problem.evaluate(theta).J))
     assert (moved[:1] <= margins[:1] * (1 + 1e-9) + 1e-12).all()
@@ -161,24 +161,24 @@ def test_each_evaluation_is_counted_once(costs: Costs) -> None:
 
 def test_an_evaluation_without_derivatives_has_none() -> None:
     problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
-    for found in (
+    for result in (
         problem.evaluate(problem.start, derivatives=False),
         problem.evaluate(np.array([1.0, -5.0, 1.0, 1.0])),
     ):
-        assert found.derivatives is None
-        assert not found.residuals
+        assert result.derivatives is None
+        assert not result.residuals
         for name in ("dJ", "H"):
             with pytest.raises(ValueError, match="with derivatives, found one without"):
-                getattr(found, name)
-    assert found.J.tolist() == [np.inf, np.inf]
+                getattr(result, name)
+    assert result.J.tolist() == [np.inf, np.inf]
     J = problem.evaluate(problem.start, derivatives=False).J
     assert J.tolist() == problem.evaluate(problem.start).J.tolist()
 
 
 def test_a_model_without_modes_is_infeasible_not_an_error() -> None:
     problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
-    found = problem.evaluate(np.array([1.0, -5.0, 1.0, 1.0]))
-    assert not found.feasible
+    result = problem.evaluate(np.array([1.0, -5.0, 1.0, 1.0]))
+    assert not result.feasible
 
 
 @pytest.mark.parametrize(

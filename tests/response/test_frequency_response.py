@@ -52,18 +52,18 @@ def direct(load, output, damping, omega):
 def test_superposition_is_the_direct_solution(quantity, factor, load):
     system, damping = chain(load, DRIFTS)
     exact = factor[:, None, None] * direct(load, DRIFTS, damping, OMEGA)
-    found = frequency_response(system, OMEGA, quantity)
-    assert found.shape == (97, 3, load.shape[1])
-    np.testing.assert_allclose(found, exact, rtol=1e-11, atol=1e-13 * abs(exact).max())
+    result = frequency_response(system, OMEGA, quantity)
+    assert result.shape == (97, 3, load.shape[1])
+    np.testing.assert_allclose(result, exact, rtol=1e-11, atol=1e-13 * abs(exact).max())
 
 
 def test_absolute_acceleration_follows_from_newtons_law():
     system, damping = chain(-M @ R, np.eye(3), rigid=R)
     relative = direct(-M @ R, np.eye(3), damping, OMEGA)
     exact = 1 - OMEGA[:, None, None] ** 2 * relative
-    found = frequency_response(system, OMEGA, ResponseQuantity.ABSOLUTE_ACCELERANCE)
-    np.testing.assert_allclose(found, exact, rtol=1e-10, atol=1e-12)
-    np.testing.assert_allclose(found[0], R, rtol=1e-14)
+    result = frequency_response(system, OMEGA, ResponseQuantity.ABSOLUTE_ACCELERANCE)
+    np.testing.assert_allclose(result, exact, rtol=1e-10, atol=1e-12)
+    np.testing.assert_allclose(result[0], R, rtol=1e-14)
 
 
 def test_static_correction_makes_the_error_fourth_order():
@@ -85,10 +85,10 @@ def test_derivatives_against_a_contour_integral(quantity):
     """T is analytic in ω: by Cauchy's formula a ring of values gives its derivatives."""
     system, _ = chain(-M @ R, DRIFTS, modes=2, rigid=DRIFTS @ R)
     omega, radius = np.array([3.0, 29.0, 81.0, 140.0]), 0.2
-    _, *found = derivatives(system, omega.astype(complex), quantity)
+    _, *result = derivatives(system, omega.astype(complex), quantity)
     turns = np.exp(2j * np.pi * np.arange(64) / 64)
     ring = np.array([derivatives(system, omega + radius * turn, quantity)[0] for turn in turns])
-    for order, derivative in enumerate(found, start=1):
+    for order, derivative in enumerate(result, start=1):
         cauchy = order * (ring * turns[:, None, None, None] ** -order).mean(axis=0) / radius**order
         np.testing.assert_allclose(derivative, cauchy, rtol=1e-9, atol=1e-9 * abs(cauchy).max())
 
@@ -98,7 +98,7 @@ def one_mode(omega, zeta, **other):
 
 
 @pytest.mark.parametrize(
-    ("quantity", "at"),
+    ("quantity", "position"),
     [
         (ResponseQuantity.RECEPTANCE, lambda z: np.sqrt(1 - 2 * z**2)),
         (ResponseQuantity.MOBILITY, lambda z: 1.0),
@@ -106,9 +106,9 @@ def one_mode(omega, zeta, **other):
     ],
 )
 @pytest.mark.parametrize("zeta", [1e-5, 0.02, 0.3])
-def test_peak_of_one_mode_is_where_the_textbook_has_it(quantity, at, zeta):
+def test_peak_of_one_mode_is_where_the_textbook_has_it(quantity, position, zeta):
     (peak,) = peaks(one_mode(29.2, zeta), quantity)
-    assert peak.omega == pytest.approx(29.2 * at(zeta), rel=1e-12)
+    assert peak.omega == pytest.approx(29.2 * position(zeta), rel=1e-12)
     assert peak.frequency == peak.omega / (2 * np.pi)
     if quantity is ResponseQuantity.RECEPTANCE:
         exact = 1 / (2 * zeta * np.sqrt(1 - zeta**2) * 29.2**2)
@@ -150,19 +150,19 @@ def test_no_peak_is_missed(seed, m, quantity):
     system = ModalSystem(
         omega, zeta, rng.normal(size=(m, 1)), rng.normal(size=(1, m)), rigid=np.ones((1, 1))
     )
-    found = np.array([p.omega for p in peaks(system, quantity)])
+    result = np.array([p.omega for p in peaks(system, quantity)])
     grid = np.linspace(0, 2 * omega[-1], 20001)
     size = abs(frequency_response(system, grid, quantity))[:, 0, 0]
     top = (size[1:-1] > size[:-2]) & (size[1:-1] > size[2:])
     expected = grid[1:-1][top]
     # The grid cannot see peaks closer than itself, but each that it sees is there.
-    assert all(np.min(abs(found - w)) <= grid[1] for w in expected)
-    slope = derivatives(system, found.astype(complex), quantity)
+    assert all(np.min(abs(result - w)) <= grid[1] for w in expected)
+    slope = derivatives(system, result.astype(complex), quantity)
     g = 2 * (slope[0].conj() * slope[1]).real[:, 0, 0]
     bend = 2 * (abs(slope[1]) ** 2 + (slope[0].conj() * slope[2]).real)[:, 0, 0]
     assert np.all(bend < 0)
-    assert np.all(abs(g / bend) <= 1e-9 * found)
-    assert len(found) <= len(expected) + 2
+    assert np.all(abs(g / bend) <= 1e-9 * result)
+    assert len(result) <= len(expected) + 2
 
 
 @pytest.mark.parametrize("apart", [0.0, 1e-15, 1e-12, 1e-6])
@@ -170,9 +170,9 @@ def test_modes_that_cancel_leave_nothing_to_search(apart):
     """Opposite modes at one frequency: what rounding leaves of T has no peaks of its own."""
     omega = 10 * np.array([1.0, 1 + apart])
     system = ModalSystem(omega, np.full(2, 0.02), np.ones((2, 1)), np.array([[1.0, -1.0]]))
-    found = peaks(system)
-    assert len(found) <= 1
-    assert all(abs(p.omega - 10) < 0.01 for p in found)
+    result = peaks(system)
+    assert len(result) <= 1
+    assert all(abs(p.omega - 10) < 0.01 for p in result)
 
 
 def test_a_response_at_a_node_has_no_peaks():
@@ -183,8 +183,8 @@ def test_hundred_modes():
     omega = np.linspace(5, 500, 100)
     shape = np.random.default_rng(0).normal(size=(1, 100))
     system = ModalSystem(omega, np.full(100, 1e-3), shape.T, shape, static=np.eye(1))
-    found = np.array([p.omega for p in peaks(system)])
-    assert all(np.min(abs(found - w)) < 0.02 * w for w in omega[abs(shape[0]) > 0.1])
+    result = np.array([p.omega for p in peaks(system)])
+    assert all(np.min(abs(result - w)) < 0.02 * w for w in omega[abs(shape[0]) > 0.1])
 
 
 def test_peaks_of_one_output_and_input_of_many():
@@ -257,8 +257,8 @@ def test_peaks_above_a_rigid_body_mode():
     damping = m @ phi @ np.diag([0.0, 2 * 0.03 * omega]) @ phi.T @ m
     with pytest.raises(ValueError, match=r"zeta: .* found omega\[0\] = 0.0"):
         peaks(system)
-    (found,) = peaks(system, band=(1.0, 50.0))
-    w = found.omega + np.linspace(-1e-3, 1e-3, 201)
+    (result,) = peaks(system, band=(1.0, 50.0))
+    w = result.omega + np.linspace(-1e-3, 1e-3, 201)
     exact = [abs(np.linalg.solve(k - x**2 * m + 1j * x * damping, [1, 0])[0]) for x in w]
     assert np.argmax(exact) == 100
-    assert found.amplitude == pytest.approx(exact[100], rel=1e-12)
+    assert result.amplitude == pytest.approx(exact[100], rel=1e-12)

@@ -101,6 +101,6 @@ def test_nodes_of_finite_elements_move_as_their_free_degrees_of_freedom_do() -> 
     shapes = model.full_modes(np.array([1.0]), 3).Phi
     moved = geometry.displacement(shapes)
     assert moved.shape == (3, 6, 3)
-    at = moved[:, geometry.sensor_nodes]
-    seen = (at * geometry.sensor_directions).sum(axis=2)
+    position = moved[:, geometry.sensor_nodes]
+    seen = (position * geometry.sensor_directions).sum(axis=2)
     np.testing.assert_allclose(seen, (model.selection @ shapes).T, atol=1e-12)

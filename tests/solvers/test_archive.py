@@ -30,15 +30,15 @@ def test_it_holds_the_nondominated_models_of_all(n: int) -> None:
     J[7, 0] = np.inf
     theta = rng.uniform(size=(300, 2))
     archive = Archive(box(circles, [0, 0], [1, 1], n))
-    for own, value in zip(theta, J, strict=True):
-        archive.add(own, value)
+    for chosen, value in zip(theta, J, strict=True):
+        archive.add(chosen, value)
     finite = J[np.isfinite(J).all(axis=1)]
     expected = {tuple(row) for row in finite.tolist() if not dominated(np.array(row), finite)}
     assert len(archive.J) == len(expected), "models with the same objectives are kept once"
     assert {tuple(row) for row in archive.J.tolist()} == expected
-    known = {own.tobytes(): value for own, value in zip(theta, J, strict=True)}
-    for own, value in zip(archive.theta, archive.J, strict=True):
-        assert (known[own.tobytes()] == value).all(), "each with its own parameters"
+    known = {chosen.tobytes(): value for chosen, value in zip(theta, J, strict=True)}
+    for chosen, value in zip(archive.theta, archive.J, strict=True):
+        assert (known[chosen.tobytes()] == value).all(), "each with its own parameters"
     for row in finite[:50]:
         beaten = (archive.J <= row).all(axis=1) & (archive.J < row).any(axis=1)
         assert beaten.any() == dominated(row, finite)
@@ -55,7 +55,7 @@ def test_models_are_remembered_that_are_evaluated_but_not_those_of_a_branch(cost
     assert costs.eigenproblems == 4
 
 
-def found(folder: Path) -> Front:
+def computed_front(folder: Path) -> Front:
     problem = box(disconnected, [0, -1], [1, 1])
     search = Search(starts=2, limit=2, evolutions=0)
     options = Pareto(points=7, refined=0.2)
@@ -66,20 +66,20 @@ def found(folder: Path) -> Front:
 def test_a_run_that_is_continued_knows_the_same_models(
     tasks: int, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole = found(tmp_path / "whole")
+    whole = computed_front(tmp_path / "whole")
     interrupt_after(tasks, monkeypatch)
     with pytest.raises(KeyboardInterrupt):
-        found(tmp_path / "broken")
-    again = found(tmp_path / "broken")
+        computed_front(tmp_path / "broken")
+    again = computed_front(tmp_path / "broken")
     assert len(whole.known) > 20
     assert again.known.tobytes() == whole.known.tobytes()
     assert again.places.tolist() == whole.places.tolist()
     assert [x.label for x in again.points] == [x.label for x in whole.points]
     for point, other_point in zip(again.points, whole.points, strict=True):
-        one, other = point.solution, other_point.solution
-        assert one.theta.tobytes() == other.theta.tobytes()
-        assert one.J.tobytes() == other.J.tobytes()
-        assert one.status is other.status
+        first, other = point.solution, other_point.solution
+        assert first.theta.tobytes() == other.theta.tobytes()
+        assert first.J.tobytes() == other.J.tobytes()
+        assert first.status is other.status
     for gap, other_gap in zip(again.gaps, whole.gaps, strict=True):
         for end, other_end in zip(gap.ends, other_gap.ends, strict=True):
             assert end.J.tobytes() == other_end.J.tobytes()

@@ -36,17 +36,17 @@ TARGET = Payoff(np.zeros(3), np.ones(3), np.eye(3))
 def test_objectives_that_no_bound_holds_are_made_small() -> None:
     problem = box(apart, [-1, -1], [2, 1], 3)
     point = solution(problem, [0.5, 0.3], [0.5, 0.5, 0.0])
-    (found,) = without_slack(problem, TARGET, [point])
-    assert found.J == pytest.approx([0.25, 0.25, 0.0], abs=1e-9)
-    assert found.evaluations > point.evaluations
-    assert found.converged
-    assert found.beta is not None
+    (result,) = without_slack(problem, TARGET, [point])
+    assert result.J == pytest.approx([0.25, 0.25, 0.0], abs=1e-9)
+    assert result.evaluations > point.evaluations
+    assert result.converged
+    assert result.beta is not None
     assert point.beta is not None
-    assert (found.beta == point.beta).all()
+    assert (result.beta == point.beta).all()
 
 
 def test_points_whose_bounds_all_hold_stay() -> None:
     problem = box(apart, [-1, -1], [2, 1], 3)
     point = solution(problem, [0.5, 0.3], [0.4, 0.3, 0.3])
-    (found,) = without_slack(problem, TARGET, [point])
-    assert found is point
+    (result,) = without_slack(problem, TARGET, [point])
+    assert result is point

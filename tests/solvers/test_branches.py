@@ -49,9 +49,9 @@ class Switching:
 def test_a_start_is_followed_on_its_own_piece_too(follows: bool, least: float) -> None:
     search = Search.none()
     descent = Descent(weighted(np.ones(1)))
-    found = explore(Switching(follows=follows), descent, search, rng=np.random.default_rng(0))
-    assert found[0].J[0] == pytest.approx(least, abs=1e-9)
-    assert found[0].evaluation.branch == ((0,) if follows else (1,))
-    values = [float(one.J[0]) for one in found]
+    result = explore(Switching(follows=follows), descent, search, rng=np.random.default_rng(0))
+    assert result[0].J[0] == pytest.approx(least, abs=1e-9)
+    assert result[0].evaluation.branch == ((0,) if follows else (1,))
+    values = [float(solution.J[0]) for solution in result]
     assert values == sorted(values)
     assert values[-1] == pytest.approx(0.05), "the minimum that the way down leads to is kept"

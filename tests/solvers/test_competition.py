@@ -10,8 +10,8 @@ from problems import Derivatives, Known, box
 
 from modefront._typing import Floats
 from modefront.solvers.attainment import Attainment
-from modefront.solvers.basins import from_other_branches
 from modefront.solvers.border import without_slack
+from modefront.solvers.competition import from_points_beside, heights
 from modefront.solvers.continuation import simplex
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.sqp import Solution, begin, solve
@@ -47,7 +47,7 @@ def solved(problem: Known, beta: list[float], z: float) -> Solution:
 
 def test_points_are_solved_again_from_a_better_branch_beside_them() -> None:
     worse, better = solved(PROBLEM, [0.3, 0.4, 0.3], -1.0), solved(PROBLEM, [0.3, 0.3, 0.4], 1.0)
-    ends = from_other_branches(PROBLEM, TARGET, simplex(3, 10), [worse, better])
+    ends = from_points_beside(PROBLEM, TARGET, simplex(3, 10), [worse, better])
     expected = solved(PROBLEM, [0.3, 0.4, 0.3], 1.0)
     assert ends[0].J == pytest.approx(expected.J, abs=1e-6)
     assert ends[0].evaluations > 0
@@ -55,11 +55,45 @@ def test_points_are_solved_again_from_a_better_branch_beside_them() -> None:
     assert (worse.J - ends[0].J).min() > 0.9 * STEP
 
 
+def test_a_point_keeps_its_place_on_the_lattice() -> None:
+    worse, better = solved(PROBLEM, [0.3, 0.4, 0.3], -1.0), solved(PROBLEM, [0.3, 0.3, 0.4], 1.0)
+    ends = from_points_beside(PROBLEM, TARGET, simplex(3, 10), [worse, better])
+    assert ends[0].beta is worse.beta
+    assert ends[0] is not worse
+
+
+def test_a_point_far_from_all_others_is_compared_with_the_nearest() -> None:
+    worse, better = solved(PROBLEM, [0.6, 0.2, 0.2], -1.0), solved(PROBLEM, [0.2, 0.6, 0.2], 1.0)
+    assert np.abs(worse.J - better.J).max() > 3 * 0.1, "three steps of the lattice"
+    ends = from_points_beside(PROBLEM, TARGET, simplex(3, 10), [worse, better])
+    assert (worse.J - ends[0].J).min() > 0.9 * STEP
+
+
+def test_one_smooth_branch_costs_nothing() -> None:
+    betas = simplex(3, 10).beta
+    inner = betas[betas.min(axis=1) >= 0.2]
+    points = [solved(PROBLEM, list(beta), 1.0) for beta in inner]
+    assert len(points) == 15
+    forbidden = box(unreachable, [-0.5, -0.5, -1.5], [1.5, 1.5, 1.5], 3)
+    ends = from_points_beside(forbidden, TARGET, simplex(3, 10), points)
+    assert all(x is y for x, y in zip(ends, points, strict=True))
+
+
+def test_heights_over_tangent_planes_are_equal_along_a_branch_of_even_curvature() -> None:
+    """The point at beta minimises a weighted sum: h_kj = |theta_k - theta_j|^2 = h_jk."""
+    points = [solved(PROBLEM, [0.3, y, 0.7 - y], 1.0) for y in (0.3, 0.4)]
+    h = heights(points, TARGET)
+    expected = ((points[0].theta - points[1].theta) ** 2).sum()
+    assert h[0, 1] == pytest.approx(expected, rel=1e-5)
+    assert h[1, 0] == pytest.approx(expected, rel=1e-5)
+    assert np.diag(h) == pytest.approx(0.0, abs=1e-15)
+
+
 def test_pairs_of_points_that_were_compared_cost_nothing() -> None:
     points = [solved(PROBLEM, [0.3, 0.4, 0.3], -1.0), solved(PROBLEM, [0.3, 0.3, 0.4], 1.0)]
-    first = from_other_branches(PROBLEM, TARGET, simplex(3, 10), points)
+    first = from_points_beside(PROBLEM, TARGET, simplex(3, 10), points)
     forbidden = box(unreachable, [-0.5, -0.5, -1.5], [1.5, 1.5, 1.5], 3)
-    again = from_other_branches(forbidden, TARGET, simplex(3, 10), first, before=first)
+    again = from_points_beside(forbidden, TARGET, simplex(3, 10), first, before=first)
     assert all(x is y for x, y in zip(again, first, strict=True))
     assert without_slack(forbidden, TARGET, first, before=first) == first
 

@@ -9,26 +9,26 @@ from modefront.solvers.curvature import second_order
 from modefront.work.costs import Costs
 
 
-@pytest.mark.parametrize("at", [[0.3, -0.2], [-2.0, 0.1], [2.0, 2.0], [1.9999, -1.9999]])
-def test_second_derivatives_within_and_at_the_bounds(at: list[float], costs: Costs) -> None:
-    theta = np.array(at)
+@pytest.mark.parametrize("position", [[0.3, -0.2], [-2.0, 0.1], [2.0, 2.0], [1.9999, -1.9999]])
+def test_second_derivatives_within_and_at_the_bounds(position: list[float], costs: Costs) -> None:
+    theta = np.array(position)
     for function in (concave, disconnected):
         problem = box(function, [-2, -2], [2, 2])
         before = costs.eigenproblems
-        found = second_order(problem, problem.evaluate(theta))
-        assert found is not None
+        result = second_order(problem, problem.evaluate(theta))
+        assert result is not None
         assert costs.eigenproblems - before == 5
         expected = function(theta)[2]
-        assert found.H == pytest.approx(expected, rel=1e-3, abs=1e-3 * np.abs(expected).max())
+        assert result.H == pytest.approx(expected, rel=1e-3, abs=1e-3 * np.abs(expected).max())
 
 
 def test_inside_they_are_exact_to_the_square_of_the_step() -> None:
     problem = box(concave, [-2, -2], [2, 2])
     theta = np.array([0.3, -0.2])
-    found = second_order(problem, problem.evaluate(theta))
-    assert found is not None
-    assert found.H == pytest.approx(concave(theta)[2], rel=1e-5)
-    assert (found.H == found.H.transpose(0, 2, 1)).all()
+    result = second_order(problem, problem.evaluate(theta))
+    assert result is not None
+    assert result.H == pytest.approx(concave(theta)[2], rel=1e-5)
+    assert (result.H == result.H.transpose(0, 2, 1)).all()
 
 
 def test_there_are_none_where_the_model_ends() -> None:

@@ -38,11 +38,11 @@ def reference(key: Key, i: int) -> Reference:
     return edge_reference(equation(key), i)
 
 
-def found(key: Key, i: int) -> Solution:
+def computed_edge(key: Key, i: int) -> Solution:
     problem, sizes = equation(key).case.problem, reference(key, i).sizes
-    there = edge(problem, i, sizes, np.random.SeedSequence(i), SEARCH)
-    assert there is not None
-    return there.best
+    other = edge(problem, i, sizes, np.random.SeedSequence(i), SEARCH)
+    assert other is not None
+    return other.best
 
 
 def regime(key: Key, i: int) -> tuple[bool, float]:
@@ -53,11 +53,11 @@ def regime(key: Key, i: int) -> tuple[bool, float]:
     """
     known = reference(key, i)
     _, best = known.edge(i, known.least(i))
-    at = equation(key)
-    parts = at.parts(best.theta)
+    position = equation(key)
+    parts = position.parts(best.theta)
     assert parts is not None
-    z = (best.theta - at.lower) / at.span
-    dr = (parts[i].dr * at.span)[:, (z > 1e-6) & (z < 1 - 1e-6)]
+    z = (best.theta - position.lower) / position.span
+    dr = (parts[i].dr * position.span)[:, (z > 1e-6) & (z < 1 - 1e-6)]
     s = np.linalg.svd(dr, compute_uv=False)
     flatness = float(s[-1] / s[0]) if dr.shape[0] >= dr.shape[1] else 0.0
     return bool(best.J[i] <= known.floor[i]), flatness
@@ -65,12 +65,12 @@ def regime(key: Key, i: int) -> tuple[bool, float]:
 
 def assert_as_good(key: Key, i: int) -> None:
     """Assert that no model of the independent optimiser is better in the order of the edge."""
-    best, known = found(key, i).evaluation, reference(key, i)
+    best, known = computed_edge(key, i).evaluation, reference(key, i)
     least = known.least(i)
     assert best.J[i] <= max(least * (1 + WORSE), known.floor[i])
-    own = float(known.others(i, best.J))
+    chosen = float(known.others(i, best.J))
     others, _ = known.edge(i, max(best.J[i], least))
-    assert own <= others * (1 + WORSE) + float(known.others(i, known.floor))
+    assert chosen <= others * (1 + WORSE) + float(known.others(i, known.floor))
     np.testing.assert_allclose(best.J, equation(key).J(best.theta), rtol=1e-6, atol=1e-16)
 
 

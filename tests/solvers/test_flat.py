@@ -25,9 +25,9 @@ def flat(theta: Floats) -> Derivatives:
 def whole_front(problem: Known, sizes: Floats) -> tuple[list[Solution], list[Solution]]:
     edges = []
     for i in range(2):
-        found = edge(problem, i, sizes, np.random.SeedSequence(i), Search(starts=3))
-        assert found is not None
-        edges.append(found.best)
+        result = edge(problem, i, sizes, np.random.SeedSequence(i), Search(starts=3))
+        assert result is not None
+        edges.append(result.best)
     target = payoff(edges, sizes)
     assert target is not None
     return edges, nbi(problem, edges, target, simplex(2, 19))
@@ -40,19 +40,19 @@ def test_a_flat_part_is_found_and_the_rest_covered_by_itself() -> None:
     part = identifiable_part(problem, along, edges, along, 0.01, sizes, 19)
     assert part is not None
     least = 1 + np.exp(-16.0)
-    J = np.array([one.J for one in along])
+    J = np.array([point.J for point in along])
     assert part.flat.tolist() == [0, (J[:, 1] <= 1.01 * least).sum() - 1]
     assert part.flat[1] >= 8
     assert part.ends[0] is edges[0]
     # J2 = 1.01 of the least at exp(-4 x) = 0.01 and a little
     cut = -np.log(1.01 * least - 1) / 4
     assert part.ends[1].theta == pytest.approx([cut, 0], abs=1e-6)
-    own = np.array([one.J for one in part.points])
-    assert all(one.converged for one in part.points)
-    assert own[:, 0].max() == pytest.approx(cut**2, rel=1e-6)
-    assert own[:, 1] == pytest.approx(1 + np.exp(-4 * np.sqrt(own[:, 0])), abs=1e-6)
+    chosen = np.array([point.J for point in part.points])
+    assert all(point.converged for point in part.points)
+    assert chosen[:, 0].max() == pytest.approx(cut**2, rel=1e-6)
+    assert chosen[:, 1] == pytest.approx(1 + np.exp(-4 * np.sqrt(chosen[:, 0])), abs=1e-6)
     # Even along the front in units of its range: what was one point is twenty.
-    scaled = own / np.ptp(own, axis=0)
+    scaled = chosen / np.ptp(chosen, axis=0)
     steps = np.linalg.norm(np.diff(scaled, axis=0), axis=1)
     assert steps.max() < 3 * steps.min()
 
@@ -62,7 +62,7 @@ def test_a_flat_part_of_which_the_end_is_not_found_is_counted_and_not_cut() -> N
     sizes = np.array([16.0, 1.0])
     edges, along = whole_front(problem, sizes)
     beside = flat_points(
-        *(np.array([one.J for one in along]), np.array([0.0, 1 + np.exp(-16.0)])), 0.01, sizes
+        *(np.array([point.J for point in along]), np.array([0.0, 1 + np.exp(-16.0)])), 0.01, sizes
     )
     # Without a solution to start from, there is no way to the end.
     part = identifiable_part(problem, along, edges, [], 0.01, sizes, 19)
@@ -108,15 +108,17 @@ def flat_three(theta: Floats) -> Derivatives:
 def test_a_flat_patch_of_three_objectives_is_left_out() -> None:
     problem = box(flat_three, [0, -1], [4, 2], 3)
     sizes = np.ones(3)
-    found = [edge(problem, i, sizes, np.random.SeedSequence(i), Search(starts=3)) for i in range(3)]
-    edges = [one.best for one in found if one]
+    result = [
+        edge(problem, i, sizes, np.random.SeedSequence(i), Search(starts=3)) for i in range(3)
+    ]
+    edges = [solution.best for solution in result if solution]
     target = payoff(edges, sizes)
     assert target is not None
     along = nbi(problem, edges, target, simplex(3, 9))
     part = identifiable_part(problem, along, edges, along, 0.01, sizes, 9)
     assert part is not None
     level = 1.01 * edges[2].J[2]
-    J = np.array([one.J for one in along])
+    J = np.array([point.J for point in along])
     assert part.flat.tolist() == [0, 0, (J[:, 2] <= level).sum() - 1]
     assert part.flat[2] >= 5
     assert part.ends[:2] == edges[:2]
@@ -126,10 +128,10 @@ def test_a_flat_patch_of_three_objectives_is_left_out() -> None:
     y, x = y[room > 0], -np.log(room[room > 0]) / 4
     k = np.argmin(1.25 * x**2 + y**2 / 4 + (y - 1) ** 2)
     assert part.ends[2].theta == pytest.approx([x[k], y[k]], abs=1e-5)
-    own = np.array([one.J for one in part.points])
-    assert all(one.converged for one in part.points)
-    assert own[:, 2].min() >= level * (1 - 1e-6)
-    assert len(own) > 1.5 * (J[:, 2] > level).sum(), "more of them where the front bends"
+    chosen = np.array([point.J for point in part.points])
+    assert all(point.converged for point in part.points)
+    assert chosen[:, 2].min() >= level * (1 - 1e-6)
+    assert len(chosen) > 1.5 * (J[:, 2] > level).sum(), "more of them where the front bends"
     # Beyond the new simplex too: next to the level, but away from its end.
-    at_level = own[own[:, 2] < level + 0.05 * np.ptp(own[:, 2])]
-    assert np.ptp(at_level[:, 0]) > 0.05 * np.ptp(own[:, 0])
+    at_level = chosen[chosen[:, 2] < level + 0.05 * np.ptp(chosen[:, 2])]
+    assert np.ptp(at_level[:, 0]) > 0.05 * np.ptp(chosen[:, 0])

@@ -49,14 +49,14 @@ def of(function: Callable[[Floats], Derivatives], lower: list[float], upper: lis
 
 
 def thetas(models: Sequence[Evaluation]) -> Floats:
-    return np.array([one.theta for one in models])
+    return np.array([model.theta for model in models])
 
 
 def test_a_circle_is_followed_until_it_closes(costs: Costs) -> None:
     problem = of(circle, [-1, -1], [1, 1])
-    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
-    assert (found.dimension, found.extent) == (1, Extent.CLOSED)
-    theta = thetas(found.models)
+    result = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
+    assert (result.dimension, result.extent) == (1, Extent.CLOSED)
+    theta = thetas(result.models)
     assert np.hypot(*theta.T) == pytest.approx(0.7, abs=1e-8)
     angles = np.unwrap(np.arctan2(theta[:, 1], theta[:, 0]))
     steps = np.diff(angles)
@@ -71,9 +71,9 @@ def test_a_circle_is_followed_until_it_closes(costs: Costs) -> None:
 
 def test_a_circle_that_the_bounds_cut_ends_on_them() -> None:
     problem = of(circle, [-1, -0.3], [1, 0.5])
-    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
-    assert found.extent is Extent.BOUNDED
-    theta = thetas(found.models)
+    result = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
+    assert result.extent is Extent.BOUNDED
+    theta = thetas(result.models)
     ends = sorted(theta[[0, -1], 1].tolist())
     assert ends == [-0.3, 0.5]
     assert np.hypot(*theta.T) == pytest.approx(0.7, abs=1e-8)
@@ -83,18 +83,20 @@ def test_disjoint_curves_are_all_followed_and_none_twice() -> None:
     problem = of(two_circles, [-2, -2], [2, 2])
     minima = explore(problem, Descent(ONE), Search(starts=20), rng=np.random.default_rng(0))
     assert len(minima) > 2
-    found = equivalent_models(problem, ONE, [one.evaluation for one in minima], h=0.03, limit=200)
-    assert [one.extent for one in found] == [Extent.CLOSED] * 2
-    sides = [np.sign(thetas(one.models)[:, 0]) for one in found]
+    result = equivalent_models(
+        problem, ONE, [minimum.evaluation for minimum in minima], h=0.03, limit=200
+    )
+    assert [manifold.extent for manifold in result] == [Extent.CLOSED] * 2
+    sides = [np.sign(thetas(manifold.models)[:, 0]) for manifold in result]
     assert sorted(float(side.mean()) for side in sides) == [-1.0, 1.0]
 
 
 def test_a_sphere_is_covered() -> None:
     problem = of(sphere, [-1, -1, -1], [1, 1, 1])
     start = problem.evaluate(np.array([0.0, 0.0, 0.8]))
-    found = follow(problem, ONE, start, h=0.15, limit=400)
-    assert (found.dimension, found.extent) == (2, Extent.CLOSED)
-    theta = thetas(found.models)
+    result = follow(problem, ONE, start, h=0.15, limit=400)
+    assert (result.dimension, result.extent) == (2, Extent.CLOSED)
+    theta = thetas(result.models)
     assert np.linalg.norm(theta, axis=1) == pytest.approx(0.8, abs=1e-8)
     rng = np.random.default_rng(0)
     directions = rng.normal(size=(2000, 3))
@@ -109,27 +111,27 @@ def test_a_sphere_is_covered() -> None:
 def test_a_sphere_within_narrow_bounds_ends_on_them() -> None:
     problem = of(sphere, [-1, -1, 0.3], [1, 1, 1])
     start = problem.evaluate(np.array([0.0, 0.0, 0.8]))
-    found = follow(problem, ONE, start, h=0.1, limit=400)
-    assert found.extent is Extent.BOUNDED
-    assert thetas(found.models)[:, 2].min() == pytest.approx(0.3, abs=0.1 * 0.7 * 0.3 + 1e-9)
+    result = follow(problem, ONE, start, h=0.1, limit=400)
+    assert result.extent is Extent.BOUNDED
+    assert thetas(result.models)[:, 2].min() == pytest.approx(0.3, abs=0.1 * 0.7 * 0.3 + 1e-9)
 
 
 def test_isolated_minima_are_counted() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
     programme = weighted(np.array([1.0, 0.0]))
     minima = explore(problem, Descent(programme), Search(), rng=np.random.default_rng(0))
-    found = equivalent_models(problem, programme, [one.evaluation for one in minima])
-    assert [one.extent for one in found] == [Extent.ISOLATED] * 4
-    assert [one.dimension for one in found] == [0] * 4
+    result = equivalent_models(problem, programme, [minimum.evaluation for minimum in minima])
+    assert [manifold.extent for manifold in result] == [Extent.ISOLATED] * 4
+    assert [manifold.dimension for manifold in result] == [0] * 4
 
 
 @pytest.mark.parametrize("programme", [ONE, LogSum(np.array([4.0]))])
 def test_residuals_that_stay_do_not_hide_a_curve(programme: Scalarisation) -> None:
     problem = of(fitted_badly, [-1, -0.5, 0], [1, 2, 1])
     start = problem.evaluate(np.array([0.1, 0.01, 0.2]))
-    found = follow(problem, programme, start, h=0.05, limit=200)
-    assert (found.dimension, found.extent) == (1, Extent.BOUNDED)
-    x, y, z = thetas(found.models).T
+    result = follow(problem, programme, start, h=0.05, limit=200)
+    assert (result.dimension, result.extent) == (1, Extent.BOUNDED)
+    x, y, z = thetas(result.models).T
     assert y == pytest.approx(x**2, abs=1e-7)
     assert z == pytest.approx(0.2, abs=1e-7)
     assert sorted([x[0], x[-1]]) == [-1, 1]
@@ -137,9 +139,9 @@ def test_residuals_that_stay_do_not_hide_a_curve(programme: Scalarisation) -> No
 
 def test_a_parameter_pressed_against_its_bound_stays_there() -> None:
     problem = of(fitted_badly, [-1, -0.5, 0.5], [1, 2, 1])
-    found = follow(problem, ONE, problem.evaluate(np.array([0.1, 0.01, 0.5])), h=0.05, limit=200)
-    assert (found.dimension, found.extent) == (1, Extent.BOUNDED)
-    assert thetas(found.models)[:, 2].tolist() == [0.5] * len(found.models)
+    result = follow(problem, ONE, problem.evaluate(np.array([0.1, 0.01, 0.5])), h=0.05, limit=200)
+    assert (result.dimension, result.extent) == (1, Extent.BOUNDED)
+    assert thetas(result.models)[:, 2].tolist() == [0.5] * len(result.models)
 
 
 def test_a_surface_is_followed_from_a_corner_along_the_bounds() -> None:
@@ -147,9 +149,9 @@ def test_a_surface_is_followed_from_a_corner_along_the_bounds() -> None:
         return squares(np.array([theta.sum() - 1.0]), np.ones((1, 3)))
 
     problem = of(plane, [0, 0, 0], [1, 1, 1])
-    found = follow(problem, ONE, problem.evaluate(np.array([1.0, 0, 0])), h=0.2, limit=100)
-    assert (found.dimension, found.extent) == (2, Extent.BOUNDED)
-    theta = thetas(found.models)
+    result = follow(problem, ONE, problem.evaluate(np.array([1.0, 0, 0])), h=0.2, limit=100)
+    assert (result.dimension, result.extent) == (2, Extent.BOUNDED)
+    theta = thetas(result.models)
     assert theta.sum(axis=1) == pytest.approx(1, abs=1e-8)
     assert theta.min() == 0
     # A triangle with sides of 1.41, in steps of 0.2: nowhere farther from a sample than a step.
@@ -165,8 +167,8 @@ def test_residuals_that_bend_but_do_not_change_hold_a_minimum(costs: Costs) -> N
         return squares(np.array([1 + x**2, y]), np.array([[2 * x, 0], [0, 1]]))
 
     problem = of(bowl, [-1, -1], [1, 1])
-    found = follow(problem, ONE, problem.evaluate(np.zeros(2)), h=0.05, limit=20)
-    assert (found.dimension, found.extent) == (0, Extent.ISOLATED)
+    result = follow(problem, ONE, problem.evaluate(np.zeros(2)), h=0.05, limit=20)
+    assert (result.dimension, result.extent) == (0, Extent.ISOLATED)
     assert costs.eigenproblems == 5, "no step was tried"
 
 
@@ -178,9 +180,9 @@ def test_a_direction_that_bends_is_no_part_of_a_manifold() -> None:
         return squares(np.array([1 + x**2, y - z]), np.array([[2 * x, 0, 0], [0, 1, -1]]))
 
     problem = of(valley, [-1, -1, -1], [1, 1, 2])
-    found = follow(problem, ONE, problem.evaluate(np.array([0.0, 0.3, 0.3])), h=0.05, limit=200)
-    assert (found.dimension, found.extent) == (1, Extent.BOUNDED)
-    x, y, z = thetas(found.models).T
+    result = follow(problem, ONE, problem.evaluate(np.array([0.0, 0.3, 0.3])), h=0.05, limit=200)
+    assert (result.dimension, result.extent) == (1, Extent.BOUNDED)
+    x, y, z = thetas(result.models).T
     assert x == pytest.approx(0, abs=1e-8)
     assert y == pytest.approx(z, abs=1e-8)
     assert sorted([y[0], y[-1]]) == pytest.approx([-1, 1], abs=1e-12)
@@ -197,9 +199,9 @@ def test_residuals_that_turn_leave_a_line(programme: Scalarisation) -> None:
 
     problem = of(turning, [-2, -1], [4, 1.5])
     start = problem.evaluate(np.array([0.5, 0.0]))
-    found = follow(problem, programme, start, h=0.05, limit=200)
-    assert (found.dimension, found.extent) == (1, Extent.BOUNDED)
-    x, y = thetas(found.models).T
+    result = follow(problem, programme, start, h=0.05, limit=200)
+    assert (result.dimension, result.extent) == (1, Extent.BOUNDED)
+    x, y = thetas(result.models).T
     assert y == pytest.approx(0, abs=1e-6)
     assert sorted([x[0], x[-1]]) == [-2, 4]
     assert np.abs(np.diff(x)).max() <= 0.3 + 1e-9
@@ -216,9 +218,9 @@ def turning_circle(theta: Floats) -> Derivatives:
 
 def test_residuals_that_turn_leave_a_closed_curve(costs: Costs) -> None:
     problem = of(turning_circle, [-1, -1], [1, 1])
-    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
-    assert (found.dimension, found.extent) == (1, Extent.CLOSED)
-    theta = thetas(found.models)
+    result = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
+    assert (result.dimension, result.extent) == (1, Extent.CLOSED)
+    theta = thetas(result.models)
     assert np.hypot(*theta.T) == pytest.approx(0.7, abs=1e-7)
     angles = np.unwrap(np.arctan2(theta[:, 1], theta[:, 0]))
     steps = np.diff(angles)
@@ -230,17 +232,17 @@ def test_residuals_that_turn_leave_a_closed_curve(costs: Costs) -> None:
 
 def test_a_circle_on_which_residuals_turn_ends_on_the_bounds() -> None:
     problem = of(turning_circle, [-1, -0.3], [1, 0.5])
-    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
-    assert found.extent is Extent.BOUNDED
-    theta = thetas(found.models)
+    result = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
+    assert result.extent is Extent.BOUNDED
+    theta = thetas(result.models)
     assert sorted(theta[[0, -1], 1].tolist()) == [-0.3, 0.5]
     assert np.hypot(*theta.T) == pytest.approx(0.7, abs=1e-7)
 
 
 def test_no_more_models_than_wanted() -> None:
     problem = of(circle, [-1, -1], [1, 1])
-    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=7)
-    assert (len(found.models), found.extent) == (7, Extent.CUT)
+    result = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=7)
+    assert (len(result.models), result.extent) == (7, Extent.CUT)
 
 
 def test_a_curve_that_ends_where_the_model_does_is_lost() -> None:
@@ -249,9 +251,9 @@ def test_a_curve_that_ends_where_the_model_does_is_lost() -> None:
         return (J if theta[0] > 0.2 else J * np.inf), dJ, H
 
     problem = of(half, [-1, -1], [1, 1])
-    found = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
-    assert found.extent is Extent.LOST
-    assert thetas(found.models)[:, 0].min() < 0.25
+    result = follow(problem, ONE, problem.evaluate(np.array([0.7, 0.0])), h=0.05, limit=200)
+    assert result.extent is Extent.LOST
+    assert thetas(result.models)[:, 0].min() < 0.25
 
 
 def hyperplane(theta: Floats) -> Derivatives:
@@ -272,7 +274,7 @@ def extents_by_slsqp(
     out = np.zeros((2, start.size))
     for j in range(start.size):
         for row, sign in enumerate((1.0, -1.0)):
-            found = scipy.optimize.minimize(
+            result = scipy.optimize.minimize(
                 lambda x, j=j, sign=sign: sign * x[j],
                 start,
                 method="SLSQP",
@@ -280,8 +282,8 @@ def extents_by_slsqp(
                 constraints={"type": "eq", "fun": residuals},
                 options={"maxiter": 300, "ftol": 1e-12},
             )
-            assert np.abs(residuals(found.x)).max() < 1e-6
-            out[row, j] = found.x[j]
+            assert np.abs(residuals(result.x)).max() < 1e-6
+            out[row, j] = result.x[j]
     return out
 
 
@@ -306,10 +308,10 @@ def test_of_many_dimensions_each_parameter_is_followed_as_far_as_it_goes(
     if function is hyperplane:
         A = np.array([[1.0, 1, 1, 1, 1, 1], [1.0, -1, 0, 0, 0.5, 0]])
         theta = theta + np.linalg.pinv(A) @ (np.array([3.0, 0.25]) - A @ theta)
-    found = follow(problem, ONE, problem.evaluate(theta), h=0.05, limit=100)
-    assert (found.dimension, found.extent) == (dimension, Extent.SPANNED)
-    there = thetas(found.models)
-    assert max(one.J[0] for one in found.models) < 1e-14
+    result = follow(problem, ONE, problem.evaluate(theta), h=0.05, limit=100)
+    assert (result.dimension, result.extent) == (dimension, Extent.SPANNED)
+    other = thetas(result.models)
+    assert max(model.J[0] for model in result.models) < 1e-14
 
     def residuals(x: Floats) -> Floats:
         if function is hyperplane:
@@ -318,12 +320,12 @@ def test_of_many_dimensions_each_parameter_is_followed_as_far_as_it_goes(
 
     # An extremum on the sphere is flat: a walk ends where a step of H gains less than 1 %.
     expected = extents_by_slsqp(residuals, theta, problem.lower, problem.upper)
-    reached = np.array([there.min(axis=0), there.max(axis=0)])
+    reached = np.array([other.min(axis=0), other.max(axis=0)])
     assert np.abs(reached - expected).max() < 0.02 * np.ptp([lower, upper])
     assert (reached[0] >= expected[0] - 1e-6).all()
     assert (reached[1] <= expected[1] + 1e-6).all()
-    assert costs.eigenproblems == found.evaluations + 1
-    assert found.evaluations == pytest.approx(evaluations, rel=0.05)
+    assert costs.eigenproblems == result.evaluations + 1
+    assert result.evaluations == pytest.approx(evaluations, rel=0.05)
 
 
 def test_a_manifold_is_followed_once_from_wherever_its_minima_lie(costs: Costs) -> None:
@@ -338,10 +340,10 @@ def test_a_manifold_is_followed_once_from_wherever_its_minima_lie(costs: Costs) 
         if (theta >= 0).all() and (theta <= 1).all():
             minima.append(problem.evaluate(theta))
     before = costs.eigenproblems
-    (found,) = equivalent_models(problem, ONE, minima)
-    assert (found.dimension, found.minima) == (4, 20)
-    assert found.evaluations == costs.eigenproblems - before
-    assert found.evaluations == pytest.approx(97, rel=0.05)
+    (result,) = equivalent_models(problem, ONE, minima)
+    assert (result.dimension, result.minima) == (4, 20)
+    assert result.evaluations == costs.eigenproblems - before
+    assert result.evaluations == pytest.approx(97, rel=0.05)
 
 
 def test_another_programme_shares_a_manifold_that_is_as_good_for_it() -> None:
@@ -355,12 +357,12 @@ def test_another_programme_shares_a_manifold_that_is_as_good_for_it() -> None:
         return J, dJ, np.array([2 * np.outer(d, d) for d in parts])
 
     problem = box(three, [0, 0, 0], [1, 1, 1], 3)
-    at = problem.evaluate(np.array([0.4, 0.6, 0.5]))
+    evaluation = problem.evaluate(np.array([0.4, 0.6, 0.5]))
     idle = np.array([False, False, True])
     known: list[Manifold] = []
     for weights in np.eye(3)[:2]:
-        known += equivalent_models(problem, weighted(weights), [at], known=known, idle=idle)
-    assert [one.twin for one in known] == [None, 0]
+        known += equivalent_models(problem, weighted(weights), [evaluation], known=known, idle=idle)
+    assert [manifold.twin for manifold in known] == [None, 0]
     assert known[1].models == known[0].models
     assert known[1].evaluations < 10 < known[0].evaluations
     assert thetas(known[0].models)[:, 2].tolist() == [0.5] * len(known[0].models)
@@ -375,8 +377,8 @@ def test_minima_that_differ_in_idle_parameters_are_one() -> None:
 
     problem = of(valley, [0, 0], [1, 1])
     minima = [problem.evaluate(np.array([0.5, y])) for y in (0.1, 0.5, 0.9)]
-    (found,) = equivalent_models(problem, ONE, minima, idle=np.array([False, True]))
-    assert (found.extent, found.minima, len(found.models)) == (Extent.ISOLATED, 3, 1)
+    (result,) = equivalent_models(problem, ONE, minima, idle=np.array([False, True]))
+    assert (result.extent, result.minima, len(result.models)) == (Extent.ISOLATED, 3, 1)
 
 
 def test_a_model_from_which_all_steps_leave_the_bounds_is_no_curve() -> None:
@@ -384,8 +386,8 @@ def test_a_model_from_which_all_steps_leave_the_bounds_is_no_curve() -> None:
         return squares(np.array([theta.sum()]), np.ones((1, 2)))
 
     problem = of(line, [0, 0], [1, 1])
-    found = follow(problem, ONE, problem.evaluate(np.zeros(2)), h=0.05, limit=50)
-    assert (found.dimension, found.extent, len(found.models)) == (0, Extent.ISOLATED, 1)
+    result = follow(problem, ONE, problem.evaluate(np.zeros(2)), h=0.05, limit=50)
+    assert (result.dimension, result.extent, len(result.models)) == (0, Extent.ISOLATED, 1)
 
 
 def test_no_more_evaluations_than_allowed(costs: Costs) -> None:
@@ -408,9 +410,9 @@ def test_a_surface_that_is_too_large_to_cover_is_spanned() -> None:
         return squares(np.array([theta.sum() - 1.5]), np.ones((1, 3)))
 
     problem = of(plane, [0, 0, 0], [1, 1, 1])
-    found = follow(problem, ONE, problem.evaluate(np.full(3, 0.5)), h=0.02, limit=20)
-    assert (found.dimension, found.extent) == (2, Extent.SPANNED)
-    theta = thetas(found.models)
+    result = follow(problem, ONE, problem.evaluate(np.full(3, 0.5)), h=0.02, limit=20)
+    assert (result.dimension, result.extent) == (2, Extent.SPANNED)
+    theta = thetas(result.models)
     assert len(theta) <= 20
     assert theta.min(axis=0) == pytest.approx(np.zeros(3), abs=1e-8)
     assert theta.max(axis=0) == pytest.approx(np.ones(3), abs=1e-8)

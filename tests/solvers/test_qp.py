@@ -51,7 +51,7 @@ def least(qp: QuadraticProgramme) -> float:
     for share in (0.0, 0.5, -0.5):
         s = share * qp.hi
         start = np.append(s, (qp.c + qp.C @ s).max()) if m else s
-        found = scipy.optimize.minimize(
+        result = scipy.optimize.minimize(
             objective,
             start,
             method="SLSQP",
@@ -59,7 +59,7 @@ def least(qp: QuadraticProgramme) -> float:
             constraints=constraints,
             options={"ftol": 1e-14, "maxiter": 500},
         )
-        s = np.clip(found.x[:p], qp.lo, qp.hi)
+        s = np.clip(result.x[:p], qp.lo, qp.hi)
         if np.abs(qp.A @ s - qp.b).max(initial=0.0) < 1e-8:
             best = min(best, value(qp, s))
     return best

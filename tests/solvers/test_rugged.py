@@ -39,7 +39,7 @@ def rastrigin(theta: Floats) -> Derivatives:
     """Squares of the residuals u and sin 4u, for u = theta - c with two centres c."""
     u = theta - CENTRES
     dJ = 2 * u + 4 * np.sin(8 * u)
-    H = np.array([np.diag(2 + 32 * np.cos(4 * one) ** 2) for one in u])
+    H = np.array([np.diag(2 + 32 * np.cos(4 * angle) ** 2) for angle in u])
     return waves(u).sum(axis=1), dJ, H
 
 
@@ -48,8 +48,8 @@ def rastrigin_front() -> Floats:
     x = np.linspace(-2, 2, 4001)
     total = np.zeros((1, 2))
     for c in CENTRES.T:
-        own = np.column_stack([waves(x - c[0]), waves(x - c[1])])
-        total = (total[:, None] + best(own)[None]).reshape(-1, 2)
+        chosen = np.column_stack([waves(x - c[0]), waves(x - c[1])])
+        total = (total[:, None] + best(chosen)[None]).reshape(-1, 2)
         total = best(total)
     return total
 
@@ -84,7 +84,7 @@ def test_a_rugged_front_is_not_behind_an_evolution_with_as_many_evaluations() ->
     utopia, scale = truth.min(axis=0), np.ptp(truth, axis=0)
     J = (objectives(front) - utopia) / scale
     other = evolve_front(problem, "nsga2", 40, spent, np.random.default_rng(0))
-    J_other = (np.array([one.J for one in other]) - utopia) / scale
+    J_other = (np.array([first.J for first in other]) - utopia) / scale
     assert hypervolume(J) >= hypervolume(J_other)
     assert hypervolume(J) >= 0.98 * hypervolume((truth - utopia) / scale)
     called = [
@@ -103,15 +103,15 @@ def test_starts_end_where_each_leads_to_a_minimum_of_its_own() -> None:
 
     def many_waves(theta: Floats) -> Derivatives:
         u = theta - c
-        H = np.array([np.diag(2 + 32 * np.cos(4 * one) ** 2) for one in u])
+        H = np.array([np.diag(2 + 32 * np.cos(4 * angle) ** 2) for angle in u])
         return waves(u).sum(axis=1), 2 * u + 4 * np.sin(8 * u), H
 
     problem = box(many_waves, [-2.0] * 12, [2.0] * 12)
     search = Search(starts=12, limit=60, evolutions=0)
     first = Descent(weighted(np.array([1.0, 0.0])))
-    found = explore(problem, first, search, rng=np.random.default_rng(1))
+    result = explore(problem, first, search, rng=np.random.default_rng(1))
     # The problem's own start and 15 others, of 60.
-    assert 12 <= len(found) <= 16
+    assert 12 <= len(result) <= 16
 
 
 def test_no_evaluated_model_is_better_than_edges_and_weighted_models() -> None:
@@ -169,7 +169,7 @@ def test_no_starts_mean_no_exploration() -> None:
     with counted() as costs:
         same = explore_between(problem, front.target, points, [], simplex(2, 11), rng, none)
     # Points compete with each other all the same.
-    assert [one.beta is None for one in same] == [one.beta is None for one in points]
+    assert [point.beta is None for point in same] == [point.beta is None for point in points]
     assert costs.eigenproblems == pytest.approx(103, rel=0.05)
 
 
@@ -220,7 +220,7 @@ def test_fronts_of_four_and_five_objectives_whose_edges_coincide(n: int, linear:
     search = Search(starts=2, limit=3, evolutions=0)
     front = pareto_front(problem, np.ones(n), Pareto(points=3), seed=1, search=search)
     along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
-    J = np.array([one.J for one in along if one.converged])
+    J = np.array([point.J for point in along if point.converged])
     size = J.sum(axis=1) if linear else np.linalg.norm(J, axis=1)
     assert size == pytest.approx(1, abs=1e-5)
     assert len(J) >= n + n * (n - 1) // 2

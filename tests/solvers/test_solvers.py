@@ -55,9 +55,9 @@ def edges_of(problem: Known) -> list[Solution]:
     sizes = sizes_of(problem)
     out = []
     for i in range(len(problem.objectives)):
-        found = edge(problem, i, sizes, np.random.SeedSequence(i), Search())
-        assert found is not None
-        out.append(found.best)
+        result = edge(problem, i, sizes, np.random.SeedSequence(i), Search())
+        assert result is not None
+        out.append(result.best)
     return out
 
 
@@ -75,28 +75,28 @@ def front_of(problem: Known, points: int = 11) -> list[Solution]:
 def test_weighted_sums_have_their_minimum(function: Callable[[Floats], Derivatives]) -> None:
     problem = box(function, [-2, -2], [2, 2])
     start = begin(problem.evaluate(np.array([1.5, -1.0])))
-    found = solve(problem, weighted(np.array([1.0, 3.0])), start)
+    result = solve(problem, weighted(np.array([1.0, 3.0])), start)
     x = 0.75
-    assert found.status is Status.CONVERGED
+    assert result.status is Status.CONVERGED
     y = x**2 if function is curved else 0.0
-    assert found.theta == pytest.approx([x, y], abs=1e-6)
+    assert result.theta == pytest.approx([x, y], abs=1e-6)
 
 
 def test_bounds_hold_exactly() -> None:
     problem = box(circles, [0.6, 0.5], [2, 2])
-    found = solve(problem, weighted(np.array([1.0, 0.1])), begin(problem.evaluate(problem.start)))
-    assert found.converged
-    assert found.theta.tolist() == [0.6, 0.5]
+    result = solve(problem, weighted(np.array([1.0, 0.1])), begin(problem.evaluate(problem.start)))
+    assert result.converged
+    assert result.theta.tolist() == [0.6, 0.5]
 
 
 def test_levels_are_met() -> None:
     problem = box(curved, [-2, -2], [2, 2])
     programme = level(1, 0, 0.16, np.ones(2))
-    found = solve(problem, programme, begin(problem.evaluate(np.array([0.1, 0.3]))))
-    assert found.converged
-    assert found.theta == pytest.approx([0.4, 0.16], abs=1e-6)
+    result = solve(problem, programme, begin(problem.evaluate(np.array([0.1, 0.3]))))
+    assert result.converged
+    assert result.theta == pytest.approx([0.4, 0.16], abs=1e-6)
     # Its weights are those of the weighted sum with the same solution.
-    assert found.weights[0] / found.weights[1] == pytest.approx(0.6 / 0.4, rel=1e-5)
+    assert result.weights[0] / result.weights[1] == pytest.approx(0.6 / 0.4, rel=1e-5)
 
 
 def test_what_was_learned_makes_the_neighbour_cheaper() -> None:
@@ -115,9 +115,9 @@ def test_points_without_a_model_are_stepped_back_from() -> None:
         return (J if theta[0] < 0.6 else J * np.inf), dJ, H
 
     problem = box(hole, [-2, -2], [2, 2])
-    found = solve(problem, weighted(np.array([1.0, 1.0])), begin(problem.evaluate(-np.ones(2))))
-    assert found.converged
-    assert found.theta == pytest.approx([0.5, 0], abs=1e-6)
+    result = solve(problem, weighted(np.array([1.0, 1.0])), begin(problem.evaluate(-np.ones(2))))
+    assert result.converged
+    assert result.theta == pytest.approx([0.5, 0], abs=1e-6)
     nowhere = begin(problem.evaluate(np.ones(2)))
     assert solve(problem, weighted(np.ones(2)), nowhere).status is Status.INFEASIBLE
 
@@ -125,9 +125,9 @@ def test_points_without_a_model_are_stepped_back_from() -> None:
 def test_an_exhausted_search_says_so() -> None:
     problem = box(curved, [-2, -2], [2, 2])
     start = begin(problem.evaluate(np.array([1.9, -1.9])))
-    found = solve(problem, weighted(np.ones(2)), start, Options(iterations=1))
-    assert found.status is Status.EXHAUSTED
-    assert not found.converged
+    result = solve(problem, weighted(np.ones(2)), start, Options(iterations=1))
+    assert result.status is Status.EXHAUSTED
+    assert not result.converged
 
 
 # ---- global search ---------------------------------------------------------------------------
@@ -136,8 +136,8 @@ def test_an_exhausted_search_says_so() -> None:
 def test_all_minima_are_kept() -> None:
     problem = box(many_minima, [-4, -4], [4, 4])
     first = Descent(weighted(np.array([1.0, 0.0])))
-    found = explore(problem, first, Search(), rng=np.random.default_rng(0))
-    places = sorted(tuple(np.round(one.theta).astype(int).tolist()) for one in found)
+    result = explore(problem, first, Search(), rng=np.random.default_rng(0))
+    places = sorted(tuple(np.round(solution.theta).astype(int).tolist()) for solution in result)
     assert places == [(-1, -2), (-1, 2), (1, -2), (1, 2)]
 
 
@@ -155,8 +155,8 @@ def test_a_start_without_derivatives_is_not_taken_for_a_minimum() -> None:
     start = begin(problem.evaluate(np.array([0.6, 1.6]), derivatives=False))
     search = Search(starts=0, limit=0, evolutions=0)
     descent = Descent(weighted(np.array([1.0, 0.0])))
-    found = explore(problem, descent, search, [start], rng=np.random.default_rng(0))
-    places = [np.round(one.theta, 3).tolist() for one in found]
+    result = explore(problem, descent, search, [start], rng=np.random.default_rng(0))
+    places = [np.round(solution.theta, 3).tolist() for solution in result]
     assert [1.0, 2.0] in places
     assert [0.6, 1.6] not in places
 
@@ -180,8 +180,8 @@ def test_searches_are_repeated_exactly_with_the_same_seed() -> None:
         problem = box(many_minima, [-4, -4], [4, 4])
         rng = np.random.default_rng(5)
         with counted() as costs:
-            found = explore(problem, Descent(weighted(np.ones(2))), Search(), rng=rng)
-        runs.append([*(one.theta.tolist() for one in found), costs.eigenproblems])
+            result = explore(problem, Descent(weighted(np.ones(2))), Search(), rng=rng)
+        runs.append([*(solution.theta.tolist() for solution in result), costs.eigenproblems])
     assert runs[0] == runs[1]
 
 
@@ -200,8 +200,8 @@ def test_edges_are_lexicographic() -> None:
 @pytest.mark.parametrize("function", [circles, curved])
 def test_the_front_of_two_bowls(function: Callable[[Floats], Derivatives]) -> None:
     front = front_of(box(function, [-2, -2], [2, 2]))
-    J = np.array([one.J for one in front])
-    assert all(one.converged for one in front)
+    J = np.array([point.J for point in front])
+    assert all(point.converged for point in front)
     assert np.sqrt(J).sum(axis=1) == pytest.approx(1, abs=1e-6)
     # The points lie on the normals: J1 - J2 changes by equal steps.
     assert np.diff(J[:, 0] - J[:, 1]) == pytest.approx(0.2, abs=1e-6)
@@ -210,10 +210,10 @@ def test_the_front_of_two_bowls(function: Callable[[Floats], Derivatives]) -> No
 
 def test_a_concave_front_is_covered_evenly() -> None:
     front = front_of(box(concave, [-2, -2], [2, 2]), points=15)
-    J = np.array([one.J for one in front])
-    assert all(one.converged for one in front)
+    J = np.array([point.J for point in front])
+    assert all(point.converged for point in front)
     # On the front x1 = x2 = s: J = 1 - exp(-2 (s -+ c)**2) with |s| <= c.
-    s = np.array([one.theta.mean() for one in front])
+    s = np.array([point.theta.mean() for point in front])
     c = 1 / np.sqrt(2)
     assert J == pytest.approx(1 - np.exp(-2 * (s[:, None] - [c, -c]) ** 2), abs=1e-6)
     assert nondominated(J).all()
@@ -224,10 +224,10 @@ def test_a_concave_front_is_covered_evenly() -> None:
 def test_a_disconnected_front_keeps_dominated_points_and_ends_its_pieces() -> None:
     problem = box(disconnected, [0, -1], [0.651, 1])
     front = front_of(problem, points=25)
-    J = np.array([one.J for one in front])
+    J = np.array([point.J for point in front])
     optimal = nondominated(J)
     assert not optimal.all()
-    assert all(one.converged for one in front)
+    assert all(point.converged for point in front)
     (gap,) = gaps(problem, front, optimal, np.ptp(J, axis=0))
     assert gap.end is not None
     assert gap.start is not None
@@ -247,11 +247,11 @@ def test_a_disconnected_front_keeps_dominated_points_and_ends_its_pieces() -> No
 def test_the_front_of_three_bowls_is_their_triangle() -> None:
     front = front_of(box(bowls, [-2, -2], [2, 2], 3), points=5)
     assert len(front) > 15, "the lattice goes on beyond the simplex"
-    assert all(one.converged for one in front)
-    for one in front:
+    assert all(point.converged for point in front)
+    for point in front:
         # Each point is stationary for the weights that come with it, and none is negative.
-        w = one.weights / one.weights.sum()
-        assert one.theta == pytest.approx(w[1:], abs=2e-5)
+        w = point.weights / point.weights.sum()
+        assert point.theta == pytest.approx(w[1:], abs=2e-5)
         assert (w > 0).all()
 
 
@@ -304,15 +304,17 @@ class TwoBasins:
 def at_theta(theta: float) -> Solution:
     """Return a solution with J = (1 - theta, 1 - theta)."""
     none = np.zeros((2, 1, 1))
-    at = Evaluation(np.array([theta]), np.full(2, 1 - theta), ObjectiveDerivatives(none[0], none))
-    return Solution(at, none, np.ones(2), 0.0, Status.CONVERGED, 1)
+    point = Evaluation(
+        np.array([theta]), np.full(2, 1 - theta), ObjectiveDerivatives(none[0], none)
+    )
+    return Solution(point, none, np.ones(2), 0.0, Status.CONVERGED, 1)
 
 
 def test_a_point_far_from_its_neighbour_is_solved_from_there_though_the_way_back_agrees() -> None:
     problem = box(circles, [0], [1])
     edges = [at_theta(0.0), at_theta(1.0)]
     points = continuation(problem, TwoBasins(np.ones(2)), edges, simplex(2, 3))
-    assert [one.theta[0] for one in points] == [0.0, 0.9, 0.9, 1.0]
+    assert [point.theta[0] for point in points] == [0.0, 0.9, 0.9, 1.0]
 
 
 def test_steps_that_are_expected_have_other_names_where_they_turn_out_to_be_others() -> None:
@@ -335,19 +337,19 @@ def test_steps_that_are_expected_have_other_names_where_they_turn_out_to_be_othe
 def test_a_piece_of_the_front_between_the_edges_is_reached_from_its_own_minimum() -> None:
     problem = box(three_wells, [-1, -1.5], [2, 1.5])
     sizes = sizes_of(problem)
-    found = [edge(problem, i, sizes, np.random.SeedSequence(i), Search()) for i in range(2)]
-    edges = [one.best for one in found if one]
-    assert [round(one.theta[1]) for one in edges] == [-1, 1]
+    result = [edge(problem, i, sizes, np.random.SeedSequence(i), Search()) for i in range(2)]
+    edges = [solution.best for solution in result if solution]
+    assert [round(edge.theta[1]) for edge in edges] == [-1, 1]
     target = payoff(edges, sizes)
     assert target is not None
     alone = nbi(problem, edges, target, simplex(2, 10))
-    assert not any(abs(one.theta[1]) < 0.5 for one in alone)
-    minima = [one for each in found if each for one in each.minima]
+    assert not any(abs(point.theta[1]) < 0.5 for point in alone)
+    minima = [minimum for each in result if each for minimum in each.minima]
     front = nbi(problem, edges, target, simplex(2, 10), minima=minima)
-    assert sum(abs(one.theta[1]) < 0.5 for one in front) >= 6
-    optimal = nondominated(np.array([one.J for one in front]))
-    assert all(one.converged for one in front)
-    assert sum(optimal[i] for i, one in enumerate(front) if abs(one.theta[1]) < 0.5) >= 6
+    assert sum(abs(point.theta[1]) < 0.5 for point in front) >= 6
+    optimal = nondominated(np.array([point.J for point in front]))
+    assert all(point.converged for point in front)
+    assert sum(optimal[i] for i, point in enumerate(front) if abs(point.theta[1]) < 0.5) >= 6
 
 
 @pytest.mark.parametrize(
@@ -370,34 +372,36 @@ def test_fronts_of_three_objectives_are_covered_beyond_the_simplex(
 ) -> None:
     problem = box(function, lower, upper, 3)
     sizes = sizes_of(problem)
-    found = [edge(problem, i, sizes, np.random.SeedSequence(i), Search()) for i in range(3)]
-    edges = [one.best for one in found if one]
-    minima = [one for each in found if each for one in each.minima]
+    result = [edge(problem, i, sizes, np.random.SeedSequence(i), Search()) for i in range(3)]
+    edges = [solution.best for solution in result if solution]
+    minima = [minimum for each in result if each for minimum in each.minima]
     target = payoff(edges, sizes, minima)
     assert target is not None
     front = nbi(problem, edges, target, simplex(3, 10), minima=minima)
-    J = np.array([one.J for one in front]) / target.scale
+    J = np.array([point.J for point in front]) / target.scale
     R = known(np.random.default_rng(0)) / target.scale
     assert igd_plus(J, R) <= beyond
     assert igd_plus(J[:66], R) >= within
-    assert all(one.converged for one in front)
+    assert all(point.converged for point in front)
     # No point of the true front is dominated: the points found lie on it.
     assert igd_plus(R, J) <= 0.03
 
 
 def test_nothing_is_evaluated_where_the_front_ends() -> None:
     problem = box(bowls, [-2, -2], [2, 2], 3)
-    corners = [begin(problem.evaluate(np.array(at))) for at in ([0.0, 0.0], [1, 0], [0, 1])]
+    corners = [
+        begin(problem.evaluate(np.array(evaluation))) for evaluation in ([0.0, 0.0], [1, 0], [0, 1])
+    ]
     target = payoff(corners, np.ones(3))
     assert target is not None
-    programmes = Attainment(target, np.array([one.theta for one in corners]))
+    programmes = Attainment(target, np.array([corner.theta for corner in corners]))
     # Beyond the first corner, J1 = 0 holds the bound: Phi beta = (-0.2, 0.5, 0.5).
     beyond = np.array([1.2, -0.1, -0.1])
     with counted() as costs:
-        found = programmes.solve(problem, beyond, corners[0])
+        result = programmes.solve(problem, beyond, corners[0])
     assert costs.eigenproblems == 0
-    assert found.status is Status.STALLED
-    assert found.evaluation is corners[0].evaluation
+    assert result.status is Status.STALLED
+    assert result.evaluation is corners[0].evaluation
     within = programmes.solve(problem, np.array([0.8, 0.1, 0.1]), corners[0])
     assert within.converged
 
@@ -411,12 +415,12 @@ def test_more_objectives_than_parameters_can_meet_on_a_normal() -> None:
 
     front = front_of(box(five, [-2, -2], [2, 2], 5), points=4)
     assert len(front) >= 35
-    assert all(one.converged for one in front)
+    assert all(point.converged for point in front)
     # The Pareto set is the convex hull of the centres: each point is a mean of them.
-    for one in front:
-        w = one.weights / one.weights.sum()
+    for point in front:
+        w = point.weights / point.weights.sum()
         assert (w > 0).all()
-        assert one.theta == pytest.approx(w @ centres, abs=2e-5)
+        assert point.theta == pytest.approx(w @ centres, abs=2e-5)
 
 
 def test_the_second_point_costs_few_evaluations() -> None:
@@ -482,8 +486,8 @@ def test_singular_minima_are_told_from_regular_ones() -> None:
     problem = box(circles, [-2, -2], [2, 2])
     sizes = sizes_of(problem)
     rng = np.random.default_rng(0)
-    found = optimal_minima(problem, np.ones(2), sizes, Search(), [], rng=rng)
-    assert not any(regular(one.J, sizes) for one in found)
+    result = optimal_minima(problem, np.ones(2), sizes, Search(), [], rng=rng)
+    assert not any(regular(solution.J, sizes) for solution in result)
     exact = begin(problem.evaluate(np.zeros(2)))
     assert iterate_weights(problem, np.ones(2), sizes, exact) is None
 

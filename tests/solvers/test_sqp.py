@@ -82,10 +82,10 @@ def test_second_derivatives_of_quadratic_objectives_are_learned(seed: int, p: in
             theta, np.zeros(n), ObjectiveDerivatives(full @ theta, np.zeros((n, p, p)))
         )
 
-    S, at = np.zeros((n, p, p)), evaluation(rng.normal(size=p))
+    S, position = np.zeros((n, p, p)), evaluation(rng.normal(size=p))
     for step in np.linalg.qr(rng.normal(size=(p, p)))[0]:
-        new = evaluation(at.theta + step)
-        S, at = learned_from(S, at, new), new
+        new = evaluation(position.theta + step)
+        S, position = learned_from(S, position, new), new
         assert S @ step == pytest.approx(full @ step), "the last step is reproduced"
         assert S == pytest.approx(S.transpose(0, 2, 1))
 
@@ -110,15 +110,15 @@ def test_a_correction_leads_back_into_a_bent_valley() -> None:
 
     problem = Valley(curved, -np.ones(2), np.ones(2), np.zeros(2), ("J1",))
     correction = Correction(Merit(weighted(np.ones(1)), NONE, 10.0), np.zeros((0, 1)))
-    at, s = valley(np.zeros(2)), np.array([0.1, 0.0])
+    point, s = valley(np.zeros(2)), np.array([0.1, 0.0])
     new = valley(np.array([0.2, 0.0]))
-    corrected = correction.evaluated(problem, at, s, new)
+    corrected = correction.evaluated(problem, point, s, new)
     assert corrected is not None
     assert corrected.J[0] < 0.1 * new.J[0]
     # No longer than the step itself, and never for the worse.
     tiny = valley(np.array([1e-3, 0.5]))
-    assert correction.corrected(problem, at, np.array([5e-4, 0.0]), tiny) is not None
-    assert correction.evaluated(problem, at, np.zeros(2), valley(np.zeros(2))) is None
+    assert correction.corrected(problem, point, np.array([5e-4, 0.0]), tiny) is not None
+    assert correction.evaluated(problem, point, np.zeros(2), valley(np.zeros(2))) is None
 
 
 # ---- programmes with a maximum ---------------------------------------------------------------
@@ -134,7 +134,7 @@ def minimax(problem: Known, programme: Scalarisation) -> float:
 
     for _ in range(12):
         theta = rng.uniform(problem.lower, problem.upper)
-        found = scipy.optimize.minimize(
+        result = scipy.optimize.minimize(
             lambda x: programme.value(J(x[:p])) + x[p],
             np.append(theta, rows.at(J(theta)).max()),
             method="SLSQP",
@@ -142,7 +142,7 @@ def minimax(problem: Known, programme: Scalarisation) -> float:
             constraints={"type": "ineq", "fun": lambda x: x[p] - rows.at(J(x[:p]))},
             options={"ftol": 1e-13, "maxiter": 300},
         )
-        reached = J(found.x[:p])
+        reached = J(result.x[:p])
         best = min(best, programme.value(reached) + rows.at(reached).max())
     return best
 
@@ -164,17 +164,20 @@ def test_the_least_maximum_is_that_of_an_independent_solver(
     point = rng.dirichlet(np.ones(3)) - 0.2
     programme = Achievement(np.full(3, 1e-3), np.diag(rng.uniform(0.5, 2, 3)), point)
     starts = rng.uniform(problem.lower, problem.upper, (12, len(lower)))
-    found = [solve(problem, programme, begin(problem.evaluate(theta))) for theta in starts]
-    assert all(one.converged for one in found)
-    assert max(one.evaluations for one in found) <= 20
-    values = [programme.value(one.J) + programme.maximised.at(one.J).max() for one in found]
+    result = [solve(problem, programme, begin(problem.evaluate(theta))) for theta in starts]
+    assert all(solution.converged for solution in result)
+    assert max(solution.evaluations for solution in result) <= 20
+    values = [
+        programme.value(solution.J) + programme.maximised.at(solution.J).max()
+        for solution in result
+    ]
     assert min(values) == pytest.approx(minimax(problem, programme), abs=1e-6)
     # The weights are those of a stationary Lagrangian: no parameter within its bounds gains.
-    for one in found:
-        slope = one.weights @ one.evaluation.dJ
-        inside = (one.theta > problem.lower + 1e-6) & (one.theta < problem.upper - 1e-6)
+    for solution in result:
+        slope = solution.weights @ solution.evaluation.dJ
+        inside = (solution.theta > problem.lower + 1e-6) & (solution.theta < problem.upper - 1e-6)
         assert slope[inside] == pytest.approx(0, abs=1e-4)
-        assert (one.weights > 0).all()
+        assert (solution.weights > 0).all()
 
 
 def test_a_maximum_is_found_within_constraints_too() -> None:
@@ -197,9 +200,9 @@ def test_a_maximum_is_found_within_constraints_too() -> None:
 
     problem = box(bowls, [-2.0, -2.0], [2.0, 2.0], 3)
     start = begin(problem.evaluate(np.array([0.2, -0.4])))
-    found = solve(problem, Both(), start)
-    assert found.converged
-    assert found.theta == pytest.approx(np.full(2, np.sqrt(0.15)), abs=1e-6)
+    result = solve(problem, Both(), start)
+    assert result.converged
+    assert result.theta == pytest.approx(np.full(2, np.sqrt(0.15)), abs=1e-6)
 
 
 def test_a_point_between_equal_functions_is_no_minimum_where_the_curvature_is_negative() -> None:
@@ -214,15 +217,15 @@ def test_a_point_between_equal_functions_is_no_minimum_where_the_curvature_is_ne
 
     problem = box(ridge, [-1.0, -1.0], [1.0, 1.0])
     programme = Achievement(np.zeros(2), np.eye(2), np.zeros(2))
-    found = solve(problem, programme, begin(problem.evaluate(np.zeros(2))))
-    assert found.status is Status.CONVERGED
-    assert np.abs(found.theta) == pytest.approx([0.0, 1.0], abs=1e-6)
-    assert found.J.max() == pytest.approx(-1.0, abs=1e-6)
+    result = solve(problem, programme, begin(problem.evaluate(np.zeros(2))))
+    assert result.status is Status.CONVERGED
+    assert np.abs(result.theta) == pytest.approx([0.0, 1.0], abs=1e-6)
+    assert result.J.max() == pytest.approx(-1.0, abs=1e-6)
 
 
 def test_a_maximum_without_learned_second_derivatives() -> None:
     problem = box(bowls, [-2.0, -2.0], [2.0, 2.0], 3)
     programme = Achievement(np.zeros(3), np.eye(3), np.zeros(3))
-    found = solve(problem, programme, begin(problem.evaluate(-np.ones(2))), Options(learn=False))
-    assert found.converged
-    assert found.theta == pytest.approx([0.5, 0.5], abs=1e-6), "the centre of the circle"
+    result = solve(problem, programme, begin(problem.evaluate(-np.ones(2))), Options(learn=False))
+    assert result.converged
+    assert result.theta == pytest.approx([0.5, 0.5], abs=1e-6), "the centre of the circle"

@@ -10,8 +10,8 @@ from modefront.solvers.problem import Evaluation, Problem, Wrapped
 
 
 def doubled(problem: Problem, theta: Floats, derivatives: bool) -> Evaluation:
-    at = problem.evaluate(theta, derivatives=derivatives)
-    return replace(at, J=2 * at.J)
+    evaluation = problem.evaluate(theta, derivatives=derivatives)
+    return replace(evaluation, J=2 * evaluation.J)
 
 
 def test_a_wrapped_problem_differs_in_its_evaluations_alone() -> None:

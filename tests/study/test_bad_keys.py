@@ -284,7 +284,7 @@ KEYS = [
 ]
 
 
-def found(place: str, expected: str, what: str) -> str:
+def fault_text(place: str, expected: str, what: str) -> str:
     """Return what is said of an item of a list, whose name stands behind its number or not."""
     head = re.sub(r"(\]\] \d)", r"\1 ... ", place)
     return f"{head}: expected ... {expected} ... , found {what}"
@@ -297,7 +297,7 @@ def test_every_key_of_the_study_refuses_what_it_cannot_be(
     for value in key.values():
         study = folder / "wrong.toml"
         study.write_text(edited(STUDY, (key.line, f"{key.name} = {value}")))
-        refused(study, found(key.place, key.expected, ""))
+        refused(study, fault_text(key.place, key.expected, ""))
 
 
 def test_the_reduction_of_matrices_refuses_what_it_cannot_be(folder: Path, refused: Check) -> None:
@@ -320,9 +320,11 @@ def test_a_misspelt_key_is_answered_with_the_known_one(
     study.write_text(edited(STUDY, (key.line, key.line.replace(key.name, misspelt, 1))))
     says = []
     if key.name != "kind":  # without it, it is not known what keys there are
-        says.append(found(key.table, "a known key", f"'{misspelt}' (did you mean '{key.name}'?)"))
+        says.append(
+            fault_text(key.table, "a known key", f"'{misspelt}' (did you mean '{key.name}'?)")
+        )
     if key.required:
-        says.append(found(key.place, key.expected.replace("a list of 2", ""), "nothing"))
+        says.append(fault_text(key.place, key.expected.replace("a list of 2", ""), "nothing"))
     refused(study, *says)
 
 
@@ -330,4 +332,4 @@ def test_a_misspelt_key_is_answered_with_the_known_one(
 def test_a_missing_key_is_asked_for(key: Key, folder: Path, refused: Check) -> None:
     study = folder / "wrong.toml"
     study.write_text(edited(STUDY, (key.line + "\n", "")))
-    refused(study, found(key.place, key.expected, "nothing"))
+    refused(study, fault_text(key.place, key.expected, "nothing"))

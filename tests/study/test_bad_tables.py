@@ -118,9 +118,9 @@ def test_everything_that_is_wrong_is_said_at_once_before_a_run_and_by_check(
         "wrong.toml: [search]: expected a known key, found 'stars'",
     )
     command("run", study)
-    said = capsys.readouterr().err
+    text = capsys.readouterr().err
     assert command("check", study) == 2
-    assert capsys.readouterr() == ("", said)
+    assert capsys.readouterr() == ("", text)
 
 
 def test_names_may_hold_what_a_path_or_a_terminal_gives_a_meaning(

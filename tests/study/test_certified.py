@@ -130,8 +130,8 @@ def test_the_front_is_that_of_full_solutions(file: Path, whole: xr.Dataset) -> N
         theta = whole["theta"].values[i]
         r = whole["paired_mode"].values[i].astype(int) - 1
         lam = model.modes(theta, 6, derivatives=False).lam[r]
-        found = (2 * np.pi * whole["frequency"].values[i]) ** 2
-        truth = np.abs(found / lam - 1)
+        result = (2 * np.pi * whole["frequency"].values[i]) ** 2
+        truth = np.abs(result / lam - 1)
         estimate = whole["eigenvalue_error"].values[i]
         assert (truth <= 3 * estimate + 1e-12).all()
         assert (estimate <= 2 * truth + 1e-12).all()

@@ -25,8 +25,8 @@ def study(tmp_path: Path) -> Study:
 @pytest.mark.parametrize("width", [1e-12, 1e-9, 1e-6, 1e-3, 1.0 - 1e-6])
 def test_derivatives_are_proved_however_narrow_the_bounds(width: float, study: Study) -> None:
     problem = study.problem
-    one = np.ones(3)
-    narrow = replace(problem, lower=(1 - width) * one, upper=(1 + width) * one, start=one)
+    unit = np.ones(3)
+    narrow = replace(problem, lower=(1 - width) * unit, upper=(1 + width) * unit, start=unit)
     assert derivative_error(narrow) < 1e-9
 
 

@@ -80,7 +80,7 @@ def save(folder: Path, data: xr.Dataset) -> Path:
 
 @pytest.fixture
 def two(tmp_path: Path) -> tuple[Path, Path]:
-    one = results(
+    results_one = results(
         [[0.0, 3.0], [1.0, 2.0], [3.0, 2.5], [3.0, 0.0]], [[1, 1], [1, 1.2], [9, 9], [1, 2]]
     )
     other = results(
@@ -89,7 +89,7 @@ def two(tmp_path: Path) -> tuple[Path, Path]:
         parameters=("k1", "other"),
         piece=[1, 1, 2, 2],
     )
-    return save(tmp_path / "one", one), save(tmp_path / "other", other)
+    return save(tmp_path / "one", results_one), save(tmp_path / "other", other)
 
 
 def test_fronts_are_measured_in_the_space_of_errors(two: tuple[Path, Path]) -> None:
@@ -122,11 +122,15 @@ def test_distances_are_those_in_common_parameters_over_their_bounds(
 
 def test_predictions_have_their_spread_and_further_ones_are_found(two: tuple[Path, Path]) -> None:
     first = compare(two).fronts[0]
-    spreads = {one.name: (one.least, one.greatest) for one in first.predictions}
+    spreads = {
+        prediction.name: (prediction.least, prediction.greatest) for prediction in first.predictions
+    }
     assert spreads["frequency 1"] == (10.0, 10.0)
     assert spreads["mac 1"] == pytest.approx((0.99, 0.99))
     assert spreads["failure_probability drift: 0.2"] == (2.0, 2.0)
-    assert {one.name: (one.least, one.greatest) for one in first.parameters} == {
+    assert {
+        parameter.name: (parameter.least, parameter.greatest) for parameter in first.parameters
+    } == {
         "k1": (1.0, 1.0),
         "k2": (1.0, 2.0),
     }
@@ -145,10 +149,10 @@ def test_what_cannot_be_compared_is_said_at_once(two: tuple[Path, Path], tmp_pat
 
 
 def test_a_front_of_one_point_has_no_length(two: tuple[Path, Path], tmp_path: Path) -> None:
-    one = results([[1.0, 1.0]], [[1, 1]])
-    one["label"] = ("point", ["edge-f", "optimal-weights"])
-    one["kind"] = ("point", ["edge", "optimal-weights"])
-    point = save(tmp_path / "point", one)
+    results_one = results([[1.0, 1.0]], [[1, 1]])
+    results_one["label"] = ("point", ["edge-f", "optimal-weights"])
+    results_one["kind"] = ("point", ["edge", "optimal-weights"])
+    point = save(tmp_path / "point", results_one)
     first, second = compare((point, two[0])).fronts
     assert (first.points, first.length, first.extent) == (1, 0.0, (0.0, 0.0))
     assert np.isnan(second.length_ratio)
@@ -162,13 +166,13 @@ def test_models_beside_the_front_count_where_they_are_better(
     error[2], theta[2] = [0.5, 0.5], [0.5, 1.9]
     better = data.assign(error=(("point", "group"), error), theta=(data["theta"].dims, theta))
     better.attrs["reference"] = "nbi-2"
-    (found, _) = compare((save(tmp_path / "better", better), two[0])).fronts
-    assert found.points == 2
-    assert found.distance == pytest.approx(np.sqrt(0.5))
-    assert found.extent == (3.0, 3.0)
-    assert [(x.least, x.greatest, x.reference) for x in found.parameters] == [
+    (result, _) = compare((save(tmp_path / "better", better), two[0])).fronts
+    assert result.points == 2
+    assert result.distance == pytest.approx(np.sqrt(0.5))
+    assert result.extent == (3.0, 3.0)
+    assert [(x.least, x.greatest, x.reference) for x in result.parameters] == [
         (0.5, 1.0, 1.0),
         (1.0, 1.9, 1.5),
     ]
-    assert found.reference == "nbi-2"
-    assert found.reference_distance == 3.0
+    assert result.reference == "nbi-2"
+    assert result.reference_distance == 3.0

@@ -21,9 +21,9 @@ SEARCH = mf.Search(starts=3, limit=10, evolutions=0)
 def problem_of(*, sets: int = 1, std: float = 0.0, seed: int = 0) -> mf.UpdatingProblem:
     """A chain whose data no model fits, in several sets or with standard deviations."""
     rng = np.random.default_rng(seed)
-    at = MODEL.modes(np.array([1.2, 0.8, 1.1]), 3)
-    f = at.frequency * (1 + np.array([0.03, -0.02, 0.02]))
-    phi = at.phi.T * (1 + 0.05 * rng.normal(size=(3, 3)))
+    modes = MODEL.modes(np.array([1.2, 0.8, 1.1]), 3)
+    f = modes.frequency * (1 + np.array([0.03, -0.02, 0.02]))
+    phi = modes.phi.T * (1 + 0.05 * rng.normal(size=(3, 3)))
     f = f * (1 + 0.003 * rng.normal(size=(sets, 3)) * (sets > 1))
     phi = phi + 0.01 * rng.normal(size=(sets, 3, 3)) * (sets > 1)
     known = {}
@@ -45,7 +45,7 @@ def results(source: str) -> xr.Dataset:
     ).dataset
 
 
-def at(data: xr.Dataset, name: str, label: str) -> Floats:
+def value_of(data: xr.Dataset, name: str, label: str) -> Floats:
     return np.asarray(data[name].values[data["label"].values.tolist().index(label)])
 
 
@@ -59,12 +59,12 @@ def test_combinations_are_in_the_results_and_in_words() -> None:
     assert share[2] < 1e-7
     direction = data["combination_direction"].values[chosen][2]
     assert direction == pytest.approx(np.ones(3) / np.sqrt(3), abs=1e-6)
-    said = (
+    text = (
         "at optimal-weights: shapes determine 2 of 3 combinations of parameters; "
         "k1, k2 and k3 can be scaled together: no shape changes"
     )
-    assert said in data["finding"].values.tolist()
-    assert said in remarks(data)
+    assert text in data["finding"].values.tolist()
+    assert text in remarks(data)
     assert np.diag(data["collinearity"].values) == pytest.approx(1)
 
 
@@ -74,7 +74,7 @@ def test_the_scale_of_all_stiffnesses_is_followed_to_the_bounds() -> None:
     theta = data["equal_theta"].values[chosen]
     assert set(data["equal_extent"].values[chosen]) == {"bounded"}
     assert set(data["equal_dimension"].values[chosen]) == {1}
-    edge = at(data, "theta", "edge-shapes")
+    edge = value_of(data, "theta", "edge-shapes")
     assert theta / theta[:, :1] == pytest.approx(np.tile(edge / edge[0], (len(theta), 1)), rel=1e-6)
     assert theta.min() == pytest.approx(0.1, rel=1e-9)
     assert theta.max() == pytest.approx(9.0, rel=1e-9)
@@ -91,9 +91,9 @@ def test_exact_fits_of_the_frequencies_are_points() -> None:
     assert set(data["equal_extent"].values[chosen]) == {"isolated"}
     theta = data["equal_theta"].values[chosen]
     assert (data["equal_objective"].values[chosen, 0] < 1e-15).all()
-    for one in theta:
-        at = MODEL.modes(one, 3).frequency
-        assert at == pytest.approx(problem_of(std=0.002).data.frequency[0], rel=1e-7)
+    for k in theta:
+        modes = MODEL.modes(k, 3).frequency
+        assert modes == pytest.approx(problem_of(std=0.002).data.frequency[0], rel=1e-7)
 
 
 @pytest.mark.slow
@@ -107,13 +107,17 @@ def test_linearised_scatter_is_that_of_synthetic_data(source: str) -> None:
     data = results(source)
     for label in ("edge-frequencies", "edge-shapes", "equal-weights", "optimal-weights", "nbi-2"):
         for name in ("theta", "objective"):
-            linear = factor * at(data, f"{name}_std", label)
-            drawn = at(data, f"bootstrap_{name}_std", label)
+            linear = factor * value_of(data, f"{name}_std", label)
+            drawn = value_of(data, f"bootstrap_{name}_std", label)
             kept = linear > 1e-3 * linear.max()
             assert linear[kept] == pytest.approx(drawn[kept], rel=0.28), (label, name)
-    covariance = at(data, "theta_covariance", "optimal-weights")
-    assert np.sqrt(np.diag(covariance)) == pytest.approx(at(data, "theta_std", "optimal-weights"))
-    assert at(data, "theta_std", "nbi-2") == pytest.approx(at(data, "theta_std", "edge-shapes"))
+    covariance = value_of(data, "theta_covariance", "optimal-weights")
+    assert np.sqrt(np.diag(covariance)) == pytest.approx(
+        value_of(data, "theta_std", "optimal-weights")
+    )
+    assert value_of(data, "theta_std", "nbi-2") == pytest.approx(
+        value_of(data, "theta_std", "edge-shapes")
+    )
 
 
 @pytest.mark.slow
@@ -143,16 +147,19 @@ def test_points_of_three_groups_scatter_as_synthetic_data_do() -> None:
 
 def test_predictions_scatter_with_the_parameters() -> None:
     data = results("std")
-    theta, C = at(data, "theta", "equal-weights"), at(data, "theta_covariance", "equal-weights")
+    theta, C = (
+        value_of(data, "theta", "equal-weights"),
+        value_of(data, "theta_covariance", "equal-weights"),
+    )
     df = MODEL.modes(theta, 3).dfrequency
     expected = np.sqrt(np.diag(df @ C @ df.T))
-    assert at(data, "frequency_std", "equal-weights") == pytest.approx(expected, rel=1e-5)
+    assert value_of(data, "frequency_std", "equal-weights") == pytest.approx(expected, rel=1e-5)
 
 
 def test_the_posterior_is_that_of_the_optimally_weighted_model() -> None:
     data = results("std")
     problem = problem_of(std=0.002)
-    theta, C = at(data, "theta", "optimal-weights"), data["posterior_covariance"].values
+    theta, C = value_of(data, "theta", "optimal-weights"), data["posterior_covariance"].values
     a = problem.properties
 
     def half(theta: Floats) -> float:
@@ -189,10 +196,10 @@ def test_a_front_that_is_a_point_has_no_scatter_to_speak_of() -> None:
     data = mf.modal_data(
         modes.frequency, modes.phi.T, MODEL.sensors, frequency_std=0.01 * modes.frequency
     )
-    found = mf.solve(replace(problem_of(), data=data), points=4, search=SEARCH).dataset
-    assert found.attrs["front_is_a_point"]
-    assert np.isnan(found["theta_std"].values).all()
-    assert any("no standard deviations are known at" in text for text in found["finding"].values)
+    result = mf.solve(replace(problem_of(), data=data), points=4, search=SEARCH).dataset
+    assert result.attrs["front_is_a_point"]
+    assert np.isnan(result["theta_std"].values).all()
+    assert any("no standard deviations are known at" in text for text in result["finding"].values)
 
 
 STUDY = (
@@ -282,9 +289,9 @@ def test_a_study_runs_on_with_the_same_digits_and_shows_all(
     assert again.identical(first)
     solved = first["kind"].values != "nominal"
     assert np.isfinite(first["theta_std"].values[solved]).all()
-    said = first["finding"].values.tolist()
+    message = first["finding"].values.tolist()
     assert not any(
-        "no standard deviations are known" in text or "bootstrap" in text for text in said
+        "no standard deviations are known" in text or "bootstrap" in text for text in message
     )
     assert again.attrs["model_evaluations"] == first.attrs["model_evaluations"]
     print_results(mf.read_results(tmp_path / "results").dataset, list(LISTS))

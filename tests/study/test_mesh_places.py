@@ -35,10 +35,10 @@ def model(folder: Path, sensors: str, columns: str, *edits: tuple[str, str]) -> 
     ones = ",".join("1" for _ in columns.split(","))
     rows = "\n".join(f"{r},{4.0 * r},{ones}" for r in (1, 2, 3))
     (folder / "modes.csv").write_text(f"mode,frequency,{columns}\n{rows}\n")
-    found = load(study).problem.model
-    found = found.full if isinstance(found, ReducedModel) else found
-    assert isinstance(found, MatrixModel)
-    return found
+    result = load(study).problem.model
+    result = result.full if isinstance(result, ReducedModel) else result
+    assert isinstance(result, MatrixModel)
+    return result
 
 
 def test_a_list_of_directions_makes_a_sensor_each(tmp_path: Path) -> None:
@@ -91,8 +91,8 @@ def test_supports_and_springs_at_several_groups(tmp_path: Path) -> None:
     springs = '[[model.spring]]\nname = "soft"\nstiffness = 1.0\ndirection = "y"\n'
     springs += 'nodes = ["story1", 37, "base"]\n[model.sensors]'
     edits = ('nodes = "base"', 'nodes = ["base", 0]'), ("[model.sensors]", springs)
-    found = model(tmp_path / "a", SENSORS, "floor1,floor2,floor3", *edits)
-    assert found.size == 576
+    result = model(tmp_path / "a", SENSORS, "floor1,floor2,floor3", *edits)
+    assert result.size == 576
     with pytest.raises(InputError) as error:
         model(
             tmp_path / "b",
@@ -118,7 +118,7 @@ def test_all_faults_of_a_structure_are_said_at_once(tmp_path: Path) -> None:
     sensors = SENSORS.replace("node = 37", "at = [9.0, 9.0, 9.0]")
     with pytest.raises(InputError) as error:
         model(tmp_path, sensors, "floor1,floor2,floor3", *edits)
-    found = [fault.found for fault in error.value.faults]
+    result = [fault.found for fault in error.value.faults]
     for part in (
         "member 'lead1'",
         "nothing named 'stroy3'",
@@ -126,7 +126,7 @@ def test_all_faults_of_a_structure_are_said_at_once(tmp_path: Path) -> None:
         "spring 's': a direction is needed",
         "sensor 'floor2': no node within",
     ):
-        assert sum(part in text for text in found) == 1, (part, found)
+        assert sum(part in text for text in result) == 1, (part, result)
 
 
 def test_faults_of_tables_do_not_hide_those_of_sensors_and_scales(tmp_path: Path) -> None:

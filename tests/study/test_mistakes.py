@@ -50,13 +50,13 @@ def spoilt(
     return study
 
 
-def found(study: Path) -> Findings:
+def findings_of(study: Path) -> Findings:
     return check(load(study))
 
 
 def only(study: Path) -> str:
     """Return the one mistake that is found, in words; nothing that it brings about is said."""
-    findings = found(study)
+    findings = findings_of(study)
     assert len(findings.mistakes) == 1, findings.warnings
     assert len(findings.warnings) == 1, findings.warnings
     return findings.warnings[0]
@@ -80,22 +80,22 @@ def exchanged(rows: Rows) -> None:
 
 @pytest.mark.parametrize("example", [CHAIN, FRAME, SETS])
 def test_nothing_is_found_where_nothing_is_wrong(example: str, tmp_path: Path) -> None:
-    assert found(spoilt(tmp_path, example)).mistakes == ()
+    assert findings_of(spoilt(tmp_path, example)).mistakes == ()
 
 
 @pytest.mark.parametrize("example", [CHAIN, FRAME])
 def test_rad_per_second(example: str, tmp_path: Path) -> None:
-    said = only(spoilt(tmp_path, example, data=scaled("frequency", 6.2831853)))
-    assert "look like rad/s" in said
-    assert "divide the column 'frequency' by 6.2832" in said
+    text = only(spoilt(tmp_path, example, data=scaled("frequency", 6.2831853)))
+    assert "look like rad/s" in text
+    assert "divide the column 'frequency' by 6.2832" in text
 
 
 @pytest.mark.parametrize(("factor", "unit"), [(1e-6, "MPa"), (1e-9, "GPa"), (1e9, "GPa")])
 def test_units_of_stiffness(factor: float, unit: str, tmp_path: Path) -> None:
     k = repr(84763.8 * factor)
-    said = only(spoilt(tmp_path, CHAIN, ("84763.8", k)))
-    assert "all measured frequencies are about" in said
-    assert unit in said
+    text = only(spoilt(tmp_path, CHAIN, ("84763.8", k)))
+    assert "all measured frequencies are about" in text
+    assert unit in text
 
 
 def test_periods_and_eigenvalues(tmp_path: Path) -> None:
@@ -113,20 +113,20 @@ def test_periods_and_eigenvalues(tmp_path: Path) -> None:
 
 def test_what_a_unit_mistake_brings_about_is_not_said(tmp_path: Path) -> None:
     study = spoilt(tmp_path, SETS, data=scaled("frequency", 6.2831853))
-    said = " ".join(CliRunner().invoke(cli, ["check", "--all", str(study)]).output.split())
-    assert "look like rad/s" in said
-    assert "put this right first: it changes what the data determine" in said
-    assert said.count("warning:") == 1
-    assert "determine this combination" not in said
-    assert "all data together" not in said
+    text = " ".join(CliRunner().invoke(cli, ["check", "--all", str(study)]).output.split())
+    assert "look like rad/s" in text
+    assert "put this right first: it changes what the data determine" in text
+    assert text.count("warning:") == 1
+    assert "determine this combination" not in text
+    assert "all data together" not in text
 
 
 @pytest.mark.parametrize("example", [CHAIN, FRAME])
 @pytest.mark.parametrize("sensor", ["floor1", "floor2", "floor3"])
 def test_a_reversed_sensor(example: str, sensor: str, tmp_path: Path) -> None:
-    said = only(spoilt(tmp_path, example, data=scaled(sensor, -1.0)))
-    assert re.search(rf"reversing {sensor} in all data raises MAC \d from 0\.\d\d to 1\.00", said)
-    assert f"check the direction of {sensor}" in said
+    text = only(spoilt(tmp_path, example, data=scaled(sensor, -1.0)))
+    assert re.search(rf"reversing {sensor} in all data raises MAC \d from 0\.\d\d to 1\.00", text)
+    assert f"check the direction of {sensor}" in text
 
 
 def test_a_reversed_sensor_that_moves_too_little_for_the_mac() -> None:
@@ -139,11 +139,13 @@ def test_a_reversed_sensor_that_moves_too_little_for_the_mac() -> None:
     shape = (structure.phi + noise).T
     first = shape[:, 0].copy()
     groups = (Group("shapes", shape="all"),)
-    one = np.ones(50)
+    unit = np.ones(50)
     for sign, expected in ((1.0, []), (-1.0, [("s0",)])):
         shape[:, 0] = sign * first
         data = modal_data(structure.frequency, shape, model.sensors)
-        mistakes = diagnose(compare(UpdatingProblem(model, data, groups, 0.2 * one, 5 * one, one)))
+        mistakes = diagnose(
+            compare(UpdatingProblem(model, data, groups, 0.2 * unit, 5 * unit, unit))
+        )
         assert [x.sensors for x in mistakes if isinstance(x, OpposedSensor)] == expected
         assert len(mistakes) == len(expected)
 
@@ -154,23 +156,23 @@ def test_exchanged_sensors_that_move_nearly_alike(pair: tuple[str, str], tmp_pat
         for row in rows:
             row[pair[0]], row[pair[1]] = row[pair[1]], row[pair[0]]
 
-    said = only(spoilt(tmp_path, "calculix", data=exchange))
-    assert f"sensors {pair[0]} and {pair[1]} are exchanged" in said
-    assert f"check the cables of {pair[0]} and {pair[1]}" in said
+    text = only(spoilt(tmp_path, "calculix", data=exchange))
+    assert f"sensors {pair[0]} and {pair[1]} are exchanged" in text
+    assert f"check the cables of {pair[0]} and {pair[1]}" in text
 
 
 @pytest.mark.parametrize("example", [CHAIN, FRAME])
 def test_exchanged_sensors(example: str, tmp_path: Path) -> None:
-    said = only(spoilt(tmp_path, example, data=exchanged))
-    assert re.search(r"exchanging floor1 and floor2 in all data raises MAC \d from 0", said)
+    text = only(spoilt(tmp_path, example, data=exchanged))
+    assert re.search(r"exchanging floor1 and floor2 in all data raises MAC \d from 0", text)
 
 
 def test_sensors_of_one_data_set(tmp_path: Path) -> None:
     first = tmp_path / "modes-m0.csv"
     write_example(SETS, tmp_path / "plain")
     names = load(tmp_path / "plain" / "study.toml").problem.data.sets
-    said = only(spoilt(tmp_path, SETS, data=scaled("floor2", -1.0, names[1])))
-    assert f"reversing floor2 in set {names[1]} raises cross-MAC" in said
+    text = only(spoilt(tmp_path, SETS, data=scaled("floor2", -1.0, names[1])))
+    assert f"reversing floor2 in set {names[1]} raises cross-MAC" in text
     assert first.exists()
 
 
@@ -179,25 +181,25 @@ def test_a_sensor_that_most_data_sets_have_reversed(tmp_path: Path) -> None:
         for name in ("set1", "set2"):
             scaled("floor1", -1.0, name)(rows)
 
-    said = only(spoilt(tmp_path, SETS, data=change))
-    assert "reversing floor1 in set set1 and set2 raises MAC" in said
+    text = only(spoilt(tmp_path, SETS, data=change))
+    assert "reversing floor1 in set set1 and set2 raises MAC" in text
 
 
 def test_a_data_set_in_another_unit_and_one_with_another_frequency(tmp_path: Path) -> None:
     write_example(SETS, tmp_path / "plain")
     name = load(tmp_path / "plain" / "study.toml").problem.data.sets[2]
-    said = only(spoilt(tmp_path / "a", SETS, data=scaled("frequency", 6.2831853, name)))
-    assert f"all frequencies of set {name} are 6.28 times" in said
-    assert "rad/s for Hz" in said
+    text = only(spoilt(tmp_path / "a", SETS, data=scaled("frequency", 6.2831853, name)))
+    assert f"all frequencies of set {name} are 6.28 times" in text
+    assert "rad/s for Hz" in text
 
-    def one(rows: Rows) -> None:
+    def first_row(rows: Rows) -> None:
         (row,) = (row for row in rows if row["set"] == name and row["mode"] == "2")
         row["frequency"] = repr(1.1 * float(row["frequency"]))
 
-    said = only(spoilt(tmp_path / "b", SETS, data=one))
-    assert f"set {name} disagrees with set1 and set2 in the frequency of mode 2" in said
-    assert "14.394 and 13.085 Hz" in said
-    assert f"look at set {name} again" in said
+    text = only(spoilt(tmp_path / "b", SETS, data=first_row))
+    assert f"set {name} disagrees with set1 and set2 in the frequency of mode 2" in text
+    assert "14.394 and 13.085 Hz" in text
+    assert f"look at set {name} again" in text
 
 
 @pytest.mark.parametrize("name", ["set1", "set2", "set3"])
@@ -206,11 +208,11 @@ def test_of_three_sets_the_odd_one_is_named(name: str, tmp_path: Path) -> None:
         (row,) = (row for row in rows if row["set"] == name and row["mode"] == "2")
         row["floor1"], row["floor2"], row["floor3"] = "0.3", "1.0", "0.9"
 
-    said = only(spoilt(tmp_path / "a", SETS, data=shape))
-    assert f"set {name} disagrees with" in said
-    assert "in the shape of mode 2" in said
-    said = only(spoilt(tmp_path / "b", SETS, data=scaled("frequency", 1.05, name)))
-    assert f"all frequencies of set {name} are +5.0 % off those of" in said
+    text = only(spoilt(tmp_path / "a", SETS, data=shape))
+    assert f"set {name} disagrees with" in text
+    assert "in the shape of mode 2" in text
+    text = only(spoilt(tmp_path / "b", SETS, data=scaled("frequency", 1.05, name)))
+    assert f"all frequencies of set {name} are +5.0 % off those of" in text
 
 
 def test_of_two_sets_nobody_knows_which_is_wrong() -> None:
@@ -221,9 +223,9 @@ def test_of_two_sets_nobody_knows_which_is_wrong() -> None:
     data = ModalData(
         ("old", "new"), (1, 2, 3), sensors, f, nothing, shapes, nothing, np.full((2, 3, 3), np.nan)
     )
-    (found,) = frequency_findings(data)
-    assert "sets new and old disagree in the frequency of mode 2" in in_words(found)
-    assert "look at both again" in in_words(found)
+    (result,) = frequency_findings(data)
+    assert "sets new and old disagree in the frequency of mode 2" in in_words(result)
+    assert "look at both again" in in_words(result)
 
 
 def test_modes_that_one_set_numbers_differently(tmp_path: Path) -> None:
@@ -235,16 +237,16 @@ def test_modes_that_one_set_numbers_differently(tmp_path: Path) -> None:
             if row["set"] == name:
                 row["mode"] = {"1": "1", "2": "3", "3": "2"}[row["mode"]]
 
-    said = only(spoilt(tmp_path / "a", SETS, data=renumbered))
-    assert f"modes 2 and 3 of set {name} are modes 3 and 2 of" in said
+    text = only(spoilt(tmp_path / "a", SETS, data=renumbered))
+    assert f"modes 2 and 3 of set {name} are modes 3 and 2 of" in text
 
 
 def test_directions_that_do_not_match(tmp_path: Path) -> None:
-    said = only(spoilt(tmp_path / "a", FRAME, ('direction = "x" }', 'direction = "y" }')))
-    assert "direction y of floor1, floor2 and floor3 does not match the data: x raises MAC" in said
-    one = ('node = 37, direction = "x"', 'node = 37, direction = "y"')
-    said = only(spoilt(tmp_path / "b", FRAME, one))
-    assert "direction y of floor2 does not match the data: x raises MAC" in said
+    text = only(spoilt(tmp_path / "a", FRAME, ('direction = "x" }', 'direction = "y" }')))
+    assert "direction y of floor1, floor2 and floor3 does not match the data: x raises MAC" in text
+    edit = ('node = 37, direction = "x"', 'node = 37, direction = "y"')
+    text = only(spoilt(tmp_path / "b", FRAME, edit))
+    assert "direction y of floor2 does not match the data: x raises MAC" in text
 
 
 def test_degrees_of_freedom_counted_from_one(tmp_path: Path) -> None:
@@ -255,8 +257,8 @@ def test_degrees_of_freedom_counted_from_one(tmp_path: Path) -> None:
             del row["floor3"]
 
     edit = (sensors, "sensors = { floor1 = 1, floor2 = 2 }")
-    said = only(spoilt(tmp_path / "a", CHAIN, edit, data=without_third))
-    assert "degrees of freedom were counted from 1" in said
+    text = only(spoilt(tmp_path / "a", CHAIN, edit, data=without_third))
+    assert "degrees of freedom were counted from 1" in text
     with pytest.raises(ValueError, match=r"from 0 to 2 .they are counted from 0., found 3"):
         load(
             spoilt(
@@ -273,22 +275,22 @@ def test_degrees_of_freedom_counted_from_one(tmp_path: Path) -> None:
 
 
 def test_damping_in_percent(tmp_path: Path) -> None:
-    said = only(spoilt(tmp_path, CHAIN, data=scaled("damping", 80.0)))
-    assert "damping of 0.8 to 0.8 looks like percent" in said
-    assert "by 100" in said
+    text = only(spoilt(tmp_path, CHAIN, data=scaled("damping", 80.0)))
+    assert "damping of 0.8 to 0.8 looks like percent" in text
+    assert "by 100" in text
 
 
 def test_modes_outside_the_model_and_pairs_far_apart(tmp_path: Path) -> None:
     def outside(rows: Rows) -> None:
         rows[2]["frequency"] = "150.0"
 
-    said = only(spoilt(tmp_path / "a", CHAIN, data=outside))
-    assert "measured mode 3 at 150 Hz is outside what the model has: its 3 modes end" in said
+    message = only(spoilt(tmp_path / "a", CHAIN, data=outside))
+    assert "measured mode 3 at 150 Hz is outside what the model has: its 3 modes end" in message
 
     def far(rows: Rows) -> None:
         rows[1]["frequency"], rows[2]["frequency"] = "15.2", "3.0"
 
-    findings = found(spoilt(tmp_path / "b", CHAIN, data=far))
+    findings = findings_of(spoilt(tmp_path / "b", CHAIN, data=far))
     assert any(
         "measured mode 3 at 3 Hz is paired with model mode 3 at 17.89 Hz" in text
         and "set window = 1.5 in [pairing]" in text
@@ -305,9 +307,9 @@ def test_groups_of_the_mesh_without_elements(tmp_path: Path) -> None:
     text = text.replace(f"$Elements\n{count}\n", f"$Elements\n{count + 1}\n")
     text = text.replace("$EndElements", f"{count + 1} 1 2 9 9 19 37\n$EndElements")
     mesh.write_text(text, encoding="utf-8")
-    said = only(study)
-    assert "mesh group 'braces' of 1 line cells has no elements" in said
-    assert '[[model.group]] name = "braces"' in said
+    message = only(study)
+    assert "mesh group 'braces' of 1 line cells has no elements" in message
+    assert '[[model.group]] name = "braces"' in message
 
 
 def test_the_table_sets_nominal_beside_measured_in_80_columns(tmp_path: Path) -> None:
@@ -337,5 +339,5 @@ def test_parameters_that_act_alike_are_to_be_grouped(tmp_path: Path) -> None:
         'mass_parameters = ["", "", "theta3"]\nsensors =',
     )
     study.write_text(text.replace('frequency = "all"', "frequency = [1]"), encoding="utf-8")
-    advice = found(study).sensitivities.advice
+    advice = findings_of(study).sensitivities.advice
     assert len(advice) == 3

@@ -32,10 +32,10 @@ def problem(*, std: bool) -> mf.UpdatingProblem:
         sensors={"low": 1, "middle": 3, "top": 5},
     )
     rng = np.random.default_rng(3)
-    at = model.modes(TRUTH, 2)
-    f_std, shape_std = 0.005 * at.frequency, np.full((2, 3), 0.02 * np.abs(at.phi).max())
-    f = at.frequency + f_std * rng.normal(size=2)
-    shape = at.phi.T + shape_std * rng.normal(size=(2, 3))
+    modes = model.modes(TRUTH, 2)
+    f_std, shape_std = 0.005 * modes.frequency, np.full((2, 3), 0.02 * np.abs(modes.phi).max())
+    f = modes.frequency + f_std * rng.normal(size=2)
+    shape = modes.phi.T + shape_std * rng.normal(size=(2, 3))
     data = mf.modal_data(
         *(f, shape, model.sensors),
         frequency_std=f_std if std else None,
@@ -75,24 +75,24 @@ def test_with_standard_deviations_bounded_weights_are_preferred() -> None:
     labels = data["label"].values.tolist()
     assert "optimal-weights" not in labels
     assert data.attrs["reference"] == "bounded-weights"
-    one, a = row(data, "bounded-weights"), data["properties"].values
+    bounded, a = row(data, "bounded-weights"), data["properties"].values
     b = noise_floor(problem(std=True), "std")
-    J = one["objective"].values
-    assert one["weight"].values == pytest.approx(a / (J + b))
-    assert bool(one["pareto"])
+    J = bounded["objective"].values
+    assert bounded["weight"].values == pytest.approx(a / (J + b))
+    assert bool(bounded["pareto"])
     value = a @ np.log(J + b)
     assert (data["objective"].values + b > 0).all()
     assert value <= (np.log(data["objective"].values + b) @ a).min() + 1e-6 * a.sum()
     assert np.isfinite(data["posterior_covariance"].values).all()
-    own = (data["combination_at"] == "bounded-weights") & (data["combination_of"] == "all data")
-    undetermined = data["combination_direction"].values[own & (data["combination_share"] == 0)]
+    chosen = (data["combination_at"] == "bounded-weights") & (data["combination_of"] == "all data")
+    undetermined = data["combination_direction"].values[chosen & (data["combination_share"] == 0)]
     assert len(undetermined) == 1, "six values, of which five tell something of the stiffnesses"
     std = data["posterior_std"].values
     assert np.isinf(std).tolist() == (np.abs(undetermined[0]) > 1e-6).tolist()
     assert (std > 0).all()
-    (said,) = [text for text in data["finding"].values if "no optimal-weights" in text]
-    assert "the model can fit frequencies and shapes exactly" in said
-    assert "bounded-weights takes the place of optimal-weights" in said
+    (message,) = [text for text in data["finding"].values if "no optimal-weights" in text]
+    assert "the model can fit frequencies and shapes exactly" in message
+    assert "bounded-weights takes the place of optimal-weights" in message
     assert set(data["combination_at"].values) == {
         *("bounded-weights", "edge-frequencies", "edge-shapes")
     }
@@ -104,10 +104,10 @@ def test_without_them_equal_weights_are_and_what_to_do_is_said() -> None:
     assert not {"optimal-weights", "bounded-weights"} & set(labels)
     assert data.attrs["reference"] == "equal-weights"
     assert "posterior_std" not in data
-    (said,) = [text for text in data["finding"].values if "no optimal-weights" in text]
-    assert "equal-weights takes the place of optimal-weights" in said
-    assert "standard deviations" in said
-    assert "several data sets" in said
+    (message,) = [text for text in data["finding"].values if "no optimal-weights" in text]
+    assert "equal-weights takes the place of optimal-weights" in message
+    assert "standard deviations" in message
+    assert "several data sets" in message
 
 
 def dominated(J: Floats, known: Floats, scale: Floats) -> bool:
@@ -130,7 +130,9 @@ def test_pareto_is_what_no_model_reported_or_evaluated_dominates(std: bool) -> N
     assert data["pareto"].values.tolist() == expected
     along = data["kind"].values == "front"
     J = data["objective"].values
-    among = [on and dominated(own, J[along], front.scale) for on, own in zip(along, J, strict=True)]
+    among = [
+        on and dominated(chosen, J[along], front.scale) for on, chosen in zip(along, J, strict=True)
+    ]
     assert data["dominated_among_front"].values.tolist() == among
 
 

@@ -30,11 +30,11 @@ def crossing() -> UpdatingProblem:
 
 @pytest.mark.parametrize("s", [1.2, 1.5 - 1e-6, 1.5 + 1e-6, 1.8])
 def test_residuals_do_not_see_modes_cross(s: float) -> None:
-    found = crossing().evaluate(np.array([s]))
+    result = crossing().evaluate(np.array([s]))
     u = np.sqrt([s, s / 2])
-    np.testing.assert_allclose(found.J, (u - 1) ** 2, rtol=1e-12)
-    np.testing.assert_allclose(found.dJ[:, 0], (u - 1) * u / s, rtol=1e-9)
-    assert found.quantities["paired_mode"].tolist() == [1, 2 + (s > 1.5), 3 - (s > 1.5)]
+    np.testing.assert_allclose(result.J, (u - 1) ** 2, rtol=1e-12)
+    np.testing.assert_allclose(result.dJ[:, 0], (u - 1) * u / s, rtol=1e-9)
+    assert result.quantities["paired_mode"].tolist() == [1, 2 + (s > 1.5), 3 - (s > 1.5)]
 
 
 def test_modes_that_change_places_along_the_front_are_reported() -> None:
@@ -44,10 +44,10 @@ def test_modes_that_change_places_along_the_front_are_reported() -> None:
     assert (np.diff(s) > 0).all()
     assert s[[0, -1]] == pytest.approx([1, 2], abs=1e-6)
     last = int((s < 1.5).sum())
-    said = remarks(data)
+    text = remarks(data)
     for measured, before, after in ((2, 2, 3), (3, 3, 2)):
         assert (
             f"measured mode {measured} is paired with model mode {before} at nbi-{last} "
             f"and {after} at nbi-{last + 1}"
-        ) in said
+        ) in text
     assert (data["mac"].values > 1 - 1e-9).all()

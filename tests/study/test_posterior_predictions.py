@@ -79,9 +79,9 @@ def test_the_peak_of_one_mass_in_closed_form() -> None:
     (theta,), (s,) = optimal(data)["theta"].values, data["posterior_std"].values
     # q = c / theta: (q(theta + d) - q(theta - d)) / 2 d = -c / (theta^2 - d^2), d = h s
     exact = s * peak(theta) / theta
-    found = data["posterior_frf_peak_std"].values[0]
-    assert found == pytest.approx(exact / (1 - (STEP * s / theta) ** 2), rel=1e-6)
-    assert found == pytest.approx(exact, rel=0.01)
+    result = data["posterior_frf_peak_std"].values[0]
+    assert result == pytest.approx(exact / (1 - (STEP * s / theta) ** 2), rel=1e-6)
+    assert result == pytest.approx(exact, rel=0.01)
     # The frequency of the peak grows with the root of the stiffness.
     f = np.sqrt(theta * K / MASS * (1 - 2 * DAMPING**2)) / (2 * np.pi)
     assert data["posterior_frf_peak_frequency_std"].values[0] == pytest.approx(
@@ -113,24 +113,24 @@ def test_predictions_of_two_masses_against_own_gradients(drawn: xr.Dataset) -> N
     )
     expected = slope @ C @ slope.T
     names = ["pushed: low", "pushed: drift"]
-    found = data["posterior_frf_peak_covariance"].sel(frf=names, frf_other=names).values
-    assert found == pytest.approx(expected, rel=0.01)
+    result = data["posterior_frf_peak_covariance"].sel(frf=names, frf_other=names).values
+    assert result == pytest.approx(expected, rel=0.01)
     std = data["posterior_frf_peak_std"].sel(frf=names).values
-    assert std == pytest.approx(np.sqrt(np.diag(found)), rel=1e-12)
+    assert std == pytest.approx(np.sqrt(np.diag(result)), rel=1e-12)
 
 
 def test_peaks_of_the_three_stories_by_small_differences(tmp_path: Path) -> None:
     """Steps of 1e-6 along each of the parameters, not of half a deviation along the axes."""
     write_example("three-story-c0", tmp_path)
     problem = mf.load(tmp_path / "study.toml").problem
-    one = PeakResponse("peak", "floor1", "floor3", band=(0.5, 25.0), modes=3, damping=0.02)
-    data = solved(problem, [one])
+    prediction = PeakResponse("peak", "floor1", "floor3", band=(0.5, 25.0), modes=3, damping=0.02)
+    data = solved(problem, [prediction])
     theta, C = optimal(data)["theta"].values, data["posterior_covariance"].values
     steps = 1e-6 * np.eye(theta.size)
     for quantity, name in (("peak", "frf_peak"), ("frequency", "frf_peak_frequency")):
 
         def value(theta: Floats, quantity: str = quantity) -> float:
-            return float(one.evaluate(problem, theta, SEED)[quantity][0])
+            return float(prediction.evaluate(problem, theta, SEED)[quantity][0])
 
         slope = [(value(theta + d) - value(theta - d)) / 2e-6 for d in steps]
         expected = np.sqrt(np.array(slope) @ C @ slope)
@@ -139,12 +139,12 @@ def test_peaks_of_the_three_stories_by_small_differences(tmp_path: Path) -> None
 
 def test_failure_probabilities_by_their_logarithms() -> None:
     """With other random numbers and another method; P is lognormal."""
-    one = passage((0.2, 0.27), samples=8000)
+    prediction = passage((0.2, 0.27), samples=8000)
     problem = problem_of()
-    data = solved(problem, [one])
+    data = solved(problem, [prediction])
     s = data["posterior_failure_log_std"].values
     theta, std = optimal(data)["theta"].values, data["posterior_std"].values
-    other = replace(one, method="directional")
+    other = replace(prediction, method="directional")
     seed = np.random.SeedSequence(5)
     up, down = (
         other.evaluate(problem, theta + h * std, seed)["probability"] for h in (STEP, -STEP)
@@ -161,9 +161,9 @@ def test_failure_probabilities_by_their_logarithms() -> None:
 def test_draws_against_integration_over_the_truncated_gaussian() -> None:
     """One parameter, with the upper bound at less than half a standard deviation."""
     n, upper = 150, 1.02
-    one = passage((0.25,))
+    prediction = passage((0.25,))
     problem = problem_of(upper=upper)
-    data = solved(problem, [PEAK, one], draws=n)
+    data = solved(problem, [PEAK, prediction], draws=n)
     (middle,), (std,) = optimal(data)["theta"].values, data["posterior_std"].values
     assert upper - middle < 0.5 * std
     ends = (0.2 - middle) / std, (upper - middle) / std
@@ -173,13 +173,13 @@ def test_draws_against_integration_over_the_truncated_gaussian() -> None:
     assert scipy.stats.kstest(theta, gaussian.cdf).pvalue > 0.01
     np.testing.assert_array_equal(data["statistic"].values, SUMMARY)
 
-    found = dict(zip(SUMMARY, data["posterior_frf_peak"].values[:, 0], strict=True))
+    result = dict(zip(SUMMARY, data["posterior_frf_peak"].values[:, 0], strict=True))
     mean, square = (gaussian.expect(lambda k, m=m: peak(k) ** m) for m in (1, 2))
     spread = np.sqrt(square - mean**2)
-    assert found["mean"] == pytest.approx(mean, abs=3 * spread / np.sqrt(n))
-    assert found["standard deviation"] == pytest.approx(spread, rel=0.2)
+    assert result["mean"] == pytest.approx(mean, abs=3 * spread / np.sqrt(n))
+    assert result["standard deviation"] == pytest.approx(spread, rel=0.2)
     for name, share in (("5 %", 0.05), ("50 %", 0.5), ("95 %", 0.95)):
-        k = peak(np.ones(1)) / found[name]  # the peak is inverse to the stiffness
+        k = peak(np.ones(1)) / result[name]  # the peak is inverse to the stiffness
         assert gaussian.sf(k) == pytest.approx(share, abs=3 * np.sqrt(share * (1 - share) / n))
 
     # The robust failure probability: the same estimator at the nodes of a quadrature.
@@ -187,7 +187,7 @@ def test_draws_against_integration_over_the_truncated_gaussian() -> None:
     first = max(0.2, middle - 5 * std)
     k = (upper + first) / 2 + (upper - first) / 2 * nodes
     seed = np.random.SeedSequence(11)
-    P = np.array([one.evaluate(problem, np.array([x]), seed)["probability"][0] for x in k])
+    P = np.array([prediction.evaluate(problem, np.array([x]), seed)["probability"][0] for x in k])
     density = weights * gaussian.pdf(k) * (upper - first) / 2
     assert density.sum() == pytest.approx(1, abs=1e-3)
     robust = density @ P
@@ -281,20 +281,20 @@ def test_models_that_cannot_be_solved_are_counted() -> None:
     first = solved(problem, [])
     (theta,), (std,) = optimal(first)["theta"].values, first["posterior_std"].values
     step = np.pi / 2 / np.sqrt((theta + 0.2 * std) * K / MASS)
-    one = passage((0.06, 0.08), step=step, duration=40 * step)
-    data = solved(problem, [PEAK, one], draws=20)
+    prediction = passage((0.06, 0.08), step=step, duration=40 * step)
+    data = solved(problem, [PEAK, prediction], draws=20)
     (stiff,) = np.nonzero(data["draw_theta"].values[:, 0] > theta + 0.2 * std)
     assert 0 < stiff.size < 20
     assert np.isnan(data["draw_failure_probability"].values[stiff]).all()
     assert np.isfinite(data["posterior_failure_probability"].values).all()
     assert np.isfinite(data["posterior_frf_peak_std"].values).all()
     assert np.isnan(data["posterior_failure_log_std"].values).all()
-    said = remarks(data)
+    message = remarks(data)
     assert (
         f"{stiff.size} of 20 models drawn from the posterior cannot be solved for passage: they "
         "are left out"
-    ) in said
-    assert any("no posterior standard deviation of passage: 0.06" in text for text in said)
+    ) in message
+    assert any("no posterior standard deviation of passage: 0.06" in text for text in message)
 
 
 def test_peaks_that_models_do_not_have_are_counted() -> None:
@@ -310,9 +310,9 @@ def test_bounds_that_hold_hardly_any_of_the_posterior_end_with_a_statement() -> 
     data = solved(problem_of(lower=theta - 1e-6, upper=theta + 1e-6), [PEAK], draws=3)
     assert "draw_theta" not in data
     assert "posterior_frf_peak_std" not in data
-    said = remarks(data)
-    assert any("wider than the bounds (" in text for text in said)
-    assert "optimal-weights has no room for differences between bounds: see draws" in said
+    message = remarks(data)
+    assert any("wider than the bounds (" in text for text in message)
+    assert "optimal-weights has no room for differences between bounds: see draws" in message
 
 
 def test_what_the_data_leave_open_is_said() -> None:
@@ -324,13 +324,13 @@ def test_what_the_data_leave_open_is_said() -> None:
     names = TWO_MASSES.parameters
     bounds, nominal = dict.fromkeys(names, (0.2, 5.0)), dict.fromkeys(names, 1.0)
     problem = mf.updating_problem(TWO_MASSES, data, groups, bounds, nominal)
-    found = solved(problem, [replace(PEAK, band=(0.5, 20.0), modes=2)], draws=3)
-    theta = found["draw_theta"].values
+    result = solved(problem, [replace(PEAK, band=(0.5, 20.0), modes=2)], draws=3)
+    theta = result["draw_theta"].values
     assert theta.std() > 0
     assert (
         "the posterior of predictions is that of what the data determine: where they leave k1 and "
         "k2 open, the models are those of optimal-weights"
-    ) in remarks(found)
+    ) in remarks(result)
 
 
 def test_show_tells_the_posterior_beside_the_range(

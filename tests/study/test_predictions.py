@@ -90,10 +90,10 @@ def test_peaks_are_those_of_the_direct_solution(results: xr.Dataset) -> None:
 
 def test_a_moving_base_is_the_force_of_inertia(results: xr.Dataset) -> None:
     for name in ("low", "middle"):
-        one, other = (
+        first, other = (
             results["frf_peak"].sel(frf=f"{key}: {name}") for key in ("shaken", "as if shaken")
         )
-        assert one.values == pytest.approx(other.values, rel=1e-12)
+        assert first.values == pytest.approx(other.values, rel=1e-12)
 
 
 def test_a_band_without_a_peak_is_said_to_have_none(results: xr.Dataset) -> None:
@@ -142,20 +142,20 @@ def monte_carlo(theta: Floats, dt: float, samples: int, seed: int) -> Floats:
 
 def test_drift_probabilities_are_those_of_an_own_monte_carlo(results: xr.Dataset) -> None:
     samples = 1500
-    for at in (0, results["kind"].values.tolist().index("optimal-weights")):
-        theta = results["theta"].values[at]
-        largest = monte_carlo(theta, 0.01, samples, seed=at + 7)
+    for position in (0, results["kind"].values.tolist().index("optimal-weights")):
+        theta = results["theta"].values[position]
+        largest = monte_carlo(theta, 0.01, samples, seed=position + 7)
         for i, level in enumerate((0.02, 0.025)):
-            P = results["failure_probability"].values[at, i]
-            error = P * results["failure_variation"].values[at, i]
+            P = results["failure_probability"].values[position, i]
+            error = P * results["failure_variation"].values[position, i]
             counted = float(np.mean(largest > level))
             assert 0.01 < counted < 0.9
-            own = np.sqrt(counted * (1 - counted) / samples)
-            assert abs(P - counted) < 4 * np.hypot(error, own)
+            chosen = np.sqrt(counted * (1 - counted) / samples)
+            assert abs(P - counted) < 4 * np.hypot(error, chosen)
 
 
 def test_what_a_probability_depends_on_is_told_with_it(results: xr.Dataset) -> None:
-    told = {
+    reported = {
         "level": [0.02, 0.025],
         "duration": [6.0] * 2,
         "step": [0.01] * 2,
@@ -167,16 +167,16 @@ def test_what_a_probability_depends_on_is_told_with_it(results: xr.Dataset) -> N
         "load": ["base along x"] * 2,
         "halved_at": ["optimal-weights"] * 2,
     }
-    for name, values in told.items():
+    for name, values in reported.items():
         assert results[f"failure_{name}"].values.tolist() == values
     # Responses are smooth at this step: halving it makes little difference.
     ratio, error = results["failure_halved"].values, results["failure_halved_error"].values
     assert np.all(np.abs(ratio - 1) < 0.1 + 4 * error)
 
 
-def assert_same(one: xr.Dataset, other: xr.Dataset) -> None:
-    xr.testing.assert_identical(one.drop_attrs(), other.drop_attrs())
-    assert one.attrs == other.attrs
+def assert_same(first: xr.Dataset, other: xr.Dataset) -> None:
+    xr.testing.assert_identical(first.drop_attrs(), other.drop_attrs())
+    assert first.attrs == other.attrs
 
 
 @pytest.mark.slow
@@ -205,12 +205,12 @@ def test_other_predictions_do_no_old_work_again(
 
     monkeypatch.setattr(Store, "write", note)
     again = run(tmp_path, FRF.replace("damping = [0.02, 0.03]", "damping = 0.05"))
-    asked = again.sizes["point"] + AXES
-    assert len(written) == asked
+    evaluated = again.sizes["point"] + AXES
+    assert len(written) == evaluated
     assert all(name.startswith("predict-pushed-") for name in written)
     assert (tmp_path / "results" / "results.1.nc").exists(), "other results are kept"
     run(tmp_path, "")
-    assert len(written) == asked
+    assert len(written) == evaluated
 
 
 def test_eigenproblems_of_predictions_are_counted(results: xr.Dataset, tmp_path: Path) -> None:
@@ -265,9 +265,9 @@ def test_several_inputs_have_noise_of_their_own(tmp_path: Path) -> None:
     parts = np.zeros_like(total)
     for force in ("{ low = 2.0 }", '"high"'):
         study = mf.load(write_study(tmp_path, quiet.replace('base = "x"', f"force = {force}")))
-        (one,) = study.predictions
-        assert isinstance(one, Passage)
-        parts += gaussian_response(one.problem(study.problem, np.ones(2))).deviation ** 2
+        (prediction,) = study.predictions
+        assert isinstance(prediction, Passage)
+        parts += gaussian_response(prediction.problem(study.problem, np.ones(2))).deviation ** 2
     assert total == pytest.approx(parts, rel=1e-9, abs=1e-12 * parts.max())
 
 
@@ -275,7 +275,7 @@ def test_in_memory_and_from_a_file_are_the_same(
     quick: tuple[Path, xr.Dataset], tmp_path: Path
 ) -> None:
     study = mf.load(write_study(tmp_path, FRF + QUICK))
-    assert [one.name for one in study.predictions][-1] == "drifts"
+    assert [prediction.name for prediction in study.predictions][-1] == "drifts"
     data = mf.solve(
         study.problem, points=3, seed=3, search=study.search, predictions=study.predictions
     ).dataset
@@ -303,14 +303,14 @@ def test_outputs_of_a_mesh(tmp_path: Path) -> None:
     loaded = mf.load(study)
     (shaken,) = loaded.predictions
     assert isinstance(shaken, PeakResponse)
-    found = shaken.evaluate(loaded.problem, loaded.problem.start, np.random.SeedSequence(0))
+    result = shaken.evaluate(loaded.problem, loaded.problem.start, np.random.SeedSequence(0))
     # Both ends of a floor move alike, and along x alone.
-    assert found["peak"][1] == pytest.approx(found["peak"][0], rel=1e-3)
-    assert not found["peak"][2] > 1e-3 * found["peak"][0]
+    assert result["peak"][1] == pytest.approx(result["peak"][0], rel=1e-3)
+    assert not result["peak"][2] > 1e-3 * result["peak"][0]
     first = loaded.problem.modes(loaded.problem.start, derivatives=False)[0].frequency[0]
-    assert found["frequency"][0] == pytest.approx(first, rel=1e-3)
+    assert result["frequency"][0] == pytest.approx(first, rel=1e-3)
     # One mode of displacement: its participation 1.2 to 1.3, 1 / (2 zeta omega^2) of the base's.
-    amplitude = found["peak"][0] * 2 * 0.02 * (2 * np.pi * first) ** 2
+    amplitude = result["peak"][0] * 2 * 0.02 * (2 * np.pi * first) ** 2
     assert 1.15 < amplitude < 1.35
 
 

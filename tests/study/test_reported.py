@@ -82,21 +82,21 @@ def test_an_end_that_is_not_known_is_said_and_is_no_number(
     assert np.isnan(data["end_objective"].values[0]).all()
     assert np.isnan(data["end_theta"].values[0]).all()
     assert data["end_converged"].values.tolist() == [False, True]
-    said = [text for text in remarks(data) if "the front has a gap" in text]
-    assert said == ["the front has a gap: where branch 1 ends is not known"]
+    messages = [text for text in remarks(data) if "the front has a gap" in text]
+    assert messages == ["the front has a gap: where branch 1 ends is not known"]
     J, piece = data["objective"].values, data["piece"].values
     middle = (J[2, 0] + J[3, 0]) / 2
     on = piece > 0
     assert (piece[on] == 1 + (J[on, 0] > middle)).all()
 
-    told = json.loads(as_json(data), parse_constant=pytest.fail)
-    ends = told["variables"]["end_objective"]["values"]
+    reported = json.loads(as_json(data), parse_constant=pytest.fail)
+    ends = reported["variables"]["end_objective"]["values"]
     assert ends[0] == [None, None]
     assert ends[1] == data["end_objective"].values[1].tolist()
-    assert said[0] in told["remarks"]
+    assert messages[0] in reported["remarks"]
     print_results(data, ["findings"])
     shown = capsys.readouterr().out
-    assert said[0] in " ".join(shown.split())
+    assert messages[0] in " ".join(shown.split())
     assert "nan" not in shown
 
 
@@ -108,8 +108,8 @@ def test_a_flat_part_that_is_not_cut_is_said(monkeypatch: pytest.MonkeyPatch) ->
 
     monkeypatch.setattr(analysis, "identifiable_part", uncut)
     data = solved()
-    (said,) = [text for text in data["finding"].values.tolist() if "flat" in text]
-    assert said == (
+    (message,) = [text for text in data["finding"].values.tolist() if "flat" in text]
+    assert message == (
         "the front is flat at edge-shapes: 3 of 8 points are within 1 % of the least J of shapes; "
         "where that part ends was not found, so it is not cut"
     )
@@ -121,7 +121,7 @@ def test_no_point_of_three_groups_comes_twice_and_places_tell_where_they_led() -
     front = pareto_front(problem, np.ones(3), Pareto(points=4), search=SEARCH)
     assert front.scale is not None
     along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
-    J = np.array([one.J for one in along]) / front.scale
+    J = np.array([point.J for point in along]) / front.scale
     apart = np.abs(J[:, None] - J).max(axis=2) + np.eye(len(J))
     assert (apart > 1e-5).all()
     lattice = _lattice(front)
@@ -137,24 +137,24 @@ def test_no_point_of_three_groups_comes_twice_and_places_tell_where_they_led() -
 
 
 def point(J: Floats, beta: Floats | None, *, converged: bool = True) -> Solution:
-    at = Evaluation(J, J)
+    position = Evaluation(J, J)
     status = Status.CONVERGED if converged else Status.STALLED
-    return replace(begin(at), status=status, beta=beta)
+    return replace(begin(position), status=status, beta=beta)
 
 
 def test_copies_are_merged_and_their_places_kept() -> None:
     lattice: Simplex = simplex(3, 2)
     target = Payoff(np.zeros(3), np.ones(3), 1 - np.eye(3))
-    at = [point(1 - beta, beta) for beta in lattice.beta]
-    at[2] = point(at[1].J + 5e-6, lattice.beta[2])
-    at[3] = point(at[4].J + 2e-5, lattice.beta[3])
-    at[0] = replace(at[0], status=Status.STALLED)
-    better = point(at[0].J - 1e-6, None)
-    along = [*at[:5], better]
-    found = nbi._without_copies(lattice, at, along, target)
+    position = [point(1 - beta, beta) for beta in lattice.beta]
+    position[2] = point(position[1].J + 5e-6, lattice.beta[2])
+    position[3] = point(position[4].J + 2e-5, lattice.beta[3])
+    position[0] = replace(position[0], status=Status.STALLED)
+    better = point(position[0].J - 1e-6, None)
+    along = [*position[:5], better]
+    result = nbi._without_copies(lattice, position, along, target)
     # The third is a copy of the second, what came last is the first, but converged; the sixth
     # place led to nothing that is left.
-    assert [one.J.tolist() for one in found.points] == [
-        one.J.tolist() for one in (better, at[1], at[3], at[4])
+    assert [point.J.tolist() for point in result.points] == [
+        solution.J.tolist() for solution in (better, position[1], position[3], position[4])
     ]
-    assert found.places.tolist() == [0, 1, 1, 2, 3, -1]
+    assert result.places.tolist() == [0, 1, 1, 2, 3, -1]

@@ -20,8 +20,8 @@ def stiffnesses_and_masses() -> mf.UpdatingProblem:
     """A chain of which all stiffnesses and masses are unknown: together they scale for nothing."""
     k, m = ("k1", "k2", "k3"), ("m1", "m2", "m3")
     model = mf.chain((*k, *m), [2.0] * 3, [3e3] * 3, stiffness_parameters=k, mass_parameters=m)
-    at = model.modes(np.array([1.1, 0.9, 1.2, 1.05, 0.95, 1.1]), 3)
-    data = mf.modal_data(at.frequency, at.phi.T, model.sensors)
+    modes = model.modes(np.array([1.1, 0.9, 1.2, 1.05, 0.95, 1.1]), 3)
+    data = mf.modal_data(modes.frequency, modes.phi.T, model.sensors)
     names = model.parameters
     bounds, nominal = dict.fromkeys(names, (0.5, 2.0)), dict.fromkeys(names, 1.0)
     return mf.updating_problem(model, data, GROUPS, bounds, nominal)
@@ -30,15 +30,15 @@ def stiffnesses_and_masses() -> mf.UpdatingProblem:
 def test_a_null_manifold_is_followed_once_and_said_once() -> None:
     problem = stiffnesses_and_masses()
     data = mf.solve(problem, points=2, search=SEARCH).dataset
-    said = data["finding"].values.tolist()
-    assert len(said) <= MOST
-    manifolds = [text for text in said if "equally well" in text]
+    message = data["finding"].values.tolist()
+    assert len(message) <= MOST
+    manifolds = [text for text in message if "equally well" in text]
     assert len({text.split(" of models")[0] for text in manifolds}) == len(manifolds)
     of, theta = data["equal_of"].values, data["equal_theta"].values
     assert all("(1 model" not in text and ":  (" not in text for text in manifolds)
     for i, name in enumerate(problem.objectives):
         models = theta[of == name]
-        J = np.array([problem.evaluate(one, derivatives=False).J[i] for one in models])
+        J = np.array([problem.evaluate(model, derivatives=False).J[i] for model in models])
         assert J == pytest.approx(J.min(), rel=1e-5, abs=1e-12), "as good, computed again"
         assert data["equal_objective"].values[of == name, i] == pytest.approx(J, abs=1e-12)
     # Frequencies fix 3 of 6 combinations, shapes 4 of 6; both leave stiffness over mass scales.
@@ -47,7 +47,7 @@ def test_a_null_manifold_is_followed_once_and_said_once() -> None:
     assert set(dimension[of == "shapes"]) == {2}
     assert any(
         "all data determine 5 of 6" in text and "all 6 parameters can be scaled together" in text
-        for text in said
+        for text in message
     )
     ends = theta[of == "shapes"]
     for column in ends.T:
@@ -90,11 +90,11 @@ def test_a_group_that_no_parameter_changes_is_an_error_of_the_study(
         "set,mode,frequency,damping,top\na,1,4.2,,1.0\na,2,10.5,,-0.7\n"
     )
     (tmp_path / "study.toml").write_text(STUDY + two_of_each())
-    found = CliRunner().invoke(cli, [command, str(tmp_path / "study.toml")])
-    assert isinstance(found.exception, mf.InputError)
-    said = str(found.exception)
-    assert "study.toml: [[group]] 'shapes': expected residuals that a parameter changes" in said
-    assert "remove the group" in said
+    result = CliRunner().invoke(cli, [command, str(tmp_path / "study.toml")])
+    assert isinstance(result.exception, mf.InputError)
+    text = str(result.exception)
+    assert "study.toml: [[group]] 'shapes': expected residuals that a parameter changes" in text
+    assert "remove the group" in text
     assert not (tmp_path / "study-results" / "results.nc").exists()
 
 
@@ -102,10 +102,10 @@ def test_check_prints_ten_findings_and_how_many_more(tmp_path: Path) -> None:
     """Eleven groups, one a frequency or a shape, make twelve sentences."""
     n = 6
     model = mf.chain([], [2.0] * n, [3e3] * n)
-    at = model.modes(np.zeros(0), n, derivatives=False)
+    modes = model.modes(np.zeros(0), n, derivatives=False)
     rows = [
         f"a,{r + 1},{f!r},," + ",".join(repr(float(x)) for x in phi)
-        for r, (f, phi) in enumerate(zip(at.frequency.tolist(), at.phi.T, strict=True))
+        for r, (f, phi) in enumerate(zip(modes.frequency.tolist(), modes.phi.T, strict=True))
     ]
     header = "set,mode,frequency,damping," + ",".join(model.sensors)
     (tmp_path / "modes.csv").write_text("\n".join([header, *rows]) + "\n")

@@ -109,11 +109,11 @@ def test_the_optimal_weights_of_M0_are_regular_and_confirmed() -> None:
     data = results("M0")
     assert data["exact"].values.tolist() == [True, False]
     labels = data["label"].values.tolist()
-    at = labels.index("optimal-weights")
-    J, w = data["objective"].values[at], data["weight"].values[at]
+    position = labels.index("optimal-weights")
+    J, w = data["objective"].values[position], data["weight"].values[position]
     assert w * J == pytest.approx([3, 9], rel=1e-9)
     iterated = data["minimum_theta"].values[data["minimum_of"].values == "iterated-weights"][0]
-    assert iterated == pytest.approx(data["theta"].values[at], abs=1e-5)
+    assert iterated == pytest.approx(data["theta"].values[position], abs=1e-5)
 
 
 def test_the_front_costs_few_eigenproblems() -> None:
@@ -129,13 +129,13 @@ def test_global_optima_do_not_depend_on_the_seed(model: str) -> None:
     expected = results(model)
     labels = ["edge-frequencies", "edge-shapes", "equal-weights", "optimal-weights"]
     for seed in (11, 12):
-        found = mf.solve(problem_of(model), points=2, seed=seed).dataset
+        result = mf.solve(problem_of(model), points=2, seed=seed).dataset
         for label in labels:
-            one, other = (
+            first, other = (
                 data["theta"].values[data["label"].values.tolist().index(label)]
-                for data in (found, expected)
+                for data in (result, expected)
             )
-            assert one == pytest.approx(other, abs=2e-5), (label, seed)
+            assert first == pytest.approx(other, abs=2e-5), (label, seed)
 
 
 def test_the_same_seed_gives_the_same_digits() -> None:
@@ -143,19 +143,19 @@ def test_the_same_seed_gives_the_same_digits() -> None:
     assert again.identical(results("M0"))
 
 
-def compare(found: xr.Dataset, expected: xr.Dataset, order: list[int] | None = None) -> None:
+def compare(result: xr.Dataset, expected: xr.Dataset, order: list[int] | None = None) -> None:
     order = order or [0, 1, 2]
-    ours, theirs = nbi(found), nbi(expected)
+    ours, theirs = nbi(result), nbi(expected)
     assert ours["theta"].values == pytest.approx(theirs["theta"].values[:, order], abs=2e-5)
     assert ours["pareto"].values.tolist() == theirs["pareto"].values.tolist()
     J, expected_J = ours["objective"].values, theirs["objective"].values
     assert (np.abs(J - expected_J) <= 1e-6 * np.ptp(expected_J, axis=0)).all()
     for label in ("optimal-weights", "equal-weights"):
-        one, other = (
+        first, other = (
             data["theta"].values[data["label"].values.tolist().index(label)]
-            for data in (found, expected)
+            for data in (result, expected)
         )
-        assert one == pytest.approx(other[order], abs=2e-5)
+        assert first == pytest.approx(other[order], abs=2e-5)
 
 
 @pytest.mark.parametrize("model", ["M0", "M1"])
@@ -182,15 +182,15 @@ def test_scaling_the_model_scales_the_parameters() -> None:
     wider = mf.UpdatingProblem(
         problem.model, problem.data, GROUPS, problem.lower / 2, problem.upper / 2, problem.start / 2
     )
-    found = mf.solve(wider, points=20, seed=5).dataset
+    result = mf.solve(wider, points=20, seed=5).dataset
     expected = nbi(results("M0"))["theta"].values
-    assert 2 * nbi(found)["theta"].values == pytest.approx(expected, abs=2e-5)
+    assert 2 * nbi(result)["theta"].values == pytest.approx(expected, abs=2e-5)
     heavier = problem_of("M0", mass=2.0)
     wider = mf.UpdatingProblem(
         heavier.model, heavier.data, GROUPS, 2 * problem.lower, 2 * problem.upper, 2 * problem.start
     )
-    found = mf.solve(wider, points=20, seed=6).dataset
-    assert nbi(found)["theta"].values / 2 == pytest.approx(expected, abs=2e-5)
+    result = mf.solve(wider, points=20, seed=6).dataset
+    assert nbi(result)["theta"].values / 2 == pytest.approx(expected, abs=2e-5)
 
 
 def test_matrices_give_the_same_front_as_the_chain() -> None:
@@ -228,9 +228,9 @@ def test_perfect_data_are_a_front_of_one_point() -> None:
     modes = base.model.modes(np.array([1.2, 0.9, 1.1]), 3)
     data = mf.modal_data(modes.frequency, modes.phi.T, FLOORS)
     problem = mf.UpdatingProblem(base.model, data, GROUPS, base.lower, base.upper, base.start)
-    found = mf.solve(problem, points=20, seed=1).dataset
-    assert found.attrs["front_is_a_point"]
-    assert "front" not in found["kind"].values
-    edge = found["theta"].values[found["label"].values.tolist().index("edge-frequencies")]
+    result = mf.solve(problem, points=20, seed=1).dataset
+    assert result.attrs["front_is_a_point"]
+    assert "front" not in result["kind"].values
+    edge = result["theta"].values[result["label"].values.tolist().index("edge-frequencies")]
     assert edge == pytest.approx([1.2, 0.9, 1.1], abs=1e-5)
-    assert "optimal-weights" not in found["label"].values
+    assert "optimal-weights" not in result["label"].values

@@ -86,15 +86,15 @@ def models(data: mf.ModalData) -> None:
 
 def results(problem: mf.UpdatingProblem) -> xr.DataArray:
     """Results are looked at, and not written to."""
-    found = mf.solve(problem, method="weights", points=10, seed=1)
+    result = mf.solve(problem, method="weights", points=10, seed=1)
     mf.solve(problem, methods="weights")  # rejected
     mf.solve(problem, points="10")  # rejected
     mf.solve(problem, pareto="nbi")  # rejected
     mf.solve(problem, predictions=["peak"])  # rejected
-    found["theta"] = found["objective"]  # rejected
-    dict(found.optimal.theta)  # rejected
-    found.model(1.5)  # rejected
-    found.table(3)  # rejected
-    found.nominal.theta["k"] = 2.0  # rejected
+    result["theta"] = result["objective"]  # rejected
+    dict(result.optimal.theta)  # rejected
+    result.model(1.5)  # rejected
+    result.table(3)  # rejected
+    result.nominal.theta["k"] = 2.0  # rejected
     mf.run(problem, "results")  # rejected
-    return found["theta"]
+    return result["theta"]

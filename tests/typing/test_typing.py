@@ -33,9 +33,9 @@ def test_mypy_rejects_every_marked_line_and_no_other() -> None:
         check=False,
     )
     assert done.returncode == 1, done.stdout + done.stderr
-    told = re.findall(r"^(.*?):(\d+): error: (.*)$", done.stdout, re.MULTILINE)
-    assert {Path(name).name for name, _, _ in told} == {file.name}, done.stdout
-    rejected = {int(line) for _, line, _ in told}
+    reported = re.findall(r"^(.*?):(\d+): error: (.*)$", done.stdout, re.MULTILINE)
+    assert {Path(name).name for name, _, _ in reported} == {file.name}, done.stdout
+    rejected = {int(line) for _, line, _ in reported}
     assert len(marked) > 40
     assert {n: lines[n - 1] for n in marked - rejected} == {}
-    assert [text for _, line, text in told if int(line) not in marked] == []
+    assert [text for _, line, text in reported if int(line) not in marked] == []

@@ -50,10 +50,10 @@ def test_values_are_drawn_with_their_standard_deviations() -> None:
     data, rng = data_of(1), np.random.default_rng(1)
     data.shape_std[0, 0, 0], data.shape_std[0, 0, 1] = np.nan, 0.0
     drawn = [redraw(data, "std", rng) for _ in range(2000)]
-    f = np.array([one.frequency for one in drawn])
+    f = np.array([sample.frequency for sample in drawn])
     assert f.mean(axis=0) == pytest.approx(data.frequency, rel=0.01)
     assert f.std(axis=0) == pytest.approx(data.frequency_std, rel=0.06)
-    phi = np.array([one.shape for one in drawn])
+    phi = np.array([sample.shape for sample in drawn])
     assert (phi[:, 0, 0, :2] == data.shape[0, 0, :2]).all(), "without one, it is exact"
     assert phi[:, 0, 1].std(axis=0) == pytest.approx(data.shape_std[0, 1], rel=0.06)
 

@@ -27,8 +27,8 @@ def squares(parts: list[tuple[Floats, Floats]]) -> Derivatives:
 
 
 def found_at(problem: Known, a: Floats) -> tuple[SecondOrder, Posterior]:
-    at = solve(problem, LogSum(a), begin(problem.evaluate(problem.start)), TIGHT).evaluation
-    point = second_order(problem, at)
+    evaluation = solve(problem, LogSum(a), begin(problem.evaluate(problem.start)), TIGHT).evaluation
+    point = second_order(problem, evaluation)
     assert point is not None
     posterior = laplace(problem, point, a)
     assert posterior is not None
@@ -58,8 +58,10 @@ def two_groups(theta: Floats) -> Derivatives:
     e, f = 0.1 * rng.normal(size=(2, 60))
     r1 = x - 1 + e
     r2 = y**2 / 2 + x / 2 - 1.2 + f
-    one, zero = np.ones(60), np.zeros(60)
-    return squares([(r1, np.column_stack([one, zero])), (r2, np.column_stack([one / 2, y * one]))])
+    unit, zero = np.ones(60), np.zeros(60)
+    return squares(
+        [(r1, np.column_stack([unit, zero])), (r2, np.column_stack([unit / 2, y * unit]))]
+    )
 
 
 def test_two_groups_against_integration_over_parameters_and_variances() -> None:

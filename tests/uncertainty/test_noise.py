@@ -19,10 +19,10 @@ MODEL = mf.chain(NAMES, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=N
 def measured(sets: int, seed: int = 0) -> ModalData:
     """Data of some sets around a model, with gaps, and shapes in any scale and sign."""
     rng = np.random.default_rng(seed)
-    at = MODEL.modes(np.ones(3), 3)
-    f = at.frequency * (1 + 0.02 * rng.normal(size=(sets, 3)))
+    modes = MODEL.modes(np.ones(3), 3)
+    f = modes.frequency * (1 + 0.02 * rng.normal(size=(sets, 3)))
     scale = rng.uniform(0.5, 2, (sets, 3, 1)) * rng.choice([-1, 1], (sets, 3, 1))
-    phi = scale * (at.phi.T + 0.05 * rng.normal(size=(sets, 3, 3)))
+    phi = scale * (modes.phi.T + 0.05 * rng.normal(size=(sets, 3, 3)))
     f_std, phi_std = 0.01 * f, rng.uniform(0.01, 0.05, phi.shape)
     f[0, 2], phi[-1, 1, 2], phi_std[0, 0, 1] = np.nan, np.nan, 0.0
     return mf.modal_data(f, phi, MODEL.sensors, frequency_std=f_std, shape_std=phi_std)
@@ -54,7 +54,7 @@ def test_standard_deviations_are_carried_by_exact_derivatives(scale: Scale) -> N
     if scale == "std":
         data.shape_std[0, 0, 1] = 0.02  # a zero would be replaced by what others have
     problem, step = problem_of(data, scale), 1e-4
-    found = noise(problem, THETA, "std")
+    result = noise(problem, THETA, "std")
 
     def moved(k: int, r: int, s: int, by: float) -> Evaluation:
         f, phi = data.frequency.copy(), data.shape.copy()
@@ -67,11 +67,11 @@ def test_standard_deviations_are_carried_by_exact_derivatives(scale: Scale) -> N
     uncertain = np.dstack([data.frequency_std[..., None] > 0, data.shape_std > 0])
     uncertain &= np.isfinite(np.dstack([data.frequency[..., None], data.shape]))
     sources = np.argwhere(uncertain).tolist()
-    assert len(found.J) == len(sources)
-    for J, dJ, (k, r, s) in zip(found.J, found.dJ, sources, strict=True):
-        one, other = (moved(k, r, s - 1, sign * step) for sign in (1, -1))
-        assert J == pytest.approx((one.J - other.J) / (2 * step), rel=1e-5, abs=1e-9)
-        assert dJ == pytest.approx((one.dJ - other.dJ) / (2 * step), rel=1e-5, abs=1e-8)
+    assert len(result.J) == len(sources)
+    for J, dJ, (k, r, s) in zip(result.J, result.dJ, sources, strict=True):
+        first, other = (moved(k, r, s - 1, sign * step) for sign in (1, -1))
+        assert J == pytest.approx((first.J - other.J) / (2 * step), rel=1e-5, abs=1e-9)
+        assert dJ == pytest.approx((first.dJ - other.dJ) / (2 * step), rel=1e-5, abs=1e-8)
 
 
 def test_data_sets_scatter_as_the_mean_of_their_objectives() -> None:
@@ -79,10 +79,10 @@ def test_data_sets_scatter_as_the_mean_of_their_objectives() -> None:
     data = measured(5)
     data.frequency[0, 2], data.shape[-1, 1, 2] = 20.0, 0.1
     problem = problem_of(data, "measured")
-    found = noise(problem, THETA, "sets")
+    result = noise(problem, THETA, "sets")
     single = []
     for k in range(5):
-        one = replace(
+        changed = replace(
             data,
             **{
                 name: getattr(data, name)[k : k + 1]
@@ -90,12 +90,12 @@ def test_data_sets_scatter_as_the_mean_of_their_objectives() -> None:
             },
             sets=data.sets[k : k + 1],
         )
-        single.append(problem_of(one, "measured").evaluate(THETA))
-    J = np.array([one.J for one in single])
+        single.append(problem_of(changed, "measured").evaluate(THETA))
+    J = np.array([evaluation.J for evaluation in single])
     assert J.mean(axis=0) == pytest.approx(problem.evaluate(THETA).J)
-    assert found.J.T @ found.J == pytest.approx(np.cov(J.T) / 5)
-    slopes = np.array([one.dJ.ravel() for one in single])
-    flat = found.dJ.reshape(5, -1)
+    assert result.J.T @ result.J == pytest.approx(np.cov(J.T) / 5)
+    slopes = np.array([evaluation.dJ.ravel() for evaluation in single])
+    flat = result.dJ.reshape(5, -1)
     assert flat.T @ flat == pytest.approx(np.cov(slopes.T) / 5, rel=1e-9, abs=1e-15)
 
 
@@ -108,11 +108,11 @@ def test_a_mode_measured_once_counts_as_exact() -> None:
 
 def drawn(rng: np.random.Generator, sets: int) -> ModalData:
     """Data with errors of known size around the modes of the nominal model, in any scale."""
-    at = MODEL.modes(np.ones(3), 3)
+    modes = MODEL.modes(np.ones(3), 3)
     share = np.array([[0.01, 0.02, 0.03]] * 3)
-    f_std = np.array([0.002, 0.004, 0.003]) * at.frequency
-    f = at.frequency + f_std * rng.normal(size=(sets, 3))
-    phi = at.phi.T + share * rng.normal(size=(sets, 3, 3))
+    f_std = np.array([0.002, 0.004, 0.003]) * modes.frequency
+    f = modes.frequency + f_std * rng.normal(size=(sets, 3))
+    phi = modes.phi.T + share * rng.normal(size=(sets, 3, 3))
     scale = rng.uniform(0.5, 2, (sets, 3, 1)) * rng.choice([-1, 1], (sets, 3, 1))
     return mf.modal_data(
         *(f, scale * phi, MODEL.sensors),
@@ -140,13 +140,13 @@ def test_the_floor_is_the_mean_of_the_objectives_of_a_perfect_model(
 def test_the_floor_of_standard_deviations_in_numbers() -> None:
     """Per frequency (std / f)^2, or 1; per shape over its standard deviations sensors - 1."""
     data = drawn(np.random.default_rng(0), 1)
-    own = noise_floor(problem_of(data, "measured"), "std")
+    chosen = noise_floor(problem_of(data, "measured"), "std")
     f = (data.frequency_std / data.frequency) ** 2
-    assert own[0] == pytest.approx(f.sum())
+    assert chosen[0] == pytest.approx(f.sum())
     assert noise_floor(problem_of(data, "std"), "std") == pytest.approx([3.0, 6.0, 3.0])
     psi, std = data.shape[0], data.shape_std[0]
     across = [(s**2) @ (1 - x**2 / (x @ x)) * 3 / (x @ x) for x, s in zip(psi, std, strict=True)]
-    assert own[1:] == pytest.approx([sum(across), f[0, 0] + across[0]])
+    assert chosen[1:] == pytest.approx([sum(across), f[0, 0] + across[0]])
 
 
 def test_there_is_no_floor_of_errors_that_are_not_known() -> None:

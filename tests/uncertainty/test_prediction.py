@@ -27,7 +27,7 @@ def axes(seed: int = 0) -> Floats:
     return np.asarray(rng.normal(size=(3, 2)) * np.array([[1e-3], [1e3], [0.0]]))
 
 
-def at(points: Floats, A: Floats) -> Floats:
+def response(points: Floats, A: Floats) -> Floats:
     return np.asarray(points @ A.T)
 
 
@@ -37,19 +37,19 @@ def test_covariances_of_linear_predictions_are_exact_also_at_bounds() -> None:
     R, A = axes(), rng.normal(size=(4, 3)) * np.array([1e3, 1e-3, 1.0])
     expected = linear(R @ R.T, A)
     reach = np.abs(R).sum(axis=1) + 1e-3
-    found = 0
+    result = 0
     for room in itertools.product((0.0, 0.2, 5.0), repeat=4):
         below, above = np.array([*room[:2], 1.0]), np.array([*room[2:], 1.0])
         lower, upper = MIDDLE - below * reach, MIDDLE + above * reach
         points = stencil(MIDDLE, R, lower, upper)
         if points is None:
             continue
-        found += 1
+        result += 1
         assert (points.theta >= lower).all()
         assert (points.theta <= upper).all()
-        S = points.slopes(at(MIDDLE, A), at(points.theta, A))
+        S = points.slopes(response(MIDDLE, A), response(points.theta, A))
         assert S @ S.T == pytest.approx(expected, rel=1e-9, abs=1e-9 * expected.max())
-    assert found >= 40
+    assert result >= 40
 
 
 def test_errors_of_differences_are_those_of_the_third_derivative() -> None:
@@ -81,10 +81,10 @@ def test_the_lognormal_distribution_of_what_is_linear_in_its_logarithm() -> None
     s = np.array([0.0, 0.1, 2.0, 30.0])
     median = np.array([1e-4, 0.5, 3e-7, 1e-20])
     expected = scipy.stats.lognorm.std(s[1:3], scale=median[1:3])
-    found = lognormal_std(median, s)
-    assert found[1:3] == pytest.approx(expected, rel=1e-9)
-    assert found[0] == 0
-    assert np.isinf(found[3])
+    result = lognormal_std(median, s)
+    assert result[1:3] == pytest.approx(expected, rel=1e-9)
+    assert result[0] == 0
+    assert np.isinf(result[3])
 
 
 def test_a_longer_sample_begins_with_a_shorter_one() -> None:
@@ -101,15 +101,15 @@ def test_bounds_that_leave_hardly_anything_end_with_a_statement() -> None:
         sampled(np.zeros(2), np.eye(2), lambda x: x, np.random.default_rng(0), 20, tight)
     # One in a thousand is no reason to give up.
     some = np.zeros(2), np.array([0.1, 0.063])
-    found = sampled(np.zeros(2), np.eye(2), lambda x: x, np.random.default_rng(0), 200, some)
-    assert len(found) == 200
+    result = sampled(np.zeros(2), np.eye(2), lambda x: x, np.random.default_rng(0), 200, some)
+    assert len(result) == 200
 
 
 def test_a_sample_is_summed_up_without_what_is_missing() -> None:
     values = np.column_stack([np.arange(101.0), np.full(101, np.nan), np.full(101, np.nan)])
     values[3:5, 1] = 1.0, 3.0
     values[7, 2] = 1.0
-    found = summary(values)
-    assert found[:, 0].tolist() == pytest.approx([50, np.sqrt(101 * 102 / 12), 5, 50, 95])
-    assert found[:, 1].tolist() == pytest.approx([2, np.sqrt(2), 1.1, 2, 2.9])
-    assert np.isnan(found[:, 2]).all()
+    result = summary(values)
+    assert result[:, 0].tolist() == pytest.approx([50, np.sqrt(101 * 102 / 12), 5, 50, 95])
+    assert result[:, 1].tolist() == pytest.approx([2, np.sqrt(2), 1.1, 2, 2.9])
+    assert np.isnan(result[:, 2]).all()

@@ -76,23 +76,23 @@ def bent(seed: int, p: int = 3, n: int = 2, rows: int = 5, bend: float = 0.1) ->
 
 
 def minimum(problem: Known, programme: Scalarisation, theta: Floats) -> Solution:
-    found = solve(problem, programme, begin(problem.evaluate(theta)), TIGHT)
-    return solve(problem, programme, begin(found.evaluation), TIGHT)
+    result = solve(problem, programme, begin(problem.evaluate(theta)), TIGHT)
+    return solve(problem, programme, begin(result.evaluation), TIGHT)
 
 
-def point_of(problem: Known, found: Solution) -> SecondOrder:
-    point = second_order(problem, found.evaluation)
+def point_of(problem: Known, result: Solution) -> SecondOrder:
+    point = second_order(problem, result.evaluation)
     assert point is not None
     return point
 
 
-def compare(found: Scatter, ahead: list[Solution], behind: list[Solution], by: float) -> None:
+def compare(result: Scatter, ahead: list[Solution], behind: list[Solution], by: float) -> None:
     """Assert that a linearisation agrees with solutions of data moved to either side."""
-    for m, (one, other) in enumerate(zip(ahead, behind, strict=True)):
-        theta = (one.theta - other.theta) / (2 * by)
-        J = (one.J - other.J) / (2 * by)
-        assert found.theta[m] == pytest.approx(theta, rel=1e-4, abs=1e-5)
-        assert found.J[m] == pytest.approx(J, rel=1e-4, abs=1e-5)
+    for m, (first, other) in enumerate(zip(ahead, behind, strict=True)):
+        theta = (first.theta - other.theta) / (2 * by)
+        J = (first.J - other.J) / (2 * by)
+        assert result.theta[m] == pytest.approx(theta, rel=1e-4, abs=1e-5)
+        assert result.J[m] == pytest.approx(J, rel=1e-4, abs=1e-5)
 
 
 @given(st.integers(0, 10**6), st.integers(1, 3))
@@ -100,8 +100,8 @@ def test_weighted_least_squares_have_their_closed_form(seed: int, n: int) -> Non
     case = bent(seed, n=n, bend=0.0)
     problem = case.problem(-50, 50)
     w = np.random.default_rng(seed + 1).uniform(0.1, 1, n)
-    found = minimum(problem, weighted(w), np.zeros(3))
-    point, noise = point_of(problem, found), case.noise(found.theta)
+    computed = minimum(problem, weighted(w), np.zeros(3))
+    point, noise = point_of(problem, computed), case.noise(computed.theta)
     result = scatter(problem, point, w, given_weights(noise), noise)
     A, W = case.A.reshape(-1, 3), np.repeat(w, 5)
     gain = np.linalg.solve(A.T @ (W[:, None] * A), A.T * W)
@@ -115,12 +115,12 @@ def test_optimal_weights_follow_the_data() -> None:
     case, by = bent(3), 1e-3
     a = np.array([5.0, 5.0])
     problem = case.problem()
-    found = minimum(problem, LogSum(a), np.zeros(3))
-    noise, point = case.noise(found.theta), point_of(problem, found)
-    result = scatter(problem, point, a / found.J, optimal_weights(point, a, noise), noise)
+    computed = minimum(problem, LogSum(a), np.zeros(3))
+    noise, point = case.noise(computed.theta), point_of(problem, computed)
+    result = scatter(problem, point, a / computed.J, optimal_weights(point, a, noise), noise)
 
     def again(source: int, by: float) -> Solution:
-        return minimum(case.moved(source, by).problem(), LogSum(a), found.theta)
+        return minimum(case.moved(source, by).problem(), LogSum(a), computed.theta)
 
     moved = [[again(m, s * by) for m in range(10)] for s in (1, -1)]
     compare(result, moved[0], moved[1], by)
@@ -137,10 +137,10 @@ def test_a_level_that_moves_with_the_data() -> None:
         return minimum(problem, programme, best.theta + 0.01)
 
     problem = case.problem()
-    found = cut(problem)
-    noise, point = case.noise(found.theta), point_of(problem, found)
+    computed = cut(problem)
+    noise, point = case.noise(computed.theta), point_of(problem, computed)
     dv = (1 + tolerance) * case.noise(first.theta).J[:, 0]
-    result = scatter(problem, point, found.weights, level(point, 0, dv, noise), noise)
+    result = scatter(problem, point, computed.weights, level(point, 0, dv, noise), noise)
     moved = [[cut(case.moved(m, s * by).problem()) for m in range(10)] for s in (1, -1)]
     compare(result, moved[0], moved[1], by)
 
@@ -169,29 +169,29 @@ def test_points_of_the_front_follow_their_edges(
         target = spanned(edges, worst, np.ones(n))
         assert target is not None
         programmes = programmes_of(target, edges)
-        found = programmes.solve(problem, place, edges[0])
+        result = programmes.solve(problem, place, edges[0])
         if isinstance(programmes, Attainment):
-            assert found.converged
-            shares = found.weights * target.scale * programmes.r
+            assert result.converged
+            shares = result.weights * target.scale * programmes.r
             assert (active_bounds(shares) == on).all()
             exact: Scalarisation = programmes.subproblem(place)
         else:
             exact = target.subproblem(place)
-        return edges, minimum(problem, exact, found.theta)
+        return edges, minimum(problem, exact, result.theta)
 
     problem = case.problem()
-    edges, found = solved(problem)
+    edges, computed = solved(problem)
     columns = []
-    for i, one in enumerate(edges):
-        noise, point = case.noise(one.theta), point_of(problem, one)
+    for i, edge in enumerate(edges):
+        noise, point = case.noise(edge.theta), point_of(problem, edge)
         columns.append(scatter(problem, point, np.eye(n)[i], given_weights(noise), noise).J)
-    E, dE = np.array([one.J for one in edges]).T, np.stack(columns, axis=2)
-    noise, point = case.noise(found.theta), point_of(problem, found)
+    E, dE = np.array([edge.J for edge in edges]).T, np.stack(columns, axis=2)
+    noise, point = case.noise(computed.theta), point_of(problem, computed)
     target = between(E, dE)
     if ranges:
         worst = [2, 2, 1]
         target = over_ranges(E, dE, E[range(3), worst], dE[:, range(3), worst])
-    w, conditions = boundary(point, found.weights, target, place, noise)
+    w, conditions = boundary(point, computed.weights, target, place, noise)
     result = scatter(problem, point, w, conditions, noise)
     ahead, behind = (
         [solved(case.moved(m, s * by).problem())[1] for m in range(5 * n)] for s in (1, -1)
@@ -204,8 +204,8 @@ def test_a_parameter_pressed_against_its_bound_does_not_scatter() -> None:
     inside = minimum(case.problem(), weighted(np.ones(2)), np.zeros(3)).theta
     upper = np.array([inside[0] - 0.2, 5.0, 5.0])
     problem = replace(case.problem(), upper=upper, start=np.minimum(0, upper - 0.1))
-    found = minimum(problem, weighted(np.ones(2)), problem.start)
-    point, noise = point_of(problem, found), case.noise(found.theta)
+    computed = minimum(problem, weighted(np.ones(2)), problem.start)
+    point, noise = point_of(problem, computed), case.noise(computed.theta)
     result = scatter(problem, point, np.ones(2), given_weights(noise), noise)
     assert result.held.tolist() == [True, False, False]
     A = case.A.reshape(-1, 3)[:, 1:]
@@ -221,8 +221,8 @@ def test_what_no_data_determine_is_named_and_left_out() -> None:
     A[..., 1] = 2 * A[..., 0]  # only theta_0 + 2 theta_1 matters
     case = replace(case, A=A)
     problem = case.problem()
-    found = minimum(problem, weighted(np.ones(2)), np.zeros(3))
-    point, noise = point_of(problem, found), case.noise(found.theta)
+    computed = minimum(problem, weighted(np.ones(2)), np.zeros(3))
+    point, noise = point_of(problem, computed), case.noise(computed.theta)
     result = scatter(problem, point, np.ones(2), given_weights(noise), noise)
     (direction,) = result.free.T
     assert abs(direction / np.linalg.norm(direction) @ [2, -1, 0]) == pytest.approx(np.sqrt(5))

@@ -60,9 +60,9 @@ def test_a_bound_within_the_scatter_of_a_measured_value(
     problem = box(bowl, [0.0], [1.0], 1)
     theta = min(measured, 1.0)
     noise = Noise(np.array([[-0.2 * (theta - measured)]]), np.array([[[-0.2]]]))
-    found = scatter(problem, point_at(problem, [theta]), np.ones(1), given_weights(noise), noise)
-    assert found.theta == pytest.approx(0.1 if measured < 1 else 0.0)
-    assert found.warnings == doubts
+    result = scatter(problem, point_at(problem, [theta]), np.ones(1), given_weights(noise), noise)
+    assert result.theta == pytest.approx(0.1 if measured < 1 else 0.0)
+    assert result.warnings == doubts
 
 
 @pytest.mark.parametrize(("d", "doubts"), [(0.9, ()), (1.1, (LinearisationWarning.SADDLE,))])
@@ -78,8 +78,10 @@ def test_optimal_weights_hold_a_model_between_close_minima_only(
     problem = box(bowls, [-2.0], [2.0])
     point, a = point_at(problem, [0.0]), np.ones(2)
     noise = Noise(np.array([[0.01, 0.0]]), np.array([[[0.01], [0.0]]]))
-    found = scatter(problem, point, a / point.evaluation.J, optimal_weights(point, a, noise), noise)
-    assert found.warnings == doubts
+    result = scatter(
+        problem, point, a / point.evaluation.J, optimal_weights(point, a, noise), noise
+    )
+    assert result.warnings == doubts
 
 
 def of_corners(beta: Floats, std: float) -> Scatter:
@@ -101,19 +103,19 @@ def of_corners(beta: Floats, std: float) -> Scatter:
     edges = [solve(problem, w, begin(problem.evaluate(np.zeros(2)))) for w in weights]
     dE = []
     for edge, w in zip(edges, np.eye(3), strict=True):
-        point, own = point_at(problem, edge.theta.tolist()), noise(edge.theta)
-        dE.append(scatter(problem, point, w, given_weights(own), own).J)
+        point, chosen = point_at(problem, edge.theta.tolist()), noise(edge.theta)
+        dE.append(scatter(problem, point, w, given_weights(chosen), chosen).J)
     target = spanned(edges, (), np.ones(3))
     assert target is not None
     of = programmes(target, edges)
     assert isinstance(of, Attainment)
-    found = of.solve(problem, beta, edges[0])
-    assert found.converged
+    result = of.solve(problem, beta, edges[0])
+    assert result.converged
     E = np.array([edge.J for edge in edges]).T
-    point, own = point_at(problem, found.theta.tolist()), noise(found.theta)
+    point, chosen = point_at(problem, result.theta.tolist()), noise(result.theta)
     moving = between(E, np.stack(dE, axis=2))
-    w, conditions = boundary(point, found.weights, moving, beta, own)
-    return scatter(problem, point, w, conditions, own)
+    w, conditions = boundary(point, result.weights, moving, beta, chosen)
+    return scatter(problem, point, w, conditions, chosen)
 
 
 def test_points_next_to_a_change_of_the_active_set_are_doubtful() -> None:
@@ -158,7 +160,7 @@ def test_another_model_that_fits_as_well_is_a_rival(
         SolvedPoint("nbi-1", best, Role("end", ("edge-J1",))),
     ]
     none = np.zeros((1, 2))
-    own = Scatter(none, np.array([[0.0, std]]), none, np.zeros(2, bool), none.T, ())
-    scatters = {"edge-J1": own, "nbi-1": own}
-    found = with_neighbours(front, points, scatters, np.ones(2), np.ones(2))
-    assert [one.warnings for one in found.values()] == [doubts, doubts]
+    chosen = Scatter(none, np.array([[0.0, std]]), none, np.zeros(2, bool), none.T, ())
+    scatters = {"edge-J1": chosen, "nbi-1": chosen}
+    result = with_neighbours(front, points, scatters, np.ones(2), np.ones(2))
+    assert [scatter.warnings for scatter in result.values()] == [doubts, doubts]

@@ -72,22 +72,24 @@ def through(value: Any) -> Any:
     return decode(json.loads(text), kept)
 
 
-def alike(one: Any, other: Any) -> bool:
+def alike(first: Any, other: Any) -> bool:
     """Return whether two values have the same types, keys, order and bits."""
-    if type(one) is not type(other):
+    if type(first) is not type(other):
         return False
-    if isinstance(one, np.ndarray):
-        same = one.shape == other.shape and one.dtype == other.dtype
-        return same and one.tobytes() == other.tobytes()
-    if isinstance(one, list | tuple):
-        return len(one) == len(other) and all(map(alike, one, other))
-    if isinstance(one, dict):
-        return alike(list(one), list(other)) and alike(list(one.values()), list(other.values()))
-    if isinstance(one, Leaf):
-        return alike(vars(one), vars(other))
-    if isinstance(one, float):
-        return np.float64(one).tobytes() == np.float64(other).tobytes() or (one != one != other)
-    return bool(one == other)
+    if isinstance(first, np.ndarray):
+        same = first.shape == other.shape and first.dtype == other.dtype
+        return same and first.tobytes() == other.tobytes()
+    if isinstance(first, list | tuple):
+        return len(first) == len(other) and all(map(alike, first, other))
+    if isinstance(first, dict):
+        return alike(list(first), list(other)) and alike(list(first.values()), list(other.values()))
+    if isinstance(first, Leaf):
+        return alike(vars(first), vars(other))
+    if isinstance(first, float):
+        return np.float64(first).tobytes() == np.float64(other).tobytes() or (
+            first != first != other
+        )
+    return bool(first == other)
 
 
 @given(values)
@@ -148,8 +150,8 @@ def test_what_was_not_encoded_is_an_error_that_readers_expect(text: str) -> None
 
 def test_arrays_are_kept_once_each_and_not_as_text() -> None:
     kept: dict[str, Floats] = {}
-    one = np.array([np.nan, -0.0, np.inf])
-    content = encode([Leaf(one), Leaf(one[:1])], kept)
+    array = np.array([np.nan, -0.0, np.inf])
+    content = encode([Leaf(array), Leaf(array[:1])], kept)
     assert len(kept) == 2
     assert "nan" not in json.dumps(content).lower()
-    assert alike(decode(content, kept), [Leaf(one), Leaf(one[:1])])
+    assert alike(decode(content, kept), [Leaf(array), Leaf(array[:1])])

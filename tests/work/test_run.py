@@ -132,12 +132,12 @@ def test_random_numbers_are_those_of_the_task_alone() -> None:
         for seed in (1, 2)
         for k in range(2)
     ]
-    found = IMMEDIATE.run(tasks)
-    assert len({one.tobytes() for one in found}) == 4
+    result = IMMEDIATE.run(tasks)
+    assert len({array.tobytes() for array in result}) == 4
     other_way = IMMEDIATE.run(tasks[::-1])[::-1]
-    assert [one.tobytes() for one in other_way] == [one.tobytes() for one in found]
+    assert [array.tobytes() for array in other_way] == [array.tobytes() for array in result]
     expected = 2.0 * np.random.default_rng(seed_sequence(2, "normal", 1)).normal(size=2)
-    assert found[-1].tolist() == expected.tolist()
+    assert result[-1].tolist() == expected.tolist()
 
 
 @dataclass
@@ -335,7 +335,7 @@ def test_never_more_is_done_than_expected_whatever_happens(
     for state in states:
         assert state.done + state.running <= state.expected
         assert state.left is None or state.left >= 0
-    assert all(one.done <= other.done for one, other in pairwise(states))
+    assert all(state.done <= other.done for state, other in pairwise(states))
     last = follow.state
     assert (last.done, last.running) == (len(ended), len(running))
     computed = [seconds for _, seconds in ended if seconds is not None]

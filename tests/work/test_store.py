@@ -23,10 +23,10 @@ COSTS = Costs(eigenproblems=3, factorisations=2, full_time=0.1)
 
 def solution(J: float = 0.3) -> Solution:
     theta, objective = np.array([0.1, -0.0]), np.array([J, np.inf])
-    at = Evaluation(
+    position = Evaluation(
         theta, objective, ObjectiveDerivatives(np.zeros((2, 2)), np.full((2, 2, 2), np.nan))
     )
-    return replace(begin(at), status=Status.STALLED)
+    return replace(begin(position), status=Status.STALLED)
 
 
 def task(*key: Any, turn: Key = ()) -> Task[Any]:
@@ -34,17 +34,17 @@ def task(*key: Any, turn: Key = ()) -> Task[Any]:
 
 
 def test_what_is_kept_comes_back_with_what_it_cost(tmp_path: Path) -> None:
-    store, one = Store(tmp_path / "new" / "folder"), task("edge", "shapes")
-    assert store.read(one) is None
-    store.write(one, [solution()], COSTS)
-    kept = Store(tmp_path / "new" / "folder").read(one)
+    store, first_task = Store(tmp_path / "new" / "folder"), task("edge", "shapes")
+    assert store.read(first_task) is None
+    store.write(first_task, [solution()], COSTS)
+    kept = Store(tmp_path / "new" / "folder").read(first_task)
     assert kept is not None
-    ((found,), costs) = kept
+    ((result,), costs) = kept
     assert costs == COSTS
-    assert found.status is Status.STALLED
+    assert result.status is Status.STALLED
     for name in ("theta", "J", "dJ", "H"):
         assert (
-            getattr(found.evaluation, name).tobytes()
+            getattr(result.evaluation, name).tobytes()
             == getattr(solution().evaluation, name).tobytes()
         )
 
@@ -104,8 +104,8 @@ def test_a_file_of_another_key_is_not_taken(tmp_path: Path) -> None:
     store = Store(tmp_path)
     store.write(task("one"), 1, COSTS)
     store.write(task("two"), 2, COSTS)
-    one, two = sorted(tmp_path.iterdir())
-    two.write_bytes(one.read_bytes())
+    first, two = sorted(tmp_path.iterdir())
+    two.write_bytes(first.read_bytes())
     assert store.read(task("one")) == (1, COSTS)
     assert store.read(task("two")) is None
 

@@ -40,9 +40,9 @@ def reduced(folder: Path) -> mf.Study:
     """Return a study of a chain of 200 masses in a reduced basis."""
     n, rng = 200, np.random.default_rng(1)
     names = ("k1", "k2")
-    for name, own in zip(names, np.split(np.arange(n), 2), strict=True):
+    for name, chosen in zip(names, np.split(np.arange(n), 2), strict=True):
         K = scipy.sparse.lil_array((n, n))
-        for i in own:  # the spring below the mass
+        for i in chosen:  # the spring below the mass
             K[i, i] += 1e4
             if i:
                 K[i - 1, i - 1] += 1e4
@@ -129,8 +129,8 @@ def test_results_do_not_depend_on_who_does_the_work(
     for name in names:
         with monkeypatch.context() as patch:
             patch.setattr(session, "backend", lambda *_, x=pools[name], **__: nullcontext(x))
-            found = mf.run(of(tmp_path), tmp_path / name).dataset
-        xr.testing.assert_identical(found, expected)
+            result = mf.run(of(tmp_path), tmp_path / name).dataset
+        xr.testing.assert_identical(result, expected)
         assert sorted(x.name for x in (tmp_path / name).rglob("*.npz")) == files
 
 
@@ -164,13 +164,13 @@ def test_a_cluster_that_is_none_is_refused_in_words(monkeypatch: pytest.MonkeyPa
 
 def running(group: int) -> list[str]:
     """Return the processes of a group that have not ended."""
-    found = []
+    result = []
     for path in Path("/proc").glob("[0-9]*/stat"):
         with suppress(OSError):
-            state, _, own = path.read_text().rpartition(")")[2].split()[:3]
-            if int(own) == group and state != "Z":
-                found.append(path.parent.name)
-    return found
+            state, _, chosen = path.read_text().rpartition(")")[2].split()[:3]
+            if int(chosen) == group and state != "Z":
+                result.append(path.parent.name)
+    return result
 
 
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")

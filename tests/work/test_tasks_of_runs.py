@@ -96,10 +96,10 @@ def test_every_task_of_a_run_gives_the_same_record_after_pickle(
         return [pickle.loads(pickle.dumps(result)) for result in run(work, copies, ahead)]
 
     monkeypatch.setattr(Run, "run", through_pickle)
-    there = kept(monkeypatch)
+    other = kept(monkeypatch)
     again = mf.run(of(tmp_path), tmp_path / "apart")
-    assert list(there) == list(here)
-    assert there == here
+    assert list(other) == list(here)
+    assert other == here
     xr.testing.assert_identical(again.dataset, whole.dataset)
     stages = {name.split("-")[0] for name in here}
     assert {"edge", "weights", "front", "optimal", "nominal"} <= stages
@@ -123,9 +123,9 @@ def test_weights_named_like_work_have_no_part_in_it(tmp_path: Path) -> None:
         labels = [text if x == "mine" else x for x in ordinary["label"].values.tolist()]
         assert alike["label"].values.tolist() == labels
         for name in ordinary.data_vars:
-            one, other = ordinary[name].values, alike[name].values
-            if one.dtype.kind in "fib":
-                np.testing.assert_array_equal(one, other, err_msg=str(name))
+            first, other = ordinary[name].values, alike[name].values
+            if first.dtype.kind in "fib":
+                np.testing.assert_array_equal(first, other, err_msg=str(name))
 
 
 def test_weights_named_like_a_point_of_the_study_are_refused(tmp_path: Path) -> None:

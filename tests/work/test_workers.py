@@ -64,8 +64,8 @@ def test_results_costs_and_random_numbers_are_those_of_one_after_another(
     with Workers(Threads(count, delays)) as workers:
         work = Run(backend=workers)
         results = work.run(tasks, squares(100, 101))
-    for one, other in zip(results, expected, strict=True):
-        np.testing.assert_array_equal(one, other)
+    for first, other in zip(results, expected, strict=True):
+        np.testing.assert_array_equal(first, other)
     assert set(work.costs) == set(alone.costs)
     assert work.total().eigenproblems == alone.total().eigenproblems
 
@@ -253,9 +253,9 @@ def two() -> Iterator[Workers]:
 
 
 def test_processes_share_the_work_and_are_not_this_one(two: Workers) -> None:
-    found = Run(backend=two).run([Task(("process", k), process_of, (k,)) for k in range(8)])
-    assert os.getpid() not in found
-    assert 1 <= len(set(found)) <= 2
+    result = Run(backend=two).run([Task(("process", k), process_of, (k,)) for k in range(8)])
+    assert os.getpid() not in result
+    assert 1 <= len(set(result)) <= 2
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there is no such signal on Windows")
@@ -274,8 +274,8 @@ def test_a_killed_process_is_replaced_and_its_tasks_are_done_again(
 
 
 def test_one_worker_is_the_process_itself_and_other_numbers_are_refused() -> None:
-    with backend(1) as one:
-        assert isinstance(one, InTurn)
+    with backend(1) as alone:
+        assert isinstance(alone, InTurn)
     for wrong in (0, 62, -1):
         with pytest.raises(InputError, match="workers: expected a whole number"), backend(wrong):
             pass
@@ -310,13 +310,13 @@ def test_processes_end_with_the_one_that_started_them(tmp_path: Path) -> None:
         text=True,
     ) as parent:
         assert parent.stdout is not None
-        found = {int(parent.stdout.readline()) for _ in range(8)}
+        result = {int(parent.stdout.readline()) for _ in range(8)}
         parent.kill()
     for _ in range(500):
-        if not any(map(alive, found)):
+        if not any(map(alive, result)):
             break
         time.sleep(0.02)
-    assert not any(map(alive, found))
+    assert not any(map(alive, result))
 
 
 def alive(process: int) -> bool:

@@ -4,8 +4,8 @@ A round does all of the work in the basis at hand. Then snapshots are taken of t
 the farthest from all others, as long as they lack more than a tenth of the tolerance, and the next
 round starts from what is known. Where they do not, every model that is reported gets its
 certificate, and where one is above the tolerance, a snapshot is taken there. Minima that cannot be
-the best ones, whatever their errors are, need not hold. As long as the basis is poor, it may have
-led astray: after a single snapshot the global search is repeated.
+the best ones, whatever their errors are, are exempt from the tolerance. A poor basis may
+mislead the search, which is repeated after a single snapshot then.
 
 The tasks of every round have a turn of their own, and its snapshots are among them, so that an
 interrupted run goes on with the same digits.
@@ -93,7 +93,7 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
     front: Front | None = None
     taken = _take_some(model, "first", model.first, None, work)
     if taken.added and not taken.full:
-        (lacking,) = work.run([Task(("probe-basis",), _lacking, (problem, model), here=True)])
+        (lacking,) = work.run([Task(("probe-basis",), _lacking, (problem, model), in_process=True)])
         if lacking:
             request = SnapshotRequest(np.array(lacking), _lowest(problem))
             _take_some(model, "probes", request, None, work)
@@ -134,7 +134,7 @@ def certified_points(
     if not isinstance(model, ReducedModel) or not points:
         return list(points)
     solutions = [point.solution for point in points]
-    task = Task(("certificate", "others"), _certified, (problem, model, solutions), here=True)
+    task = Task(("certificate", "others"), _certified, (problem, model, solutions), in_process=True)
     (kept,) = work.run([task])
     return [replace(point, solution=x) for point, x in zip(points, kept, strict=True)]
 
@@ -192,7 +192,7 @@ def _take_some(
     error, added = np.inf, False
     for count in range(AHEAD):
         before = model.snapshots
-        task = Task(("snapshot", name, count + 1), _take, (model, request), here=True)
+        task = Task(("snapshot", name, count + 1), _take, (model, request), in_process=True)
         (taken,) = work.run([task])
         if taken is None:
             return _Taken(error, added, enough=False, full=False)
@@ -247,7 +247,7 @@ def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Floats]:
 
 
 def _lowest(problem: UpdatingProblem) -> int:
-    """Return how many of the lowest modes may be paired with measured ones."""
+    """Return the number of lowest modes that may be paired with measured ones."""
     return modes_needed(problem.pairing, problem.data, problem.model.size)
 
 
@@ -256,7 +256,7 @@ def _with_errors(
 ) -> Front:
     """Return the front with the estimated errors of all its models."""
     arguments = (problem, model, _distinct(front))
-    task = Task(("certificate", "front"), _certified, arguments, here=True)
+    task = Task(("certificate", "front"), _certified, arguments, in_process=True)
     (kept,) = work.run([task])
     errors = {
         _key(solution): {name: solution.evaluation.quantities[name] for name in ERRORS}

@@ -86,7 +86,7 @@ class AnalysisOptions:
 def analyse_front(
     problem: UpdatingProblem, front: Front, options: AnalysisOptions, work: Executor
 ) -> FrontAnalysis:
-    """Return what follows from a front."""
+    """Return the analysis of a front."""
     a, uncertainty = problem.properties, options.uncertainty
     source = uncertainty.of(problem.data)
     work.expect(_extent(front, options, source))
@@ -318,7 +318,7 @@ class _Derivatives:
     known: dict[str, Local | None]
 
     def __call__(self, points: Sequence[tuple[SolvedPoint, Floats | None]]) -> list[Local | None]:
-        """Return them for each point, solved with weights (n,) first where these are given."""
+        """Return derivatives and noise of each point, solved with weights (n,) where given."""
         new = [(point, w) for point, w in points if point.label not in self.known]
         tasks = [
             Task(

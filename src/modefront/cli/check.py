@@ -1,4 +1,4 @@
-"""What a check finds, as tables and sentences of 80 columns."""
+"""Findings of a check as tables and sentences of 80 columns."""
 
 from __future__ import annotations
 
@@ -142,13 +142,13 @@ def _sensors(beside: Comparison, *, every: bool) -> Iterator[Table]:
     yield out
 
 
-def _sensitivities(found: Sensitivities, *, every: bool) -> Iterator[Table]:
+def _sensitivities(sensitivities: Sensitivities, *, every: bool) -> Iterator[Table]:
     """Yield the sensitivities, parameters × modes; of many parameters, the first ones."""
-    count = len(found.parameters)
+    count = len(sensitivities.parameters)
     shown = range(count if every else min(count, ROWS))
     rest = count - len(shown)
-    longest = max((len(found.parameters[j]) for j in shown), default=0)
-    name, size = min(longest, NAME), len(found.modes)
+    longest = max((len(sensitivities.parameters[j]) for j in shown), default=0)
+    name, size = min(longest, NAME), len(sensitivities.modes)
     for first in range(0, max(size, 1), ACROSS):
         modes = list(range(first, min(first + ACROSS, size)))
         last = first + ACROSS >= size
@@ -156,12 +156,14 @@ def _sensitivities(found: Sensitivities, *, every: bool) -> Iterator[Table]:
         title = title if not first else "sensitivity, further modes"
         if rest and last:
             title += f"\n{rest} more parameters with --all"
-        columns = ["parameter", *(f"f{found.modes[r]}" for r in modes)]
+        columns = ["parameter", *(f"f{sensitivities.modes[r]}" for r in modes)]
         out = table(title, [*columns, "shapes"] if last else columns)
         for j in shown:
-            cells = [_fixed(found.frequency[j, r]) for r in modes]
+            cells = [_fixed(sensitivities.frequency[j, r]) for r in modes]
             out.add_row(
-                _short(found.parameters[j], name), *cells, *([_fixed(found.shape[j])] * last)
+                _short(sensitivities.parameters[j], name),
+                *cells,
+                *([_fixed(sensitivities.shape[j])] * last),
             )
         yield out
 
@@ -172,10 +174,10 @@ def _fixed(value: float) -> str:
     return f"{value:.3f}" if abs(value) < 10 else f"{value:.2g}"
 
 
-def _advice(found: Sensitivities) -> list[str]:
+def _advice(sensitivities: Sensitivities) -> list[str]:
     """Return which parameters to fix or to group, as sentences."""
     groups: dict[str, list[str]] = {}
-    for name, text in zip(found.parameters, found.advice, strict=True):
+    for name, text in zip(sensitivities.parameters, sensitivities.advice, strict=True):
         groups.setdefault(text, []).append(name)
     out = []
     for text, names in groups.items():

@@ -19,7 +19,7 @@ SHOWN = 6
 """Parameters, and predictions, that are printed unless all are asked for."""
 
 OF_MODES = ("frequency ", "mac ")
-"""How predictions of the modes begin; they stand behind those that the studies ask for."""
+"""Prefixes of the predictions of modes, which are listed after those of the studies."""
 
 
 def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
@@ -68,7 +68,7 @@ def _common(names: Sequence[str], most: int | None) -> str:
 
 
 def _fronts(comparison: Comparison) -> list[list[str]]:
-    """Return what is said of each front, a row a quantity."""
+    """Return the quantities of each front, a row each."""
     fronts = comparison.fronts
 
     def row(name: str, of: Sequence[object]) -> list[str]:

@@ -1,4 +1,4 @@
-"""What a run has cost, in sentences."""
+"""Costs of a run in sentences."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from modefront.work.costs import Costs
 
 
 def cost_lines(costs: Costs) -> list[str]:
-    """Return what this run has solved, and how long that took."""
+    """Return the eigenproblems that this run has solved, and the time it took."""
     out = [
         f"this time: {costs.eigenproblems} full eigensolutions in {costs.full_time:.3g} s, "
         f"{costs.factorisations} factorisations"

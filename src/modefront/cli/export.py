@@ -27,8 +27,8 @@ def run_export(
     labels = [str(label) for label in data["label"].values]
     point = point or str(data.attrs["reference"])
     if point not in labels:
-        found = suggestion(point, labels)
-        raise InputError(Fault(str(directory / FILE), "--point", "the label of a model", found))
+        nearest = suggestion(point, labels)
+        raise InputError(Fault(str(directory / FILE), "--point", "the label of a model", nearest))
     name, digest = (str(data.attrs.get(key, "")) for key in ("study", "inputs"))
     loaded = given_study(directory, study, digest) if study else find_study(directory, name, digest)
     results = Results(data, loaded.problem)
@@ -53,7 +53,7 @@ def run_export(
 
 
 def _origin(file: Path) -> Origin:
-    """Return what the study of an imported model keeps of the program's model."""
+    """Return the mesh, labels and changed lines that an imported study keeps of its program."""
     table = tomllib.loads(file.read_text("utf-8-sig")).get("model", {})
     if table.get("kind") != "matrices":
         return Origin(None, None, ())

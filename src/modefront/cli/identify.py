@@ -88,7 +88,7 @@ def _check_band(path: Path, test: ModalTest, band: tuple[float, float] | None) -
 
 
 def findings(identification: Identification) -> list[str]:
-    """Return what a user should know of one identification."""
+    """Return the warnings on one identification."""
     out = []
     residuals = identification.residuals
     if not identification.converged:

@@ -1,4 +1,4 @@
-"""``modefront import``: what its options say, and what is printed."""
+"""``modefront import``: its options and its output."""
 
 from __future__ import annotations
 

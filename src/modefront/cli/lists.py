@@ -125,7 +125,7 @@ def print_uncertainty(screen: Screen, data: xr.Dataset) -> None:
 
 
 def print_findings_of(screen: Screen, data: xr.Dataset) -> None:
-    """Print all findings, what is particular about the results, and how the front is covered."""
+    """Print all findings, the remarks on the results, and the coverage of the front."""
     screen.blank()
     for line in remarks(data):
         screen.say(line, start="- ")

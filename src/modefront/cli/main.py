@@ -350,7 +350,7 @@ def export(
 
 
 def _refined(study: Study, size: float | None) -> Study:
-    """Return a study whose front is refined; what is wrong with that is said of the option."""
+    """Return a study whose front is refined; errors name the option."""
     if size is None:
         return study
     try:

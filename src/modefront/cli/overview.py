@@ -24,12 +24,12 @@ EDGES = 6
 """Parameters and modes that columns of the edges are worth."""
 
 FULL = "modefront show --models"
-"""What prints all parameters and modes of these models."""
+"""Option of ``show`` that prints all parameters and modes of these models."""
 
 
 @dataclass(frozen=True)
 class Form:
-    """How much the table of the first models holds.
+    """Contents of the table of the first models.
 
     Attributes
     ----------
@@ -204,7 +204,7 @@ class _Table:
 
     @property
     def notes(self) -> Iterator[str]:
-        """What explains the table, and what it leaves out."""
+        """Legend of the table, with the number of rows that it leaves out."""
         p = self.data.sizes["parameter"] - len(self.parameters)
         m = self.data.sizes["mode"] - len(self.modes)
         left = [
@@ -268,8 +268,8 @@ def _bounds(data: xr.Dataset) -> Floats:
     return np.zeros(data["theta"].shape)
 
 
-def _count(number: int, thing: str) -> str:
-    return f"{number} more {thing}{'s' * (number > 1)}"
+def _count(number: int, noun: str) -> str:
+    return f"{number} more {noun}{'s' * (number > 1)}"
 
 
 def _number(value: float, form: str) -> str:

@@ -180,7 +180,7 @@ def _quantities(data: xr.Dataset, kind: Kind, name: str, place: int) -> Iterator
 
 
 def _title(variable: ResultVariable) -> str:
-    """Return what a value is, in a word."""
+    """Return the title of a value."""
     return f"{variable.key}, {variable.unit}" if variable.unit else variable.key
 
 

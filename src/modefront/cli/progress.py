@@ -56,7 +56,7 @@ LEAST = 8
 """Characters of the bar; a terminal that has not so many is shown none."""
 
 PER_SECOND = 4
-"""How often the lines are drawn: clock and counts go on while a task takes long."""
+"""Drawings of the lines a second: clock and counts go on while a task takes long."""
 
 
 @contextmanager
@@ -99,13 +99,13 @@ class _Lines:
     is_done: bool = False
 
     def take(self, state: State) -> None:
-        """Take note of the state of the run."""
+        """Note the state of the run."""
         if self.state is None or state.stage != self.state.stage or state.done != self.state.done:
             self.step = self.iteration = ""
         self.state, self.taken = state, self.clock()
 
     def hear(self, text: str) -> None:
-        """Take note of what the task at work does."""
+        """Note the step that the running task reports."""
         if text.startswith(ITERATION):
             self.iteration = text
         else:
@@ -136,7 +136,7 @@ class _Lines:
 
     @property
     def words(self) -> str:
-        """What goes on, and the time that is left."""
+        """Sentence on the running task and the time left."""
         if self.is_done:
             return f"done, {self.costs.model_evaluations} models solved"
         if self.state is None or not self.state.stage:

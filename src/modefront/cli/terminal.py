@@ -1,4 +1,4 @@
-"""What is written to the terminal: in characters that it has, and without orders to it."""
+"""Output to the terminal: in characters that it has, and without control sequences."""
 
 from __future__ import annotations
 
@@ -30,7 +30,7 @@ def complain(text: str) -> None:
 
 
 def usage(error: click.ClickException) -> str:
-    """Return what is wrong with the command line, with the way to help where there is one."""
+    """Return the error in the command line, with a reference to ``--help``."""
     out = f"Error: {error.format_message()}"
     context = error.ctx if isinstance(error, click.UsageError) else None
     if context is None:

@@ -24,7 +24,7 @@ EVEN = 1e-3
 """Relative difference within which steps of time are even: files hold few digits."""
 
 REMAINING = 0.05
-"""Size of the windowed responses at the end over the greatest from which on leakage is said."""
+"""Size of the windowed responses at the end, over the greatest, that leaks: a warning is given."""
 
 
 @dataclass(frozen=True)
@@ -52,7 +52,7 @@ class Blow:
 
 @dataclass(frozen=True)
 class Contents:
-    """What a file holds: functions, or the records of blows where there are no functions."""
+    """Contents of a file: functions, or the records of blows where there are no functions."""
 
     channels: tuple[Channel, ...] = ()
     blows: tuple[Blow, ...] = ()

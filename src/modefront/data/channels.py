@@ -6,8 +6,9 @@ same pair again is another blow. Directions with a minus sign turn the function 
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from typing import TypeAlias
 
 import numpy as np
 
@@ -48,9 +49,13 @@ class Channel:
     variance: Floats | None = None
 
 
+_Groups: TypeAlias = dict[tuple[int, int], list[Channel]]
+"""Channels by the positions of their reference and response."""
+
+
 @dataclass(frozen=True)
 class Assembled:
-    """The functions of one data set, and what is odd about them."""
+    """The functions of one data set, with warnings."""
 
     data: FrequencyResponses
     warnings: tuple[str, ...]
@@ -69,7 +74,7 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
         channels = [_turned(channel) for channel in channels]
     references = tuple(dict.fromkeys(channel.reference for channel in channels))
     responses = tuple(dict.fromkeys(channel.response for channel in channels))
-    groups: dict[tuple[int, int], list[Channel]] = {}
+    groups: _Groups = {}
     for channel in channels:
         key = references.index(channel.reference), responses.index(channel.response)
         groups.setdefault(key, []).append(channel)
@@ -86,8 +91,14 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
                 variance[j, i] = channel.variance
     dead = ~(np.abs(np.nan_to_num(H)) > 0).any(axis=(0, 3))
     H[:, dead] = np.nan
-    warnings = _warnings(name, H, frequency, references, responses, groups, dead)
-    warnings += _driving_points(H, frequency, quantity, groups)
+    mean = np.nanmean(H, axis=0) if len(H) > 1 else H[0]
+    warnings = [
+        *_circular_axis(name, frequency),
+        *_dead_channels(groups, dead),
+        *_stray_sizes(mean, groups, dead),
+        *_reciprocity(name, mean, references, responses),
+        *_driving_points(H, frequency, quantity, groups),
+    ]
     data = frequency_responses(
         frequency,
         H if blows > 1 else H[0],
@@ -158,43 +169,41 @@ def _check_values(channels: Sequence[Channel]) -> None:
         raise InputError(faults[:5])
 
 
-def _warnings(
-    name: str,
-    H: Complexes,
-    frequency: Floats,
-    references: tuple[str, ...],
-    responses: tuple[str, ...],
-    groups: dict[tuple[int, int], list[Channel]],
-    dead: Bools,
-) -> list[str]:
-    out = []
+def _circular_axis(name: str, frequency: Floats) -> Iterator[str]:
+    """Warn of an axis that looks like circular frequencies."""
     if looks_like_circular(frequency):
-        out.append(
+        yield (
             f"set {name!r}: the frequency axis looks like rad/s: its lines are "
             f"{frequency[1] - frequency[0]:.6g} apart, 2π times a round number; expected Hz"
         )
+
+
+def _dead_channels(groups: _Groups, dead: Bools) -> Iterator[str]:
+    """Warn of channels (references, responses) that are zero."""
     for (j, i), group in groups.items():
         if dead[j, i]:
-            out.append(f"{group[0].file}: {group[0].place}: only zeros; the channel is left out")
-    mean = np.nanmean(H, axis=0) if len(H) > 1 else H[0]
+            yield f"{group[0].file}: {group[0].place}: only zeros; the channel is left out"
+
+
+def _stray_sizes(mean: Complexes, groups: _Groups, dead: Bools) -> Iterator[str]:
+    """Warn of functions that are far greater or less than the others."""
     size = np.sqrt(np.mean(np.abs(np.where(np.isfinite(mean), mean, 0)) ** 2, axis=2))
     living = size[~dead & (size > 0)]
     middle = float(np.median(living)) if len(living) else 0.0
     for (j, i), group in groups.items():
         ratio = size[j, i] / middle if middle else 1.0
         if size[j, i] > 0 and not 1 / STRAY < ratio < STRAY:
-            out.append(
+            yield (
                 f"{group[0].file}: {group[0].place}: {ratio:.3g} times as great as the other "
                 "functions are: check its unit"
             )
-    return out + _reciprocity(name, mean, references, responses)
 
 
 def _driving_points(
     H: Complexes,
     frequency: Floats,
     quantity: str,
-    groups: dict[tuple[int, int], list[Channel]],
+    groups: _Groups,
 ) -> list[str]:
     """Return where a driving point gives energy back: its mobility has a negative real part."""
     out = []

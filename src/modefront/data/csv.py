@@ -132,8 +132,8 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
         while lines := list(islice(rows, TOGETHER)):
             part = _together(header, lines, sensors)
             if part is None or faults:
-                part, found = _one_by_one(header, lines, sensors)
-                faults += [_fault(file, *each) for each in found]
+                part, row_faults = _one_by_one(header, lines, sensors)
+                faults += [_fault(file, *each) for each in row_faults]
             parts.append(part)
             if len(faults) > MOST_FAULTS:
                 break
@@ -210,16 +210,16 @@ def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
 
 
 def _separator(stream: TextIO) -> tuple[str, int]:
-    """Return what separates the columns of a file, and how many lines before the header say it.
+    """Return the separator of the columns, and the number of lines before the header that name it.
 
     The stream is left at the first line that counts.
     """
     lines, first = 1, stream.readline(LONGEST_LINE)
     while first and not first.strip(SEPARATORS + " \r\n"):
         lines, first = lines + 1, stream.readline(LONGEST_LINE)
-    said = SEPARATOR_LINE.fullmatch(first)
-    if said:
-        return said["separator"], lines
+    declared = SEPARATOR_LINE.fullmatch(first)
+    if declared:
+        return declared["separator"], lines
     stream.seek(0)
     return max(SEPARATORS, key=first.count), 0
 
@@ -296,11 +296,11 @@ def _one_by_one(
             faults.append((number, None, expected, str(len(fields))))
             continue
         texts = [field.strip() for field in fields]
-        key, values, found = _row(dict(zip(header, texts, strict=True)))
+        key, values, row_faults = _row(dict(zip(header, texts, strict=True)))
         if key is not None:
             keys.append((number, *key))
-            found = found or _empty_faults(values, sensors)
-        faults += [(number, *each) for each in found]
+            row_faults = row_faults or _empty_faults(values, sensors)
+        faults += [(number, *each) for each in row_faults]
     numbers, names, modes = zip(*keys, strict=True) if keys else ((), (), ())
     return _Rows(numbers, names, modes, {}), faults
 
@@ -372,7 +372,7 @@ def _row(
 
 
 def _range(column: str, value: float) -> str:
-    """Return what is expected of a value that is out of range; empty where it is not."""
+    """Return the range expected of a value that is out of it; empty for a value within."""
     if not math.isfinite(value):
         return "a finite number or an empty field"
     least, most = FREQUENCIES

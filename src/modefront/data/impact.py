@@ -50,7 +50,7 @@ LEAST_SHARE = 1e-4
 
 @dataclass(frozen=True)
 class Windows:
-    """How functions are made of records.
+    """Estimator and windows that make functions of records.
 
     Attributes
     ----------
@@ -192,7 +192,7 @@ def _variance(H: Complexes, X: Complexes, Y: Complexes) -> Floats:
 
 
 def _force_noise(force: Floats, window: Floats, X: Complexes, t: Floats) -> ForceNoise:
-    """Return what noise of the force channel does to the functions, from samples after impacts.
+    """Return the effect of noise of the force channel on the functions, from samples after impacts.
 
     The second half of the records has no force; its scatter is the noise.
     """
@@ -216,7 +216,7 @@ def _over(a: Complexes | Floats, b: Complexes | Floats) -> Complexes:
 
 
 def _reason(x: Floats, y: Floats, rate: float, force_window: float | None) -> str:
-    """Return what is wrong with one blow; empty where nothing is."""
+    """Return the fault of one blow; empty for a good one."""
     if not (np.isfinite(x).all() and np.isfinite(y).all()):
         return "not all samples are numbers"
     if not np.any(x):

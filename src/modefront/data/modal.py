@@ -44,6 +44,7 @@ class ModalData:
         return out
 
 
+# 7 arguments: the parts of modal data, the optional ones by keyword.
 def modal_data(
     frequency: Floats,
     shape: Floats,

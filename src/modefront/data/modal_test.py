@@ -1,4 +1,4 @@
-"""The test file: which files hold the functions of a modal test, and what to do with them.
+"""The test file: the files of a modal test with their references, and the options.
 
 TOML with the tables ``[test]``, ``[identify]``, ``[impact]``, ``[sensors]`` and a table ``[[set]]``
 for every data set. A universal file or a CSV file alone is a test of one set.
@@ -30,7 +30,7 @@ LARGEST = 64 * 10**6
 
 @dataclass(frozen=True)
 class DataSet:
-    """One data set of a test: its name, its functions, what is odd about them."""
+    """One data set of a test: its name, its functions, and warnings about them."""
 
     name: str
     assembled: Assembled
@@ -168,7 +168,7 @@ def _impact_table(root: Table) -> Windows | None:
     estimator = table.choice("estimator", ESTIMATORS, "H1")
     force_window = table.number("force_window", seconds, lambda x: x > 0, None)
     if table.values.get("exponential") == "none":
-        table.asked.append("exponential")
+        table.requested.append("exponential")
         exponential = math.inf
     else:
         seconds = "a time constant in s above zero, or 'none'"

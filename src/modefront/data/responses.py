@@ -24,7 +24,7 @@ import numpy as np
 from modefront._typing import Bools, Complexes, Floats
 
 ORDERS = {"receptance": 0, "mobility": 1, "accelerance": 2}
-"""How often the displacement is differentiated in each quantity."""
+"""Number of differentiations of the displacement in each quantity."""
 
 
 @dataclass(frozen=True)
@@ -124,6 +124,7 @@ class FrequencyResponses:
         )
 
 
+# 8 arguments: the parts of measured functions, the optional ones by keyword.
 def frequency_responses(
     frequency: Floats,
     H: Complexes,

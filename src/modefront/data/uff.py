@@ -2,8 +2,8 @@
 
 Modes are read in `modefront.data.uff55`.
 
-The text of the file is looked through first: what holds no dataset, is cut off or has exponents
-written with D is said or mended here, since `pyuff`, which decodes the datasets, returns nothing
+The text of the file is checked first: files without datasets or cut off are refused, and exponents
+written with D are mended here, since `pyuff`, which decodes the datasets, returns nothing
 or fails without a place. `pyuff` is an extra, imported where it is used.
 
 Format: Structural Dynamics Research Laboratory, University of Cincinnati, *Universal File
@@ -35,7 +35,7 @@ FORCES = (9, 13)
 """Data types of the force of a hammer: reaction force, excitation force."""
 
 QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
-"""What the numerator is: displacement, velocity, acceleration."""
+"""Quantities of the numerator: displacement, velocity, acceleration."""
 
 AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
 """Directions by their numbers in universal files."""

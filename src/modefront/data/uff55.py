@@ -88,10 +88,10 @@ class NodalModes:
     @property
     def measured(self) -> tuple[str, ...]:
         """Names of the measured degrees of freedom, such as ``12Z``."""
-        there = np.asarray(np.isfinite(self.shape).any(axis=(0, 1)))
+        observed = np.asarray(np.isfinite(self.shape).any(axis=(0, 1)))
         return tuple(
             f"{node}{NAMES[axis]}"
-            for node, row in zip(self.nodes.tolist(), there, strict=True)
+            for node, row in zip(self.nodes.tolist(), observed, strict=True)
             for axis in np.flatnonzero(row).tolist()
         )
 
@@ -121,13 +121,13 @@ class NodalModes:
         matched = re.fullmatch(r"([+-]?)([0-9]{1,9}) ?([+-]?)(R?[XYZ])", name.upper())
         if not matched:
             return None
-        found = np.flatnonzero(self.nodes == int(matched[2]))
-        if not found.size:
+        positions = np.flatnonzero(self.nodes == int(matched[2]))
+        if not positions.size:
             return None
         direction = np.zeros(6)
         sign = -1.0 if (matched[1] == "-") != (matched[3] == "-") else 1.0
         direction[NAMES.index(matched[4])] = sign
-        return int(found[0]), direction
+        return int(positions[0]), direction
 
 
 def is_universal(name: str) -> bool:
@@ -141,20 +141,20 @@ def read_uff55(path: Path) -> NodalModes:
     Raises InputError where the file holds none, is cut off or cannot be decoded.
     """
     file, content = str(path), read_text_bytes(path, WHAT, LARGEST)
-    found = blocks(content, file)
-    shapes = [one for one in found if one.number == 55]
+    sections = blocks(content, file)
+    shapes = [block for block in sections if block.number == 55]
     if not shapes:
-        numbers = ", ".join(str(n) for n in dict.fromkeys(one.number for one in found))
+        numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in sections))
         raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
-    rows = [_mode(decode(content, one, file), one, file) for one in shapes]
-    geometry = [decode(content, one, file) for one in found if one.number in GEOMETRY]
-    systems = [decode(content, one, file) for one in found if one.number == SYSTEMS]
+    rows = [_mode(decode(content, block, file), block, file) for block in shapes]
+    geometry = [decode(content, block, file) for block in sections if block.number in GEOMETRY]
+    systems = [decode(content, block, file) for block in sections if block.number == SYSTEMS]
     return _assembled(file, rows, _positions(geometry), _axes(geometry, systems))
 
 
 @dataclass(frozen=True, eq=False)
 class _Mode:
-    """One dataset 55: its data set (empty if not said), number, values, and place in the file."""
+    """One dataset 55: its data set (empty if not given), number, values, and place in the file."""
 
     set: str
     number: int
@@ -284,5 +284,5 @@ def _assembled(
     for values in shape:
         values[:, ~(np.nan_to_num(values) != 0).any(axis=0)] = np.nan
     places = np.array([positions.get(int(node), np.full(3, np.nan)) for node in nodes])
-    own = np.array([axes.get(int(node), np.eye(3)) for node in nodes])
-    return NodalModes(file, sets, modes, nodes, places, own, frequency, damping, shape)
+    of_nodes = np.array([axes.get(int(node), np.eye(3)) for node in nodes])
+    return NodalModes(file, sets, modes, nodes, places, of_nodes, frequency, damping, shape)

@@ -57,7 +57,9 @@ def applied(changes: Sequence[Change], view: Measured, sets: Sequence[int]) -> M
     return replace(view, psi=psi, seen=seen)
 
 
-def tried(view: Measured, phi: Floats, among: Sequence[int]) -> Iterator[tuple[Change, Floats]]:
+def changes_with_macs(
+    view: Measured, phi: Floats, among: Sequence[int]
+) -> Iterator[tuple[Change, Floats]]:
     """Yield every change with the MAC values (modes, model modes) that it leads to.
 
     All sensors are reversed in turn; pairs ``among`` some are exchanged, gaps and all.
@@ -91,10 +93,10 @@ def best_change(
     view: Measured, phi: Floats, cost: Callable[[Floats], float], among: Sequence[int]
 ) -> tuple[Change, float] | None:
     """Return the change with the least cost of its MAC values; None where there is no change."""
-    found = [(cost(mac), change) for change, mac in tried(view, phi, among)]
-    if not found:
+    candidates = [(cost(mac), change) for change, mac in changes_with_macs(view, phi, among)]
+    if not candidates:
         return None
-    value, change = min(found, key=lambda pair: pair[0])
+    value, change = min(candidates, key=lambda pair: pair[0])
     return change, value
 
 

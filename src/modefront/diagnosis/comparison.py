@@ -91,8 +91,8 @@ def compare(problem: UpdatingProblem) -> Comparison:
     theta = problem.start
     full = problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
     matrices = matrices_at(full, theta)
-    wanted = min(problem.model.size, count + MORE)
-    frequency, phi, Phi = _modes(full, matrices, theta, count, wanted)
+    modes = min(problem.model.size, count + MORE)
+    frequency, phi, Phi = _modes(full, matrices, theta, count, modes)
     known = slice(0, count)
     pairs = match(problem.pairing, problem.data, frequency[known], phi[:, known])
     return Comparison(problem, frequency, phi, count, pairs, matrices, Phi)
@@ -110,10 +110,10 @@ def with_data(comparison: Comparison, data: ModalData) -> Comparison:
 
 
 def _modes(
-    model: Model, matrices: MatrixModel | None, theta: Floats, least: int, wanted: int
+    model: Model, matrices: MatrixModel | None, theta: Floats, least: int, most: int
 ) -> tuple[Floats, Floats, Floats | None]:
     """Return frequencies and shapes of as many modes as there are, ``least`` at least."""
-    for count in dict.fromkeys((wanted, least)):
+    for count in dict.fromkeys((most, least)):
         try:
             if isinstance(model, MatrixModel) and matrices is not None:
                 modes = model.full_modes(theta, count)

@@ -1,4 +1,4 @@
-"""All that a comparison at the nominal parameters shows of mistakes in models and data."""
+"""Diagnosis of model and data by a comparison at the nominal parameters."""
 
 from __future__ import annotations
 
@@ -28,7 +28,7 @@ from modefront.diagnosis.units import (
     FrequencyFactor,
     OtherQuantity,
     distance,
-    shifts_tried,
+    shifts_to_try,
     unit_finding,
 )
 
@@ -45,11 +45,11 @@ Finding = (
     | DampingInPercent
     | PairFinding
 )
-"""What can be found, each a record with its numbers; `modefront.diagnosis.words` has the words."""
+"""Findings, each a record with its numbers; `modefront.diagnosis.words` has the words."""
 
 
 def diagnose(comparison: Comparison) -> list[Finding]:
-    """Return what is wrong with a model or its data, the causes before what they bring about.
+    """Return the mistakes of a model or its data, causes before their consequences.
 
     What one finding explains is put right before the next ones are looked for, so that each is
     said once.
@@ -60,7 +60,7 @@ def diagnose(comparison: Comparison) -> list[Finding]:
     numbers, data = numbering_findings(data, of_model)
     in_sets, view = between_sets(comparison, measured(data))
     inside = without_outside(comparison, view)
-    best = explained(comparison, inside, shifts_tried(comparison, inside))
+    best = explained(comparison, inside, shifts_to_try(comparison, inside))
     sensors = finding_of(comparison, inside, best)
     unit = unit_finding(comparison, best.view, best.phi, best.shift)
     shift = 0.0
@@ -77,6 +77,6 @@ def diagnose(comparison: Comparison) -> list[Finding]:
     if not isinstance(unit, OtherQuantity):
         # Shapes in which sensors of single data sets are put right.
         shapes = np.where(view.seen, view.psi, np.nan)
-        found = pair_findings(with_data(comparison, replace(data, shape=shapes)), view, shift)
-        out += [each for each in found if sensors is None or isinstance(each, OutsideModel)]
+        of_pairs = pair_findings(with_data(comparison, replace(data, shape=shapes)), view, shift)
+        out += [each for each in of_pairs if sensors is None or isinstance(each, OutsideModel)]
     return out

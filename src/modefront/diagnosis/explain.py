@@ -90,10 +90,10 @@ def explained(comparison: Comparison, view: Measured, shifts: list[float]) -> Ex
 
     ``shifts`` are the logarithms of factors on all frequencies that are tried.
     """
-    found = [each for shift in shifts for each in _explanations(comparison, view, shift)]
-    plain = min((each for each in found if each.is_plain), key=lambda each: each.cost)
+    explanations = [each for shift in shifts for each in _explanations(comparison, view, shift)]
+    plain = min((each for each in explanations if each.is_plain), key=lambda each: each.cost)
     kinds: dict[str, Explanation] = {}
-    for each in sorted(found, key=lambda each: each.cost):
+    for each in sorted(explanations, key=lambda each: each.cost):
         if not each.is_plain and each.cost < plain.cost:
             kinds.setdefault(_kind(each), each)
     for each in kinds.values():
@@ -188,32 +188,32 @@ def _is_better(new: Fit | None, old: Fit | None, count: int) -> bool:
     return left < PROVED * before and gained > LEAST * count
 
 
-def pairs_of(comparison: Comparison, found: Explanation) -> Ints:
+def pairs_of(comparison: Comparison, explanation: Explanation) -> Ints:
     """Return the model mode of each measured mode under an explanation, (modes,)."""
-    mac = mac_values(found.view.psi, found.view.seen, found.phi)
-    logs = found.view.log_frequency
-    return assigned(pair_costs(mac, logs, comparison.log_frequency, found.shift))[0]
+    mac = mac_values(explanation.view.psi, explanation.view.seen, explanation.phi)
+    logs = explanation.view.log_frequency
+    return assigned(pair_costs(mac, logs, comparison.log_frequency, explanation.shift))[0]
 
 
 def finding_of(
-    comparison: Comparison, view: Measured, found: Explanation
+    comparison: Comparison, view: Measured, explanation: Explanation
 ) -> WrongSensors | WrongPlaces | None:
-    """Return what an explanation says is wrong; None for the plain one."""
-    if found.is_plain:
+    """Return the mistake that an explanation assumes; None for the plain one."""
+    if explanation.is_plain:
         return None
-    mac = mac_values(found.view.psi, found.view.seen, found.phi)
-    index = pairs_of(comparison, found)
+    mac = mac_values(explanation.view.psi, explanation.view.seen, explanation.phi)
+    index = pairs_of(comparison, explanation)
     rows = np.arange(index.size)
     before, after = mac_values(view.psi, view.seen, comparison.phi)[rows, index], mac[rows, index]
-    if found.relocation is None:
-        return wrong_sensors(found.changes, comparison, before, after, (), "model")
+    if explanation.relocation is None:
+        return wrong_sensors(explanation.changes, comparison, before, after, (), "model")
     r = int(np.nanargmax(after - before))
     names = comparison.data.sensors
     return WrongPlaces(
-        found.relocation.counted,
-        tuple(names[s] for s in found.relocation.sensors),
-        found.relocation.given,
-        found.relocation.better,
+        explanation.relocation.counted,
+        tuple(names[s] for s in explanation.relocation.sensors),
+        explanation.relocation.given,
+        explanation.relocation.better,
         comparison.data.modes[r],
         float(before[r]),
         float(after[r]),

@@ -1,4 +1,4 @@
-r"""The best that an update can do for measured modes, by a few steps of Gauss and Newton.
+r"""Quick update of the model to the measured modes, by a few Gauss-Newton steps.
 
 A mistake in the data is one only where no update explains them: the nominal model may be as far
 from the structure as a reversed sensor makes the data look. So data as they are and data corrected
@@ -41,7 +41,7 @@ ENOUGH = 1e-3
 
 @dataclass(frozen=True)
 class Fit:
-    """What an update leaves of the differences between model and measured modes.
+    """Differences between model and measured modes that remain after an update.
 
     Attributes
     ----------

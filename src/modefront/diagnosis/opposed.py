@@ -73,7 +73,7 @@ def opposed_findings(sensors: Sequence[str], view: Measured, phi: Floats) -> lis
     usual = float(np.median(single.agreement[known]))
     if usual < AGREES:
         return []
-    found: dict[tuple[int, ...], tuple[Evidence, int]] = {
+    strongest: dict[tuple[int, ...], tuple[Evidence, int]] = {
         (s,): (single, s) for s in np.flatnonzero(single.is_opposed).tolist()
     }
     pairs: list[tuple[float, int, int, Evidence, int]] = []
@@ -82,10 +82,10 @@ def opposed_findings(sensors: Sequence[str], view: Measured, phi: Floats) -> lis
         pair = setting.pairs(s, others, unit)
         opposed = np.flatnonzero(pair.is_opposed).tolist()
         pairs += [(float(pair.gain[k]), s, int(others[k]), pair, k) for k in opposed]
-    taken = {s for key in found for s in key}
+    taken = {s for key in strongest for s in key}
     for _, s, t, pair, k in sorted(pairs, key=lambda each: -each[0]):
         if not {s, t} & taken:
-            found[s, t] = pair, k
+            strongest[s, t] = pair, k
             taken |= {s, t}
     return [
         OpposedSensor(
@@ -94,13 +94,13 @@ def opposed_findings(sensors: Sequence[str], view: Measured, phi: Floats) -> lis
             usual,
             int(evidence.modes[k]),
         )
-        for key, (evidence, k) in found.items()
+        for key, (evidence, k) in strongest.items()
     ]
 
 
 @dataclass(frozen=True, eq=False)
 class Evidence:
-    """How sensors, or differences of them, move beside a model that is scaled to all others.
+    """Motion of sensors, or differences of them, beside a model scaled to all other sensors.
 
     Attributes
     ----------
@@ -155,10 +155,10 @@ class _Setting:
     def _scaled(self, places: Sequence[Ints]) -> tuple[list[Floats], list[Floats], Ints]:
         """Return measured and scaled model shapes at places (sets, modes, places), and modes."""
         psi, model = self.psi, self.model
-        at = [(psi[:, :, k], model[:, :, k]) for k in places]
-        x = (psi * model).sum(axis=2, keepdims=True) - _total([p * m for p, m in at])
-        a = (psi**2).sum(axis=2, keepdims=True) - _total([p**2 for p, _ in at])
-        b = (model**2).sum(axis=2, keepdims=True) - _total([m**2 for _, m in at])
+        parts = [(psi[:, :, k], model[:, :, k]) for k in places]
+        x = (psi * model).sum(axis=2, keepdims=True) - _total([p * m for p, m in parts])
+        a = (psi**2).sum(axis=2, keepdims=True) - _total([p**2 for p, _ in parts])
+        b = (model**2).sum(axis=2, keepdims=True) - _total([m**2 for _, m in parts])
         norm = a * b
         mac = np.divide(x**2, norm, out=np.zeros(norm.shape), where=norm > 1e-12)
         fits = (mac >= FITS) & np.logical_and.reduce(
@@ -166,7 +166,7 @@ class _Setting:
         )
         beta = np.divide(x, b, out=np.zeros(b.shape), where=fits)
         modes = np.asarray(fits.any(axis=0).sum(axis=0))
-        return [np.where(fits, p, 0.0) for p, _ in at], [beta * m for _, m in at], modes
+        return [np.where(fits, p, 0.0) for p, _ in parts], [beta * m for _, m in parts], modes
 
 
 def _total(parts: Sequence[Floats]) -> Floats:

@@ -115,7 +115,7 @@ def without_outside(comparison: Comparison, view: Measured) -> Measured:
 
 
 def pair_findings(comparison: Comparison, view: Measured, shift: float) -> list[PairFinding]:
-    """Return what is wrong with the pairs of the nominal model.
+    """Return the findings on the pairs of the nominal model.
 
     ``shift`` is the logarithm of a factor on all frequencies that is known already.
     """

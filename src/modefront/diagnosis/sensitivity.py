@@ -26,7 +26,7 @@ ALIKE = 0.98
 
 @dataclass(frozen=True)
 class Sensitivities:
-    """What the data say of each parameter.
+    """Sensitivities of the measured modes to each parameter.
 
     Attributes
     ----------
@@ -88,7 +88,10 @@ def advice(problem: UpdatingProblem) -> list[str]:
         out[j] = "fix: no effect"
     roots = np.sqrt(optimal_weights(problem.properties, nominal.J))
     residuals = problem.residuals(problem.start)
-    G = np.concatenate([w * one.dr for w, one in zip(roots, residuals, strict=True)]) * scale.unit
+    G = (
+        np.concatenate([w * residual.dr for w, residual in zip(roots, residuals, strict=True)])
+        * scale.unit
+    )
     size = np.linalg.norm(G, axis=0)
     kept = [j for j in range(len(names)) if not out[j] and size[j] > 0]
     for position, j in enumerate(kept):

@@ -1,6 +1,6 @@
 """Sensors that are reversed or exchanged, in one data set or in all.
 
-Changes are looked for one after the other, each the one that helps most. Between data sets, no
+Changes are sought one after the other, each the one that helps most. Between data sets, no
 model is needed: the same mode has the same shape. Against the model, the frequencies keep a mode
 with a reversed sensor from being taken for another one; `modefront.diagnosis.explain` proves what
 is found.
@@ -19,7 +19,7 @@ from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.measured import Measured, assigned, mac_values, pair_costs
 
 MOST = 8
-"""Changes that are looked for, one after the other."""
+"""Changes that are sought at most."""
 
 HELPS = 0.25
 """Share of the unexplained part of the shapes that a change has to remove to be tried further."""
@@ -112,8 +112,8 @@ def _culprit(comparison: Comparison, view: Measured, k: int, change: Change) -> 
     if view.psi.shape[0] > 2:
         return k
     costs = []
-    for one in range(2):
-        changed = applied([change], view, [one])
+    for position in range(2):
+        changed = applied([change], view, [position])
         mac = mac_values(changed.psi, changed.seen, comparison.phi)
         cost = pair_costs(mac, view.log_frequency, comparison.log_frequency, 0.0)
         costs.append(assigned(cost)[1])
@@ -136,11 +136,11 @@ def searched(comparison: Comparison, view: Measured, shift: float) -> list[Chang
     total, changed = cost(mac), view
     for _ in range(MOST if count else 0):
         index, _ = assigned(pair_costs(mac, logs, of_model, shift))
-        found = best_change(changed, phi, cost, suspects(changed, phi[:, index]))
-        if found is None or total - found[1] < max(LEAST * count, HELPS * total):
+        change = best_change(changed, phi, cost, suspects(changed, phi[:, index]))
+        if change is None or total - change[1] < max(LEAST * count, HELPS * total):
             break
-        changes.append(found[0])
-        total, changed = found[1], applied(changes, view, range(view.psi.shape[0]))
+        changes.append(change[0])
+        total, changed = change[1], applied(changes, view, range(view.psi.shape[0]))
         mac = mac_values(changed.psi, changed.seen, phi)
     return changes
 
@@ -175,29 +175,37 @@ def by_sets(
     in_sets: Sequence[WrongSensors], in_all: WrongSensors, sets: Sequence[str]
 ) -> list[WrongSensors]:
     """Return the findings with a change in some sets and again in all as one in the other sets."""
-    twice = {c for c in in_all.changes if any(c in found.changes for found in in_sets)}
+    twice = {c for c in in_all.changes if any(c in finding.changes for finding in in_sets)}
     out = [
-        replace(found, changes=tuple(c for c in found.changes if c not in twice))
-        for found in (*in_sets, in_all)
+        replace(finding, changes=tuple(c for c in finding.changes if c not in twice))
+        for finding in (*in_sets, in_all)
     ]
     for change in in_all.changes:
         if change in twice:
-            right = {name for found in in_sets if change in found.changes for name in found.sets}
+            right = {
+                name for finding in in_sets if change in finding.changes for name in finding.sets
+            }
             wrong = tuple(name for name in sets if name not in right)
             out.append(replace(in_all, changes=(change,), sets=wrong))
-    return [found for found in out if found.changes]
+    return [finding for finding in out if finding.changes]
 
 
-def _merged(found: Sequence[WrongSensors]) -> list[WrongSensors]:
+def _merged(findings: Sequence[WrongSensors]) -> list[WrongSensors]:
     """Return the findings with those of one data set joined."""
     out: dict[tuple[str, ...], WrongSensors] = {}
-    for one in found:
-        known = out.get(one.sets)
+    for finding in findings:
+        known = out.get(finding.sets)
         if known is not None:
-            best = max(known, one, key=lambda each: each.after - each.before)
-            changes = (*known.changes, *one.changes)
-            one = WrongSensors(
-                changes, one.sets, best.mode, best.before, best.after, one.against, one.other
+            best = max(known, finding, key=lambda each: each.after - each.before)
+            changes = (*known.changes, *finding.changes)
+            finding = WrongSensors(
+                changes,
+                finding.sets,
+                best.mode,
+                best.before,
+                best.after,
+                finding.against,
+                finding.other,
             )
-        out[one.sets] = one
+        out[finding.sets] = finding
     return list(out.values())

@@ -117,7 +117,7 @@ class SetShape:
 
 
 Distance: TypeAlias = Callable[[Floats], float]
-"""How far frequencies (modes,) in Hz are from those of the model."""
+"""Function that returns the distance of frequencies (modes,) in Hz from those of the model."""
 
 
 def factor_findings(data: ModalData, distance: Distance) -> tuple[list[SetFactor], ModalData]:
@@ -174,8 +174,8 @@ def _shifts(data: ModalData) -> tuple[list[SetFactor], ModalData]:
     f, count = data.frequency.copy(), len(data.sets)
     for _ in range(count - 1):
         # Of two sets nobody can say which of them is shifted.
-        found = [(_shift(data, f, k), k) for k in range(1 if count == 2 else 0, count)]
-        value, k = max(found, key=lambda each: abs(each[0]))
+        shifted = [(_shift(data, f, k), k) for k in range(1 if count == 2 else 0, count)]
+        value, k = max(shifted, key=lambda each: abs(each[0]))
         if value == 0:
             break
         others = [name for i, name in enumerate(data.sets) if i != k]
@@ -199,21 +199,21 @@ def _shift(data: ModalData, f: Floats, k: int) -> float:
     return middle if is_shifted else 0.0
 
 
-def _odd_frequency(data: ModalData, found: SetFrequency) -> SetFrequency:
+def _odd_frequency(data: ModalData, finding: SetFrequency) -> SetFrequency:
     """Return the finding with the one set that all others contradict, where there is one."""
-    r = data.modes.index(found.mode)
+    r = data.modes.index(finding.mode)
     known = np.flatnonzero(np.isfinite(data.frequency[:, r]))
     if known.size < 3:
-        return found
+        return finding
     logs = np.log(data.frequency[known, r])
     away = np.abs(logs - np.median(logs))
     order = np.argsort(away)
     if away[order[-1]] < ODD * away[order[-2]]:
-        return found
+        return finding
     k = int(known[order[-1]])
     others = [int(j) for j in known if j != k]
     return replace(
-        found,
+        finding,
         set=data.sets[k],
         others=tuple(data.sets[j] for j in others),
         frequency=float(data.frequency[k, r]),
@@ -228,7 +228,7 @@ def _between(data: ModalData, j: int, k: int) -> list[tuple[float, SetFrequency]
     rows = np.flatnonzero(known)
     difference = np.log(f[k, rows] / f[j, rows])
     sigma = np.hypot(std[k, rows] / f[k, rows], std[j, rows] / f[j, rows])
-    found = []
+    findings = []
     for i, r in enumerate(rows.tolist()):
         if sigma[i] > 0:
             scatter, limit = float(sigma[i]), max(KNOWN * float(sigma[i]), LEAST_KNOWN)
@@ -241,8 +241,8 @@ def _between(data: ModalData, j: int, k: int) -> list[tuple[float, SetFrequency]
                 *(data.modes[r], data.sets[k], (data.sets[j],)),
                 *(float(f[k, r]), float(f[j, r]), scatter),
             )
-            found.append((abs(float(difference[i])) / limit, finding))
-    return found
+            findings.append((abs(float(difference[i])) / limit, finding))
+    return findings
 
 
 def numbering_findings(data: ModalData, of_model: Floats) -> tuple[list[SetNumbers], ModalData]:
@@ -352,24 +352,24 @@ def shape_findings(data: ModalData, view: Measured) -> list[SetShape]:
     return [_odd_shape(data, away[data.modes.index(m)], worst[m]) for m in sorted(worst)]
 
 
-def _odd_shape(data: ModalData, away: Floats, found: SetShape) -> SetShape:
+def _odd_shape(data: ModalData, away: Floats, finding: SetShape) -> SetShape:
     """Return the finding with the one set that all others contradict, where there is one.
 
     ``away`` (sets, sets) is 1 - MAC. The odd set is far from the nearest of the others.
     """
     known = np.flatnonzero(np.isfinite(away).any(axis=1))
     if known.size < 3:
-        return found
+        return finding
     nearest = np.nanmin(away[np.ix_(known, known)], axis=1)
     order = np.argsort(nearest)
     k = int(known[order[-1]])
     others = tuple(data.sets[j] for j in known if np.isfinite(away[k, j]))
     if nearest[order[-1]] < ODD * nearest[order[-2]] or len(others) < 2:
-        return found
+        return finding
     odd, mac = data.sets[k], float(np.nanmax(1 - away[k]))
-    if odd == found.set:
-        return replace(found, others=others, mac=mac)
-    return replace(found, set=odd, others=others, mac=mac, resembles=0)
+    if odd == finding.set:
+        return replace(finding, others=others, mac=mac)
+    return replace(finding, set=odd, others=others, mac=mac, resembles=0)
 
 
 def _cross(view: Measured) -> Iterator[tuple[int, int, Floats]]:

@@ -63,7 +63,7 @@ class FrequencyFactor:
 
 @dataclass(frozen=True)
 class OtherQuantity:
-    """What is measured looks like another quantity than frequencies in Hz.
+    """The measured values resemble another quantity than frequencies in Hz.
 
     Attributes
     ----------
@@ -78,7 +78,7 @@ class OtherQuantity:
     model: float
 
 
-def shifts_tried(comparison: Comparison, view: Measured) -> list[float]:
+def shifts_to_try(comparison: Comparison, view: Measured) -> list[float]:
     """Return the logarithms of factors on all frequencies that may explain the data; 0 is first.
 
     Others are tried only where pairing alone makes one of them likely.
@@ -93,10 +93,10 @@ def shifts_tried(comparison: Comparison, view: Measured) -> list[float]:
     elastic = comparison.log_frequency[_elastic(comparison)]
     low = np.minimum(np.arange(known.size), elastic.size - 1)
     in_order = float(np.median(logs[known] - elastic[low])) if elastic.size else shift
-    tried = (shift, in_order, float(np.log(RAD)), -float(np.log(RAD)))
+    shifts = (shift, in_order, float(np.log(RAD)), -float(np.log(RAD)))
     # Modes in their order show a factor as well, if not as sharply as shapes do.
     likely = [
-        s for s in tried if abs(s) > DOUBTFUL and abs(s - in_order) < max(0.8, IN_ORDER * abs(s))
+        s for s in shifts if abs(s) > DOUBTFUL and abs(s - in_order) < max(0.8, IN_ORDER * abs(s))
     ]
     return [0.0, *likely]
 
@@ -104,7 +104,7 @@ def shifts_tried(comparison: Comparison, view: Measured) -> list[float]:
 def unit_finding(
     comparison: Comparison, view: Measured, phi: Floats, shift: float
 ) -> FrequencyFactor | OtherQuantity | None:
-    """Return what is wrong with the unit of all frequencies, where a factor explains them best.
+    """Return the mistake in the unit of all frequencies, where a factor explains them best.
 
     ``view`` and ``phi`` are measured and model shapes in which wrong sensors are put right.
     """
@@ -146,7 +146,7 @@ def cause_of(factor: float) -> str:
     >>> cause_of(6.1), cause_of(1.2e3), cause_of(2.3)
     ('rad/s', '', '')
     """
-    nearest, cause = min(NAMED, key=lambda one: abs(np.log(factor / one[0])))
+    nearest, cause = min(NAMED, key=lambda candidate: abs(np.log(factor / candidate[0])))
     off = abs(float(np.log(factor / nearest)))
     return cause if off < (0.4 if "rad" in cause else 0.25) else ""
 
@@ -156,9 +156,9 @@ def best_shift(comparison: Comparison, view: Measured, logs: Floats) -> tuple[fl
     of_model = comparison.log_frequency
     known = np.flatnonzero(np.isfinite(logs))
     low = np.flatnonzero(_elastic(comparison))[: known.size + 6]
-    tried = np.unique(np.round((logs[known][:, None] - of_model[low]).ravel(), 3))
-    solved = (_at(comparison, view, comparison.phi, logs, float(s)) for s in (0.0, *tried))
-    return min(solved, key=lambda one: one[1])
+    candidates = np.unique(np.round((logs[known][:, None] - of_model[low]).ravel(), 3))
+    solved = (_at(comparison, view, comparison.phi, logs, float(s)) for s in (0.0, *candidates))
+    return min(solved, key=lambda solution: solution[1])
 
 
 def _at(

@@ -1,4 +1,4 @@
-"""The findings of a diagnosis in words: what is found, with its numbers, and what to do."""
+"""Sentences on the findings of a diagnosis: the finding with its numbers, and the remedy."""
 
 from __future__ import annotations
 
@@ -38,7 +38,7 @@ CAUSES: Mapping[str, tuple[str, str]] = {
         "give forces in N and masses in kg, or another consistent set of units",
     ),
 }
-"""What each cause of a factor looks like, and what to do."""
+"""Description and remedy of each cause of a factor."""
 
 UNITS: Mapping[int, str] = {
     1: "masses in kg with stiffness in kN, or in t with N",
@@ -54,29 +54,31 @@ UNITS: Mapping[int, str] = {
 
 
 Mistake = Finding | UnusedGroup | DataDirection
-"""What is found by a comparison, or when a study is read."""
+"""Findings of a comparison, or of the reading of a study."""
 
 
 def in_words(finding: Mistake) -> str:
-    """Return what is found and what to do, as one text."""
+    """Return a finding and its remedy as one text."""
     return "; ".join(_WORDS[type(finding)](finding))
 
 
-def _factor(found: FrequencyFactor) -> tuple[str, str]:
-    who = "the measured frequency is" if found.modes == 1 else "all measured frequencies are about"
-    spread = f" ({found.least:.3g} to {found.greatest:.3g})" if found.modes > 1 else ""
-    what = f"{who} {found.factor:.3g} times the model's{spread}"
-    if found.cause:
-        looks, remedy = CAUSES[found.cause]
+def _factor(finding: FrequencyFactor) -> tuple[str, str]:
+    who = (
+        "the measured frequency is" if finding.modes == 1 else "all measured frequencies are about"
+    )
+    spread = f" ({finding.least:.3g} to {finding.greatest:.3g})" if finding.modes > 1 else ""
+    what = f"{who} {finding.factor:.3g} times the model's{spread}"
+    if finding.cause:
+        looks, remedy = CAUSES[finding.cause]
         return f"{what}: {looks}", remedy
-    if abs(np.log10(found.factor)) < 1:
-        times = found.factor**2
+    if abs(np.log10(finding.factor)) < 1:
+        times = finding.factor**2
         return (
             f"{what}: stiffness over mass is off by {times:.3g}",
             "check units, sections and masses, or the nominal values of the parameters",
         )
     return (
-        f"{what}, a factor of units, such as {UNITS[_nearest_slip(found.factor)]}",
+        f"{what}, a factor of units, such as {UNITS[_nearest_slip(finding.factor)]}",
         "give lengths, forces and masses in consistent units: m, N, kg or mm, N, t",
     )
 
@@ -89,29 +91,29 @@ def _nearest_slip(factor: float) -> int:
     return nearest if factor > 1 else -nearest
 
 
-def _quantity(found: OtherQuantity) -> tuple[str, str]:
+def _quantity(finding: OtherQuantity) -> tuple[str, str]:
     return (
-        f"the column 'frequency' looks like {found.quantity}: mode {found.mode} has "
-        f"{found.given:.4g}, which is {found.model:.4g} Hz",
+        f"the column 'frequency' looks like {finding.quantity}: mode {finding.mode} has "
+        f"{finding.given:.4g}, which is {finding.model:.4g} Hz",
         "give frequencies in Hz",
     )
 
 
-def _sensors(found: WrongSensors) -> tuple[str, str]:
+def _sensors(finding: WrongSensors) -> tuple[str, str]:
     deeds = [
         f"reversing {change[0]}" if len(change) == 1 else f"exchanging {change[0]} and {change[1]}"
-        for change in found.changes
+        for change in finding.changes
     ]
-    if found.other:
-        deeds[0] += f" (or {', '.join(found.other)}: the data cannot tell)"
-    where = f"in set {' and '.join(found.sets)}" if found.sets else "in all data"
-    kind = "cross-MAC" if found.against == "sets" else "MAC"
+    if finding.other:
+        deeds[0] += f" (or {', '.join(finding.other)}: the data cannot tell)"
+    where = f"in set {' and '.join(finding.sets)}" if finding.sets else "in all data"
+    kind = "cross-MAC" if finding.against == "sets" else "MAC"
     what = (
-        f"{' and '.join(deeds)} {where} raises {kind} {found.mode} "
-        f"from {found.before:.2f} to {found.after:.2f}"
+        f"{' and '.join(deeds)} {where} raises {kind} {finding.mode} "
+        f"from {finding.before:.2f} to {finding.after:.2f}"
     )
-    reversed_ = [change[0] for change in found.changes if len(change) == 1]
-    exchanged = [" and ".join(change) for change in found.changes if len(change) == 2]
+    reversed_ = [change[0] for change in finding.changes if len(change) == 1]
+    exchanged = [" and ".join(change) for change in finding.changes if len(change) == 2]
     remedies = []
     if reversed_:
         remedies.append(
@@ -126,62 +128,65 @@ def _sensors(found: WrongSensors) -> tuple[str, str]:
     return what, "; ".join(remedies)
 
 
-def _opposed(found: OpposedSensor) -> tuple[str, str]:
-    names = " and ".join(found.sensors)
-    numbers = f"{found.agreement:.2f}, at the median sensor {found.usual:.2f}"
-    if len(found.sensors) == 2:
+def _opposed(finding: OpposedSensor) -> tuple[str, str]:
+    names = " and ".join(finding.sensors)
+    numbers = f"{finding.agreement:.2f}, at the median sensor {finding.usual:.2f}"
+    if len(finding.sensors) == 2:
         return (
             f"sensors {names} are exchanged, as their difference moves against the model in "
-            f"{found.modes} modes: its signed COMAC is {numbers}; they move too much alike to show "
-            "in the MAC",
+            f"{finding.modes} modes: its signed COMAC is {numbers}; they move too much alike "
+            "to show in the MAC",
             f"check the cables of {names}, and exchange their columns or sensors",
         )
     return (
-        f"sensor {names} moves against the model in {found.modes} modes: their signed COMAC is "
+        f"sensor {names} moves against the model in {finding.modes} modes: their signed COMAC is "
         f"{numbers}; it moves too little to show in the MAC",
         f"check the direction of {names}, and change the sign of its column, or of the direction "
         "in the model",
     )
 
 
-def _places(found: WrongPlaces) -> tuple[str, str]:
-    gain = f"raises MAC {found.mode} from {found.before:.2f} to {found.after:.2f}"
-    if found.counted:
+def _places(finding: WrongPlaces) -> tuple[str, str]:
+    gain = f"raises MAC {finding.mode} from {finding.before:.2f} to {finding.after:.2f}"
+    if finding.counted:
         return (
-            f"the sensors look as if {found.counted} were counted from 1: one less {gain}",
-            f"count {found.counted} from 0: subtract 1 from each in [model.sensors]",
+            f"the sensors look as if {finding.counted} were counted from 1: one less {gain}",
+            f"count {finding.counted} from 0: subtract 1 from each in [model.sensors]",
         )
-    names = enumerated(found.sensors)
-    many = len(found.sensors) > 1
+    names = enumerated(finding.sensors)
+    many = len(finding.sensors) > 1
     return (
-        f"direction {found.given} of {names} does not match the data: {found.better} {gain}",
+        f"direction {finding.given} of {names} does not match the data: {finding.better} {gain}",
         f"check along which axis {names} measure{'' if many else 's'}, and write direction = "
-        f'"{found.better}"' + (" in turn" if " and " in found.better else ""),
+        f'"{finding.better}"' + (" in turn" if " and " in finding.better else ""),
     )
 
 
-def _set_factor(found: SetFactor) -> tuple[str, str]:
-    looks = {"rad/s": ": rad/s for Hz", "model in rad/s": ": Hz for rad/s"}.get(found.cause, "")
-    if found.cause == "rpm":
+def _set_factor(finding: SetFactor) -> tuple[str, str]:
+    looks = {"rad/s": ": rad/s for Hz", "model in rad/s": ": Hz for rad/s"}.get(finding.cause, "")
+    if finding.cause == "rpm":
         looks = ": per minute for Hz"
-    percent = 100 * (found.factor - 1)
-    size = f"{found.factor:.3g} times" if abs(percent) > 40 else f"{percent:+.1f} % off"
+    percent = 100 * (finding.factor - 1)
+    size = f"{finding.factor:.3g} times" if abs(percent) > 40 else f"{percent:+.1f} % off"
     remedy = (
         "give all data sets in Hz"
         if abs(percent) > 40
         else "the structure differed (mass, temperature, supports): update with one of the sets, "
         "or say by frequency_std how far frequencies scatter"
     )
-    return (f"all frequencies of set {found.set} are {size} those of {found.other}{looks}", remedy)
-
-
-def _set_frequency(found: SetFrequency) -> tuple[str, str]:
-    percent = 100 * (found.frequency / found.other_frequency - 1)
     return (
-        f"{_disagree(found.set, found.others)} in the frequency of mode {found.mode}: "
-        f"{found.frequency:.5g} and {found.other_frequency:.5g} Hz, {percent:+.1f} %, where "
-        f"{100 * found.scatter:.2g} % is their scatter",
-        _look_again(found.set, found.others, "value"),
+        f"all frequencies of set {finding.set} are {size} those of {finding.other}{looks}",
+        remedy,
+    )
+
+
+def _set_frequency(finding: SetFrequency) -> tuple[str, str]:
+    percent = 100 * (finding.frequency / finding.other_frequency - 1)
+    return (
+        f"{_disagree(finding.set, finding.others)} in the frequency of mode {finding.mode}: "
+        f"{finding.frequency:.5g} and {finding.other_frequency:.5g} Hz, {percent:+.1f} %, where "
+        f"{100 * finding.scatter:.2g} % is their scatter",
+        _look_again(finding.set, finding.others, "value"),
     )
 
 
@@ -192,94 +197,97 @@ def _disagree(odd: str, others: Sequence[str]) -> str:
     return f"set {odd} disagrees with {enumerated(others, 3)}"
 
 
-def _look_again(odd: str, others: Sequence[str], thing: str) -> str:
+def _look_again(odd: str, others: Sequence[str], noun: str) -> str:
     if len(others) == 1:
-        return f"look at both again, or leave out the worse {thing}"
-    return f"look at set {odd} again, or leave out its {thing}"
+        return f"look at both again, or leave out the worse {noun}"
+    return f"look at set {odd} again, or leave out its {noun}"
 
 
-def _set_numbers(found: SetNumbers) -> tuple[str, str]:
-    own, others = enumerated([str(r) for r in found.modes]), enumerated([str(r) for r in found.of])
+def _set_numbers(finding: SetNumbers) -> tuple[str, str]:
+    modes, others = (
+        enumerated([str(r) for r in finding.modes]),
+        enumerated([str(r) for r in finding.of]),
+    )
     return (
-        f"modes {own} of set {found.set} are modes {others} of {found.other}, by frequencies and "
-        "shapes",
-        f"number the modes of set {found.set} like those of {found.other}",
+        f"modes {modes} of set {finding.set} are modes {others} of {finding.other}, by frequencies "
+        "and shapes",
+        f"number the modes of set {finding.set} like those of {finding.other}",
     )
 
 
-def _set_shape(found: SetShape) -> tuple[str, str]:
-    others = enumerated(found.others, 3)
+def _set_shape(finding: SetShape) -> tuple[str, str]:
+    others = enumerated(finding.others, 3)
     what = (
-        f"{_disagree(found.set, found.others)} in the shape of mode {found.mode}: "
-        f"cross-MAC {found.mac:.2f}"
+        f"{_disagree(finding.set, finding.others)} in the shape of mode {finding.mode}: "
+        f"cross-MAC {finding.mac:.2f}"
     )
-    if found.resembles:
+    if finding.resembles:
         return (
-            f"{what}, but {found.other_mac:.2f} with mode {found.resembles} of {others}",
-            f"number the modes of set {found.set} like those of {others}",
+            f"{what}, but {finding.other_mac:.2f} with mode {finding.resembles} of {others}",
+            f"number the modes of set {finding.set} like those of {others}",
         )
-    return what, _look_again(found.set, found.others, "shape")
+    return what, _look_again(finding.set, finding.others, "shape")
 
 
-def _damping(found: DampingInPercent) -> tuple[str, str]:
+def _damping(finding: DampingInPercent) -> tuple[str, str]:
     return (
-        f"damping of {found.least:.3g} to {found.greatest:.3g} looks like percent",
+        f"damping of {finding.least:.3g} to {finding.greatest:.3g} looks like percent",
         "give the ratio to critical damping: divide the column 'damping' by 100",
     )
 
 
-def _distant(found: DistantPair) -> tuple[str, str]:
-    resembling = "" if np.isnan(found.mac) else f" (MAC {found.mac:.2f})"
+def _distant(finding: DistantPair) -> tuple[str, str]:
+    resembling = "" if np.isnan(finding.mac) else f" (MAC {finding.mac:.2f})"
     return (
-        f"measured mode {found.mode} at {found.frequency:.4g} Hz is paired with model mode "
-        f"{found.model_mode} at {found.model_frequency:.4g} Hz{resembling}",
-        f"set window = 1.5 in [pairing]; the nearest is model mode {found.nearest} at "
-        f"{found.nearest_frequency:.4g} Hz",
+        f"measured mode {finding.mode} at {finding.frequency:.4g} Hz is paired with model mode "
+        f"{finding.model_mode} at {finding.model_frequency:.4g} Hz{resembling}",
+        f"set window = 1.5 in [pairing]; the nearest is model mode {finding.nearest} at "
+        f"{finding.nearest_frequency:.4g} Hz",
     )
 
 
-def _outside(found: OutsideModel) -> tuple[str, str]:
+def _outside(finding: OutsideModel) -> tuple[str, str]:
     which = (
-        f"its {found.modes} modes end"
-        if found.all_modes
-        else f"its {found.modes} lowest modes, which were looked at, end"
+        f"its {finding.modes} modes end"
+        if finding.all_modes
+        else f"its {finding.modes} lowest modes, which were looked at, end"
     )
     return (
-        f"measured mode {found.mode} at {found.frequency:.4g} Hz is outside what the model has: "
-        f"{which} at {found.highest:.4g} Hz",
+        f"measured mode {finding.mode} at {finding.frequency:.4g} Hz is outside what the model "
+        f"has: {which} at {finding.highest:.4g} Hz",
         "refine the model, or leave the mode out of all groups",
     )
 
 
-def _beyond(found: BeyondCandidates) -> tuple[str, str]:
+def _beyond(finding: BeyondCandidates) -> tuple[str, str]:
     return (
-        f"measured mode {found.mode} resembles model mode {found.model_mode} at "
-        f"{found.model_frequency:.4g} Hz (MAC {found.mac:.2f}), which is not looked at; the best "
-        f"of those that are has MAC {found.best:.2f}",
-        f"set spare = {found.spare} in [pairing]",
+        f"measured mode {finding.mode} resembles model mode {finding.model_mode} at "
+        f"{finding.model_frequency:.4g} Hz (MAC {finding.mac:.2f}), which is not looked at; the "
+        f"best of those that are has MAC {finding.best:.2f}",
+        f"set spare = {finding.spare} in [pairing]",
     )
 
 
-def _unseen(found: UnseenMode) -> tuple[str, str]:
+def _unseen(finding: UnseenMode) -> tuple[str, str]:
     return (
-        f"measured mode {found.mode} resembles no mode of the nominal model "
-        f"(best MAC {found.best:.2f})",
+        f"measured mode {finding.mode} resembles no mode of the nominal model "
+        f"(best MAC {finding.best:.2f})",
         "check its shape and the places of the sensors, or leave it out of the groups",
     )
 
 
-def _group(found: UnusedGroup) -> tuple[str, str]:
+def _group(finding: UnusedGroup) -> tuple[str, str]:
     return (
-        f"mesh group '{found.name}' of {found.cells} {found.type} cells has no elements and holds "
-        "nothing",
-        f'give it a [[model.group]] name = "{found.name}", or leave it out of the mesh',
+        f"mesh group '{finding.name}' of {finding.cells} {finding.type} cells has no elements and "
+        "holds nothing",
+        f'give it a [[model.group]] name = "{finding.name}", or leave it out of the mesh',
     )
 
 
-def _data_direction(found: DataDirection) -> tuple[str, str]:
+def _data_direction(finding: DataDirection) -> tuple[str, str]:
     return (
-        f"sensor {found.sensor} is along {found.model} in the model, but takes {found.data} of the "
-        "data",
+        f"sensor {finding.sensor} is along {finding.model} in the model, but takes "
+        f"{finding.data} of the data",
         "write the same direction in [model.sensors] and [data.sensors]",
     )
 
@@ -314,4 +322,4 @@ _WORDS: Mapping[type, Callable[[Any], tuple[str, str]]] = {
     WrongPlaces: _places,
     WrongSensors: _sensors,
 }
-"""The words of each finding: what it is, and what to do."""
+"""Functions that put each finding and its remedy into words."""

@@ -26,7 +26,7 @@ from modefront.results.vtu import write_grid
 
 @dataclass(frozen=True, eq=False)
 class Origin:
-    """What an imported study keeps of the program's model.
+    """Mesh, labels and changed lines of the program that an imported study keeps.
 
     Attributes
     ----------
@@ -100,10 +100,10 @@ def _snippet(model: ReportedModel, changes: Sequence[Change]) -> str:
     lines = [f"updated values, model '{model.label}'"]
     for name, value in model.theta.items():
         lines += ["", f"{name} = {value:.9g}"]
-        own = [change for change in changes if change.parameter == name]
-        for change in own:
+        of_parameter = [change for change in changes if change.parameter == name]
+        for change in of_parameter:
             lines += [f"  {change.file}, line {change.line}:", f"  {change.updated(value).strip()}"]
-        if not own:
+        if not of_parameter:
             lines.append("  a factor of what was changed for this parameter")
     return "\n".join(lines) + "\n"
 

@@ -1,6 +1,6 @@
-r"""Checks of what a structure is made of: shapes, ranges, names, volumes.
+r"""Checks of the parts of a structure: shapes, ranges, names, volumes.
 
-Each check says where, what was expected and what was found. Volumes and areas are judged by
+Each message names the place, the expected and the found value. Volumes and areas are judged by
 det J at the corners of the elements, relative to the element's size.
 """
 

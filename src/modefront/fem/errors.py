@@ -35,7 +35,7 @@ class Checks:
     messages: list[str] = field(default_factory=list)
 
     def attempt(self, check: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:
-        """Return what a function returns; None, with its messages noted, where it fails."""
+        """Return the result of a function; None, with its messages noted, where it fails."""
         try:
             return check(*args, **kwargs)
         except FemError as error:

@@ -1,4 +1,4 @@
-r"""What elements cannot do: how thick, skew, distorted and curved they are, and what that costs.
+r"""Limits of the elements: errors by thickness, skew, distortion and curvature.
 
 Shells are Kirchhoff's: transverse shear is left out. Of a bending wave with the wave number k, the
 eigenvalue is too great by the factor
@@ -81,7 +81,7 @@ class Thickness:
 
 @dataclass(frozen=True)
 class Limits:
-    """What the elements of a structure cannot do.
+    """Limits of the elements of a structure.
 
     Attributes
     ----------
@@ -93,13 +93,13 @@ class Limits:
     shapes: tuple[str, ...] = ()
 
     def warnings(self, frequency: float) -> list[str]:
-        """Return what a user should know of modes up to a frequency in Hz."""
+        """Return the warnings for modes up to a frequency in Hz."""
         out = [each.warning(frequency) for each in self.thickness]
         return [*filter(None, out), *self.shapes]
 
 
 def limits_of(structure: Structure, nodes: Floats) -> Limits:
-    """Return what the elements of a structure cannot do; its nodes (nodes, 3) are checked."""
+    """Return the limits of the elements of a structure; its nodes (nodes, 3) are checked."""
     thickness, shapes = [], []
     for group in structure.groups:
         cells = np.asarray(group.cells)

@@ -65,7 +65,35 @@ class Bodies:
 
 def rigid_bodies(X: Floats, elements: Sequence[Block], exists: Bools) -> Bodies:
     """Bodies of the elements and of the nodes that belong to none."""
-    nodes = len(X)
+    incidence = _incidence(len(X), elements, exists)
+    bodies, compact = np.unique(incidence[:, 1], return_inverse=True)
+    incidence = np.stack([incidence[:, 0], compact], 1)
+    home = np.full(len(X), -1)
+    home_nodes, earliest = np.unique(incidence[:, 0], return_index=True)
+    home[home_nodes] = incidence[earliest, 1]
+    shared = incidence[incidence[:, 1] != home[incidence[:, 0]]]
+
+    n, b = incidence.T
+    members = np.bincount(b, minlength=len(bodies))
+    centre = np.stack(
+        [np.bincount(b, weights=X[n, d], minlength=len(bodies)) / members for d in range(3)], 1
+    )
+    extent = np.zeros(len(bodies))
+    np.maximum.at(extent, b, np.linalg.norm(X[n] - centre[b], axis=1))
+    moves = np.ones((len(bodies), 6), dtype=bool)
+    alone = members == 1
+    moves[alone] = False
+    np.logical_or.at(moves, b, exists[n])
+    extent[alone] = max(float(np.ptp(X, axis=0).max()), 1e-300)
+    return Bodies(home, shared, centre, extent, moves)
+
+
+def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
+    """Pairs (node, body), each once: connected elements, and nodes that belong to none.
+
+    A node of solids alone has no rotations, so that solids are connected by faces only; it belongs
+    to the body of each.
+    """
     counts = [len(block.cells) for block in elements]
     first = nodes + np.concatenate([[0], np.cumsum(counts)]).astype(np.int64)
     pairs = [np.zeros((0, 2), np.int64)]
@@ -101,32 +129,12 @@ def rigid_bodies(X: Floats, elements: Sequence[Block], exists: Bools) -> Bodies:
     in_solid = np.zeros(nodes, dtype=bool)
     in_solid[solid[:, 0]] = True
     turns = exists.any(1) & (exists[:, 3:].any(1) | ~in_solid)
-    incidence = np.concatenate(
+    return np.concatenate(
         [
             np.stack([np.flatnonzero(turns), label[:nodes][turns]], 1),
             np.unique(np.stack([solid[:, 0], label[solid[:, 1]]], 1), axis=0),
         ]
     )
-    bodies, compact = np.unique(incidence[:, 1], return_inverse=True)
-    incidence = np.stack([incidence[:, 0], compact], 1)
-    home = np.full(nodes, -1)
-    home_nodes, at = np.unique(incidence[:, 0], return_index=True)
-    home[home_nodes] = incidence[at, 1]
-    shared = incidence[incidence[:, 1] != home[incidence[:, 0]]]
-
-    n, b = incidence.T
-    members = np.bincount(b, minlength=len(bodies))
-    centre = np.stack(
-        [np.bincount(b, weights=X[n, d], minlength=len(bodies)) / members for d in range(3)], 1
-    )
-    extent = np.zeros(len(bodies))
-    np.maximum.at(extent, b, np.linalg.norm(X[n] - centre[b], axis=1))
-    moves = np.ones((len(bodies), 6), dtype=bool)
-    alone = members == 1
-    moves[alone] = False
-    np.logical_or.at(moves, b, exists[n])
-    extent[alone] = max(float(np.ptp(X, axis=0).max()), 1e-300)
-    return Bodies(home, shared, centre, extent, moves)
 
 
 def constraint_rows(
@@ -191,6 +199,7 @@ def null_space(C: sparse.csr_array, columns: Ints) -> Floats:
     return np.asarray(vectors[:, values <= RANK_TOLERANCE * max(values[-1], 1.0)])
 
 
+# 7 arguments: the parts of a structure that can hold a motion.
 def check_mechanisms(
     X: Floats,
     elements: Sequence[Block],

@@ -148,8 +148,8 @@ def read_mesh(path: str | Path) -> Mesh:
     try:
         size = file_size(path, "a mesh", LARGEST)
         refuse_holes(path, "a mesh", size)
-        if found := refers_to(path):
-            raise FemError(f"{path}: expected a mesh that is one file, found {found}")
+        if reference := refers_to(path):
+            raise FemError(f"{path}: expected a mesh that is one file, found {reference}")
         memory = min(available_memory(), MEMORY + PER_BYTE * size)
         arrays, parts = isolated(READER, path, SECONDS + size / SPEED, memory)
     except IsolatedError as error:

@@ -1,4 +1,4 @@
-"""What meshio reads from mesh files, as plain arrays: a module for processes that read files."""
+"""Mesh files by meshio as plain arrays: a module for processes that read files."""
 
 from __future__ import annotations
 
@@ -26,13 +26,13 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     if is_hdf5(path):  # MED
         with h5py.File(path, "r") as file:
             check_tree(file)
-    said = io.StringIO()
+    output = io.StringIO()
     try:
         # meshio prints what is wrong and then ends the process.
-        with contextlib.redirect_stderr(said), contextlib.redirect_stdout(said):
+        with contextlib.redirect_stderr(output), contextlib.redirect_stdout(output):
             raw = meshio.read(path)
     except (Exception, SystemExit) as error:
-        raise FemError(" ".join(f"{said.getvalue()} {error}".split())) from error
+        raise FemError(" ".join(f"{output.getvalue()} {error}".split())) from error
     blocks: dict[tuple[str, str], list[Ints]] = {}
     for name, kind, cells in _named_cells(raw):
         blocks.setdefault((str(name), kind), []).append(cells)

@@ -151,21 +151,21 @@ def condense_links(
     weight = T.data[at_i] * T.data[at_j]
 
     # Masters may be without elements of their own: their diagonal entries are new as well.
-    wanted = np.unique(np.concatenate([keys, np.arange(n, dtype=np.int64) * (n + 1)]))
-    place = np.searchsorted(plain, wanted)
-    new = np.append(plain, -1)[place] != wanted
-    merged = np.insert(plain, place[new], wanted[new])
+    kept = np.unique(np.concatenate([keys, np.arange(n, dtype=np.int64) * (n + 1)]))
+    place = np.searchsorted(plain, kept)
+    new = np.append(plain, -1)[place] != kept
+    merged = np.insert(plain, place[new], kept[new])
     stays = np.ones(len(merged), dtype=bool)
     stays[place[new] + np.arange(int(new.sum()))] = False
 
-    row, column = np.divmod(wanted, n)
-    slot = np.searchsorted(wanted, keys)
-    mirror = np.searchsorted(wanted, column * n + row)
-    places = np.searchsorted(merged, wanted)
+    row, column = np.divmod(kept, n)
+    slot = np.searchsorted(kept, keys)
+    mirror = np.searchsorted(kept, column * n + row)
+    places = np.searchsorted(merged, kept)
     condensed = np.zeros((len(data), len(merged)))
     for out, term in zip(condensed, data, strict=True):
         out[stays] = term[~linked]
-        added = np.bincount(slot, weights=weight * term[linked][source], minlength=len(wanted))
+        added = np.bincount(slot, weights=weight * term[linked][source], minlength=len(kept))
         # The two halves were summed in different orders: make them equal to the last digit.
         out[places] += (added + added[mirror]) / 2
     indptr = np.searchsorted(merged, np.arange(n + 1, dtype=np.int64) * n)

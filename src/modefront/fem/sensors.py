@@ -22,7 +22,7 @@ from modefront.fem.structure import Sensor
 
 @dataclass(frozen=True)
 class SensorPlaces:
-    """Where sensors are and what they measure.
+    """Places and directions of sensors.
 
     Attributes
     ----------

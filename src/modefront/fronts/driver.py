@@ -44,6 +44,7 @@ AGAIN = 2
 """Searches of the front at most, each with edges that are better than those of the one before."""
 
 
+# 9 arguments: the problem, and each group of options of a search.
 def pareto_front(
     problem: Problem,
     a: Floats,

@@ -15,6 +15,7 @@ from modefront.solvers.payoff import Payoff
 from modefront.solvers.sqp import Solution
 
 
+# 13 fields: everything that a search leaves, which tasks keep as one record.
 @dataclass(frozen=True)
 class Front:
     """A Pareto front with its edges, its weighted models and its gaps.

@@ -55,9 +55,10 @@ class Pareto:
 
     def faults(self, groups: int) -> Iterator[Fault]:
         """Yield what is wrong with these options for a number of groups."""
-        if self.refined is not None and (groups != 2 or self.method != "nbi"):
+        if self.refined is not None and (groups != 2 or not METHODS[self.method].refines):
+            refining = " or ".join(f"'{name}'" for name, x in METHODS.items() if x.refines)
             found = f"{groups} group{'s' * (groups > 1)}, method '{self.method}'"
-            yield Fault("", "refined", "two groups and method 'nbi'", found)
+            yield Fault("", "refined", f"two groups and method {refining}", found)
         if self.points and groups > 1 and size(groups, self.points) > MOST:
             expected = f"a number with at most {MOST} points on the simplex of {groups} groups"
             found = f"{self.points}, which are {size(groups, self.points)}"

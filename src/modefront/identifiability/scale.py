@@ -104,9 +104,9 @@ def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
     for of, last in _LAST:
         if of() is problem and np.array_equal(last.theta, theta):
             return last
-    found = _scale_at(problem, theta.copy())
-    _LAST[:] = [(ref(problem), found)]
-    return found
+    scale = _scale_at(problem, theta.copy())
+    _LAST[:] = [(ref(problem), scale)]
+    return scale
 
 
 _LAST: list[tuple[ref[UpdatingProblem], Scale]] = []

@@ -25,7 +25,7 @@ TOGETHER = 3
 """Parameters alike of which pairs are named, at most."""
 
 MOST = 100
-"""Combinations that are not determined, beyond which they are counted and not said in words: a
+"""Combinations that are not determined, beyond which they are counted and not listed: a
 simple basis of them takes the fourth power of their number."""
 
 SHOWN = 3
@@ -40,8 +40,8 @@ def in_words(combination: Combination, names: Sequence[str]) -> str:
     return " ".join(parts[:PARTS]) + " ..." * (len(parts) > PARTS)
 
 
-def measured_thing(groups: Sequence[Group]) -> str:
-    """Return what is measured of these groups: the kind of residual, "residual" for several."""
+def measured_noun(groups: Sequence[Group]) -> str:
+    """Return the noun for the data of groups: their kind of residual, "residual" for several."""
     kinds = {kind for group in groups for kind, _ in group.chosen}
     return kinds.pop() if len(kinds) == 1 else "residual"
 
@@ -54,7 +54,7 @@ def determined(combinations: Sequence[Combination]) -> tuple[int, int]:
 
 def summary(
     subject: str,
-    thing: str,
+    noun: str,
     combinations: Sequence[Combination],
     names: Sequence[str],
     scale: Scale | None = None,
@@ -62,7 +62,7 @@ def summary(
 ) -> str:
     """Return one sentence of what a group of data determines.
 
-    ``subject`` are the data in the plural, ``thing`` is what does not change; ``idle`` are
+    ``subject`` are the data in the plural, ``noun`` names what does not change; ``idle`` are
     parameters without effect on any data, which are left out. Without a ``scale``, changes are
     relative to the parameters.
     """
@@ -77,7 +77,7 @@ def summary(
     if rank >= p:
         return text
     free = _listed(free_in_words(combinations, names, scale, idle))
-    return f"{text}; {free}: no {thing} changes"
+    return f"{text}; {free}: no {noun} changes"
 
 
 def free_in_words(
@@ -213,7 +213,7 @@ def _named(members: Sequence[int], ratio: Floats, names: Sequence[str]) -> str:
 
 
 def _meaning(v: Floats, scale: Scale) -> str:
-    """Return what a direction means to the structure, where it scales a matrix as a whole."""
+    """Return the effect of a direction that scales a matrix as a whole."""
     for scaling in scale.scalings:
         whole = scaling.change / scale.unit
         along = v * (whole @ v) / (v @ v)
@@ -233,7 +233,7 @@ def sparse_basis(
     whole: Sequence[Floats] | None = None,
     holds: Callable[[Floats], bool] = lambda _: True,
 ) -> Floats:
-    """Return a basis of the span of the columns of N (p, d) that can be said simply.
+    """Return a basis of the span of the columns of N (p, d) of directions that are short in words.
 
     First single parameters; then those of the directions ``whole`` (p,) that are in the span, by
     default the scaling of all other parameters together; then pairs of parameters; the rest has

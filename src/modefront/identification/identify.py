@@ -151,7 +151,7 @@ def identify(
 
 
 def weighting(data: FrequencyResponses) -> Weighting:
-    """Return what the variance is from: given, given up to a factor, or residuals alone.
+    """Return the origin of the variance: given, given up to a factor, or residuals alone.
 
     Where it is unknown for one of the functions that were measured, it is that of the residuals for
     all of them, so that none is left out.

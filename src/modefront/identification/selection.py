@@ -172,14 +172,14 @@ def forward(task: Problem, fit: Fit, candidates: Complexes) -> tuple[Fit, Comple
     r = np.where(task.weight > 0, task.H - synthesise(task, fit.model), 0)
     gain, L = candidate_gains(task, r, candidates)
     level = noise_level(task, fit)
-    tried: list[complex] = []
+    trials: list[complex] = []
     for candidate in gain.argsort()[::-1]:
         lam = complex(candidates[candidate])
-        if len(tried) == TRIES or 2 * gain[candidate] / level < price(task) / 2:
+        if len(trials) == TRIES or 2 * gain[candidate] / level < price(task) / 2:
             break
-        if any(abs(lam - pole) < CLOSEST * abs(pole.real) for pole in tried):
+        if any(abs(lam - pole) < CLOSEST * abs(pole.real) for pole in trials):
             continue
-        tried.append(lam)
+        trials.append(lam)
         model = fit.model
         L_all = np.vstack([model.L, L[candidate]])
         trial = maximise(task, np.append(model.lam, lam), L_all, TRIAL_EVALUATIONS, COARSE)

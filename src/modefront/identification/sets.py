@@ -1,4 +1,4 @@
-r"""Modes of several data sets side by side, and what their spread says.
+r"""Modes of several data sets side by side, and the standard deviation between sets.
 
 Modes of different sets are the same where frequencies lie within half a bandwidth, 0.5 % or
 `WIDTH` standard deviations, and shapes agree at common sensors. Estimates
@@ -92,7 +92,7 @@ def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> C
 
 
 def modal_data_of(modes: CombinedModes) -> ModalData:
-    """Return what studies read: frequencies, damping ratios and real shapes with deviations."""
+    """Return the modal data that studies read, with standard deviations and real shapes."""
     return ModalData(
         modes.sets,
         tuple(range(1, modes.frequency.shape[1] + 1)),

@@ -1,4 +1,4 @@
-r"""Real mode shapes from complex ones, and what that loses.
+r"""Real mode shapes from complex ones, and the share of the imaginary part.
 
 A complex shape :math:`\varphi` is known up to a complex factor. Of all rotations
 :math:`\psi = e^{-\mathrm{i}\theta}\varphi`, the one with the least imaginary part has

@@ -83,7 +83,7 @@ TOGETHER = 50
 
 @dataclass(frozen=True)
 class Residuals:
-    """What the residuals of a fit say of the errors of the data.
+    """Correlation and size of the errors of the data, from the residuals of a fit.
 
     Attributes
     ----------
@@ -130,7 +130,7 @@ class ModeEstimate:
 
 
 def residuals(task: Problem, fit: Fit) -> Residuals:
-    """Return what the residuals of a fit say."""
+    """Return correlation and size of the errors from the residuals of a fit."""
     H = synthesise(task, fit.model)
     r = np.where(task.weight > 0, task.H - H, 0)
     linear = int(np.sum(task.weight.any(axis=(0, 2)))) * fit.inverse.shape[1]
@@ -262,7 +262,7 @@ def _as_complex(pairs: Floats) -> Complexes:
 
 
 def _roots_of_responses(task: Problem, fit: Fit, residuals: Residuals) -> tuple[Floats, Floats]:
-    """Return what independent errors of each response do, as roots of their covariance.
+    """Return the effects of independent errors of each response, as roots of their covariance.
 
     (responses, 2 modes, errors): G^-1 Phi^T dy of the shapes; (responses, alphas, errors):
     D_perp^T dy. Noise of the force is taken out of the variance: it is not independent.

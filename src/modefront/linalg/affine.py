@@ -38,7 +38,7 @@ FEW = 2**10
 """Rows that are added at once, which stay in the cache."""
 
 SPARSE = 1.5
-"""Rows of zeros that are rather added than the others copied, over these."""
+"""Fraction of zero rows above which the rows are compressed."""
 
 
 def first_axis(A: Floats, B: Floats) -> Floats:

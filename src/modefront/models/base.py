@@ -1,4 +1,4 @@
-"""What a model is to everything above it."""
+"""Interface of models."""
 
 from __future__ import annotations
 
@@ -43,7 +43,7 @@ class Model(Protocol):
         """Names of the directions in which the base can move."""
 
     def transfer(self, theta: Floats, count: int, load_case: LoadCase) -> Transfer:
-        """Return what the ``count`` lowest modes at ``theta`` are between loads and outputs.
+        """Return loads and outputs in the ``count`` lowest modes at ``theta``.
 
         Raises ModelError where the model has no such modes, KeyError for unknown sensors, outputs
         or directions.

@@ -26,6 +26,7 @@ BASE_DIRECTION = "x"
 """The one direction in which the masses, and the ground, can move."""
 
 
+# 8 arguments: the members of a chain and their parameters, by keyword.
 def chain(
     parameters: Sequence[str],
     masses: Sequence[float] | Floats,

@@ -120,16 +120,16 @@ class CheckedFunction:
             ahead = theta.copy()
             ahead[i] += h
             moved = self.at(ahead, known[0].matrix.shape[0], derivatives=False)
-            for what, shifted, here in zip(("K", "M"), moved, known, strict=True):
-                difference = (shifted.matrix - here.matrix) / (ahead[i] - theta[i])
-                found = _wrong_entry(here.matrix, here.slopes[i], difference, span[i])
-                if found:
+            for what, shifted, nominal in zip(("K", "M"), moved, known, strict=True):
+                difference = (shifted.matrix - nominal.matrix) / (ahead[i] - theta[i])
+                wrong_entry = _wrong_entry(nominal.matrix, nominal.slopes[i], difference, span[i])
+                if wrong_entry:
                     expected = (
                         f"derivatives of the matrices that {what} has, or, where none are "
                         "returned, a function that keeps the imaginary part of complex parameters"
                     )
                     place = f"{self._place(theta)}: derivative of {what} with respect to {name}"
-                    raise wrong(place, expected, found)
+                    raise wrong(place, expected, wrong_entry)
 
     def _complex_step(self, theta: Floats, i: int, size: int) -> tuple[Any, Any]:
         """Return the derivatives of K and M with respect to parameter i."""
@@ -161,7 +161,7 @@ class CheckedFunction:
         )
 
     def _call(self, theta: NDArray[Any], place: str, expected: str) -> Any:
-        """Return what the function returns, two or four things."""
+        """Return K and M, with their derivatives where the function returns these."""
         try:
             returned = self.function(theta)
         except (ModelError, InputError):

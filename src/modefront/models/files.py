@@ -104,7 +104,7 @@ def _format(path: Path, name: str | None) -> MatrixFormat:
 
 
 def _tried(path: Path, name: str | None, read: Callable[[Path, str | None], R]) -> R:
-    """Return what a format reads from a file; raises InputError for a damaged one."""
+    """Return the matrix that a format reads from a file; raises InputError for a damaged one."""
     try:
         return read(path, name)
     except InputError:

@@ -51,11 +51,11 @@ def shapes_at(model: Model, theta: Floats, count: int) -> Shapes:
     Raises ModelError where the model has no such modes.
     """
     if isinstance(model, ReducedModel):
-        found = model.full_modes(theta, count)
-        return Shapes(found.lam, model.full.selection @ found.Phi, found.Phi)
+        lowest = model.full_modes(theta, count)
+        return Shapes(lowest.lam, model.full.selection @ lowest.Phi, lowest.Phi)
     matrices = model.at(theta, derivatives=False) if isinstance(model, FunctionModel) else model
     if isinstance(matrices, MatrixModel):
-        found = matrices.full_modes(theta, count)
-        return Shapes(found.lam, matrices.selection @ found.Phi, found.Phi)
+        lowest = matrices.full_modes(theta, count)
+        return Shapes(lowest.lam, matrices.selection @ lowest.Phi, lowest.Phi)
     modes = model.modes(theta, count, derivatives=False)
     return Shapes(modes.lam, modes.phi, None)

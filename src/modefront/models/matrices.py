@@ -3,7 +3,8 @@ r"""Models given by their matrices: :math:`K(\theta) = K_0 + \sum_j c_j(\theta) 
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
+from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any, TypeAlias
@@ -21,16 +22,14 @@ from modefront.linalg.products import gram
 from modefront.models.geometry import Geometry
 from modefront.models.load_case import LoadCase, NamedWeights, Transfer
 from modefront.models.terms import BASE, above_zero, exponents_of, form_of, term_exponents
-from modefront.modes import dense, full, sparse
+from modefront.modes.eigensolvers import Eigensolver, eigensolver
+from modefront.modes.full import FullModes
 from modefront.modes.result import Modes
 from modefront.work.costs import Costs, spend
 from modefront.work.transfer import shared
 
 DENSE = 180
 """Degrees of freedom up to which dense matrices are faster."""
-
-FACTOR = 40
-"""Entries of the two factors of an eigensolution and of what belongs to it, over N^(4/3)."""
 
 SensorSpec = int | Sequence[tuple[int, float]]
 """A sensor: a degree of freedom, counted from 0, or weighted degrees of freedom."""
@@ -47,6 +46,17 @@ class _Counted:
     def factor(self, values: Floats) -> Factorisation:
         spend(Costs(factorisations=1))
         return self.symbolic.factor(values)
+
+
+@contextmanager
+def _eigenproblem() -> Iterator[None]:
+    """Count an eigenproblem, and the time that it takes, also where it has no solution."""
+    spend(Costs(eigenproblems=1))
+    started = time.perf_counter()
+    try:
+        yield
+    finally:
+        spend(Costs(full_time=time.perf_counter() - started))
 
 
 @shared
@@ -100,17 +110,15 @@ class MatrixModel:
 
     @property
     def footprint(self) -> float:
-        """Bytes that an eigensolution takes, estimated; factors of solids fill in the most."""
-        if not self.is_sparse:
-            return 8.0 * 8 * self.size**2
-        return 8.0 * FACTOR * self.size ** (4 / 3)
+        """Bytes that an eigensolution takes, estimated."""
+        return self._eigensolver.footprint
 
     @property
     def above_zero(self) -> tuple[str, ...]:
         """Names of parameters that have to be above 0: there are roots or quotients of them."""
         tables = self.stiffness.coefficients, self.mass.coefficients
-        found = {i for table in tables for i in above_zero(table.exponents)}
-        return tuple(self.parameters[i] for i in sorted(found))
+        indices = {i for table in tables for i in above_zero(table.exponents)}
+        return tuple(self.parameters[i] for i in sorted(indices))
 
     @property
     def unused(self) -> tuple[str, ...]:
@@ -122,37 +130,22 @@ class MatrixModel:
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
-        spend(Costs(eigenproblems=1))
-        started = time.perf_counter()
-        try:
-            if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
-                selection = self._dense_selection
-                return dense.modes(self.stiffness, self.mass, selection, theta, count, derivatives)
-            return sparse.modes(self.pencil, self.selection, theta, count, derivatives)
-        finally:
-            spend(Costs(full_time=time.perf_counter() - started))
+        with _eigenproblem():
+            return self._eigensolver.modes(theta, count, derivatives=derivatives)
 
-    def full_modes(self, theta: Floats, count: int, loads: Floats | None = None) -> full.FullModes:
+    def full_modes(self, theta: Floats, count: int, loads: Floats | None = None) -> FullModes:
         """Return the ``count`` lowest modes at all degrees of freedom, and static responses.
 
         ``loads`` are (N, loads), none unless given. Raises ModelError where the model has no such
         modes.
         """
-        spend(Costs(eigenproblems=1))
         columns = np.zeros((self.size, 0)) if loads is None else loads
-        started = time.perf_counter()
-        try:
-            if isinstance(self.stiffness, DenseAffine) and isinstance(self.mass, DenseAffine):
-                return full.dense_modes(self.stiffness, self.mass, theta, count, columns)
-            return full.sparse_modes(self.pencil, theta, count, columns)
-        finally:
-            spend(Costs(full_time=time.perf_counter() - started))
+        with _eigenproblem():
+            return self._eigensolver.full_modes(theta, count, columns)
 
     def is_singular(self, theta: Floats) -> bool:
         """Return whether K(theta) is singular to working precision."""
-        if isinstance(self.stiffness, DenseAffine):
-            return dense.is_singular(self.stiffness.at(theta))
-        return sparse.is_singular(self.pencil, theta)
+        return self._eigensolver.is_singular(theta)
 
     @property
     def places(self) -> tuple[str, ...]:
@@ -216,12 +209,13 @@ class MatrixModel:
         return replace(self, stiffness=stiffness, mass=mass)
 
     @cached_property
-    def _dense_selection(self) -> Floats:
-        return self.selection.toarray()
+    def _eigensolver(self) -> Eigensolver:
+        return eigensolver(self)
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state without the analysis of the pattern, which is made again when needed."""
-        return {name: value for name, value in vars(self).items() if name != "pencil"}
+        made = ("pencil", "_eigensolver")
+        return {name: value for name, value in vars(self).items() if name not in made}
 
     @cached_property
     def pencil(self) -> Pencil:
@@ -232,6 +226,7 @@ class MatrixModel:
         return replace(whole, symbolic=_Counted(whole.symbolic))
 
 
+# 7 arguments: the matrices and places of a model, the optional ones by keyword.
 def matrices(
     parameters: Sequence[str],
     stiffness: Mapping[str, Matrix],
@@ -291,6 +286,7 @@ def matrices(
     return replace(model, floating=floating)
 
 
+# 7 arguments: the first fields of a `MatrixModel`.
 def affine_model(
     parameters: Sequence[str],
     sensors: Sequence[str],

@@ -48,7 +48,7 @@ def exponents_of(term: str, parameters: Sequence[str]) -> Floats | None:
 
 
 def form_of(term: str) -> str:
-    """Return what the name of a term should have been, for a message."""
+    """Return the expected form of the name of a term, for a message."""
     if any(sign in term for sign in SIGNS):
         return f"'{BASE}', a parameter, or a product of powers of parameters"
     return f"'{BASE}' or a parameter"

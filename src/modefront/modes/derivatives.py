@@ -55,7 +55,7 @@ COINCIDENT = 1e-6
 """Relative error of a quotient, as bounded by rounding in its gap, above which it is left out.
 
 The bound is ten to a hundred times the rounding itself, and far less in ill-conditioned models
-than the gaps between modes that anybody would call coincident.
+than the gaps between modes that count as coincident.
 """
 
 TOLERANCE = 1e-10

@@ -17,13 +17,9 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.linalg
 
 from modefront._typing import Floats
-from modefront.errors import ModelError
-from modefront.linalg.affine import DenseAffine
-from modefront.linalg.pencil import Pencil
-from modefront.modes import dense, sparse
+from modefront.modes import sparse
 
 
 @dataclass(frozen=True)
@@ -42,41 +38,7 @@ class FullModes:
     static: Floats | None
 
 
-def dense_modes(
-    K: DenseAffine, M: DenseAffine, theta: Floats, count: int, loads: Floats
-) -> FullModes:
-    """Return the ``count`` lowest modes and the static response to loads (N, loads).
-
-    Raises ModelError where K or M is indefinite, or there are fewer modes with a finite frequency.
-    """
-    Kt = K.at(theta)
-    decomposition = dense.decompose(Kt, M.at(theta), count)
-    lam, Phi = decomposition.lam, decomposition.Phi
-    if lam.size < count:
-        raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")
-    lam = _without_rounding(lam, Phi, np.diag(Kt))
-    static = None
-    if lam[0] > 0:
-        try:
-            static = scipy.linalg.cho_solve(scipy.linalg.cho_factor(Kt), loads)
-        except np.linalg.LinAlgError:
-            raise ModelError("the stiffness matrix is singular to working precision") from None
-    return FullModes(lam[:count], Phi[:, :count], static)
-
-
-def sparse_modes(pencil: Pencil, theta: Floats, count: int, loads: Floats) -> FullModes:
-    """Return the same for sparse matrices; raises ModelError as `modefront.modes.sparse.modes`."""
-    spectrum = sparse.lowest(pencil, theta, count)
-    lam = _without_rounding(spectrum.lam, spectrum.Phi, pencil.K.at(theta).diagonal())
-    below = spectrum.factors[0]
-    regular = below.sigma == 0 and lam[0] > 0
-    static = None
-    if regular:  # the factors take one right-hand side at least
-        static = below.factor.solve(np.ascontiguousarray(loads)) if loads.size else loads
-    return FullModes(lam[:count], spectrum.Phi[:, :count], static)
-
-
-def _without_rounding(lam: Floats, Phi: Floats, diagonal: Floats) -> Floats:
+def without_rounding(lam: Floats, Phi: Floats, diagonal: Floats) -> Floats:
     """Return the eigenvalues, with those that are nothing but rounding set to zero."""
     out: Floats = np.where(lam < sparse.SINGULAR * (diagonal @ Phi**2), 0.0, lam)
     return out

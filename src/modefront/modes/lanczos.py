@@ -132,6 +132,7 @@ def _outside(W: Floats, V: Floats, AV: Floats) -> Floats:
     return out
 
 
+# 7 arguments: the operator, the basis and the random block.
 def _fresh(
     solve: Solve,
     A: scipy.sparse.csr_array,

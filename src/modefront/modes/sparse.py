@@ -45,7 +45,7 @@ from modefront.modes.result import ModeDerivatives, Modes
 from modefront.modes.spectrum import Shifted, Spectrum
 
 BLOCK = 4
-"""Columns of a block: how often an eigenvalue may be repeated and still be found at once."""
+"""Columns of a block: greatest multiplicity of an eigenvalue that is found at once."""
 
 ATTEMPTS = 4
 """Runs, each with more modes and a larger block, before missing modes are an error."""

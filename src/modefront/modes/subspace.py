@@ -15,7 +15,7 @@ LOST = 1e-10
 def orthonormal(
     K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, sigma: float, S: Floats, Z: Floats
 ) -> Floats:
-    """Return what columns Z (N, m) add to S, orthonormal like S in K - sigma M."""
+    """Return the part of columns Z (N, m) outside S, orthonormal like S in K - sigma M."""
 
     def product(X: Floats) -> Floats:
         return times(K, X) - times(M, X) * sigma

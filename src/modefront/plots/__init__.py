@@ -91,7 +91,7 @@ class Plots:
         return self._draw("predictions")
 
     def uncertainty(self) -> Picture:
-        """Return how far errors of the data scatter parameters and front."""
+        """Return the scatter of parameters and front by errors of the data."""
         return self._draw("uncertainty")
 
     def minima(self) -> Picture:

@@ -15,7 +15,7 @@ from modefront.plots.style import COLUMNS, PANEL, STYLE
 Place = Literal[
     "outside lower left", "outside lower center", "outside upper left", "outside upper center"
 ]
-"""Where legends are."""
+"""Places of legends."""
 
 
 class Picture(Figure):

@@ -9,6 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from modefront._typing import Bools, Floats
+from modefront.fronts.methods import METHODS
 from modefront.plots.canvas import Picture, picture
 from modefront.plots.models import branches, is_path, series, shown
 from modefront.plots.parallel import key, parallel
@@ -37,7 +38,7 @@ def _one(data: xr.Dataset, error: Floats, group: str) -> Picture:
     figure = picture(4.6, 0.9 + 0.25 * len(labels))
     axes = figure.add_subplot()
     for each in series(data):
-        axes.plot(error[each.at, 0], each.at, **each.marks, label=each.name)
+        axes.plot(error[each.positions, 0], each.positions, **each.marks, label=each.name)
     axes.set_yticks(range(len(labels)), labels)
     axes.invert_yaxis()
     axes.set_xlabel(f"error of {group}")
@@ -48,7 +49,8 @@ def _one(data: xr.Dataset, error: Floats, group: str) -> Picture:
 def _two(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
     figure = picture(5.2, 4.0)
     axes = figure.add_subplot()
-    if is_path(data) and data.attrs["method"] in ("nbi", "weights"):
+    method = METHODS.get(data.attrs["method"])
+    if is_path(data) and method is not None and method.programme is not None:
         for branch in branches(data):
             axes.plot(*error[branch].T, "-", color=COLOURS[0], lw=1, alpha=0.5)
     _points(axes, data, error)
@@ -62,7 +64,7 @@ def _two(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Pi
 
 
 def _limits(axes: Axes, data: xr.Dataset, error: Floats) -> None:
-    """Leave far models out that are not Pareto optimal, and say how many these are."""
+    """Leave far models out that are not Pareto optimal, and note their number."""
     chosen = shown(data)
     most = np.nanmax(error[chosen], axis=0)
     most = np.where(most > 0, most, 1.0)
@@ -118,7 +120,7 @@ def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> P
 
 def _points(axes: Axes, data: xr.Dataset, error: Floats) -> None:
     for each in series(data):
-        axes.plot(*error[each.at].T, **each.marks, label=each.name)
+        axes.plot(*error[each.positions].T, **each.marks, label=each.name)
 
 
 def _once(handles: Iterable[object], labels: Iterable[object]) -> tuple[list[object], list[str]]:

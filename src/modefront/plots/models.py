@@ -1,4 +1,4 @@
-"""Which models a picture shows, and how they are told apart."""
+"""Models of a picture, and the marks of their kinds."""
 
 from __future__ import annotations
 
@@ -21,12 +21,12 @@ class Series:
     Attributes
     ----------
     name : of the kind, for the legend
-    at : (models,) positions of the points
+    positions : (models,) of the points
     marks : how `matplotlib.axes.Axes.plot` draws them
     """
 
     name: str
-    at: Ints
+    positions: Ints
     marks: Mapping[str, Any]
 
 

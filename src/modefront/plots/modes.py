@@ -90,12 +90,12 @@ def _from_the_side(axes: Axes, data: xr.Dataset, shape: _Shape) -> None:
     for line in lines:
         axes.plot(x[line], height[line], "-", color=COLOURS[0], lw=1.6)
     axes.plot(x, height, "s", color=COLOURS[0], ms=5, label="model")
-    at = data["sensor_node"].values
+    sensor_nodes = data["sensor_node"].values
     sign = data["sensor_direction"].values[:, 0]
     for k, row in enumerate(shape.measured):
         axes.plot(
             row * sign,
-            height[at],
+            height[sensor_nodes],
             "o",
             mfc="none",
             mec=COLOURS[1],
@@ -104,7 +104,7 @@ def _from_the_side(axes: Axes, data: xr.Dataset, shape: _Shape) -> None:
             label=None if k else "measured",
         )
     axes.set_xlim(-1.15, 1.15)
-    axes.set_yticks(height[at], [short(name) for name in data["sensor"].values])
+    axes.set_yticks(height[sensor_nodes], [short(name) for name in data["sensor"].values])
 
 
 def _at_sensors(axes: Axes, data: xr.Dataset, shape: _Shape) -> None:
@@ -138,7 +138,7 @@ def _in_space(data: xr.Dataset, shapes: list[_Shape]) -> Picture:
     columns = min(COLUMNS, len(shapes))
     rows = -(-len(shapes) // columns)
     figure = picture(3.1 * columns, 3.3 * rows + 0.4)
-    at, directions = data["sensor_node"].values, data["sensor_direction"].values
+    sensor_nodes, directions = data["sensor_node"].values, data["sensor_direction"].values
     for k, shape in enumerate(shapes):
         axes = figure.add_subplot(rows, columns, k + 1, projection="3d")
         assert isinstance(axes, Axes3D)
@@ -150,7 +150,7 @@ def _in_space(data: xr.Dataset, shapes: list[_Shape]) -> Picture:
         for values, colour in arrows:
             for row in values:
                 length = REACH * diagonal * np.nan_to_num(row)[:, None] * directions
-                axes.quiver(*nodes[at].T, *length.T, color=colour, lw=1.4)
+                axes.quiver(*nodes[sensor_nodes].T, *length.T, color=colour, lw=1.4)
         _same_scale(axes, np.vstack([nodes, deformed]))
         axes.set_title(shape.title, loc="left")
         axes.set_axis_off()

@@ -211,8 +211,8 @@ def _points(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str) -> 
     axes.plot(*values[best].T, marker, color=colour, ms=4, ls="", label=plain(name))
     axes.plot(*values[others].T, marker, mfc="w", mec=colour, ms=4, ls="")
     for kind, sign, size in (("equal-weights", EQUAL, 8), ("optimal-weights", OPTIMAL, 12)):
-        at = data["kind"].values == kind
-        axes.plot(*values[at].T, sign, color=colour, mec="k", mew=0.6, ms=size, ls="")
+        chosen = data["kind"].values == kind
+        axes.plot(*values[chosen].T, sign, color=colour, mec="k", mew=0.6, ms=size, ls="")
 
 
 def _along(axes: Axes, data: xr.Dataset, values: Floats, k: int, name: str) -> None:

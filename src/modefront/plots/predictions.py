@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
@@ -29,11 +30,11 @@ def predictions_in(data: xr.Dataset) -> Iterator[tuple[Kind, str, list[int]]]:
     """Yield the kind, the name and the positions of the values of each prediction."""
     for kind in kinds_in(data):
         names = data.get(f"{kind.dimension}_name")
-        found: dict[str, list[int]] = {}
+        positions_of: dict[str, list[int]] = {}
         for i, place in enumerate(data[kind.dimension].values):
             name = str(place).partition(":")[0] if names is None else str(names.values[i])
-            found.setdefault(name, []).append(i)
-        for name, positions in found.items():
+            positions_of.setdefault(name, []).append(i)
+        for name, positions in positions_of.items():
             yield kind, name, positions
 
 
@@ -98,82 +99,100 @@ def _relative_std(
 def pages(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
     """Yield a name and a picture of each prediction at all models."""
     for kind, name, positions in predictions_in(data):
-        variable = kind.ranged[0] if kind.ranged else kind.variables[0]
-        yield f"{kind.dimension} {name}", one(data, kind, variable, name, positions)
+        page = _Page(data, kind, name, positions)
+        yield f"{kind.dimension} {name}", page.picture()
 
 
-def one(
-    data: xr.Dataset, kind: Kind, variable: ResultVariable, name: str, positions: Sequence[int]
-) -> Picture:
-    """Return one prediction at all models, along the front where that is a path."""
-    values = data[variable.name].values[:, positions]
-    places = [str(data[kind.dimension].values[i]).removeprefix(f"{name}: ") for i in positions]
-    quantity = f"{variable.key}, {variable.unit}" if variable.unit else variable.key
-    load = data.get(f"{kind.dimension}_load")
-    title = f"{name} ({load.values[positions[0]]})" if load is not None else name
-    if variable.logarithmic:
-        values = np.where(values > 0, values, np.nan)
-    if not is_path(data) or len(positions) > FEW:
-        figure = picture(max(5.2, 0.4 * len(places)), 3.4)
-        axes = figure.add_subplot()
-        parallel(axes, data, values, places)
-        key(axes, data)
-    elif variable.logarithmic:
-        figure = picture(4.8, 3.3)
-        axes = figure.add_subplot()
-        _levels(figure, axes, data, kind, values, places, positions)
-    else:
-        return _panels(data, variable, title, quantity, values, places, positions)
-    if variable.logarithmic and np.isfinite(values).any():
+@dataclass(frozen=True)
+class _Page:
+    """One prediction at all models.
+
+    Attributes
+    ----------
+    data : the results
+    kind, name : the prediction
+    positions : of its values along the dimension of the kind
+    """
+
+    data: xr.Dataset
+    kind: Kind
+    name: str
+    positions: Sequence[int]
+
+    @property
+    def variable(self) -> ResultVariable:
+        """The variable that is drawn: the first one with a range, if there is any."""
+        return self.kind.ranged[0] if self.kind.ranged else self.kind.variables[0]
+
+    @property
+    def values(self) -> Floats:
+        """Values (points, positions); NaN where a logarithm has none."""
+        values = np.asarray(self.data[self.variable.name].values[:, self.positions])
+        return np.where(values > 0, values, np.nan) if self.variable.logarithmic else values
+
+    @property
+    def places(self) -> list[str]:
+        """Names of the values without that of the prediction."""
+        names = self.data[self.kind.dimension].values
+        return [str(names[i]).removeprefix(f"{self.name}: ") for i in self.positions]
+
+    @property
+    def quantity(self) -> str:
+        """Label of the axis."""
+        unit = self.variable.unit
+        return f"{self.variable.key}, {unit}" if unit else self.variable.key
+
+    @property
+    def title(self) -> str:
+        """Name of the prediction with its load case."""
+        load = self.data.get(f"{self.kind.dimension}_load")
+        return self.name if load is None else f"{self.name} ({load.values[self.positions[0]]})"
+
+    def picture(self) -> Picture:
+        """Return the picture, along the front where that is a path."""
+        if not is_path(self.data) or len(self.positions) > FEW:
+            figure = picture(max(5.2, 0.4 * len(self.places)), 3.4)
+            axes = figure.add_subplot()
+            parallel(axes, self.data, self.values, self.places)
+            key(axes, self.data)
+        elif self.variable.logarithmic:
+            figure = picture(4.8, 3.3)
+            axes = figure.add_subplot()
+            self._draw_levels(figure, axes)
+        else:
+            return self._panels()
+        if self.variable.logarithmic and np.isfinite(self.values).any():
+            axes.set_yscale("log")
+        axes.set_ylabel(self.quantity)
+        figure.suptitle(plain(self.title), x=0.01, ha="left")
+        return figure
+
+    def _draw_levels(self, figure: Picture, axes: Axes) -> None:
+        """Draw a line a level of probabilities along the front."""
+        along, values = Along(self.data), self.values
         axes.set_yscale("log")
-    axes.set_ylabel(quantity)
-    figure.suptitle(plain(title), x=0.01, ha="left")
-    return figure
+        std = self.data.get(f"posterior_{self.kind.dimension}_log_std")
+        for k, (i, place) in enumerate(zip(self.positions, self.places, strict=True)):
+            colour = COLOURS[k % len(COLOURS)]
+            along.draw(axes, values[:, k], colour, short(place))
+            if std is not None:
+                x, factor = values[along.best, k], float(np.exp(std.values[i]))
+                along.bar(axes, along.at_best(x / factor, x * factor), colour)
+        along.finish(figure, [axes], 1)
 
-
-def _levels(
-    figure: Picture,
-    axes: Axes,
-    data: xr.Dataset,
-    kind: Kind,
-    values: Floats,
-    places: Sequence[str],
-    positions: Sequence[int],
-) -> None:
-    """Draw a line a level of probabilities along the front."""
-    along = Along(data)
-    axes.set_yscale("log")
-    std = data.get(f"posterior_{kind.dimension}_log_std")
-    for k, (i, place) in enumerate(zip(positions, places, strict=True)):
-        colour = COLOURS[k % len(COLOURS)]
-        along.draw(axes, values[:, k], colour, short(place))
-        if std is not None:
-            x, factor = values[along.best, k], float(np.exp(std.values[i]))
-            along.bar(axes, along.at_best(x / factor, x * factor), colour)
-    along.finish(figure, [axes], 1)
-
-
-def _panels(
-    data: xr.Dataset,
-    variable: ResultVariable,
-    title: str,
-    quantity: str,
-    values: Floats,
-    places: Sequence[str],
-    positions: Sequence[int],
-) -> Picture:
-    """Draw a panel a value along the front."""
-    along = Along(data)
-    figure, grid = panels(len(places))
-    std = data.get(f"posterior_{variable.name}_std")
-    for k, (axes, place) in enumerate(zip(grid, places, strict=True)):
-        along.draw(axes, values[:, k])
-        if std is not None:
-            x, s = values[along.best, k], float(std.values[positions[k]])
-            along.bar(axes, along.at_best(x - s, x + s))
-        titled(axes, place)
-        if k % COLUMNS == 0:
-            axes.set_ylabel(quantity)
-    figure.suptitle(plain(title), x=0.01, ha="left")
-    along.finish(figure, grid, min(COLUMNS, len(grid)))
-    return figure
+    def _panels(self) -> Picture:
+        """Return a panel a value along the front."""
+        along, values = Along(self.data), self.values
+        figure, grid = panels(len(self.places))
+        std = self.data.get(f"posterior_{self.variable.name}_std")
+        for k, (axes, place) in enumerate(zip(grid, self.places, strict=True)):
+            along.draw(axes, values[:, k])
+            if std is not None:
+                x, s = values[along.best, k], float(std.values[self.positions[k]])
+                along.bar(axes, along.at_best(x - s, x + s))
+            titled(axes, place)
+            if k % COLUMNS == 0:
+                axes.set_ylabel(self.quantity)
+        figure.suptitle(plain(self.title), x=0.01, ha="left")
+        along.finish(figure, grid, min(COLUMNS, len(grid)))
+        return figure

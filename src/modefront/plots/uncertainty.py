@@ -1,4 +1,4 @@
-"""How far errors of the data scatter the models: parameters, their correlation, the front."""
+"""Scatter of the models by errors of the data: parameters, their correlation, the front."""
 
 from __future__ import annotations
 
@@ -44,8 +44,8 @@ def _covariance(data: xr.Dataset) -> Floats | None:
     if "posterior_covariance" in data:
         return np.asarray(data["posterior_covariance"].values)
     if "theta_covariance" in data:
-        found = np.asarray(data["theta_covariance"].values[reference_of(data)])
-        return found if np.isfinite(found).all() else None
+        covariance = np.asarray(data["theta_covariance"].values[reference_of(data)])
+        return covariance if np.isfinite(covariance).all() else None
     return None
 
 
@@ -109,7 +109,7 @@ def _ellipses(axes: Axes, data: xr.Dataset) -> None:
         )
     for each in series(data):
         if each.name != "nominal":
-            axes.plot(*error[each.at].T, **each.marks)
+            axes.plot(*error[each.positions].T, **each.marks)
     first, second = (plain(name) for name in data["group"].values)
     axes.set(xlabel=f"error of {first}", ylabel=f"error of {second}")
     axes.set_title("front with its scatter", loc="left")

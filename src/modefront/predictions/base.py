@@ -195,7 +195,7 @@ class Prediction(Protocol):
         """Values of the kind's settings, one a place, by the name of the variable."""
 
     def faults(self, model: Model, data: ModalData, /) -> Iterator[Fault]:
-        """Yield what the model or the data do not have; no model is evaluated for that."""
+        """Yield the requirements that model or data do not meet; no model is evaluated for that."""
 
     def complete(self, problem: UpdatingProblem, /) -> Self:
         """Return the prediction with defaults that follow from the nominal model.
@@ -215,4 +215,4 @@ class Prediction(Protocol):
     def check(
         self, problem: UpdatingProblem, theta: Floats, seed: np.random.SeedSequence, /
     ) -> Mapping[str, Floats]:
-        """Return what the kind's check finds at a model, (places,) each; empty without one."""
+        """Return the result of the kind's check at a model, (places,) each; empty without one."""

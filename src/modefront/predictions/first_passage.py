@@ -119,7 +119,7 @@ FILTER = nested("a table { frequency, damping }, a Kanai-Tajimi filter", SoilFil
 
 
 def _heading(name: str, settings: Mapping[str, Any]) -> str:
-    """Return what was asked for in a sentence."""
+    """Return the options of the prediction in a sentence."""
     of = {key.removeprefix("failure_"): value for key, value in settings.items()}
     return (
         f"{name}: {of['load']}; probability that any response leaves [-level, level] (two-sided "
@@ -129,6 +129,7 @@ def _heading(name: str, settings: Mapping[str, Any]) -> str:
     )
 
 
+# 16 fields: the keys of a table of a study file.
 @dataclass(frozen=True)
 class Passage:
     """First-passage probabilities at several levels.
@@ -268,7 +269,7 @@ class Passage:
         return {**repeated, "failure_level": list(self.levels)}
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
-        """Yield what the model or the data do not have."""
+        """Yield the requirements that the model or the data do not meet."""
         yield from load_faults(self.loads, model, data)
         number_known = self.modes is not None or isinstance(self.damping, tuple)
         if highest_frequency(data) is None and not number_known:

@@ -224,7 +224,7 @@ def contradictions(loads: ModalLoadModel) -> Iterator[Fault]:
 
 
 def load_faults(loads: ModalLoadModel, model: Model, data: ModalData) -> Iterator[Fault]:
-    """Yield what a load model takes that the model or the data do not have."""
+    """Yield the names and damping of a load model that the model or the data do not have."""
     load_case, damping = loads.load_case, loads.damping
     for name, sums in (("force", load_case.forces), ("response", load_case.outputs)):
         for place in (place for weights in sums for place in weights):

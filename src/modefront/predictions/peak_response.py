@@ -46,7 +46,7 @@ BAND = numbers(
 
 
 def _heading(name: str, settings: Mapping[str, Any]) -> str:
-    """Return what was asked for in a sentence."""
+    """Return the options of the prediction in a sentence."""
     low, high = settings["frf_band"]
     return (
         f"{name}: {settings['frf_load']}; {settings['frf_quantity']}, greatest peak from {low:g} "
@@ -139,7 +139,7 @@ class PeakResponse:
         return {name: [value] * len(self.response) for name, value in values.items()}
 
     def faults(self, model: Model, data: ModalData) -> Iterator[Fault]:
-        """Yield what the model or the data do not have."""
+        """Yield the requirements that the model or the data do not meet."""
         yield from load_faults(self.loads, model, data)
         if self.band is None and highest_frequency(data) is None:
             yield Fault("", "band", BAND.expected, "nothing")
@@ -168,7 +168,7 @@ class PeakResponse:
                 yield Fault("", "modes", expected, f"{count}, up to {last:.4g} Hz")
 
     def _rigid(self, system: ModalSystem, low: float) -> Iterator[Fault]:
-        """Yield what there is not in a model that can move as a rigid body."""
+        """Yield the fault of a band at 0 Hz for a model that can move as a rigid body."""
         if system.omega[0] > 0:
             return
         if self.static:

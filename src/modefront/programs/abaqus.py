@@ -64,17 +64,17 @@ def _files(path: Path) -> tuple[Path, Path]:
     """Return the files of stiffness and mass of a job."""
     match = re.fullmatch(r"(.*)_STIF(\d+)", path.stem, re.IGNORECASE)
     if path.suffix.lower() == ".mtx" and match:
-        found = [path]
+        files = [path]
     else:
         job = path.with_suffix("") if path.suffix.lower() in (".inp", ".odb", ".sim") else path
         pattern = re.compile(re.escape(job.name) + r"_STIF\d+\.mtx", re.IGNORECASE)
         folder = job.parent if job.parent.is_dir() else Path()
-        found = sorted(file for file in folder.iterdir() if pattern.fullmatch(file.name))
-        if len(found) > 1:
-            names = ", ".join(file.name for file in found)
+        files = sorted(file for file in folder.iterdir() if pattern.fullmatch(file.name))
+        if len(files) > 1:
+            names = ", ".join(file.name for file in files)
             raise wrong(path, "matrices of one step, or the name of one of them", names)
-        found = found or [job.with_name(job.name + "_STIF1.mtx")]
-    stiffness = existing(found[0], "the stiffness of Abaqus", ADVICE)
+        files = files or [job.with_name(job.name + "_STIF1.mtx")]
+    stiffness = existing(files[0], "the stiffness of Abaqus", ADVICE)
     name = re.sub(r"_STIF(\d+)(\.\w+)$", r"_MASS\1\2", stiffness.name)
     if name == stiffness.name:
         name = re.sub(r"_stif(\d+)(\.\w+)$", r"_mass\1\2", stiffness.name)
@@ -130,15 +130,15 @@ def _common(
         ]
         for pair, part in zip(number, (stiffness, mass), strict=True)
     ]
-    there = np.zeros((highest - lowest + 1) * SLOTS, bool)
+    present = np.zeros((highest - lowest + 1) * SLOTS, bool)
     for pair in keys:
         for key in pair:
-            there[key] = True
-    used = np.flatnonzero(there)
+            present[key] = True
+    used = np.flatnonzero(present)
     node = used // SLOTS + lowest if names is None else names[used // SLOTS]
     order = np.argsort(node <= 0, kind="stable")
     used, node, direction = used[order], node[order], (used % SLOTS)[order]
-    place = np.zeros(there.size, np.int32)
+    place = np.zeros(present.size, np.int32)
     place[used] = np.arange(used.size)
     tables = [(place[row], place[column]) for row, column in keys]
     return DofTable(node, direction, (node > 0).astype(float)), tables

@@ -79,15 +79,19 @@ class _Words:
     path: Path
     words: np.ndarray
 
-    def record(self, at: int) -> tuple[np.ndarray, int]:
+    def record(self, start: int) -> tuple[np.ndarray, int]:
         """Return the words of the record at a position, and the position of the next."""
-        count = int(self.words[at]) if 0 <= at < self.words.size - 2 else -1
-        if count < 0 or at + count + 3 > self.words.size or self.words[at + count + 2] != count:
+        count = int(self.words[start]) if 0 <= start < self.words.size - 2 else -1
+        if (
+            count < 0
+            or start + count + 3 > self.words.size
+            or self.words[start + count + 2] != count
+        ):
             raise wrong(self.path, "whole records of Ansys", "a file that is cut off, or another")
-        flags = (int(self.words[at + 1]) >> 24) & 0xFF
+        flags = (int(self.words[start + 1]) >> 24) & 0xFF
         if flags not in PLAIN:
             raise wrong(self.path, "records that are not compressed (/FCOMP,FULL,0)", "others")
-        return self.words[at + 2 : at + 2 + count], at + count + 3
+        return self.words[start + 2 : start + 2 + count], start + count + 3
 
     def long(self, header: np.ndarray, low: int, high: int) -> int:
         """Return a number of two words of the header, counted from 1."""
@@ -97,7 +101,7 @@ class _Words:
 def _from_full(path: Path) -> Job:
     data = np.fromfile(path, dtype=np.uint8)
     words = _Words(path, data[: data.size // 4 * 4].view("<i4"))
-    header, at = words.record(HEADER)
+    header, position = words.record(HEADER)
     if words.words[0] != 100 or header.size < 64 or header[0] >= 0:
         raise wrong(path, "an assembled matrix of Ansys (.full)", "another file")
     if header[13]:
@@ -108,10 +112,10 @@ def _from_full(path: Path) -> Job:
         expected += "kept apart: *EXPORT, which applies them"
         raise wrong(path, expected, f"{header[20]} constraint equations")
     size = int(header[1])
-    _, at = words.record(at)
-    nodes, _ = words.record(at)
-    counts, at = words.record(words.long(header, 36, 37))
-    identifiers, _ = words.record(at)
+    _, position = words.record(position)
+    nodes, _ = words.record(position)
+    counts, position = words.record(words.long(header, 36, 37))
+    identifiers, _ = words.record(position)
     if identifiers.size != size or counts.sum() != size or counts.size != nodes.size:
         raise wrong(path, f"{size} degrees of freedom", f"{identifiers.size} of {counts.sum()}")
     node = np.repeat(nodes, counts).astype(np.intp)
@@ -121,8 +125,8 @@ def _from_full(path: Path) -> Job:
     stiffness = _rows(words, words.long(header, 19, 20), words.long(header, 9, 10))
     if terms == 0:
         raise wrong(path, "a mass matrix (ANTYPE,MODAL)", "none")
-    at = words.long(header, 27, 28)
-    mass = _diagonal(words, at, size) if header[10] else _rows(words, at, terms)
+    position = words.long(header, 27, 28)
+    mass = _diagonal(words, position, size) if header[10] else _rows(words, position, terms)
     K, M = (kept(upper(path, size, each, dofs), free) for each in (stiffness, mass))
     dofs = DofTable(dofs.node[free], dofs.direction[free], dofs.weight[free])
     notes = [f"{size - free.size} degrees of freedom that are held are left out"]
@@ -131,27 +135,27 @@ def _from_full(path: Path) -> Job:
     return Job(str(path), K, M, dofs, DOUBLE, notes=tuple(notes[size == free.size :]))
 
 
-def _rows(words: _Words, at: int, terms: int) -> Entries:
+def _rows(words: _Words, position: int, terms: int) -> Entries:
     """Return the entries of a matrix, ``terms`` in all, from its records of rows."""
     columns: list[np.ndarray] = []
     values: list[np.ndarray] = []
-    found = 0
-    while found < terms:
-        index, at = words.record(at)
-        value, at = words.record(at)
+    count = 0
+    while count < terms:
+        index, position = words.record(position)
+        value, position = words.record(position)
         if index.size == 0 or value.size != 2 * index.size:
             raise wrong(words.path, "columns and values of a row", "others")
         columns.append(index)
         values.append(value)
-        found += index.size
+        count += index.size
     length = np.array([index.size for index in columns])
     column = np.concatenate(columns) - 1
     row = np.repeat(column[np.cumsum(length) - 1], length)
     return Entries(row, column, np.concatenate(values).view("<f8"))
 
 
-def _diagonal(words: _Words, at: int, size: int) -> Entries:
-    value, _ = words.record(at)
+def _diagonal(words: _Words, position: int, size: int) -> Entries:
+    value, _ = words.record(position)
     if value.size != 2 * size:
         raise wrong(words.path, f"{size} lumped masses", f"{value.size // 2}")
     place = np.arange(size)
@@ -221,8 +225,8 @@ def _maps(nod2bcs: Path, back: Path) -> DofTable:
     if picked.shape[1] != per_node * nodes.size or picked.nnz < picked.shape[0]:
         raise wrong(nod2bcs, f"a whole number of columns for {nodes.size} nodes", str(picked.shape))
     column = np.zeros(picked.shape[0], np.intp)
-    ones: Floats = picked.data
-    column[picked.row[ones != 0]] = picked.col[ones != 0]
+    entries: Floats = picked.data
+    column[picked.row[entries != 0]] = picked.col[entries != 0]
     return DofTable(nodes[column // per_node], column % per_node + 1, np.ones(column.size))
 
 

@@ -1,4 +1,4 @@
-"""What a finite-element program hands over: matrices, their degrees of freedom, and a mesh."""
+"""Interface of finite-element programs: matrices, their degrees of freedom, and a mesh."""
 
 from __future__ import annotations
 
@@ -57,7 +57,7 @@ class Job:
 
 @dataclass(frozen=True)
 class JobOptions:
-    """What the command line says of all jobs.
+    """Options of the command line for all jobs.
 
     Attributes
     ----------

@@ -52,7 +52,7 @@ Dof = tuple[int, int]
 
 @dataclass
 class Bulk:
-    """What a deck says of the model.
+    """Nodes, elements and constraints of a deck.
 
     Attributes
     ----------
@@ -91,15 +91,16 @@ class Bulk:
         return [dof for dof in every if dof not in gone and (kept is None or dof in kept)]
 
 
+# 15 fields: one for each kind of entry of a deck.
 @dataclass
 class _Content:
-    """What is gathered while a deck is read."""
+    """Entries collected while a deck is read."""
 
     nodes: dict[int, Floats] = field(default_factory=dict)
     scalar: set[int] = field(default_factory=set)
     cells: dict[str, list[list[int]]] = field(default_factory=dict)
     stiff: dict[int, Floats] = field(default_factory=dict)
-    own: set[Dof] = field(default_factory=set)
+    held: set[Dof] = field(default_factory=set)
     supports: dict[int, set[Dof]] = field(default_factory=dict)
     added: dict[int, list[int]] = field(default_factory=dict)
     constraints: dict[int, set[Dof]] = field(default_factory=dict)
@@ -113,7 +114,7 @@ class _Content:
 
 
 def read_bulk(path: Path) -> Bulk:
-    """Return what a deck says of the model; entries that cannot be understood are left out.
+    """Return the model of a deck; entries that cannot be understood are left out.
 
     Raises OSError where it cannot be read.
     """
@@ -136,7 +137,7 @@ def read_bulk(path: Path) -> Bulk:
     return Bulk(
         mesh_of(content.nodes, content.cells),
         tuple(sorted(content.scalar)),
-        content.own | _sets(content.supports, content.added, chosen["SPC"]),
+        content.held | _sets(content.supports, content.added, chosen["SPC"]),
         content.followers | _sets(content.constraints, content.added, chosen["MPC"]),
         content.omitted,
         content.kept or None,
@@ -244,8 +245,8 @@ def _take(content: _Content, card: list[str], default: list[str]) -> None:
 
 def _grid(content: _Content, card: list[str], default: list[str]) -> None:
     number = int(card[1])
-    own = _at(card, 8) or default[2]
-    content.own.update((number, c) for c in _components(own))
+    held = _at(card, 8) or default[2]
+    content.held.update((number, c) for c in _components(held))
     if _whole(_at(card, 7) or default[1]):
         content.turned.add(number)
     point = [real(x) if x else 0.0 for x in (_at(card, 3), _at(card, 4), _at(card, 5))]
@@ -291,8 +292,8 @@ def _spring(content: _Content, card: list[str]) -> None:
     for node, component in ends:
         if node and component:
             blocks = np.zeros((2, 3, 3))
-            at = component - 1
-            blocks[at // 3, at % 3, at % 3] = 1.0
+            axis = component - 1
+            blocks[axis // 3, axis % 3, axis % 3] = 1.0
             _stiffen(content, node, blocks[0], blocks[1])
 
 

@@ -68,12 +68,12 @@ def read(path: Path, options: JobOptions) -> Job:
 
 def _refuse_cut_off(files: dict[str, Path], entries: dict[str, Entries], size: int) -> None:
     """Refuse matrices that do not reach their last row, or have different patterns."""
-    for suffix, found in entries.items():
-        last = int(max(found.row.max(initial=-1), found.column.max(initial=-1))) + 1
+    for suffix, matrix in entries.items():
+        last = int(max(matrix.row.max(initial=-1), matrix.column.max(initial=-1))) + 1
         if last != size:
             expected = f"entries up to row {size}, as '{files['.dof'].name}' has"
             raise wrong(files[suffix], expected, f"entries up to row {last}; is it cut off?")
-    counts = {suffix: found.row.size for suffix, found in entries.items()}
+    counts = {suffix: matrix.row.size for suffix, matrix in entries.items()}
     if counts[".sti"] != counts[".mas"]:
         shorter = min(counts, key=lambda suffix: counts[suffix])
         expected = f"{max(counts.values())} entries, as in the other matrix"
@@ -102,17 +102,17 @@ def _table(labels: DofTable, deck: Deck | None) -> DofTable:
     if deck is not None:
         node[~np.isin(node, deck.mesh.number)] *= -1
     weight = np.zeros(node.size)
-    own, leading = _own_blocks(labels, deck)
+    blocks, leading = _own_blocks(labels, deck)
     order = np.lexsort((direction, labels.node))
     keys = np.column_stack([labels.node, direction])[order]
     starts = np.flatnonzero(np.append(True, (keys[1:] != keys[:-1]).any(axis=1)))
     groups = np.split(order, starts[1:])
-    parts = [_own_first(group, own.get(int(labels.node[group[0]]))) for group in groups]
+    parts = [_own_first(group, blocks.get(int(labels.node[group[0]]))) for group in groups]
     most: dict[int, int] = {}
     for group, (_, made) in zip(groups, parts, strict=True):
         number = int(labels.node[group[0]])
         most[number] = max(most.get(number, 0), made.size)
-    follow = _followers(labels, deck, own, most, leading)
+    follow = _followers(labels, deck, blocks, most, leading)
     for group, (itself, made) in zip(groups, parts, strict=True):
         number, along = int(labels.node[group[0]]), int(direction[group[0]])
         held = deck is not None and (number, along) in deck.held
@@ -129,14 +129,14 @@ def _own_first(group: Ints, block: tuple[int, int] | None) -> tuple[Ints, Ints]:
     """Return those of the degrees of freedom of a node that are its own, and all others."""
     if block is None:
         return group[:0], group
-    own = (group >= block[0]) & (group < block[1])
-    return group[own], group[~own]
+    inside = (group >= block[0]) & (group < block[1])
+    return group[inside], group[~inside]
 
 
 def _followers(
     labels: DofTable,
     deck: Deck | None,
-    own: Mapping[int, tuple[int, int]],
+    blocks: Mapping[int, tuple[int, int]],
     most: Mapping[int, int],
     leading: int,
 ) -> set[int]:
@@ -148,7 +148,7 @@ def _followers(
     """
     if deck is None:
         return set()
-    single = {n for n in deck.expanded - deck.others - own.keys() if most.get(n) == 1}
+    single = {n for n in deck.expanded - deck.others - blocks.keys() if most.get(n) == 1}
     behind = set(labels.node[leading:].tolist())
     out = single & (behind | deck.rigid)
     return out | deck.references if out else out
@@ -166,12 +166,12 @@ def _own_blocks(labels: DofTable, deck: Deck | None) -> tuple[dict[int, tuple[in
     new = np.append(True, (node[1:] != node[:-1]) | (direction[1:] <= direction[:-1]))
     starts = np.append(np.flatnonzero(new), node.size).tolist()
     blocks = [(int(node[first]), first, last) for first, last in pairwise(starts)]
-    there: dict[int, list[int]] = {}
+    places_of: dict[int, list[int]] = {}
     for k, (number, _, _) in enumerate(blocks):
-        there.setdefault(number, []).append(k)
+        places_of.setdefault(number, []).append(k)
     leading = _ascending(number for number, _, _ in blocks)
     out = {}
-    for number, places in there.items():
+    for number, places in places_of.items():
         if len(places) < 2 or places[0] >= leading:
             continue
         apart = places[1] > places[0] + 1
@@ -197,8 +197,8 @@ def _describe(dofs: DofTable, notes: list[str]) -> None:
         notes.append(f"{shared} nodes of shells and beams are means of the nodes made of them")
     if internal := int((dofs.node <= 0).sum()):
         notes.append(f"{internal} degrees of freedom that the program made belong to no node")
-    there = np.unique(dofs.node[dofs.node > 0])
-    if dead := np.setdiff1d(there, dofs.node[dofs.weight != 0]).size:
+    nodes = np.unique(dofs.node[dofs.node > 0])
+    if dead := np.setdiff1d(nodes, dofs.node[dofs.weight != 0]).size:
         notes.append(f"{dead} nodes are held: there are no sensors at them")
 
 

@@ -1,4 +1,4 @@
-"""What the decks of runs change: lines with numbers that are a factor times those of the nominal.
+"""Lines that differ between the decks of runs: their numbers are a factor times the nominal ones.
 
 From it, updated values can be written as lines of the deck.
 """
@@ -79,7 +79,7 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
 
     None where some change by the given factor, by different ones, or something else changes.
     """
-    found: dict[float, int] = {}
+    factors: dict[float, int] = {}
     for number, old, new in _different_lines(nominal, run)[1]:
         if old.lstrip().startswith(COMMENTS):
             continue
@@ -88,10 +88,10 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
             return None
         for x, y in zip(before, after, strict=True):
             if x != y:
-                found.setdefault(float(f"{y / x:.6g}") if x else 0.0, number)
-    if len(found) != 1:
+                factors.setdefault(float(f"{y / x:.6g}") if x else 0.0, number)
+    if len(factors) != 1:
         return None
-    ((value, line),) = found.items()
+    ((value, line),) = factors.items()
     return None if value <= 0 or abs(value / factor - 1) < 1e-5 else (value, line)
 
 
@@ -140,9 +140,9 @@ def _value(text: str) -> float:
     return float(re.sub(r"(?<=[\d.])([+-]\d+)$", r"E\1", text))
 
 
-def write_changes(path: Path, found: Sequence[Change]) -> None:
+def write_changes(path: Path, changes: Sequence[Change]) -> None:
     """Write changes as JSON."""
-    text = json.dumps([asdict(each) for each in found], indent=1, ensure_ascii=False)
+    text = json.dumps([asdict(each) for each in changes], indent=1, ensure_ascii=False)
     path.write_text(text + "\n", encoding="utf-8")
 
 

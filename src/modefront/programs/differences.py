@@ -118,7 +118,7 @@ class Terms:
 
 
 class Differences:
-    """Matrices of a nominal run, and what other runs differ from it by.
+    """Matrices of a nominal run, and the differences of other runs from it.
 
     Runs are added one after the other, so that two of them are in memory at a time.
     """
@@ -157,10 +157,10 @@ class Differences:
 
     def _differences(self, run: Run) -> dict[Quantity, Matrix]:
         order = matching(self.nominal, run.job, run.label)
-        found: dict[Quantity, Matrix] = {"stiffness": run.job.stiffness, "mass": run.job.mass}
+        matrices: dict[Quantity, Matrix] = {"stiffness": run.job.stiffness, "mass": run.job.mass}
         return {
             quantity: _cleaned(reordered(A, order), self._matrix(quantity))
-            for quantity, A in found.items()
+            for quantity, A in matrices.items()
         }
 
     def terms(self) -> Terms:
@@ -172,7 +172,7 @@ class Differences:
         c = np.array([self.coefficients.values(theta) for theta in values]) - 1.0
         self._refuse_undetermined(c.reshape(len(values), len(self.names)))
         W = np.linalg.pinv(c)
-        found: dict[str, dict[Quantity, Matrix]] = {name: {} for name in self.names}
+        terms: dict[str, dict[Quantity, Matrix]] = {name: {} for name in self.names}
         base: dict[Quantity, Matrix] = {}
         for quantity in QUANTITIES:
             A = self._matrix(quantity)
@@ -182,24 +182,26 @@ class Differences:
             for name, row in zip(self.names, W, strict=True):
                 term = self._combined(row, differences, A, noise * np.abs(row).sum())
                 if term.nnz:
-                    found[name][quantity] = term
+                    terms[name][quantity] = term
                     rest = rest - term
             base[quantity] = _above(rest.tocsr(), A, noise)
         return Terms(
             self.parameters,
             base,
-            tuple(self._term(name, found[name]) for name in self.names),
+            tuple(self._term(name, terms[name]) for name in self.names),
             self.nominal.dofs,
         )
 
     def _refuse_undetermined(self, c: Floats) -> None:
         """Refuse terms that no combination of runs can tell apart."""
         for i, name in enumerate(self.parameters):
-            own = np.flatnonzero(self.coefficients.exponents[:, i] != 0)
-            if np.linalg.matrix_rank(c[:, own]) < own.size:
-                terms = ", ".join(self.names[k] for k in own)
-                expected = f"at least {own.size} runs with other values for the terms {terms}"
-                found = f"{np.linalg.matrix_rank(c[:, own])} that tell them apart"
+            of_parameter = np.flatnonzero(self.coefficients.exponents[:, i] != 0)
+            if np.linalg.matrix_rank(c[:, of_parameter]) < of_parameter.size:
+                terms = ", ".join(self.names[k] for k in of_parameter)
+                expected = (
+                    f"at least {of_parameter.size} runs with other values for the terms {terms}"
+                )
+                found = f"{np.linalg.matrix_rank(c[:, of_parameter])} that tell them apart"
                 raise _wrong(f"--parameter {name}", expected, found)
         if c.shape[1] == 0 or np.linalg.matrix_rank(c) < c.shape[1]:
             raise _wrong("--parameter", f"runs that tell {c.shape[1]} terms apart", f"{len(c)}")
@@ -232,8 +234,8 @@ class Differences:
         worst = 0.0
         for quantity in QUANTITIES:
             A = self._matrix(quantity)
-            there = run.job.stiffness if quantity == "stiffness" else run.job.mass
-            change = (reordered(there, order) - A).tocsr()
+            matrix = run.job.stiffness if quantity == "stiffness" else run.job.mass
+            change = (reordered(matrix, order) - A).tocsr()
             E = change
             for shift, term in zip(shifts, terms.terms, strict=True):
                 if quantity in term.matrices:
@@ -294,24 +296,26 @@ def matching(nominal: Job, job: Job, label: str) -> Ints | None:
     They are matched by node and direction, and those of the same label in their order. Raises
     InputError where there are others.
     """
-    one, two = nominal.dofs, job.dofs
-    if one.size != two.size and not (nominal.labelled and job.labelled):
+    before, after = nominal.dofs, job.dofs
+    if before.size != after.size and not (nominal.labelled and job.labelled):
         raise _wrong(
-            label, f"{one.size} degrees of freedom, as '{nominal.name}' has", f"{two.size}"
+            label, f"{before.size} degrees of freedom, as '{nominal.name}' has", f"{after.size}"
         )
     if not (nominal.labelled and job.labelled):
         return None
-    same = np.array_equal(one.node, two.node) and np.array_equal(one.direction, two.direction)
+    same = np.array_equal(before.node, after.node) and np.array_equal(
+        before.direction, after.direction
+    )
     if same:
         return None
-    orders = [np.lexsort((table.direction, table.node)) for table in (one, two)]
+    orders = [np.lexsort((table.direction, table.node)) for table in (before, after)]
     sorted_labels = [
         np.column_stack([table.node[order], table.direction[order]])
-        for table, order in zip((one, two), orders, strict=True)
+        for table, order in zip((before, after), orders, strict=True)
     ]
-    if one.size != two.size or (sorted_labels[0] != sorted_labels[1]).any():
+    if before.size != after.size or (sorted_labels[0] != sorted_labels[1]).any():
         raise _unmatched(nominal, job, label)
-    out = np.zeros(one.size, np.intp)
+    out = np.zeros(before.size, np.intp)
     out[orders[1]] = orders[0]
     return out
 
@@ -348,9 +352,9 @@ def _joint(E: scipy.sparse.coo_array, A: Matrix) -> Floats:
     return out
 
 
-def _cleaned(there: Matrix, A: Matrix) -> Matrix:
-    """Return what a matrix differs from the nominal one by, without noise."""
-    D = scipy.sparse.coo_array(there - A)
+def _cleaned(changed: Matrix, A: Matrix) -> Matrix:
+    """Return the difference of a matrix from the nominal one, without noise."""
+    D = scipy.sparse.coo_array(changed - A)
     greatest = np.abs(A.data).max(initial=0.0)
     noise = (np.abs(D.data) <= DROPPED * greatest) & (np.abs(D.data) <= LOCAL * _joint(D, A))
     return _with(D, ~noise & (D.data != 0))
@@ -358,9 +362,9 @@ def _cleaned(there: Matrix, A: Matrix) -> Matrix:
 
 def _above(D: Matrix, A: Matrix, noise: float) -> Matrix:
     """Return the entries of D that are above the rounding of those of A at the same places."""
-    there = scipy.sparse.coo_array(D)
-    limit = noise * np.abs(_at(A, there))
-    return _with(there, (np.abs(there.data) > limit) & (there.data != 0))
+    entries = scipy.sparse.coo_array(D)
+    limit = noise * np.abs(_at(A, entries))
+    return _with(entries, (np.abs(entries.data) > limit) & (entries.data != 0))
 
 
 def _at(A: Matrix, places: scipy.sparse.coo_array) -> Floats:
@@ -371,11 +375,11 @@ def _at(A: Matrix, places: scipy.sparse.coo_array) -> Floats:
     n = A.shape[1]
     entries = scipy.sparse.coo_array(A)
     keys = entries.row.astype(np.int64) * n + entries.col
-    wanted = places.row.astype(np.int64) * n + places.col
-    at = np.searchsorted(keys, wanted)
-    at = np.minimum(at, max(keys.size - 1, 0))
-    found: Bools = keys[at] == wanted if keys.size else np.zeros(wanted.size, bool)
-    out: Floats = np.where(found, entries.data[at] if keys.size else 0.0, 0.0)
+    requested = places.row.astype(np.int64) * n + places.col
+    position = np.searchsorted(keys, requested)
+    position = np.minimum(position, max(keys.size - 1, 0))
+    present: Bools = keys[position] == requested if keys.size else np.zeros(requested.size, bool)
+    out: Floats = np.where(present, entries.data[position] if keys.size else 0.0, 0.0)
     return out
 
 

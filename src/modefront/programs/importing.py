@@ -1,4 +1,4 @@
-"""From jobs of a program to a study: what the command line asks for, done in its order."""
+"""Import of jobs of a program as a study."""
 
 from __future__ import annotations
 
@@ -47,7 +47,7 @@ BOUNDS = (0.5, 2.0)
 
 @dataclass(frozen=True)
 class Request:
-    """What is to be imported.
+    """Jobs, parameters and options of an import.
 
     Attributes
     ----------
@@ -73,7 +73,7 @@ class Request:
 
 @dataclass(frozen=True, eq=False)
 class Imported:
-    """What was imported.
+    """Terms, frequencies and remarks of an import.
 
     Attributes
     ----------
@@ -110,16 +110,16 @@ def read_jobs(request: Request, progress: Callable[[str], None] = lambda _: None
         progress(f"reading {path}")
         job = request.program.job(path, request.options)
         differences.add(Run(str(path), job, theta))
-    found = differences.terms()
+    identified = differences.terms()
     errors = []
     for path, given in request.checks:
         progress(f"checking with {path}")
         theta = np.array([given.get(name, 1.0) for name in names])
         job = request.program.job(path, request.options)
-        errors.append(differences.check(found, Run(str(path), job, theta)))
+        errors.append(differences.check(identified, Run(str(path), job, theta)))
     notes = list(nominal.notes)
     if request.program.eliminates:
-        found, gone, stayed = condensed(found)
+        identified, gone, stayed = condensed(identified)
         if gone:
             notes.append(
                 f"{gone} massless degrees of freedom of the program are eliminated exactly"
@@ -129,9 +129,11 @@ def read_jobs(request: Request, progress: Callable[[str], None] = lambda _: None
                 f"{stayed} degrees of freedom of the program are kept, without nodes: they have "
                 "mass, or several terms act on them, so that to eliminate them were not exact"
             )
-    frequencies, floating = _frequencies(found, request.modes, notes, progress)
+    frequencies, floating = _frequencies(identified, request.modes, notes, progress)
     changed = _changes(request, names, values, notes)
-    return Imported(nominal, found, frequencies, floating, tuple(errors), tuple(notes), changed)
+    return Imported(
+        nominal, identified, frequencies, floating, tuple(errors), tuple(notes), changed
+    )
 
 
 def _changes(
@@ -234,14 +236,14 @@ def _frequencies(
     count = min(modes or SHOWN, size - massless)
     theta = np.ones(len(terms.parameters))
     try:
-        found = model.full_modes(theta, max(count, 1))
+        lowest = model.full_modes(theta, max(count, 1))
     except ModelError as error:
         expected = "matrices with modes"
         raise InputError(Fault("", "the nominal model", expected, str(error))) from None
-    frequencies = np.sqrt(np.maximum(found.lam, 0.0)) / (2 * np.pi)
-    floating = bool((found.lam == 0).any())
+    frequencies = np.sqrt(np.maximum(lowest.lam, 0.0)) / (2 * np.pi)
+    floating = bool((lowest.lam == 0).any())
     if floating:
-        count = int((found.lam == 0).sum())
+        count = int((lowest.lam == 0).sum())
         notes.append(f"{count} rigid-body modes or mechanisms: floating = true is written")
     return frequencies, floating
 
@@ -365,7 +367,7 @@ def _comment(text: str) -> str:
 
 
 def describe(term: Term) -> str:
-    """Return what a term is, in words."""
+    """Return the description of a term."""
     what = " and ".join(term.matrices)
     rank = "" if term.rank is None else f", of rank {term.rank}"
     return f"{what}, at {term.dofs} degrees of freedom{rank}"

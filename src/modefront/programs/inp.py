@@ -35,7 +35,7 @@ _MIDDLE = re.compile(r"B[23]2|T[23]D3|PIPE[23]2")
 
 @dataclass
 class Deck:
-    """What a deck says of the model.
+    """Nodes, elements and constraints of a deck.
 
     Attributes
     ----------
@@ -59,7 +59,7 @@ class Deck:
 
 @dataclass
 class _Content:
-    """What is gathered while a deck is read."""
+    """Entries collected while a deck is read."""
 
     nodes: dict[int, Floats] = field(default_factory=dict)
     cells: dict[str, list[list[int]]] = field(default_factory=dict)
@@ -73,7 +73,7 @@ class _Content:
 
 
 def read_deck(path: Path) -> Deck:
-    """Return what a deck says of the model; lines that cannot be understood are left out.
+    """Return the model of a deck; lines that cannot be understood are left out.
 
     Raises OSError where it cannot be read.
     """

@@ -74,9 +74,9 @@ def _pair(path: Path, names: Iterable[str], options: JobOptions) -> tuple[str, s
     if options.stiffness or options.mass:
         pair = (options.stiffness or "").upper(), (options.mass or "").upper()
     else:
-        there = [(f"K{name}", f"M{name}") for name in SETS]
-        there += [(x, "M" + x[1:]) for x in known if x.startswith("K")]
-        pair = next((x for x in there if x[0] in known and x[1] in known), ("KAA", "MAA"))
+        pairs = [(f"K{name}", f"M{name}") for name in SETS]
+        pairs += [(x, "M" + x[1:]) for x in known if x.startswith("K")]
+        pair = next((x for x in pairs if x[0] in known and x[1] in known), ("KAA", "MAA"))
     for name in pair:
         if name not in known:
             expected = f"a matrix '{name}'" if name else "--stiffness-name with --mass-name"
@@ -104,9 +104,9 @@ def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
 
 
 def _from_op4(path: Path, options: JobOptions) -> Job:
-    found = read_op4(path)
-    names = _pair(path, found, options)
-    pair = [found[name] for name in names]
+    matrices = read_op4(path)
+    names = _pair(path, matrices, options)
+    pair = [matrices[name] for name in names]
     size = pair[0].rows
     for name, matrix in zip(names, pair, strict=True):
         if (matrix.rows, matrix.columns) != (size, size):
@@ -158,9 +158,9 @@ def _labelled(
     free &= K.diagonal() + M.diagonal() != 0
     if not free.all():
         notes.append(f"{int((~free).sum())} degrees of freedom that are held are left out")
-        at = np.flatnonzero(free)
-        K, M = kept(K, at), kept(M, at)
-        dofs = DofTable(dofs.node[at], dofs.direction[at], dofs.weight[at])
+        positions = np.flatnonzero(free)
+        K, M = kept(K, positions), kept(M, positions)
+        dofs = DofTable(dofs.node[positions], dofs.direction[positions], dofs.weight[positions])
     _check_labels(path, deck, K, dofs)
     if deck.turned:
         some = ", ".join(map(str, sorted(deck.turned)[:6]))
@@ -211,9 +211,9 @@ def _near_supports(deck: Bulk, dofs: DofTable) -> Bools:
 
 
 def _from_dmig(path: Path, options: JobOptions) -> Job:
-    found = read_dmig(path)
-    names = _pair(path, found, options)
-    pair = [found[name] for name in names]
+    matrices = read_dmig(path)
+    names = _pair(path, matrices, options)
+    pair = [matrices[name] for name in names]
     labels = np.concatenate([table for each in pair for table in (each.row, each.column)])
     table = np.unique(labels, axis=0)
     dofs = DofTable(table[:, 0], table[:, 1], np.ones(len(table)))

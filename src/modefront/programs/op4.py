@@ -72,7 +72,7 @@ def read_op4(path: Path) -> Mapping[str, Op4Matrix]:
 
 @dataclass(frozen=True)
 class _Layout:
-    """How a binary file is written: byte order, and the bytes of a word."""
+    """Layout of a binary file: byte order, and the bytes of a word."""
 
     order: str
     word: int
@@ -99,12 +99,12 @@ def _binary(path: Path, data: np.ndarray, layout: _Layout) -> Iterator[tuple[str
         name = head[4 * layout.word :].tobytes().decode("latin-1").strip().upper()
         columns, rows, _, kind = integers
         precision = _precision(path, name, kind, rows)
-        found = _Columns(layout, kind, rows < 0)
+        contents = _Columns(layout, kind, rows < 0)
         while True:
             column, position = _record(path, data, lengths, position)
-            if not found.add(path, name, column, columns):
+            if not contents.add(path, name, column, columns):
                 break
-        yield name, Op4Matrix(abs(rows), columns, precision, found.entries())
+        yield name, Op4Matrix(abs(rows), columns, precision, contents.entries())
 
 
 def _record(
@@ -173,21 +173,26 @@ class _Columns:
         """Return the values of all strings of a column; None where they do not fill it."""
         native = body.view(self._integer).astype(f"=i{self._word}")
         words = native.data  # its items are Python's integers, made only where needed
-        at, end = 0, len(words)
+        position, end = 0, len(words)
         header = 2 if self._big else 1
         headers: list[int] = []
-        while at < end:
-            if self._big and at + 1 < end:
-                length, row = words[at] - 1, words[at + 1]
+        while position < end:
+            if self._big and position + 1 < end:
+                length, row = words[position] - 1, words[position + 1]
             else:
-                length = words[at] // STRING - 1
-                row = words[at] - STRING * (length + 1)
-            if length <= 0 or row <= 0 or at + header + length > end or length % self._per_value:
+                length = words[position] // STRING - 1
+                row = words[position] - STRING * (length + 1)
+            if (
+                length <= 0
+                or row <= 0
+                or position + header + length > end
+                or length % self._per_value
+            ):
                 return None
-            headers.append(at)
+            headers.append(position)
             self._first.append(row)
             self._length.append(length // self._per_value)
-            at += header + length
+            position += header + length
         keep = np.ones(len(words), bool)
         for k in range(header):
             keep[np.array(headers, dtype=np.intp) + k] = False
@@ -234,16 +239,16 @@ class _Lines:
 
 def _text(path: Path, data: np.ndarray) -> Iterator[tuple[str, Op4Matrix]]:
     lines = _lines(data)
-    count, at = lines.start.size, 0
-    while at < count:
-        if not lines.line(at).strip():
-            at += 1
+    count, position = lines.start.size, 0
+    while position < count:
+        if not lines.line(position).strip():
+            position += 1
             continue
-        head = _Head.of(path, lines.line(at))
-        is_data = _hold_values(lines, at + 1)
-        stop = _end_of(path, lines, at + 1, is_data, head)
-        yield head.name, _matrix(path, lines, (at + 1, stop), is_data, head)
-        at = stop + 2  # the column beyond the last, and its value
+        head = _Head.of(path, lines.line(position))
+        is_data = _hold_values(lines, position + 1)
+        stop = _end_of(path, lines, position + 1, is_data, head)
+        yield head.name, _matrix(path, lines, (position + 1, stop), is_data, head)
+        position = stop + 2  # the column beyond the last, and its value
 
 
 def _lines(data: np.ndarray) -> _Lines:
@@ -335,27 +340,27 @@ def _matrix(
     belongs = np.cumsum(~chosen)[chosen] - 1
     if belongs.size and belongs.min() < 0:
         raise wrong(path, f"the header of a column in '{head.name}'", "values")
-    at = np.flatnonzero(chosen) + first
-    per_line = (lines.end[at] - lines.start[at] + head.width - 1) // head.width
-    values = _values(path, lines, at, per_line, head.width)
+    positions = np.flatnonzero(chosen) + first
+    per_line = (lines.end[positions] - lines.start[positions] + head.width - 1) // head.width
+    values = _values(path, lines, positions, per_line, head.width)
     length = np.bincount(belongs, weights=per_line, minlength=headers.size).astype(np.intp)
     rows = _runs(row.astype(np.intp) - 1, length)
     columns = np.repeat(column - 1, length)
     return Op4Matrix(head.rows, head.columns, head.precision, _without_zeros(rows, columns, values))
 
 
-def _values(path: Path, lines: _Lines, at: Ints, per_line: Ints, width: int) -> Floats:
-    """Return the numbers of the lines ``at``, ``per_line`` in each of them."""
+def _values(path: Path, lines: _Lines, positions: Ints, per_line: Ints, width: int) -> Floats:
+    """Return the numbers of the lines at ``positions``, ``per_line`` in each of them."""
     out = np.zeros(int(per_line.sum()))
     place = np.cumsum(per_line) - per_line
     for count in np.unique(per_line).tolist():
         chosen = np.flatnonzero(per_line == count)
         for k in range(0, chosen.size, CHUNK):
             part = chosen[k : k + CHUNK]
-            index = lines.start[at[part]][:, None] + np.arange(count * width)
+            index = lines.start[positions[part]][:, None] + np.arange(count * width)
             text = np.minimum(index, lines.data.size - 1)
             text = lines.data[text]
-            text[index >= lines.end[at[part]][:, None]] = ord(" ")
+            text[index >= lines.end[positions[part]][:, None]] = ord(" ")
             try:
                 numbers = fixed_width(text.tobytes(), width)
             except ValueError as error:

@@ -1,4 +1,4 @@
-"""OpenSees: what the snippet in docs/import.md writes for a job.
+"""OpenSees: the files that the snippet in docs/import.md writes for a job.
 
 ``job_K`` and ``job_M`` are matrices (``.npz`` of SciPy or ``.mtx``), ``job_dofs.csv`` the node and
 direction of each equation; ``job_nodes.csv`` (node, x, y, z) and ``job_elements.csv`` (element and

@@ -71,12 +71,12 @@ def coordinates(path: Path, size: int, *, skip: int = 0) -> Entries:
 def lines_of_entries(
     path: Path, size: str, count: str, skip: str
 ) -> tuple[dict[str, np.ndarray], list[int]]:
-    """Return what SciPy reads from such lines: for processes that read files."""
+    """Return the entries of such lines, read by SciPy: for processes that read files."""
     with path.open("rb") as file:
         file.seek(int(skip))
         head = f"%%MatrixMarket matrix coordinate real general\n{size} {size} {count}\n"
-        found = scipy.io.mmread(_Headed(head.encode(), file))
-    return {"row": found.row, "column": found.col, "data": found.data}, []
+        matrix = scipy.io.mmread(_Headed(head.encode(), file))
+    return {"row": matrix.row, "column": matrix.col, "data": matrix.data}, []
 
 
 def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.ndarray]:

@@ -1,4 +1,4 @@
-"""What the methods that sample given an elementary failure have in common."""
+"""Common part of the methods that sample given an elementary failure."""
 
 from collections.abc import Callable, Iterator
 

@@ -33,9 +33,10 @@ Prepare = Callable[[GaussianResponse, FloatArray], Weigh]
 Estimator = Callable[
     [FirstPassage, ArrayLike, int, np.random.SeedSequence, int], "tuple[Estimate, ...]"
 ]
-"""What every method is: (problem, levels, samples, seed, workers) → an estimate a level."""
+"""Signature of every method: (problem, levels, samples, seed, workers) → an estimate a level."""
 
 
+# 11 fields: an estimate repeats all that it depends on.
 @dataclass(frozen=True)
 class Estimate:
     """A first-passage probability and all that it depends on.
@@ -90,6 +91,7 @@ def spawn(seed: np.random.SeedSequence, number: int) -> np.random.SeedSequence:
     return np.random.SeedSequence(seed.entropy, spawn_key=key, pool_size=seed.pool_size)
 
 
+# 7 arguments: those of an `Estimator`, and the method.
 def estimate(
     method: str,
     prepare: Prepare,
@@ -109,8 +111,8 @@ def estimate(
     """
     b = real_array("levels", levels, (None,), "barriers")
     if np.any(b <= 0):
-        at = int(np.argmax(b <= 0))
-        raise wrong("levels", "positive numbers", f"{b[at]} at index {at}")
+        first = int(np.argmax(b <= 0))
+        raise wrong("levels", "positive numbers", f"{b[first]} at index {first}")
     if positive_count("samples", samples) < 2:
         raise wrong("samples", "at least 2, for a coefficient of variation", samples)
     positive_count("workers", workers)

@@ -1,4 +1,4 @@
-"""What a first-passage probability is asked of.
+"""The first-passage problem.
 
 A structure at rest at t = 0 is loaded by Gaussian white noise; P is the probability that any of
 its responses leaves [-b, b] at one of the times t_j = j Δt, j = 1 … n, n Δt = T. The noise is

@@ -1,4 +1,4 @@
-"""What the time step does to a first-passage probability.
+"""Effect of the time step on a first-passage probability.
 
 Looked at on a finer grid, a response is seen to leave [-b, b] more often, and the noise is held
 constant for a shorter time. Halving the step shows how much of P is owed to it.

@@ -1,4 +1,4 @@
-"""What results say, in sentences beside the pictures of a report."""
+"""Findings of results as sentences beside the pictures of a report."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
+from modefront.fronts.methods import METHODS
 from modefront.predictions import KINDS
 from modefront.results.remarks import cautions, failures, quality, single
 from modefront.results.selection import front_points
@@ -34,7 +35,7 @@ def texts(values: Any) -> list[str]:
 
 
 def topics(data: xr.Dataset) -> list[Topic]:
-    """Return what the study was, what was found, and what is left open."""
+    """Return the sentences on the study, its results and its open questions."""
     all_topics = (
         Topic("What was studied", tuple(_study(data))),
         Topic("How well the best models do", _sentences(quality(data))),
@@ -55,24 +56,17 @@ def _study(data: xr.Dataset) -> Iterator[str]:
     front = front_points(data)
     optimal = int(data["pareto"].values[front].sum())
     method = str(data.attrs["method"])
+    title = METHODS[method].title if method in METHODS else method
     yield from _sentences(single(data))
     if front.size:
         yield (
-            f"The front has {_count(front.size, 'point')}, found by {METHODS.get(method, method)}; "
+            f"The front has {_count(front.size, 'point')}, found by {title}; "
             f"{optimal} of them are Pareto optimal: no known model is better in one group without "
             "being worse in another."
         )
     yield f"{_count(int(data.attrs['model_evaluations']), 'eigenproblem')} were solved in all."
     if data.attrs.get("remark"):
         yield f"{data.attrs['remark']}."
-
-
-METHODS = {
-    "nbi": "normal-boundary intersection",
-    "weights": "a sweep of the weights",
-    "spea2": "SPEA2",
-    "nsga2": "NSGA-II",
-}
 
 
 def _open(data: xr.Dataset) -> Iterator[str]:
@@ -92,7 +86,7 @@ def _open(data: xr.Dataset) -> Iterator[str]:
 
 
 def _spread(data: xr.Dataset) -> Iterator[str]:
-    """Yield what the spread of predictions is, and what it means."""
+    """Yield the spread of predictions, with its meaning."""
     widest: list[tuple[float, str]] = []
     for kind in (each.kind for each in KINDS):
         if kind.dimension not in data.sizes:
@@ -132,7 +126,7 @@ def _sentences(texts: Iterable[str]) -> tuple[str, ...]:
 
 
 def _times(ratio: float) -> str:
-    """Return a ratio as one says it.
+    """Return a ratio in words.
 
     >>> _times(1.31), _times(2.34), _times(4512.3), _times(3.2e7)
     ('by 31 %', 'by a factor of 2.3', 'by a factor of 4,500', 'by more than 7 powers of ten')
@@ -147,8 +141,8 @@ def _times(ratio: float) -> str:
     return f"by more than {int(np.log10(ratio))} powers of ten"
 
 
-def _count(number: int, thing: str) -> str:
-    return f"{number} {thing}{'s' * (number != 1)}"
+def _count(number: int, noun: str) -> str:
+    return f"{number} {noun}{'s' * (number != 1)}"
 
 
 def _some(names: Sequence[str]) -> str:

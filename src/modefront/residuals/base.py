@@ -1,4 +1,4 @@
-r"""What a kind of residual is: equation (1) over any unit.
+r"""Interface of kinds of residuals: equation (1) over any unit.
 
 The residuals of a measured property are its errors over a unit u, such that their squares add up
 to the mean over the K data sets in which it was measured,
@@ -28,7 +28,7 @@ from modefront.modes.result import Modes
 from modefront.pairing.match import Pairs
 
 Scale = Literal["measured", "std"]
-"""What errors are divided by: a unit that follows from the measured values, or their std."""
+"""Unit by which errors are divided: one that follows from the measured values, or their std."""
 
 NEGLIGIBLE = 1e-9
 """Standard deviation, over the greatest one or the frequency, below which it is rounding."""
@@ -76,7 +76,7 @@ class Member(Protocol):
 
     @property
     def remark(self) -> str:
-        """Why any model fits the property; empty where models can miss it."""
+        """Reason why any model fits the property; empty where models can miss it."""
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals at the modes of a model, shape (rows,)."""
@@ -88,7 +88,7 @@ class Member(Protocol):
         """Return the square of the greatest change of r by errors of the paired modes."""
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
-        """Yield what one standard deviation of measured values does to J, set after set.
+        """Yield the changes of J by one standard deviation of measured values, set after set.
 
         A value without a standard deviation counts as exact.
         """
@@ -112,7 +112,7 @@ class ResidualKind(Protocol):
 
     @property
     def plural(self) -> str:
-        """What is measured, in the plural."""
+        """Name of the measured properties, in the plural."""
 
     @property
     def usable_std(self) -> str:

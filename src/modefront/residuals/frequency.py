@@ -86,7 +86,7 @@ class FrequencyResiduals:
         return float((errors.eigenvalue[self.mode] / 2) ** 2 * (size @ size))
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
-        """Yield what one standard deviation of each measured frequency does to J."""
+        """Yield the change of J by one standard deviation of each measured frequency."""
         q = pairs.index[self.mode]
         f, df = modes.frequency[q], modes.dfrequency[q]
         step = known_std(self.std) / self.sets.size

@@ -15,7 +15,7 @@ ModeNumbers = Sequence[int] | Literal["all"]
 """Numbers of measured modes, counted from 1, or all that were measured."""
 
 MODE_NUMBERS = "'all' or a list of measured modes, counted from 1"
-"""What `ModeNumbers` are, for messages."""
+"""Description of `ModeNumbers` for messages."""
 
 
 @dataclass(frozen=True, init=False)
@@ -100,7 +100,7 @@ def are_mode_numbers(value: object) -> bool:
 
 
 def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str]]:
-    """Yield what is wrong with a group: the keyword, what is expected and what is found.
+    """Yield the faults of a group: the keyword, the expected and the found value.
 
     Without data, only what is wrong whatever they are.
     """
@@ -113,7 +113,7 @@ def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str
 
 
 def _of_kind(name: str, modes: ModeNumbers, data: ModalData) -> Iterator[tuple[str, str, str]]:
-    """Yield what is wrong with the modes of one kind."""
+    """Yield the faults of the modes of one kind."""
     measured = _measured_modes(name, data)
     known = set(measured)
     unknown = [mode for mode in modes if mode not in known] if modes != "all" else []
@@ -124,7 +124,7 @@ def _of_kind(name: str, modes: ModeNumbers, data: ModalData) -> Iterator[tuple[s
 
 
 def _of_members(group: Group, data: ModalData) -> Iterator[tuple[str, str, str]]:
-    """Yield what is wrong with members that the data have."""
+    """Yield the faults of members that the data have."""
     chosen = group.positions(data)
     if not any(positions for _, positions in chosen):
         yield "", "at least one measured property", "none in the data"

@@ -131,6 +131,7 @@ class UpdatingProblem:
         return np.sqrt(np.array(squares))
 
 
+# 8 arguments: the parts of a problem, the optional ones by keyword.
 def updating_problem(
     model: Model,
     data: ModalData,

@@ -106,7 +106,7 @@ class ShapeResiduals:
 
     @property
     def remark(self) -> str:
-        """Why any model fits the shape, if it does."""
+        """Reason why any model fits the shape, empty where models can miss it."""
         if max(part.sensors.size for part in self.shapes) > 1:
             return ""
         return "a shape that is measured at a single sensor fits any model"
@@ -142,7 +142,7 @@ class ShapeResiduals:
         )
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
-        """Yield what one standard deviation of each measured component does to J."""
+        """Yield the change of J by one standard deviation of each measured component."""
         q = pairs.index[self.mode]
         for part in self.shapes:
             std = self.data.shape_std[part.k, self.mode, part.sensors]

@@ -1,4 +1,4 @@
-"""What the response and reliability rooms ask of their arguments.
+"""Checks of arguments for the packages response and reliability.
 
 Every error is an `InputError` that names the argument, what was expected and what was found.
 """
@@ -23,15 +23,15 @@ def real_array(
     """
     array = np.array(value, dtype=np.float64)
     fits = array.ndim == len(shape) and all(
-        found == wanted or (wanted is None and found > 0)
-        for found, wanted in zip(array.shape, shape, strict=True)
+        size == wanted or (wanted is None and size > 0)
+        for size, wanted in zip(array.shape, shape, strict=True)
     )
     if not fits:
         sizes = ", ".join("n" if size is None else str(size) for size in shape)
         raise wrong(name, f"shape ({sizes}) ({meaning})", array.shape)
     if not np.all(np.isfinite(array)):
-        at = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
-        raise wrong(name, "finite numbers", f"{array[at]} at index {at}")
+        index = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        raise wrong(name, "finite numbers", f"{array[index]} at index {index}")
     array.setflags(write=False)
     return array
 
@@ -53,6 +53,6 @@ def positive_count(name: str, value: int) -> int:
 def no_negative(name: str, array: FloatArray, meaning: str) -> FloatArray:
     """Return `array` if none of its elements is below zero."""
     if np.any(array < 0):
-        at = tuple(int(i) for i in np.argwhere(array < 0)[0])
-        raise wrong(name, f"no negative {meaning}", f"{array[at]} at index {at}")
+        index = tuple(int(i) for i in np.argwhere(array < 0)[0])
+        raise wrong(name, f"no negative {meaning}", f"{array[index]} at index {index}")
     return array

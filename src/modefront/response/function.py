@@ -43,7 +43,7 @@ class ResponseQuantity(Enum):
 
     @property
     def order(self) -> int:
-        """The power s of iω: how often the displacement is differentiated in time."""
+        """The power s of iω: number of differentiations of the displacement in time."""
         return {"receptance": 0, "mobility": 1}.get(self.value, 2)
 
 

@@ -64,7 +64,7 @@ class Peak:
 
     @property
     def frequency(self) -> float:
-        """Where it is, in Hz."""
+        """Frequency of the peak in Hz."""
         return self.omega / (2 * np.pi)
 
 

@@ -17,7 +17,7 @@ from modefront.response.system import ModalSystem
 
 @dataclass(frozen=True, eq=False)
 class Slope:
-    """g between the one output and the one input of `pair`, and how far it can be trusted."""
+    """g between the one output and the one input of `pair`, and the error by rounding."""
 
     pair: ModalSystem
     quantity: ResponseQuantity
@@ -29,7 +29,7 @@ class Slope:
         return 2 * (t.conj() * t1).real, 2 * (abs(t1) ** 2 + (t.conj() * t2).real)
 
     def rounding(self, omega: FloatArray, g1: FloatArray) -> FloatArray:
-        """Return what rounding of the terms of T and of ω leaves uncertain of g.
+        """Return the bound of the error of g by rounding of the terms of T and of ω.
 
         Modes that cancel leave a small T that is no more accurate than they are.
         """

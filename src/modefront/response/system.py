@@ -79,9 +79,9 @@ class ModalSystem:
                 checked = real_array(name, value, pair, "outputs, inputs")
                 object.__setattr__(self, name, checked)
         if self.static is not None and np.any(omega == 0):
-            at = int(np.argmax(omega == 0))
+            first = int(np.argmax(omega == 0))
             expected = "None, as a structure with a rigid-body mode has no static response"
-            raise wrong("static", expected, f"an array with omega[{at}] = 0")
+            raise wrong("static", expected, f"an array with omega[{first}] = 0")
         object.__setattr__(self, "omega", omega)
         object.__setattr__(self, "zeta", zeta)
         object.__setattr__(self, "input", load)

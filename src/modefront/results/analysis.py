@@ -53,7 +53,7 @@ class Determination:
 
 
 def determinations(problem: UpdatingProblem, front: Front) -> list[Determination]:
-    """Return what the data determine at the reference, then at each edge."""
+    """Return the determined combinations of parameters at the reference, then at each edge."""
     groups = problem.groups
     out = []
     for point in [front.reference, *of_kind(front.points, Kind.EDGE)]:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Bools, Floats
 from modefront.analysis.certified import certificate_values
 from modefront.analysis.front import FrontAnalysis
 from modefront.fronts.front import Front
@@ -17,13 +17,10 @@ from modefront.fronts.point import WEIGHTED, Kind, label
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values, analysis_values, determinations
 from modefront.results.findings import findings
-from modefront.results.schema import FORMAT, described
+from modefront.results.schema import FORMAT, derived, described
 from modefront.solvers.dominance import nondominated, undominated
 from modefront.solvers.gaps import branch_numbers
 from modefront.solvers.sqp import Solution
-
-AT_BOUND = 1e-9
-"""Distance from a bound, over the range, up to which a parameter is at it."""
 
 ITERATED = "iterated-weights"
 """Name of the fixed point of the iteration of the weights, among the minima."""
@@ -37,6 +34,7 @@ def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     determined = determinations(problem, front)
     values |= analysis_values(problem, front, analysis, determined)
     values["finding"] = findings(problem, front, analysis, determined)
+    values |= derived(values)
     groups, parameters = list(problem.objectives), list(problem.model.parameters)
     return xr.Dataset(
         described(values),
@@ -63,21 +61,18 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
         for each in manifolds
         for model in each.models
     ]
-    theta = _thetas(solutions, problem)
     out: Values = {
         "label": [point.label for point in points],
         "kind": [point.kind.value for point in points],
         "pareto": _pareto(front, J, _stack(equivalent, n)),
         "dominated_among_front": _dominated_among_front(front, J),
-        "theta": theta,
+        "theta": _thetas(solutions, problem),
         "objective": J,
-        "error": np.sqrt(J / a),
         "weight": _weights(front, J, a),
         "stationary_weight": _shares(_stack([x.weights for x in solutions], n), front.scale),
         "converged": [x.converged for x in solutions],
         "status": [x.status.name.lower() for x in solutions],
         "evaluations": [x.evaluations for x in solutions],
-        "at_bound": _at_bound(problem, theta),
     }
     modes = len(problem.data.modes)
     unknown = np.full(modes, np.nan)
@@ -86,15 +81,8 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     return out | certificate_values(problem, solutions)
 
 
-def _at_bound(problem: UpdatingProblem, theta: Floats) -> Ints:
-    """Return -1 for parameters (points, p) at the lower bound, 1 at the upper one, else 0."""
-    margin = AT_BOUND * (problem.upper - problem.lower)
-    side = np.where(theta >= problem.upper - margin, 1, 0)
-    return np.where(theta <= problem.lower + margin, -1, side)
-
-
 def _data(problem: UpdatingProblem, front: Front) -> Values:
-    """Return what the results repeat of the problem."""
+    """Return the data, bounds and names of the problem that results repeat."""
     return {
         "measured_frequency": problem.data.mean_frequency,
         "properties": problem.properties,

@@ -48,6 +48,7 @@ class Spread:
     reference: float = float("nan")
 
 
+# 14 fields: the columns of a table.
 @dataclass(frozen=True)
 class Summary:
     """One front, in the space of errors; a row of the comparison, whose columns these are.
@@ -123,14 +124,14 @@ def compare(folders: Sequence[Path]) -> Comparison:
     Raises InputError where there are none, where their groups are not the same, and where no model
     is Pareto optimal.
     """
-    found = read_together(folders, whole=False)
-    for folder, (_, data) in zip(folders, found, strict=True):
+    results = read_together(folders, whole=False)
+    for folder, (_, data) in zip(folders, results, strict=True):
         if not _best(data).sizes["point"]:
             expected = "at least one Pareto-optimal model"
             raise InputError(Fault(str(folder), "variable 'pareto'", expected, "none"))
-    groups = tuple(map(str, found[0][1]["group"].values))
-    fronts = [_summary(name, data, _length(found[0][1])) for name, data in found]
-    pairs = [_apart(one, other) for one, other in combinations(found, 2)]
+    groups = tuple(map(str, results[0][1]["group"].values))
+    fronts = [_summary(name, data, _length(results[0][1])) for name, data in results]
+    pairs = [_apart(first, other) for first, other in combinations(results, 2)]
     return Comparison(groups, tuple(fronts), tuple(pairs))
 
 
@@ -147,20 +148,20 @@ def read_together(folders: Sequence[Path], *, whole: bool = True) -> list[tuple[
     or where their groups are not the same.
     """
     faults: list[Fault] = []
-    found: list[tuple[str, xr.Dataset]] = []
+    results: list[tuple[str, xr.Dataset]] = []
     for folder in folders:
         try:
-            found.append((str(folder), read_dataset(folder, whole=whole)))
+            results.append((str(folder), read_dataset(folder, whole=whole)))
         except InputError as error:
             faults.extend(error.faults)
-    groups = [tuple(map(str, data["group"].values)) for _, data in found]
-    for (name, _), other in zip(found, groups, strict=True):
+    groups = [tuple(map(str, data["group"].values)) for _, data in results]
+    for (name, _), other in zip(results, groups, strict=True):
         if other != groups[0]:
-            expected = f"those of {found[0][0]}: {', '.join(groups[0])}"
+            expected = f"those of {results[0][0]}: {', '.join(groups[0])}"
             faults.append(Fault(name, "groups", expected, ", ".join(other)))
     if faults:
         raise InputError(faults)
-    return found
+    return results
 
 
 def _optimal(data: xr.Dataset) -> xr.Dataset:

@@ -63,15 +63,15 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
 def written_for(path: Path) -> str | None:
     """Return the hash of the inputs of results; None where the file cannot be read."""
     try:
-        found = _read(path).attrs.get("inputs")
+        inputs = _read(path).attrs.get("inputs")
     except Exception:  # what is raised for a damaged file is not documented
         return None
-    return found if isinstance(found, str) else None
+    return inputs if isinstance(inputs, str) else None
 
 
 def _read(path: Path) -> xr.Dataset:
-    """Return what a netCDF file holds, read in a process that damaged files may end."""
-    arrays, found = isolated(READER, path, SECONDS, available_memory())
+    """Return the contents of a netCDF file, read in a process that damaged files may end."""
+    arrays, texts = isolated(READER, path, SECONDS, available_memory())
 
     def value(part: Mapping[str, Any]) -> Any:
         if "place" in part:
@@ -84,9 +84,9 @@ def _read(path: Path) -> xr.Dataset:
 
     variables = {
         name: xr.Variable(each["dimensions"], value(each["values"]), attributes(each["attributes"]))
-        for name, each in found["variables"].items()
+        for name, each in texts["variables"].items()
     }
-    raw = xr.Dataset(variables, attrs=attributes(found["attributes"]))
+    raw = xr.Dataset(variables, attrs=attributes(texts["attributes"]))
     return xr.decode_cf(raw, decode_times=False)
 
 

@@ -1,4 +1,4 @@
-"""Findings: what the analysis of a front shows, in sentences, the most important first."""
+"""Findings of the analysis of a front as sentences, the most important first."""
 
 from __future__ import annotations
 
@@ -16,12 +16,13 @@ from modefront.identifiability.words import (
     alike_in_words,
     determined,
     enumeration,
-    measured_thing,
+    measured_noun,
     no_effect_in_words,
     summary,
 )
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Determination
+from modefront.results.schema import AT_BOUND
 from modefront.solvers.manifold import Extent, Manifold
 from modefront.uncertainty.validity import LinearisationWarning
 
@@ -50,9 +51,6 @@ FEW = 10
 
 VARIED = 1e-3
 """Change of a parameter along a manifold, over its range, from which it is named."""
-
-AT_BOUND = 1e-9
-"""Share of the range of a parameter that a manifold may lack to go from bound to bound."""
 
 
 def findings(
@@ -114,16 +112,16 @@ def _unknown_ends(front: Front) -> list[Finding]:
 
 
 def _identifiability(problem: UpdatingProblem, reference: Determination) -> Iterator[Finding]:
-    """Yield what the data determine at the reference."""
+    """Yield the determined combinations of parameters at the reference."""
     names, groups, where = problem.model.parameters, problem.groups, reference.point.label
     for text in no_effect_in_words(reference.idle, names):
         yield Rank.IDLE, f"at {where}: {text}"
     for i, (name, combinations) in enumerate(reference.combinations):
         whole = i == len(groups)
-        thing = measured_thing(groups if whole else [groups[i]])
+        noun = measured_noun(groups if whole else [groups[i]])
         full = determined(combinations) == (len(names) - len(reference.idle), 0)
         rank = Rank.DETERMINED if full else Rank.ALL_DATA if whole else Rank.OF_GROUP
-        text = summary(name, thing, combinations, names, reference.scale, reference.idle)
+        text = summary(name, noun, combinations, names, reference.scale, reference.idle)
         yield rank, f"at {where}: {text}"
     for text in alike_in_words(reference.effects, names, reference.idle):
         yield Rank.ALIKE, f"at {where}: {text}"

@@ -38,7 +38,7 @@ from modefront.results.shapes import unit_scale
 from modefront.work.codec import record
 
 TOLERANCE = 1e-3
-"""What the basis may lack of a shape, over its length."""
+"""Error of a shape in the basis, over its length, at most."""
 
 AXES = ("x", "y", "z")
 
@@ -79,7 +79,7 @@ class ModeShapes:
 
 @dataclass(frozen=True, eq=False)
 class Drawing:
-    """What is drawn of a geometry.
+    """Lines, faces and nodes of a geometry that pictures show.
 
     Attributes
     ----------
@@ -155,15 +155,15 @@ def mode_shapes(problem: UpdatingProblem, thetas: Floats, paired: Floats) -> Mod
             continue
         index = paired[i].astype(int) - 1
         try:
-            found = shapes_at(model, theta, max(count, int(index.max()) + 1))
+            shapes = shapes_at(model, theta, max(count, int(index.max()) + 1))
         except ModelError:
             continue
-        frequency[i] = np.sqrt(np.maximum(found.lam[:count], 0)) / (2 * np.pi)
-        mac[i] = mean_mac(data, found.phi[:, :count])
+        frequency[i] = np.sqrt(np.maximum(shapes.lam[:count], 0)) / (2 * np.pi)
+        mac[i] = mean_mac(data, shapes.phi[:, :count])
         u = np.zeros((modes, 0, 3))
-        if geometry is not None and found.Phi is not None:
-            u = geometry.displacement(found.Phi[:, index])[:, drawn]
-        phi = found.phi[:, index].T
+        if geometry is not None and shapes.Phi is not None:
+            u = geometry.displacement(shapes.Phi[:, index])[:, drawn]
+        phi = shapes.phi[:, index].T
         scale = unit_scale(data, phi, u if u.size else None)
         sensed[i] = phi * scale[:, None]
         rows[i] = basis.coefficients((u * scale[:, None, None]).reshape(modes, -1).T)

@@ -1,4 +1,4 @@
-"""What a netCDF file holds, as plain arrays and texts: for processes that read files."""
+"""Contents of a netCDF file as plain arrays and texts: for processes that read files."""
 
 from __future__ import annotations
 
@@ -56,13 +56,13 @@ def _plain(arrays: Arrays, place: str, value: Any) -> Any:
     """Return texts as lists, with their shape; numbers are put among the arrays, by their place."""
     if isinstance(value, bytes):
         value = value.decode("utf-8", "backslashreplace")
-    found = np.asarray(value)
-    if found.dtype.kind in "OUST":
-        texts = [_text(each) for each in found.ravel().tolist()]
-        return {"texts": texts, "shape": list(found.shape)}
-    if found.dtype.kind not in "biuf":
-        raise ValueError(f"values of the type {found.dtype}, which are neither numbers nor texts")
-    arrays[place] = found
+    array = np.asarray(value)
+    if array.dtype.kind in "OUST":
+        texts = [_text(each) for each in array.ravel().tolist()]
+        return {"texts": texts, "shape": list(array.shape)}
+    if array.dtype.kind not in "biuf":
+        raise ValueError(f"values of the type {array.dtype}, which are neither numbers nor texts")
+    arrays[place] = array
     return {"place": place}
 
 

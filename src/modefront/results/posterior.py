@@ -1,4 +1,4 @@
-"""Predictions of models around the reference: how far its posterior scatters them.
+"""Scatter of the predictions by the posterior of the reference.
 
 To first order they need two models along each axis of the posterior; with draws, the models drawn.
 """
@@ -85,7 +85,7 @@ def posterior_models(
 def with_posterior(
     data: xr.Dataset, runner: PredictionRunner, models: PosteriorModels
 ) -> xr.Dataset:
-    """Return results that have predictions with how far the posterior scatters these."""
+    """Return results that have predictions with the scatter of these by the posterior."""
     values: Values = {}
     messages = list(models.messages)
     coordinates: dict[str, object] = {}

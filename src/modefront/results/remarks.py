@@ -1,4 +1,4 @@
-"""What is particular about results, in sentences, for the terminal and the report.
+"""Remarks on results as sentences, for the terminal and the report.
 
 A sentence begins with a small letter and ends without a full stop.
 """
@@ -28,7 +28,7 @@ POOR = 0.5
 
 
 def digest(findings: Sequence[str], where: str, most: int | None = MOST) -> list[str]:
-    """Return the first of some findings, and how many more there are and where they are to be seen.
+    """Return the first of some findings, with the number of others and the option that prints them.
 
     >>> digest(["a", "b", "c"], "see FILE", 2)
     ['a', 'b', 'and 1 more finding: see FILE']
@@ -40,7 +40,7 @@ def digest(findings: Sequence[str], where: str, most: int | None = MOST) -> list
 
 
 def remarks(data: xr.Dataset) -> list[str]:
-    """Return in words all that is particular about the results."""
+    """Return all remarks on the results."""
     return [
         *quality(data),
         *single(data),
@@ -60,7 +60,7 @@ def remarks(data: xr.Dataset) -> list[str]:
 
 
 def headlines(data: xr.Dataset) -> list[str]:
-    """Return what a user should know first: what failed, how good models are, what is open.
+    """Return the first remarks: failures, distance of the models from the data, open questions.
 
     Details of the branches, of the numerics and of the coverage of the front are left to `remarks`
     and `coverage_in_words`.
@@ -86,7 +86,7 @@ def failures(data: xr.Dataset) -> list[str]:
 
 
 def cautions(data: xr.Dataset) -> list[str]:
-    """Return what to beware of, the failures apart."""
+    """Return the warnings other than failures."""
     return [
         *_branches(data),
         *_spacing(data),
@@ -332,9 +332,9 @@ def _pairs(data: xr.Dataset) -> Iterator[str]:
 
 def _changed_pairs(data: xr.Dataset) -> list[str]:
     """Return which measured modes are paired with different model modes, of many in one line."""
-    found = list(_pairs(data))
-    if len(found) <= FEW:
-        return found
+    pairs = list(_pairs(data))
+    if len(pairs) <= FEW:
+        return pairs
     paired = data["paired_mode"].values[front_points(data)]
     changed = [np.unique(column[np.isfinite(column)]).size > 1 for column in paired.T]
     modes = ", ".join(str(r) for r in data["mode"].values[changed])

@@ -82,8 +82,8 @@ class ReportedModel:
 
         Raises ModelError for a model without matrices, and where it has no such modes.
         """
-        found = self._matrices.full_modes(self._values, count or len(self.frequency))
-        return FullShapes(np.sqrt(found.lam) / (2 * np.pi), found.Phi)
+        modes = self._matrices.full_modes(self._values, count or len(self.frequency))
+        return FullShapes(np.sqrt(modes.lam) / (2 * np.pi), modes.Phi)
 
     @property
     def _values(self) -> Floats:
@@ -98,8 +98,8 @@ class ReportedModel:
             )
         model = matrices_at(self.problem.model, self._values)
         if model is None:
-            found = type(self.problem.model).__name__
-            raise ModelError(f"expected a model with matrices, found {found}")
+            kind = type(self.problem.model).__name__
+            raise ModelError(f"expected a model with matrices, found {kind}")
         return model
 
 

@@ -9,11 +9,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Literal
+from typing import Any, Literal
 
 import numpy as np
 import xarray as xr
 
+from modefront._typing import Ints
 from modefront.predictions import KINDS
 from modefront.variables import Values, Variable
 
@@ -78,6 +79,19 @@ DIMENSIONS: Mapping[str, str] = {
 """Dimensions of the variables."""
 
 
+AT_BOUND = 1e-9
+"""Distance from a bound, over the range, up to which a parameter is at it: solvers set it exactly
+there, and files in text lose less."""
+
+
+def _at_bound(values: Mapping[str, Any]) -> Ints:
+    lower, upper = np.asarray(values["bounds"]).T
+    margin = AT_BOUND * (upper - lower)
+    side = np.where(values["theta"] >= upper - margin, 1, 0)
+    return np.where(values["theta"] <= lower + margin, -1, side)
+
+
+# 87 lines: a table, one entry a variable.
 def _models() -> Iterator[Variable]:
     yield Variable("label", ("point",), "name of the point", "text", required=True)
     yield Variable(
@@ -105,7 +119,14 @@ def _models() -> Iterator[Variable]:
     )
     yield Variable("theta", ("point", "parameter"), "parameter values", required=True)
     yield Variable("objective", ("point", "group"), "J_i", unit="1", required=True)
-    yield Variable("error", ("point", "group"), "sqrt(J_i / a_i)", unit="1", required=True)
+    yield Variable(
+        "error",
+        ("point", "group"),
+        "sqrt(J_i / a_i)",
+        unit="1",
+        required=True,
+        value=lambda values: np.sqrt(values["objective"] / values["properties"]),
+    )
     yield Variable(
         "weight",
         ("point", "group"),
@@ -157,6 +178,7 @@ def _models() -> Iterator[Variable]:
         ("point", "parameter"),
         "-1 at the lower bound, 1 at the upper one, 0 between them",
         "count",
+        value=_at_bound,
     )
 
 
@@ -317,6 +339,7 @@ def _open() -> Iterator[Variable]:
     yield Variable("equal_objective", ("equal", "group"), "J_i", unit="1")
 
 
+# 65 lines: a table, one entry a variable.
 def _errors() -> Iterator[Variable]:
     by = "by errors of the data, linearised"
     yield Variable(
@@ -384,6 +407,7 @@ def _errors() -> Iterator[Variable]:
     )
 
 
+# 75 lines: a table, one entry a variable.
 def _shapes() -> Iterator[Variable]:
     yield Variable(
         "set_frequency",
@@ -619,6 +643,11 @@ ATTRIBUTES: Mapping[str, Attribute] = {
 """Attributes by name."""
 
 
+def derived(values: Mapping[str, Any]) -> dict[str, object]:
+    """Return the values of the variables that follow from others."""
+    return {x.name: x.value(values) for x in VARIABLES.values() if x.value is not None}
+
+
 def described(
     values: Mapping[str, object],
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
@@ -648,20 +677,20 @@ def faults(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
             continue
         names = data[name]
         if names.dims != (name,) or names.dtype.kind not in kinds:
-            there = f"{names.dtype} of the dimensions {', '.join(map(str, names.dims))}"
-            yield f"coordinate '{name}'", DIMENSIONS[name], there
+            found = f"{names.dtype} of the dimensions {', '.join(map(str, names.dims))}"
+            yield f"coordinate '{name}'", DIMENSIONS[name], found
     for name, variable in VARIABLES.items():
         if name not in data:
             if variable.required:
                 yield f"variable '{name}'", variable.meaning, "nothing"
             continue
-        found = data[name]
-        if found.dims != variable.dimensions:
+        array = data[name]
+        if array.dims != variable.dimensions:
             dimensions = ", ".join(variable.dimensions) or "none"
-            there = ", ".join(map(str, found.dims)) or "none"
-            yield f"variable '{name}'", f"dimensions {dimensions}", there
-        elif found.dtype.kind not in DTYPES[variable.values]:
-            yield f"variable '{name}'", f"values of type {variable.values}", str(found.dtype)
+            found = ", ".join(map(str, array.dims)) or "none"
+            yield f"variable '{name}'", f"dimensions {dimensions}", found
+        elif array.dtype.kind not in DTYPES[variable.values]:
+            yield f"variable '{name}'", f"values of type {variable.values}", str(array.dtype)
     if not data.sizes.get("point") or not data.sizes.get("mode"):
         yield "dimensions 'point' and 'mode'", "at least one each", "none"
 

@@ -16,8 +16,8 @@ def front_points(data: xr.Dataset) -> Ints:
 
 def not_converged(data: xr.Dataset) -> list[str]:
     """Return the labels of points that should have converged and did not."""
-    tried = data["status"].values != "sampled"
-    return data["label"].values[~data["converged"].values & tried].tolist()
+    solved = data["status"].values != "sampled"
+    return data["label"].values[~data["converged"].values & solved].tolist()
 
 
 def uncertified(data: xr.Dataset) -> np.ndarray:

@@ -1,4 +1,4 @@
-"""What must hold between the values of results, so that all that is shown of them has a meaning.
+"""Conditions on the values of results, without which these have no meaning.
 
 `modefront.results.schema` says which variables there are, of which types and dimensions; this is
 about their values, in files that were damaged or made by another program.

@@ -45,7 +45,6 @@ from modefront.solvers.attainment import Attainment
 from modefront.solvers.continuation import JUMP, Simplex, simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.explore import NEAR, Search
-from modefront.solvers.flat import same
 from modefront.solvers.nbi import Projection
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
@@ -99,26 +98,10 @@ CROWD = 6
 
 WIDE = 0.15
 """Distance of neighbours on a rugged front of two objectives, in steps of the lattice, over which a
-point is looked for between them."""
+point is sought between them."""
 
 OTHERS = 1e-2
-"""Weight of the other objectives, in units of the ranges, where the least of one is looked for."""
-
-BESIDE, NEIGHBOURS = 1.5, 2
-"""Distance of points of other branches, in steps of the ranges, within which a point is solved
-again from them, and how many of these are tried at most."""
-
-ABOVE = 1e-2
-"""Height of a point above the tangent plane of another, in units of the ranges, over twice that of
-the other above its own, from which on they count as points of two branches."""
-
-COARSE = 10
-"""Steps along an edge below which parameters may change by more from a point to its neighbour on
-the same branch, in proportion."""
-
-BEHIND, NEARLY = 1e-2, 1e-3
-"""Excess of a half-finished search over a point, in units of the ranges, that is not followed; and
-of one whose steps have become short."""
+"""Weight of the other objectives, in units of the ranges, where the least of one is sought."""
 
 _ROUGH, _SHORT = Options(step=NEAR / 4, iterations=8), Options(iterations=60)
 
@@ -228,6 +211,7 @@ def chosen(models: Models, count: int, rng: np.random.Generator) -> Ints:
     return np.asarray(pairs[better, np.arange(count)])
 
 
+# 9 arguments: the front of `nbi`, and the models known beside it.
 def explore_between(
     problem: Problem,
     target: Payoff,
@@ -310,8 +294,8 @@ class _Between:
     def ahead(self, probes: Sequence[Solution], known: Models) -> bool:
         """Return whether a probe is ahead of all known models where it was to come to."""
         for solution in probes:
-            own = self.excess(solution, solution.J[None]).min()
-            if self.excess(solution, known.J).min() > own + AHEAD:
+            excess = self.excess(solution, solution.J[None]).min()
+            if self.excess(solution, known.J).min() > excess + AHEAD:
                 return True
         return False
 
@@ -387,7 +371,7 @@ class _Between:
     ) -> list[Solution]:
         """Return the points, each solved again from a model that is ahead of it, if any is."""
         current = list(points)
-        tried: set[tuple[int, bytes]] = set()
+        attempts: set[tuple[int, bytes]] = set()
         for turn in range(ROUNDS):
             everything = models_of([solution for solution in current if solution.feasible])
             everything = everything if models is None else models.joined(everything)
@@ -401,10 +385,14 @@ class _Between:
                     np.inf,
                 )
                 best = int(excess.argmin())
-                own = self.excess(solution, solution.J[None])[0] if solution.feasible else np.inf
+                current_excess = (
+                    self.excess(solution, solution.J[None])[0] if solution.feasible else np.inf
+                )
                 key = (k, everything.theta[best].tobytes())
-                if (excess[best] < own - AHEAD / 10 or not solution.converged) and key not in tried:
-                    tried.add(key)
+                if (
+                    excess[best] < current_excess - AHEAD / 10 or not solution.converged
+                ) and key not in attempts:
+                    attempts.add(key)
                     starts[k] = everything.theta[best]
             if not starts:
                 break
@@ -451,87 +439,6 @@ class _Between:
         return [x for x in self.work.run(tasks) if x.converged]
 
 
-def from_other_branches(
-    problem: Problem,
-    target: Payoff,
-    lattice: Simplex,
-    points: Sequence[Solution],
-    work: Executor = IMMEDIATE,
-    before: Sequence[Solution] = (),
-) -> list[Solution]:
-    """Return the points, each solved again from those of other branches that lie beside it.
-
-    Where branches meet, the lattice leads along one of them as far as it goes, and the other one
-    may already be better. A point of another branch is one whose parameters are far, or whose
-    tangent to the front the point lies above by much more than it above the tangent at the point:
-    on one branch both differ in the third order of their distance. Pairs of points that were so
-    ``before`` are not tried.
-    """
-    current = list(points)
-    span = problem.upper - problem.lower
-    far = JUMP * max(1.0, COARSE / lattice.divisions)
-    kept = [k for k, pair in enumerate(zip(points, before, strict=False)) if same(*pair)]
-    tried = {(k, points[j].theta.tobytes()) for k in kept for j in kept}
-    for turn in range(ROUNDS):
-        theta = np.array([point.theta for point in current]) / span
-        y = np.array([point.J for point in current]) / target.scale
-        above = _above_tangents(current, target)
-        starts: list[tuple[int, int]] = []
-        for k in np.flatnonzero(np.isfinite(y).all(axis=1)).tolist():
-            away = np.abs(y - y[k]).max(axis=1)
-            near = away <= BESIDE / lattice.divisions
-            other = (np.abs(theta - theta[k]) > far).any(axis=1)
-            beside = np.flatnonzero(near & other)
-            below = np.flatnonzero(near & (above[k] > ABOVE + 2 * np.maximum(above[:, k], 0)))
-            chosen = [
-                *beside[away[beside].argsort(kind="stable")][:NEIGHBOURS].tolist(),
-                *below[above[k, below].argsort(kind="stable")][-NEIGHBOURS:].tolist(),
-            ]
-            for j in dict.fromkeys(chosen):
-                key = (k, current[j].theta.tobytes())
-                if key not in tried:
-                    tried.add(key)
-                    starts.append((k, j))
-        if not starts:
-            break
-        name: Key = ("front", "nbi", "branches", turn + 1)
-        ends = work.run(
-            [
-                Task((*name, k + 1, j + 1), _from_branch, (problem, target, current[k], current[j]))
-                for k, j in starts
-            ]
-        )
-        for (k, _), end in zip(starts, ends, strict=True):
-            if _is_better(target, end, current[k]):
-                current[k] = end
-    return current
-
-
-def _above_tangents(points: Sequence[Solution], target: Payoff) -> Floats:
-    """Return how far each point lies above the tangent plane of the front at each other (k, k)."""
-    y = np.array([point.J for point in points]) / target.scale
-    w = np.nan_to_num([np.maximum(point.weights, 0) * target.scale for point in points])
-    total = w.sum(axis=1, keepdims=True)
-    w = np.divide(w, total, out=np.zeros_like(w), where=total > 0)
-    y = np.where(np.isfinite(y), y, 0.0)
-    return np.asarray(y @ w.T - (w * y).sum(axis=1))
-
-
-def _from_branch(problem: Problem, target: Payoff, point: Solution, start: Solution) -> Solution:
-    """Return the programme of a point of the front solved from another point of it.
-
-    It is not solved to the end where it ends behind the point, or comes to it.
-    """
-    beta, programmes = place_of(target, point), programmes_of(problem, target)
-    end = replace(solve(problem, programmes.subproblem(beta), start, _ROUGH), beta=beta)
-    lead = target.excess(beta, point.J).max() - target.excess(beta, end.J).max()
-    away = np.abs((end.theta - point.theta) / (problem.upper - problem.lower)).max()
-    if lead < -(NEARLY if end.converged else BEHIND) or (end.converged and away < NEAR):
-        return end
-    again = programmes.solve_again(problem, beta, end)
-    return replace(again, evaluations=end.evaluations + again.evaluations)
-
-
 def programmes_of(problem: Problem, target: Payoff) -> Projection | Attainment:
     """Return the programmes of the points of the simplex."""
     if target.utopia.size == 2:
@@ -560,8 +467,8 @@ def _follow(problem: Problem, target: Payoff, theta: Floats, objective: int | No
         beta = np.maximum(target.place(evaluation.J), 0.0)
         programme = target.subproblem(np.asarray(beta / beta.sum()))
     else:
-        own = np.arange(evaluation.J.size) == objective
-        programme = weighted(np.where(own, 1.0, OTHERS) / target.scale)
+        chosen = np.arange(evaluation.J.size) == objective
+        programme = weighted(np.where(chosen, 1.0, OTHERS) / target.scale)
     end = solve(problem, programme, start, _ROUGH)
     return replace(end, evaluations=end.evaluations + 1)
 

@@ -97,7 +97,11 @@ def _tightened(problem: Problem, target: Payoff, point: Solution) -> Solution:
             continue
         lower = _lowered(problem, target, replace(end, evaluations=0), lowered)
         evaluations += lower.evaluations
-        settled |= np.array_equal(lowered, free) and not _trades(target, lower.J, end.J)
+        settled |= (
+            lower.converged
+            and np.array_equal(lowered, free)
+            and not _trades(target, lower.J, end.J)
+        )
         if _is_better(target, lower.J, end.J):
             end = lower
     if end is start or not _is_better(target, end.J, J):
@@ -108,7 +112,7 @@ def _tightened(problem: Problem, target: Payoff, point: Solution) -> Solution:
     evaluations += again.evaluations
     best = again if again.converged and _is_better(target, again.J, end.J) else end
     weights = again.weights if best is again else point.weights
-    status = point.status
+    status = point.status if best.converged else best.status
     return replace(best, weights=weights, status=status, evaluations=evaluations, beta=beta)
 
 

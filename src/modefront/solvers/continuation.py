@@ -168,6 +168,7 @@ def continuation(
     return run.solutions()
 
 
+# 15 fields: the problem, and the state of the work.
 @dataclass
 class _Continuation:
     """A continuation at work.
@@ -183,7 +184,7 @@ class _Continuation:
     renewed : how often it was accepted
     attempts : neighbours from which it was tried
     queue, doubtful : steps from a point that converged, or did not: where to, and from where
-    tried : steps that are done, with the number of the solution that they started from
+    attempted : steps that are done, with the number of the solution that they started from
     fixed : points that an edge lies on
     left_out : steps to points that lie too close
     """
@@ -200,7 +201,7 @@ class _Continuation:
     attempts: Counter[LatticePoint] = field(default_factory=Counter)
     queue: deque[tuple[LatticePoint, LatticePoint]] = field(default_factory=deque)
     doubtful: deque[tuple[LatticePoint, LatticePoint]] = field(default_factory=deque)
-    tried: set[tuple[LatticePoint, LatticePoint, int]] = field(default_factory=set)
+    attempted: set[tuple[LatticePoint, LatticePoint, int]] = field(default_factory=set)
     fixed: set[LatticePoint] = field(default_factory=set)
     left_out: set[tuple[LatticePoint, LatticePoint]] = field(default_factory=set)
 
@@ -273,7 +274,7 @@ class _Continuation:
     def _step(self, point: LatticePoint, source: LatticePoint) -> None:
         """Solve a point from a neighbour, and keep the better solution."""
         start, known = self.solved[source], self.solved.get(point)
-        self.tried.add((point, source, self.renewed[source]))
+        self.attempted.add((point, source, self.renewed[source]))
         self.attempts[point] += 1
         solution = self.work.run([self._task(point, source)], self._next())[0]
         if known is None or self._better(point, solution, known):
@@ -286,14 +287,14 @@ class _Continuation:
             and not self._jumps(known, start)
         ):
             # The way back leads to what is known, unless one of the two lies in another basin.
-            self.tried.add((source, point, self.renewed[point]))
+            self.attempted.add((source, point, self.renewed[point]))
 
     def _task(self, point: LatticePoint, source: LatticePoint) -> Task[Solution]:
         """Return the task of a step from a neighbour."""
         known = self.solved.get(point)
         again = known is not None and known.converged
-        way = "again-from" if again else "from"  # which it is may turn out late
-        key = ("front", self.programmes.label, point, way, source, self.renewed[source])
+        relation = "again-from" if again else "from"  # which it is may turn out late
+        key = ("front", self.programmes.label, point, relation, source, self.renewed[source])
         arguments = (self.problem, self.programmes, self.beta(point), self.solved[source])
         return Task(key, _solve_again if again else _solve, arguments)
 
@@ -311,16 +312,16 @@ class _Continuation:
         self.solved[point], self.origin[point] = solution, branch
         self.renewed[point] += 1
         J, divisions = solution.J, self.lattice.divisions
-        own = _nearest(divisions * self.programmes.place(branch, J), divisions)
-        here = self.programmes.goes_on(J) and point == own
+        nearest = _nearest(divisions * self.programmes.place(branch, J), divisions)
+        accepted = self.programmes.goes_on(J) and point == nearest
         steps = self.queue if solution.converged else self.doubtful
-        steps.extend((near, point) for near in neighbours(point) if here or min(near) >= 0)
+        steps.extend((near, point) for near in neighbours(point) if accepted or min(near) >= 0)
 
     def _worth_trying(self, point: LatticePoint, source: LatticePoint) -> bool:
         """Return whether a step may lead to another or a better solution."""
         if point not in self.solved:
             return True
-        if point in self.fixed or (point, source, self.renewed[source]) in self.tried:
+        if point in self.fixed or (point, source, self.renewed[source]) in self.attempted:
             return False
         if not self.few and min(point) < 0:
             return False

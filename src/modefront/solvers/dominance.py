@@ -53,9 +53,9 @@ def undominated(J: Floats, known: Floats, scale: Floats, tolerance: float = SAME
     unit = np.where(scale > 0, scale, 1.0)
     block = max(BLOCK // max(known.size, 1), 1)
     rows = np.flatnonzero(out)
-    for own in (rows[k : k + block] for k in range(0, rows.size, block)):
-        apart = (known[:, None] - J[own]) / unit
+    for chunk in (rows[k : k + block] for k in range(0, rows.size, block)):
+        apart = (known[:, None] - J[chunk]) / unit
         loss, gain = apart.max(axis=2), -apart.min(axis=2)
         dominates = (gain > tolerance) & (loss <= np.minimum(tolerance, TRADE * gain))
-        out[own] = ~dominates.any(axis=0)
+        out[chunk] = ~dominates.any(axis=0)
     return out

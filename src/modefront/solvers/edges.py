@@ -21,7 +21,7 @@ from modefront.solvers.sqp import Options, Solution, begin, solve
 from modefront.work.task import IMMEDIATE, Executor, Task
 
 ATTEMPTS = 4
-"""Starts from which the end of a flat valley is looked for, at most."""
+"""Starts from which the end of a flat valley is sought, at most."""
 
 _TIGHT = Options(step=1e-8)
 
@@ -49,6 +49,7 @@ def typical_sizes(points: Sequence[Solution]) -> Floats | None:
     return np.maximum(np.median(J, axis=0), np.finfo(float).tiny)
 
 
+# 7 arguments: the problem and one search, the executor by keyword.
 def edge(
     problem: Problem,
     objective: int,

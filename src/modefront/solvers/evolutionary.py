@@ -28,7 +28,7 @@ from modefront.work.codec import record
 from modefront.work.task import IMMEDIATE, Executor, Task
 
 UNDEFINED = 1e20
-"""What an objective counts as where the model cannot be evaluated; pymoo takes no infinity."""
+"""Value of an objective where the model cannot be evaluated; pymoo takes no infinity."""
 
 
 def available() -> bool:
@@ -64,20 +64,20 @@ def evolve_front(
     known: dict[bytes, Evaluation] = {}
     spent = 0
     while spent == 0 or spent + population <= evaluations:
-        asked = algorithm.ask()
-        thetas = asked.get("X")
+        proposals = algorithm.ask()
+        thetas = proposals.get("X")
         # Another version of pymoo may ask for other models.
         key = ("front", method, spent, f"{zlib.crc32(thetas.tobytes()):x}")
         (generation,) = work.run([Task(key, _generation, (problem, thetas))])
         members = _members(generation, n)
-        spent += len(asked)
+        spent += len(proposals)
         known |= {
             theta.tobytes(): evaluation for theta, evaluation in zip(thetas, members, strict=True)
         }
         J = np.array([evaluation.J for evaluation in members])
         F = np.nan_to_num(J, posinf=UNDEFINED)
-        Evaluator().eval(StaticProblem(described, F=F), asked)
-        algorithm.tell(infills=asked)
+        Evaluator().eval(StaticProblem(described, F=F), proposals)
+        algorithm.tell(infills=proposals)
         alive = {theta.tobytes() for theta in algorithm.pop.get("X")}
         known = {key: evaluation for key, evaluation in known.items() if key in alive}
     last = [evaluation for evaluation in known.values() if evaluation.feasible]

@@ -52,7 +52,7 @@ NEAR = 2e-2
 
 
 LIMIT = 60
-"""Local searches at most, where nothing else is said and no more of them are wanted at least."""
+"""Default limit of local searches, unless the least number requested is greater."""
 
 MOST = 10**6
 """Local searches, runs and generations that may be asked for."""
@@ -65,7 +65,7 @@ SPREAD = number("a share of the ranges above 0", lambda x: x > 0)
 
 @dataclass(frozen=True)
 class Search:
-    """How many local searches and runs of an evolution strategy seek global minima.
+    """Numbers of local searches and runs of an evolution strategy that seek global minima.
 
     Raises InputError for values that are not possible, alone or together.
 
@@ -102,7 +102,7 @@ class Search:
 
 
 class LocalSearch(Protocol):
-    """What leads from a start to the minimum below it."""
+    """Local search from a start to the minimum below it."""
 
     def value(self, J: Floats, /) -> float:
         """Return the number by which models are ordered."""
@@ -125,7 +125,7 @@ class Descent:
     negligible: float = 0.0
 
     def value(self, J: Floats) -> float:
-        """Return what is minimised."""
+        """Return the value of the programme."""
         return self.programme.value(J)
 
     def equal(self, J: Floats, other: Floats) -> bool:
@@ -149,6 +149,7 @@ class Descent:
         return replace(again, evaluations=solution.evaluations + again.evaluations)
 
 
+# 7 arguments: the problem and one search, its parts by keyword.
 def explore(
     problem: Problem,
     local: LocalSearch,
@@ -172,14 +173,14 @@ def explore(
         run.follow(start, known[k + 1 :])
     fewest = 0 if starts else search.starts
     rugged, hopeless = True, False
-    for tried, (theta, ahead) in enumerate(latin_hypercube(problem, rng, search.limit)):
-        N, w = tried + len(starts), _different(run.minima, local)
-        note(f"search {tried + 1} of at most {search.limit}")
-        few_left = tried >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2)
-        if few_left or (tried >= ENOUGH and run.agreed()):
+    for attempts, (theta, ahead) in enumerate(latin_hypercube(problem, rng, search.limit)):
+        N, w = attempts + len(starts), _different(run.minima, local)
+        note(f"search {attempts + 1} of at most {search.limit}")
+        few_left = attempts >= fewest and w * (N - 1) <= (w + 0.5) * (N - w - 2)
+        if few_left or (attempts >= ENOUGH and run.agreed()):
             rugged = False
             break
-        hopeless = tried >= ESTIMATED and w * (N - 1) > MANY * search.limit * (N - w - 2)
+        hopeless = attempts >= ESTIMATED and w * (N - 1) > MANY * search.limit * (N - w - 2)
         if hopeless:
             break
         run.follow(theta, ahead)
@@ -355,8 +356,8 @@ def evolve(
         not strategy.stop() and np.max(strategy.sigma * strategy.sm.variances**0.5) > search.spread
     ):
         note(f"generation {strategy.countiter + 1} of at most {search.generations}")
-        asked = strategy.ask()
-        candidates = [problem.lower + span * np.clip(u, 0, 1) for u in asked]
+        proposals = strategy.ask()
+        candidates = [problem.lower + span * np.clip(u, 0, 1) for u in proposals]
         tasks = [
             Task(("member", generation, k), objectives, (problem, candidate))
             for k, candidate in enumerate(candidates)
@@ -367,7 +368,7 @@ def evolve(
             values.append(value)
             if value < best:
                 best, theta = value, candidate
-        strategy.tell(asked, values)
+        strategy.tell(proposals, values)
         generation += 1
     return theta
 

@@ -67,7 +67,9 @@ def flat_points(J: Floats, least: Floats, tolerance: float, sizes: Floats) -> In
     within = (1 + tolerance) * least >= J
     count = np.maximum(within.sum(axis=0) - 1, 0)
     scaled = J / np.maximum(np.ptp(J, axis=0), np.finfo(float).tiny)
-    spread = [float(np.ptp(scaled[own], axis=0).max()) if own.any() else 0.0 for own in within.T]
+    spread = [
+        float(np.ptp(scaled[chosen], axis=0).max()) if chosen.any() else 0.0 for chosen in within.T
+    ]
     enough = (count >= 2) & (np.array(spread) >= SPREAD) & (least > EXACT * sizes)
     return np.where(enough, count, 0)
 
@@ -77,6 +79,7 @@ def same(solution: Solution, other: Solution) -> bool:
     return bool(np.array_equal(solution.theta, other.theta))
 
 
+# 8 arguments: the front, and the options of the part.
 def identifiable_part(
     problem: Problem,
     points: Sequence[Solution],

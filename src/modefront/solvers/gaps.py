@@ -68,6 +68,7 @@ class Gap:
         return float((self.end or self.last).J[0] + (self.start or self.first).J[0]) / 2
 
 
+# 7 arguments: the front, and the known models beside it.
 def gaps(
     problem: Problem,
     points: Sequence[Solution],

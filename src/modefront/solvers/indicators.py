@@ -1,4 +1,4 @@
-r"""How much of a front a set of points covers, and how evenly: three numbers.
+r"""Coverage of a front by a set of points: hypervolume, IGD+ and largest gap.
 
 In units of the range of each objective, :math:`y = (J - J^*) / scale`, with the points :math:`Y`
 and a reference set :math:`R`:

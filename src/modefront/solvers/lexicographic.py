@@ -66,7 +66,7 @@ RANK = 1e-7
 tolerance of the parameters."""
 
 REPEATS = 4
-"""How often both steps are repeated at most; it ends earlier where nothing is gained."""
+"""Repetitions of both steps at most; they end earlier where nothing is gained."""
 
 EXPLORE, COARSE, FINE = 1e-5, 1e-6, 1e-7
 """Values of epsilon: for the value of a model, and the two from which a limit is extrapolated."""

@@ -77,7 +77,7 @@ SAME_MINIMUM = 1e-5
 step (`modefront.solvers.sqp.Options`), which minima that are nearly flat miss by as much."""
 
 HALVINGS = 4
-"""How often a step that finds no point is halved, at most: with shorter ones, the models that are
+"""Halvings of a step that finds no point, at most: with shorter ones, the models that are
 wanted do not lead far."""
 
 COVERED = 2
@@ -93,7 +93,7 @@ GAIN = 1e-2
 reported of a range has two digits."""
 
 FAITHFUL = 0.8
-"""What a step gains over what it gains along the tangents, above which the next one is longer: the
+"""Gain of a step over that along the tangents, above which the next one is longer: the
 manifold is straight over its length."""
 
 WALK = 16
@@ -110,7 +110,7 @@ lead: 60 degrees."""
 
 @record
 class Extent(Enum):
-    """How far a manifold was followed; the value says what it means."""
+    """Extent to which a manifold was followed; the value describes it."""
 
     ISOLATED = "an isolated minimum"
     CLOSED = "followed until it closed, within the bounds"
@@ -167,6 +167,7 @@ class _Meter:
         return problem.evaluate(theta, derivatives=derivatives)
 
 
+# 8 arguments: the minima, and limits by keyword.
 def equivalent_models(
     problem: Problem,
     programme: Scalarisation,

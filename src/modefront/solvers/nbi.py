@@ -35,7 +35,7 @@ from modefront.solvers.sqp import Solution, solve
 from modefront.work.task import IMMEDIATE, Executor
 
 HALVINGS = 2
-"""How often a step along the front is halved, at most."""
+"""Halvings of a step along the front, at most."""
 
 
 @dataclass(frozen=True)
@@ -105,6 +105,7 @@ def programmes(
     return Attainment(target, np.array([corner.theta for corner in corners]), floor)
 
 
+# 8 arguments: the simplex, and what is known of the front from before.
 def nbi(
     problem: Problem,
     edges: Sequence[Solution],

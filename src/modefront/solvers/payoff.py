@@ -21,7 +21,7 @@ FLAT = 1e-2
 """Least singular value of Phi, over the greatest one, below which the simplex is flat."""
 
 ATTEMPTS = 3
-"""Known models from which a corner is looked for."""
+"""Known models from which a corner is sought."""
 
 LAST = 1e-6
 """Weight of the objective that is worst at a corner, where the others have 1."""

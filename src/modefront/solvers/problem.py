@@ -1,4 +1,4 @@
-r"""What the solvers see: a vector of objectives J(theta) with derivatives, within bounds.
+r"""Interface of problems to the solvers: objectives J(theta) with derivatives, within bounds.
 
 ========  =========  ==================================================================
 symbol    shape      meaning

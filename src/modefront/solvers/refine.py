@@ -26,6 +26,7 @@ SMALLEST = 1e-4
 """Distance of two projections below which a distance of points is a jump that is left as it is."""
 
 
+# 7 arguments: the front, and the options of its refinement.
 def refine(
     problem: Problem,
     target: Payoff,

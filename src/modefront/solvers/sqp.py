@@ -187,6 +187,7 @@ def begin(evaluation: Evaluation) -> Solution:
     return Solution(evaluation, np.zeros((n, p, p)), np.zeros(n), np.inf, status, 0)
 
 
+# 61 lines: the loop reads as the algorithm in the head of the module.
 def solve(
     problem: Problem, programme: Scalarisation, start: Solution, options: Options | None = None
 ) -> Solution:
@@ -259,7 +260,7 @@ def solve(
 
 @dataclass
 class _Progress:
-    """What the steps so far say of whether the solution ends; ``start`` is its first violation."""
+    """Progress of the steps, by which the solution ends; ``start`` is its first violation."""
 
     options: Options
     start: float

@@ -80,7 +80,7 @@ class TangentPoint:
 
 @dataclass(frozen=True)
 class Context:
-    """What is the same everywhere on a manifold.
+    """Quantities that are the same everywhere on a manifold.
 
     Attributes
     ----------

@@ -48,6 +48,7 @@ def regular(J: Floats, sizes: Floats) -> bool:
     return bool((EXACT * sizes < J).all())
 
 
+# 8 arguments: the problem, and the starts and weights of one search.
 def optimal_minima(
     problem: Problem,
     a: Floats,

@@ -1,4 +1,4 @@
-"""The check of a study before it is run: mistakes, derivatives, what its data do not determine."""
+"""Check of a study before it is run: mistakes, derivatives, undetermined parameters."""
 
 from __future__ import annotations
 
@@ -33,7 +33,7 @@ from modefront.identifiability.words import (
     SHOWN,
     alike_in_words,
     in_words,
-    measured_thing,
+    measured_noun,
     no_effect_in_words,
     summary,
 )
@@ -85,7 +85,7 @@ class Findings:
 
     @property
     def sound(self) -> bool:
-        """Whether the derivatives are as they should be."""
+        """Whether the derivatives agree with finite differences."""
         return self.derivative_error <= AGREEMENT
 
 
@@ -225,19 +225,19 @@ def _fitted_by_any(problem: UpdatingProblem, i: int) -> str:
 
 
 def determined(problem: UpdatingProblem) -> tuple[str, ...]:
-    """Return what each group, and all together, determine at the nominal parameters."""
+    """Return the sentences on the combinations that each group, and all, determine."""
     names, groups = problem.model.parameters, problem.groups
     nominal, scale = problem.evaluate(problem.start), scale_at(problem, problem.start)
     idle = without_effect(problem, nominal, scale)
     out = []
     for i, group in enumerate(groups):
         of_group = combinations(problem, problem.start, i, scale=scale)
-        out.append(summary(group.name, measured_thing([group]), of_group, names, scale, idle))
+        out.append(summary(group.name, measured_noun([group]), of_group, names, scale, idle))
     if len(groups) > 1:
         weights = optimal_weights(problem.properties, nominal.J)
         of_all = combinations(problem, problem.start, weights=weights, scale=scale)
-        thing = measured_thing(groups)
-        out.append(summary("all data together", thing, of_all, names, scale, idle))
+        noun = measured_noun(groups)
+        out.append(summary("all data together", noun, of_all, names, scale, idle))
     return tuple(out)
 
 

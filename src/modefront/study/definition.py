@@ -1,4 +1,4 @@
-"""A study: an updating problem and all that is done with it."""
+"""A study: an updating problem and the options of its solution, analysis and predictions."""
 
 from __future__ import annotations
 

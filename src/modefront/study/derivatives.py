@@ -1,4 +1,4 @@
-r"""Derivatives of the objectives against finite differences, and why they differ where they do.
+r"""Derivatives of the objectives against finite differences, with the likely cause of differences.
 
 Central differences along directions d with two steps are extrapolated,
 
@@ -47,7 +47,7 @@ NAMED = 3
 
 @dataclass(frozen=True)
 class Agreement:
-    """How well derivatives agree with finite differences.
+    """Agreement of derivatives with finite differences.
 
     Attributes
     ----------
@@ -65,7 +65,7 @@ class Agreement:
 
 
 def compared(problem: UpdatingProblem) -> Agreement:
-    """Return how well the derivatives of the objectives agree, near the nominal parameters.
+    """Return the agreement of the derivatives of the objectives near the nominal parameters.
 
     Where bounds leave no room for a step, it leaves them.
     """

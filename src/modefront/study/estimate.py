@@ -1,4 +1,4 @@
-"""How long a study will probably take, and what would make it shorter.
+"""Estimate of the time that a study takes, with advice on how to shorten it.
 
 One model is evaluated a few times, and each prediction once, with few samples. How many models a
 run evaluates is counted in `_parts` from averages over studies with 1 to 17 parameters: a local
@@ -26,7 +26,7 @@ from modefront.study.definition import Study
 from modefront.work.costs import uncounted
 
 SHORT = 30.0
-"""Seconds up to which nothing is said of what would make a run shorter."""
+"""Seconds up to which no advice on a shorter run is given."""
 
 SHARE = 0.25
 """Share of the time from which a part of the work is worth to be made shorter."""

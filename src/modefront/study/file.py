@@ -1,4 +1,4 @@
-"""The study file: TOML in, a study out, or everything that is wrong with it."""
+"""The study file: TOML in, a study out, or all of its faults."""
 
 from __future__ import annotations
 
@@ -105,7 +105,7 @@ def load(path: Path | str) -> Study:
 
 
 def _read_header(header: Table | None) -> tuple[str, int]:
-    """Return name and seed of the table ``[study]``, what it says of memory being read."""
+    """Return name and seed of the table ``[study]``; its memory is read elsewhere."""
     if header is None:
         return "", 0
     name = header.text("name", "a text of printable characters") or ""
@@ -175,7 +175,7 @@ def _full(problem: UpdatingProblem) -> Model:
 
 
 def _without_predictions(values: dict[str, Any]) -> dict[str, Any]:
-    """Return what a study file says but for what is predicted, and with how many draws."""
+    """Return the contents of a study file without the predictions and their number of draws."""
     rest = {key: value for key, value in values.items() if key != "predict"}
     uncertainty = dict(rest.pop("uncertainty", {}))
     uncertainty.pop("draws", None)

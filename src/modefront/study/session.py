@@ -52,6 +52,7 @@ if TYPE_CHECKING:
     from modefront.results.results import Results
 
 
+# 8 arguments: the problem, and each record of options by keyword.
 def solve(
     problem: UpdatingProblem,
     *,
@@ -117,6 +118,7 @@ def in_memory(study: Study) -> Results:
     return Results(_Session(study.completed(), Run()).results(), study.problem)
 
 
+# 7 arguments: the study, and how it is run by keyword.
 def run(
     study: Study,
     folder: Path | str,
@@ -198,7 +200,7 @@ def _prepare(folder: Path, aside: Sequence[Path] = ()) -> None:
 
 @dataclass(frozen=True)
 class _Session:
-    """The work of a study, and who does it."""
+    """The work of a study, with the executor that does it."""
 
     study: Study
     work: Run

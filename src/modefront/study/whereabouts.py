@@ -1,4 +1,4 @@
-"""Where the study of results lies: runs note it beside their results."""
+"""Place of the study of results, which runs note beside their results."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ LARGEST = 10**7
 """Bytes of a study file, at most."""
 
 ABOVE = 3
-"""Folders above the results in which a study is looked for."""
+"""Folders above the results in which a study is sought."""
 
 
 def note_study(folder: Path, tasks: Path, file: Path) -> None:

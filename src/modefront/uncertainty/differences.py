@@ -61,10 +61,10 @@ def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stenci
     """
     m = axes.shape[1]
     std = np.linalg.norm(axes, axis=1)
-    ways = np.where(np.abs(axes) > NEGLIGIBLE * std[:, None], axes, 0.0).T
+    directions = np.where(np.abs(axes) > NEGLIGIBLE * std[:, None], axes, 0.0).T
     points, factors = np.empty((m, 2, theta.size)), np.empty((m, 3))
-    for k, way in enumerate(ways):
-        up, down = (_room(theta, s * way, lower, upper) for s in (1.0, -1.0))
+    for k, direction in enumerate(directions):
+        up, down = (_room(theta, s * direction, lower, upper) for s in (1.0, -1.0))
         side = 1.0 if up >= down else -1.0
         central, aside = min(STEP, up, down), min(STEP, max(up, down) / 2)
         if max(central, aside) < LEAST:
@@ -75,12 +75,12 @@ def stencil(theta: Floats, axes: Floats, lower: Floats, upper: Floats) -> Stenci
         else:
             steps = side * np.array([aside, 2 * aside])
             factors[k] = side * np.array([-3.0, 4.0, -1.0]) / (2 * aside)
-        points[k] = np.clip(theta + steps[:, None] * way, lower, upper)
+        points[k] = np.clip(theta + steps[:, None] * direction, lower, upper)
     return Stencil(points, factors)
 
 
-def _room(theta: Floats, way: Floats, lower: Floats, upper: Floats) -> float:
-    """Return how often ``way`` (p,) can be gone before a bound is met."""
-    moved = way != 0
-    to = np.where(way > 0, upper, lower)
-    return float(((to - theta)[moved] / way[moved]).min(initial=np.inf))
+def _room(theta: Floats, direction: Floats, lower: Floats, upper: Floats) -> float:
+    """Return the number of steps ``direction`` (p,) that stay within the bounds."""
+    moved = direction != 0
+    to = np.where(direction > 0, upper, lower)
+    return float(((to - theta)[moved] / direction[moved]).min(initial=np.inf))

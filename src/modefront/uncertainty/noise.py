@@ -47,7 +47,7 @@ class Noise:
 
 
 def available(data: ModalData) -> tuple[Source, ...]:
-    """Return what tells the uncertainty of data."""
+    """Return the sources of the uncertainty that data have."""
     std = (data.frequency_std > 0).any() or (data.shape_std > 0).any()
     frequencies = np.isfinite(data.frequency).sum(axis=0)
     shapes = np.isfinite(data.shape).any(axis=2).sum(axis=0)
@@ -56,7 +56,7 @@ def available(data: ModalData) -> tuple[Source, ...]:
 
 
 def noise(problem: UpdatingProblem, theta: Floats, source: Source) -> Noise:
-    """Return what errors of the data do at ``theta``; solves one eigenproblem.
+    """Return the effects of errors of the data at ``theta``; solves one eigenproblem.
 
     Raises ModelError where the model has no modes there.
     """

@@ -39,7 +39,7 @@ TRIALS = 100_000
 
 
 class TruncationError(ValueError):
-    """Hardly anything of a Gaussian is within the bounds."""
+    """The share of a Gaussian within the bounds is too small to sample."""
 
 
 def linear(covariance: Floats, slope: Floats) -> Floats:
@@ -71,15 +71,15 @@ def draw(
     """
     lower, upper = bounds if bounds is not None else (-np.inf, np.inf)
     parts: list[Floats] = []
-    accepted = tried = 0
+    accepted = drawn_count = 0
     while accepted < count:
-        if tried >= TRIALS and accepted < SELDOM * tried:
-            raise TruncationError(f"{accepted} of {tried} draws are within the bounds")
+        if drawn_count >= TRIALS and accepted < SELDOM * drawn_count:
+            raise TruncationError(f"{accepted} of {drawn_count} draws are within the bounds")
         drawn = theta + rng.standard_normal((BATCH, axes.shape[1])) @ axes.T
         within = drawn[((drawn >= lower) & (drawn <= upper)).all(axis=1)]
         parts.append(within)
         accepted += len(within)
-        tried += BATCH
+        drawn_count += BATCH
     return np.concatenate([*parts, np.empty((0, theta.size))])[:count]
 
 

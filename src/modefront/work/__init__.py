@@ -1,1 +1,1 @@
-"""Tasks: what a run is made of, who carries them out, what they cost, and what is kept of them."""
+"""Tasks of a run: their execution, costs and kept results."""

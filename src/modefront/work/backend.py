@@ -29,7 +29,7 @@ class Backend(Protocol):
 
     @property
     def workers(self) -> int:
-        """How many tasks are computed at the same time."""
+        """Number of tasks that are computed at the same time."""
 
     def compute(
         self,
@@ -38,7 +38,7 @@ class Backend(Protocol):
         begun: Callable[[int], None],
         /,
     ) -> Iterator[tuple[int, Done]]:
-        """Yield the positions and results of tasks as they end; ``begun`` is told when they begin.
+        """Yield the positions and results of tasks as they end; ``begun`` is called at their start.
 
         Tasks ``ahead`` may be computed as well where there is nothing else to do.
         """

@@ -28,7 +28,7 @@ def record(kind: C) -> C:
 
 
 def encode(value: Any, arrays: dict[str, Floats]) -> Any:
-    """Return what JSON holds of a value, with its arrays put into ``arrays``.
+    """Return a value as JSON has it, with its arrays put into ``arrays``.
 
     Raises TypeError for an object of a class that is not registered.
     """

@@ -128,10 +128,10 @@ def _owner(path: Path) -> Owner | None:
     try:
         if not path.is_file() or path.stat().st_size > LONGEST:
             return None
-        found = Owner(**json.loads(path.read_text(encoding="utf-8")))
+        owner = Owner(**json.loads(path.read_text(encoding="utf-8")))
     except (OSError, ValueError, TypeError):
         return None
-    return found if isinstance(found.process, int) else None
+    return owner if isinstance(owner.process, int) else None
 
 
 def _stale(path: Path, owner: Owner | None) -> bool:

@@ -37,7 +37,7 @@ OFTEN = 10.0
 
 
 class Loss(Enum):
-    """What is lost with an error that is not one of a task."""
+    """Tasks that are lost with an error that is not one of a task."""
 
     PROCESS = "the process that computed the task"
     POOL = "all processes, which can be started again"
@@ -59,7 +59,7 @@ class Pool(Protocol):
         """Compute a message in one of the processes."""
 
     def lost(self, error: Exception, /) -> Loss | None:
-        """Return what is lost with an error; None where it is an error of the task."""
+        """Return the loss that an error means; None where it is an error of the task."""
 
     def restart(self) -> None:
         """Start the processes again."""

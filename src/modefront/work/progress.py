@@ -42,6 +42,7 @@ def ignore(_: State) -> None:
     """Ignore progress reports."""
 
 
+# 12 fields: five are given, the others are its state.
 @dataclass
 class Progress:
     """Follows the tasks of a run and reports its state after every change.
@@ -69,7 +70,7 @@ class Progress:
     _began: float | None = None
 
     def expect(self, stages: Mapping[str, int]) -> None:
-        """Take note of how many tasks of each stage are still to come."""
+        """Note the number of tasks of each stage that are still to come."""
         for stage, count in stages.items():
             self._expected[stage] = self._done.get(stage, 0) + count
         self.report(self.state)

@@ -34,7 +34,7 @@ class Run:
     costs: dict[tuple[Any, ...], Costs] = field(default_factory=dict)
 
     def expect(self, stages: Mapping[str, int]) -> None:
-        """Take note of how many tasks of each stage are still to come."""
+        """Note the number of tasks of each stage that are still to come."""
         self.progress.expect(stages)
 
     def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
@@ -54,7 +54,7 @@ class Run:
                 results[k], self.costs[names[k]] = kept
                 self.progress.end(task.stage, None)
         left = [k for k in range(len(tasks)) if k not in results]
-        elsewhere = [k for k in left if not tasks[k].here and not tasks[k].has_parts]
+        elsewhere = [k for k in left if not tasks[k].in_process and not tasks[k].has_parts]
         likely = [x for x in ahead if not (self.store and self.store.has(x))] if left else []
         chosen = [tasks[k] for k in elsewhere]
 
@@ -74,7 +74,7 @@ class Run:
         return [results[k] for k in range(len(tasks))]
 
     def total(self, chosen: Callable[[str], bool] = lambda _: True) -> Costs:
-        """Return what the tasks of the chosen stages have cost."""
+        """Return the costs of the tasks of the chosen stages."""
         return total(costs for key, costs in self.costs.items() if chosen(str(key[0])))
 
     def _ended(self, task: Task[R], done: Done) -> R:

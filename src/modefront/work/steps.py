@@ -1,4 +1,4 @@
-"""What goes on inside a long task, for who watches: a search, a generation.
+"""Notes on the steps inside a long task: a search, a generation.
 
 `note` tells the listener of the same thread or process, if there is one; a task is never slower or
 different for it.
@@ -24,7 +24,7 @@ _LISTENER: ContextVar[Listener] = ContextVar("listener", default=_ignore)
 
 
 def note(text: str) -> None:
-    """Tell the listener what the task at work does now, in a few words."""
+    """Tell the listener the present step of the running task."""
     _LISTENER.get()(text)
 
 

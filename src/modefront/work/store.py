@@ -29,7 +29,7 @@ LONGEST = 60
 """Characters of a key at most in a file name, which ends in a hash."""
 
 _DAMAGED = (OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, zipfile.BadZipFile)
-"""What files raise that are damaged; RuntimeError where their bytes ask for decryption or for
+"""Errors of damaged files; RuntimeError where their bytes ask for decryption or for
 another compression."""
 
 
@@ -86,7 +86,7 @@ class Store:
 
 
 def _identity(task: Task[Any]) -> str:
-    """Return what tells a task from all others: its parts, which may hold any characters."""
+    """Return the identity of a task as text: its parts, which may hold any characters."""
     return repr((task.key, task.turn))
 
 

@@ -30,7 +30,7 @@ R = TypeVar("R")
 
 @dataclass(frozen=True)
 class Task(Generic[R]):
-    """A function to call, and what it is called with.
+    """A function with its arguments.
 
     Attributes
     ----------
@@ -40,7 +40,7 @@ class Task(Generic[R]):
     seed : of the generator that the function is passed as ``rng``; None where it takes none
     turn : which repetition of the stage the task belongs to
     has_parts : whether the function is passed an executor as ``work``, which computes its parts
-    here : whether it changes its arguments, and is computed in the process that has them
+    in_process : whether it changes its arguments, and is computed in the process that has them
     memory : bytes that it takes besides its arguments, where these are many
     """
 
@@ -50,7 +50,7 @@ class Task(Generic[R]):
     seed: np.random.SeedSequence | None = None
     turn: Key = ()
     has_parts: bool = False
-    here: bool = False
+    in_process: bool = False
     memory: float = 0.0
 
     @property
@@ -60,7 +60,7 @@ class Task(Generic[R]):
 
     @property
     def identity(self) -> Identity:
-        """What tells the task from all others of the run.
+        """Identity of the task among all tasks of the run.
 
         The function is a part, so that no other one that was expected under its name is taken for
         it.

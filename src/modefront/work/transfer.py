@@ -27,7 +27,7 @@ class Shared(Protocol):
 
     @property
     def version(self) -> Hashable:
-        """What changes whenever the object does."""
+        """Number that changes whenever the object does."""
 
     @property
     def footprint(self) -> float:
@@ -130,7 +130,7 @@ _LOCK = threading.Lock()
 
 @dataclass(frozen=True)
 class Reply:
-    """What comes back from a process.
+    """Results and costs that a process sends back.
 
     Attributes
     ----------

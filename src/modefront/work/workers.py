@@ -143,10 +143,10 @@ class Workers:
 
     def _forget(self, call: _Call, ahead: Sequence[Task[Any]]) -> None:
         """Forget what was computed ahead and is not wanted any more."""
-        wanted = {task.identity for task in (*ahead, *call.tasks)}
-        self._ready = {x: done for x, done in self._ready.items() if x in wanted}
+        requested = {task.identity for task in (*ahead, *call.tasks)}
+        self._ready = {x: done for x, done in self._ready.items() if x in requested}
         for future, sent in list(self._flying.items()):
-            if wanted.isdisjoint(task.identity for task in sent.tasks) and future.cancel():
+            if requested.isdisjoint(task.identity for task in sent.tasks) and future.cancel():
                 del self._flying[future]
 
     def _here(
@@ -291,13 +291,13 @@ class Workers:
         return max(1, int(SHORT / max(self._seconds.get(_kind(task), SHORT), SHORT / 1000)))
 
     def _learn(self, task: Task[Any], seconds: float) -> None:
-        """Take note of how long tasks like this one take."""
+        """Note the time of tasks of this kind."""
         kind = _kind(task)
         self._seconds[kind] = (self._seconds.get(kind, seconds) + seconds) / 2
 
 
 def _kind(task: Task[Any]) -> str:
-    """Return what tasks have in common that take about as long."""
+    """Return the kind of a task: tasks of one kind take about as long."""
     functions = [task.function, *(x for x in task.arguments[:1] if callable(x))]
     return " ".join([task.stage, *(function.__qualname__ for function in functions)])
 

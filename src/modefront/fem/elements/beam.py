@@ -52,8 +52,8 @@ def axes(X: Floats, orientation: Floats) -> Floats:
 
 def bending_stiffness(EI: float, Phi: Floats, L: Floats) -> Floats:
     """Stiffness (elements, 4, 4) in one plane, DOFs (v, psi) at either end."""
-    one = np.ones_like(L)
-    a, b, c, d = 12 * one, 6 * L, (4 + Phi) * L**2, (2 - Phi) * L**2
+    ones = np.ones_like(L)
+    a, b, c, d = 12 * ones, 6 * L, (4 + Phi) * L**2, (2 - Phi) * L**2
     rows = [[a, b, -a, b], [b, c, -b, d], [-a, -b, a, -b], [b, d, -b, c]]
     k = np.stack([np.stack(row, -1) for row in rows], -2)
     return np.asarray(k * (EI / (L**3 * (1 + Phi)))[:, None, None])

@@ -1,4 +1,4 @@
-r"""What several elements share: elasticity, condensation, rigid attachment.
+r"""Tools of several elements: elasticity, condensation, rigid attachment.
 
 A point at offset r from a node that moves rigidly with it has
 

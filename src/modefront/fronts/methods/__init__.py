@@ -10,8 +10,8 @@ from modefront.fronts.methods.weights import WeightSweep
 _ALL: tuple[FrontMethod, ...] = (
     NormalBoundaryIntersection(),
     WeightSweep(),
-    Evolutionary("spea2"),
-    Evolutionary("nsga2"),
+    Evolutionary("spea2", "SPEA2"),
+    Evolutionary("nsga2", "NSGA-II"),
 )
 
 METHODS = {method.name: method for method in _ALL}

@@ -22,6 +22,7 @@ if TYPE_CHECKING:
     from modefront.fronts.options import Pareto
 
 
+# 12 fields: a method is passed all that any of the methods needs.
 @dataclass(frozen=True)
 class Setting:
     """Problem, edges and options from which a method starts.
@@ -71,6 +72,14 @@ class FrontMethod(Protocol):
     @property
     def name(self) -> str:
         """Name in ``[pareto] method``, and first part of the labels of its points."""
+
+    @property
+    def title(self) -> str:
+        """Name of the method in sentences."""
+
+    @property
+    def refines(self) -> bool:
+        """Whether it adds points where neighbours are far apart (``[pareto] refined``)."""
 
     @property
     def programme(self) -> Literal["boundary", "weights"] | None:

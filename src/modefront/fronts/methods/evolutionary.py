@@ -21,6 +21,8 @@ class Evolutionary:
     """The front as the last population of an evolutionary method; its points solve nothing."""
 
     name: str
+    title: str
+    refines: bool = False
     programme: None = None
 
     @property

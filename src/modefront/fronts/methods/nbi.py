@@ -9,8 +9,9 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from modefront.fronts.methods.base import Along, Setting
-from modefront.solvers.basins import explore_between, from_other_branches
+from modefront.solvers.basins import explore_between
 from modefront.solvers.border import without_slack
+from modefront.solvers.competition import from_points_beside
 from modefront.solvers.continuation import Simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.flat import same
@@ -38,6 +39,8 @@ class NormalBoundaryIntersection:
     """The front by normal-boundary intersection (Das & Dennis 1998)."""
 
     name: str = "nbi"
+    title: str = "normal-boundary intersection"
+    refines: bool = True
     programme: Literal["boundary"] = "boundary"
 
     @property
@@ -84,7 +87,7 @@ def _settled(
     points: Sequence[Solution],
     work: Executor,
 ) -> list[Solution]:
-    """Return the points, compared with other branches beside them and lowered at the border.
+    """Return the points, compared with the points beside them and lowered at the border.
 
     What is lowered may have left the best branch, or lead to a better one.
     """
@@ -92,7 +95,7 @@ def _settled(
     lowered = list(points)
     for turn in range(TURNS):
         part = Within(work, turn=("turn", turn + 1))
-        compared = from_other_branches(problem, target, lattice, lowered, part, compared)
+        compared = from_points_beside(problem, target, lattice, lowered, part, compared)
         if turn and all(map(same, compared, lowered)):
             break
         lowered = without_slack(problem, target, compared, part, lowered if turn else ())

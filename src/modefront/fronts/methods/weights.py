@@ -18,6 +18,8 @@ class WeightSweep:
     """The front as the minima of weighted sums."""
 
     name: str = "weights"
+    title: str = "a sweep of the weights"
+    refines: bool = False
     programme: Literal["weights"] = "weights"
 
     @property

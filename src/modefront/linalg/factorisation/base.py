@@ -1,4 +1,4 @@
-"""What a sparse symmetric factorisation is to the modes."""
+"""Interface of sparse symmetric factorisations."""
 
 from __future__ import annotations
 
@@ -63,7 +63,7 @@ class Factorisation(Protocol):
 
 
 class Symbolic(Protocol):
-    """What factorisations of all matrices of one pattern have in common."""
+    """Analysis of a pattern, shared by the factorisations of all matrices that have it."""
 
     def factor(self, values: Floats) -> Factorisation:
         """Factor the matrix with these values, in the order of the pattern's entries.

@@ -1,4 +1,4 @@
-"""What a format of matrix files is, and what every format refuses."""
+"""Interface of formats of matrix files, and the checks that all of them make."""
 
 from __future__ import annotations
 
@@ -22,7 +22,7 @@ RATIO, LARGE = 200, 64 * 10**6
 
 @dataclass(frozen=True)
 class Header:
-    """What a file announces of a matrix.
+    """Shape and number of entries that a file announces.
 
     Attributes
     ----------

@@ -20,10 +20,10 @@ SECONDS, SPEED = 60.0, 10**6
 
 
 def header(path: Path, name: str | None) -> Header:
-    """Return what a file announces of one variable; without a name, of the only matrix in it."""
+    """Return the header of one variable; without a name, of the only matrix in the file."""
     if is_hdf5(path):
-        found = _version_7_3(path)
-        return found[_chosen(path, name, {key: each.shape for key, each in found.items()})]
+        headers = _version_7_3(path)
+        return headers[_chosen(path, name, {key: each.shape for key, each in headers.items()})]
     return _version_5(path, name).header
 
 
@@ -36,8 +36,8 @@ def read(path: Path, name: str | None) -> Any:
 
 
 def _version_5(path: Path, name: str | None) -> Variable:
-    found = {each.name: each for each in variables(path)}
-    return found[_chosen(path, name, {key: each.header.shape for key, each in found.items()})]
+    headers = {each.name: each for each in variables(path)}
+    return headers[_chosen(path, name, {key: each.header.shape for key, each in headers.items()})]
 
 
 def _chosen(path: Path, name: str | None, shapes: dict[str, tuple[int, ...]]) -> str:
@@ -54,9 +54,9 @@ def _chosen(path: Path, name: str | None, shapes: dict[str, tuple[int, ...]]) ->
 
 
 def _version_7_3(path: Path) -> dict[str, Header]:
-    """Return what is announced of each variable of a file of version 7.3."""
-    _, found = _isolated(path, "headers")
-    return {name: Header(tuple(shape), entries) for name, (shape, entries) in found.items()}
+    """Return the header of each variable of a file of version 7.3."""
+    _, headers = _isolated(path, "headers")
+    return {name: Header(tuple(shape), entries) for name, (shape, entries) in headers.items()}
 
 
 def _from_hdf5(path: Path, name: str) -> Any:
@@ -74,7 +74,7 @@ def _from_hdf5(path: Path, name: str) -> Any:
 
 
 def _isolated(path: Path, function: str, *arguments: str) -> Read:
-    """Return what the HDF5 library reads, in a process that damaged files may end."""
+    """Return contents read by the HDF5 library, in a process that damaged files may end."""
     seconds = SECONDS + path.stat().st_size / SPEED
     return isolated(f"{READER}:{function}", path, seconds, available_memory(), arguments)
 

@@ -1,4 +1,4 @@
-"""What files of MATLAB's version 7.3, which are HDF5, hold: for processes that read files."""
+"""Contents of files of MATLAB's version 7.3, which are HDF5: for processes that read files."""
 
 from __future__ import annotations
 
@@ -15,20 +15,20 @@ Headers = dict[str, tuple[list[int], int]]
 
 
 def headers(path: Path) -> tuple[dict[str, np.ndarray[Any, Any]], Headers]:
-    """Return no arrays, and what is announced of each variable of a file."""
+    """Return no arrays, and the header of each variable of a file."""
     with h5py.File(path, "r") as file:
-        found: Headers = {}
+        out: Headers = {}
         for name in file:
             if name.startswith("#"):
                 continue  # where MATLAB keeps the parts of cells
             item = inner(file, name)
             if isinstance(item, h5py.Dataset):
-                found[name] = [int(n) for n in item.shape or ()], int(item.size or 0)
+                out[name] = [int(n) for n in item.shape or ()], int(item.size or 0)
             elif "MATLAB_sparse" in item.attrs:
                 columns = int(inner(item, "jc").size) - 1
                 entries = int(inner(item, "data").size) if "data" in item else 0
-                found[name] = [int(item.attrs["MATLAB_sparse"]), columns], entries
-        return {}, found
+                out[name] = [int(item.attrs["MATLAB_sparse"]), columns], entries
+        return {}, out
 
 
 def variable(path: Path, name: str) -> tuple[dict[str, np.ndarray[Any, Any]], list[int]]:

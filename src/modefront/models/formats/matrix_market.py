@@ -54,7 +54,7 @@ class _Announced:
 
 
 def header(path: Path, _: str | None) -> Header:
-    """Return what a file announces; see `MatrixFormat`."""
+    """Return the header of a file; see `MatrixFormat`."""
     return _announced(path).header
 
 
@@ -93,11 +93,11 @@ def read_entries(path: Path, *, square: bool = True) -> Any:
 
 
 def entries(path: Path) -> tuple[dict[str, np.ndarray[Any, Any]], list[int]]:
-    """Return what SciPy reads from a file, as plain arrays: for processes that read files."""
-    found = scipy.io.mmread(path)
-    if isinstance(found, np.ndarray):
-        return {"values": found}, list(found.shape)
-    return {"data": found.data, "row": found.row, "column": found.col}, list(found.shape)
+    """Return the entries of a file as plain arrays, by SciPy: for processes that read files."""
+    matrix = scipy.io.mmread(path)
+    if isinstance(matrix, np.ndarray):
+        return {"values": matrix}, list(matrix.shape)
+    return {"data": matrix.data, "row": matrix.row, "column": matrix.col}, list(matrix.shape)
 
 
 def _announced(path: Path, *, square: bool = True) -> _Announced:
@@ -129,12 +129,12 @@ def _announced(path: Path, *, square: bool = True) -> _Announced:
             raise wrong(path, f"{WHAT}: {expected} sizes", f"'{text}'", f"line {number}")
         sizes = [int(x) for x in counts]
         entries = sizes[2] if layout == "coordinate" else sizes[0] * sizes[1]
-        found = Header((sizes[0], sizes[1]), entries)
+        header = Header((sizes[0], sizes[1]), entries)
         if square:
-            check_header(path, found)
+            check_header(path, header)
         elif sizes[0] * sizes[1] < entries:
             raise wrong(path, WHAT, f"{entries} entries announced for {sizes[0]} x {sizes[1]}")
-        return _Announced(layout, numbers, symmetry, found, stream.tell())
+        return _Announced(layout, numbers, symmetry, header, stream.tell())
 
 
 MATRIX_MARKET = MatrixFormat(".mtx", header, read)

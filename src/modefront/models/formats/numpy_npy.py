@@ -17,7 +17,7 @@ READERS = {
 
 
 def header(path: Path, _: str | None) -> Header:
-    """Return what a file announces; see `MatrixFormat`."""
+    """Return the header of a file; see `MatrixFormat`."""
     with path.open("rb") as stream:
         shape, _order, dtype = array_header(stream)
         size = path.stat().st_size - stream.tell()

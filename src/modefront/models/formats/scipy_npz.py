@@ -38,7 +38,7 @@ SMALL = 4096
 
 
 def header(path: Path, _: str | None) -> Header:
-    """Return what a file announces; see `MatrixFormat`."""
+    """Return the header of a file; see `MatrixFormat`."""
     with _opened(path) as file:
         _, shape, arrays = _announced(path, file)
     return Header(shape, math.prod(arrays["data"]))

@@ -43,7 +43,7 @@ UNSOUND = 0.1
 
 @dataclass(frozen=True, eq=False)
 class Snapshot:
-    """What one full eigensolution gives.
+    """Modes, and the factor, of one full eigensolution.
 
     Attributes
     ----------
@@ -121,7 +121,7 @@ def empty(pencil: Pencil, first: Snapshot) -> Basis:
 def extended(
     pencil: Pencil, basis: Basis, vectors: Floats, shortest: float, capacity: int
 ) -> Basis:
-    """Return the basis with what vectors (N, m) add to it, by the longest directions first.
+    """Return the basis extended by vectors (N, m), the longest directions first.
 
     Directions shorter than ``shortest``, and those beyond ``capacity`` columns, are left out.
     """

@@ -1,4 +1,4 @@
-r"""How wrong the modes of a reduced model are, from their residuals in the full one.
+r"""Errors of the modes of a reduced model, from their residuals in the full one.
 
 The basis is extended by :math:`A^{-1} r` for the residuals r of all models that are asked for, see
 `modefront.models.reduced.corrections`. The reduced problem in that space has the modes
@@ -62,7 +62,7 @@ FOUND = 1 / 3
 """Share of the error that an estimate has to have found."""
 
 SHARES = 0.9999, 0.99, 0.8, FOUND
-"""Shares of the error of which it is looked whether they were found."""
+"""Shares of the error that are tested, one after the other, for having been found."""
 
 MISSED = 0.99
 """Share of the error of a mode next to those in question that is left, where none is known."""
@@ -124,7 +124,7 @@ def missing(modes: int) -> Certificate:
 
 @dataclass(frozen=True, eq=False)
 class CertificateRequest:
-    """What is to be judged.
+    """Modes of one model whose errors are requested.
 
     Attributes
     ----------
@@ -259,7 +259,7 @@ def own_estimate(
 
 @dataclass(frozen=True, eq=False)
 class _Proof:
-    """What shows how much of the errors of the lowest modes a space has found.
+    """Evidence for the share of the errors of the lowest modes that a space has found.
 
     Attributes
     ----------
@@ -268,7 +268,7 @@ class _Proof:
     known : (lowest,) their errors as the space before the last extension knew them
     energy : R^T Z (lowest, lowest) of the residuals in that space
     step : number of extensions
-    own : the shift of the factor, if it is that of the model itself
+    exact_shift : the shift of the factor, if it is that of the model itself
     """
 
     of: CertificateRequest
@@ -276,7 +276,7 @@ class _Proof:
     known: Floats
     energy: Floats
     step: int
-    own: float | None = None
+    exact_shift: float | None = None
 
     def is_leading(self, error: Floats) -> bool:
         """Return whether leading orders tell, and the mode above the level belongs there."""
@@ -288,7 +288,9 @@ class _Proof:
     def holds(self, errors: _ErrorEstimate) -> bool:
         """Return whether a third of the errors of all modes in question is found."""
         of = self.of
-        iterated = (1 - self._missed >= FOUND) if self.own is None else np.zeros(1, dtype=np.bool_)
+        iterated = (
+            (1 - self._missed >= FOUND) if self.exact_shift is None else np.zeros(1, dtype=np.bool_)
+        )
         eigenvalues = iterated | self._bounded(errors.eigenvalue, FOUND)
         shapes = FOUND * self.most(errors) <= np.maximum(errors.shape[: of.below], TOO_SMALL)
         return bool((eigenvalues & shapes)[of.wanted].all())
@@ -305,8 +307,8 @@ class _Proof:
         return np.sqrt(errors.shape[:m] ** 2 + outside + close)
 
     def _left(self, error: Floats) -> Floats:
-        """Return what is left of the errors of modes below the level at most, (below,)."""
-        missed = np.minimum(self._missed, MISSED) if self.own is None else MISSED
+        """Return bounds of the errors not yet found, of modes below the level, (below,)."""
+        missed = np.minimum(self._missed, MISSED) if self.exact_shift is None else MISSED
         ratio = np.full(self.of.below, missed / (1 - missed))
         for share in SHARES:
             bounded = self._bounded(error, share)
@@ -330,7 +332,7 @@ class _Proof:
         for j in range(m):
             ell = rho[j] - allowed[j]
             above = rho - rho[j] + allowed[j] - known  # rho_k - ell, without cancellation
-            if self.own is None:
+            if self.exact_shift is None:
                 g = of.bounds[0] * (1 - ell / level)
                 if not g > 0:
                     continue
@@ -415,7 +417,7 @@ def _with_solutions(
 
 
 def _judged(K: Floats, M: Floats, n: int, lam: Floats, Y: Floats) -> _ErrorEstimate:
-    """Return how wrong the lowest modes of a basis are, given the matrices in a space.
+    """Return the errors of the lowest modes of a basis, given the matrices in a space.
 
     The basis is the first n columns of the space, and the modes have the eigenvalues lam (modes,)
     and coordinates Y (n, modes).

@@ -29,7 +29,7 @@ GAP = 1e-3
 """Relative gap of Ritz values in which sigma may lie."""
 
 WIDE = 0.2
-"""Relative gap that is wide enough not to look for another one."""
+"""Relative gap at which the search for a wider one ends."""
 
 LATER = 4
 """Gaps above the last mode in question among which the widest is taken."""

@@ -1,4 +1,4 @@
-r"""What modes and their derivatives lack in a basis, with the factor of another model.
+r"""Corrections of modes and their derivatives in a basis, with the factor of another model.
 
 For a Ritz pair :math:`(\lambda, \varphi)`, :math:`\varphi^T M \varphi = 1`, the part
 :math:`\delta` that the mode lacks solves, to leading order (Jacobi's correction),
@@ -55,7 +55,7 @@ STEPS = 30
 
 @dataclass(frozen=True)
 class CorrectionRequest:
-    """How exactly a basis is to know models.
+    """Accuracy and size requested of an extension of the basis.
 
     Attributes
     ----------
@@ -198,6 +198,7 @@ def with_modes(
     return basis, np.concatenate(errors)
 
 
+# 7 arguments: the model, the space and the request.
 def with_derivatives(
     pencil: Pencil,
     basis: Basis,

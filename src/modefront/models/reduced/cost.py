@@ -1,4 +1,4 @@
-r"""What a study costs with full solutions and in a reduced basis, before anything is solved.
+r"""Estimated costs of a study with full solutions and in a reduced basis, before it is solved.
 
 The time of a study is estimated from operation counts alone, so that its digits do not depend on a
 clock. With E evaluations of the model,
@@ -79,7 +79,7 @@ class Estimate:
 
 
 def estimate(model: MatrixModel, count: int) -> Estimate:
-    """Return what a study costs that needs ``count`` modes."""
+    """Return the estimated times of a study that needs ``count`` modes."""
     N, p = model.size, len(model.parameters)
     columns = min(N, count * (1 + COLUMNS * p))
     if isinstance(model.stiffness, SparseAffine):

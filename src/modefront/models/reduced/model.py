@@ -51,30 +51,30 @@ WIDE = 2
 """Modes of the first snapshot over those that are used."""
 
 PROBES = 24
-"""Factorisations at most that look for modes which enter where two parameters drop together."""
+"""Factorisations at most that seek modes which enter where two parameters drop together."""
 
 COARSE = 3e-3
 """Length of the shortest direction of the basis that stands for the bounds."""
 
 SHARE = 0.1
-"""What is left of a correction over all of it, where it need not be exact."""
+"""Remainder of a correction over all of it, where it need not be exact."""
 
 FAR = 30.0
 """Condition of K over that of the factor up to which a snapshot has no factor of its own."""
 
 HALVINGS = 4
-"""How often a bound that is farther away is drawn nearer."""
+"""Number of times that a bound is moved halfway to the model."""
 
 TOLERANCE = 1e-8
-"""Relative error of eigenvalues that is aimed at, if nothing else is said."""
+"""Default relative error of eigenvalues."""
 
 MEMORY = 4.0
-"""GiB that a basis may take, if nothing else is said."""
+"""Default limit of the memory of a basis in GiB."""
 
 
 @dataclass(frozen=True)
 class SnapshotRequest:
-    """Where a snapshot is to be taken, at one model or at several together.
+    """One model, or several together, at which a snapshot is requested.
 
     Derivatives are those of the model of which the basis knows the least.
 
@@ -147,6 +147,7 @@ class _Projected:
     sensed: Floats
 
 
+# 11 fields: eight describe the basis, three are its state.
 @shared
 @dataclass(eq=False)
 class ReducedModel:
@@ -313,7 +314,7 @@ class ReducedModel:
         return float(min(np.linalg.norm((theta - nearby) / span) for nearby in thetas))
 
     def certify(self, asked: Sequence[tuple[Floats, Ints]], lowest: int = 0) -> list[Certificate]:
-        """Return how wrong modes are at some parameters; see `Certificate`.
+        """Return the estimated errors of modes at some parameters; see `Certificate`.
 
         ``asked`` are theta (p,) and the modes wanted there, counted from 0. Their errors are
         infinite where one of the ``lowest`` modes, or a mode below the wanted ones, is missing.
@@ -653,7 +654,7 @@ def _knows(basis: Basis, proofs: Sequence[InertiaProof], theta: Floats, lam: flo
 def _near(
     space: _Space, theta: Floats, wanted: Ints, count: int, proofs: Sequence[InertiaProof]
 ) -> CertificateRequest | None:
-    """Return what the factor at hand may judge; None where modes may be missing without proof."""
+    """Return the request that the factor at hand can judge; None where modes may be missing."""
     basis, factor = space.basis, space.factor
     if not basis.semidefinite:
         return None

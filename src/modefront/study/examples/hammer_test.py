@@ -59,8 +59,8 @@ def write(folder: Path) -> None:
             (folder / name).write_text(_measured(H[j], rng), encoding="utf-8")
     for model in ADDED:
         test = read_test(folder / f"test-{model}.toml")
-        found = [identify(part.assembled.data, test.band, test.modes) for part in test.sets]
-        modes = combine([part.name for part in test.sets], found)
+        identified = [identify(part.assembled.data, test.band, test.modes) for part in test.sets]
+        modes = combine([part.name for part in test.sets], identified)
         write_csv(folder / f"modes-{model}.csv", modal_data_of(modes), modes.damping_std)
 
 
@@ -84,8 +84,11 @@ def _measured(H: Complexes, rng: np.random.Generator) -> str:
     response = H + RESPONSE_NOISE * rms * circular(BLOWS, *H.shape)
     force = 1 + FORCE_NOISE * circular(BLOWS, 1, H.shape[1])
     cross = np.mean(force.conj() * response, axis=0)
-    power, own = np.mean(np.abs(force) ** 2, axis=0), np.mean(np.abs(response) ** 2, axis=0)
-    h1, coherence = cross / power, np.abs(cross) ** 2 / (power * own)
+    power, response_power = (
+        np.mean(np.abs(force) ** 2, axis=0),
+        np.mean(np.abs(response) ** 2, axis=0),
+    )
+    h1, coherence = cross / power, np.abs(cross) ** 2 / (power * response_power)
     ends = ("re", "im", "coherence")
     header = ["frequency", *(f"{name}_{end}" for name in FLOORS for end in ends)]
     columns = [part for i in range(len(H)) for part in (h1[i].real, h1[i].imag, coherence[i])]

@@ -194,13 +194,13 @@ def _check_entries(
     model: Table, matrices: Mapping[str, Mapping[str, scipy.sparse.coo_array]], size: int
 ) -> None:
     """Note a mass that is zero, and degrees of freedom with neither stiffness nor mass."""
-    found = [A for terms in matrices.values() for A in terms.values()]
+    all_terms = [A for terms in matrices.values() for A in terms.values()]
     mass = matrices["mass"]
     if mass and not any(A.nnz for A in mass.values()):
         model.fault("mass", "a mass matrix that is not zero", "only zeros")
     elif all(matrices.values()) and not model.faults:
         stiff = np.zeros(size, dtype=bool)
-        for A in found:
+        for A in all_terms:
             stiff[A.row] = True
         if not stiff.all():
             expected = "stiffness or mass at every degree of freedom"

@@ -42,7 +42,7 @@ def read_mesh_model(table: Table, parameters: Sequence[str]) -> Model | None:
             table.fault("file", "a mesh that can be read", str(error))
     floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
     if mesh is None:
-        table.asked += KEYS  # what they say cannot be judged without the mesh
+        table.requested += KEYS  # what they say cannot be judged without the mesh
         return None
     structure, outputs = _structure(table, parameters, mesh), _outputs(table)
     table.notes += unused_groups(mesh, (g.name for g in structure.groups), _named_nodes(table))
@@ -368,7 +368,7 @@ def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:
     for name in table.values if table else ():
         if table is None or name not in parameters:
             if table is not None:
-                table.asked.append(name)
+                table.requested.append(name)
                 table.fault(name, "the name of a parameter", suggestion(name, parameters))
             continue
         scale = table.table(name, "a table { quantity = ..., of = [...] }")

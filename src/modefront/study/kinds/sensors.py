@@ -116,7 +116,7 @@ def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, Sensor
     if node is None or value is None:
         return {}
     several = value if _are_directions(value) else ()
-    named = {name + one.removeprefix("-"): one for one in several} or {name: value}
+    named = {name + axis.removeprefix("-"): axis for axis in several} or {name: value}
     out: dict[str, SensorSpec] = {}
     for sensor, direction in named.items():
         turned = in_axes(place, direction, axes)

@@ -23,7 +23,7 @@ NEAR = 0.01
 """Distance of a sensor from the node of the test that is its own, over the size of the test."""
 
 ASKEW = 0.5
-"""Cosine between the directions of a sensor in the model and in the data below which it is said."""
+"""Cosine between the directions of a sensor in model and data below which these disagree."""
 
 
 def read_data(root: Table, model: Model | None) -> ModalData | None:
@@ -70,7 +70,7 @@ def _of_nodes(
     given = {} if places is None else places.values
     geometry = model.geometry if isinstance(model, MatrixModel) else None
     in_space = geometry if geometry is not None and len(geometry.axes) > 1 else None
-    found: dict[str, tuple[int, Floats]] = {}
+    placed: dict[str, tuple[int, Floats]] = {}
     before = len(table.faults)
     for name in given:
         if name not in model.sensors and places is not None:
@@ -88,19 +88,19 @@ def _of_nodes(
                 table.fault("sensors", expected, "nothing")
         if place is None:
             continue
-        found[name] = place
+        placed[name] = place
         axis = None if in_space is None else in_space.sensor_directions[s]
         in_data = modes.in_space(*place)
         if axis is not None and axis.any() and abs(axis @ in_data[:3]) < ASKEW:
             table.notes.append(DataDirection(name, axis_name(axis), axis_name(in_data)))
     if len(table.faults) > before:
         return None
-    for name, (node, direction) in found.items():
+    for name, (node, direction) in placed.items():
         if np.isnan(modes.along(node, direction)).all():
             measured = f"one of {_listed(modes)}"
             what = f"{modes.nodes[node]} along {axis_name(direction)}, which is 0 in all modes"
             table.fault(f"sensors {name}", measured, what)
-    return modes.at(found) if len(table.faults) == before else None
+    return modes.at(placed) if len(table.faults) == before else None
 
 
 def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | None:
@@ -122,12 +122,12 @@ def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | 
     inner.close()
     if node is None or direction is None:
         return None
-    at = np.flatnonzero(modes.nodes == node)
-    if not at.size:
+    position = np.flatnonzero(modes.nodes == node)
+    if not position.size:
         inner.fault("node", "a node of the test", str(node))
         return None
     try:
-        return int(at[0]), unit_vector(direction, name)
+        return int(position[0]), unit_vector(direction, name)
     except FemError as error:
         inner.fault("direction", "x, y, z, rx, ry, rz or a vector", str(error))
         return None

@@ -32,8 +32,8 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
     if data is not None:
         count = sum(int(kind.measured(data).sum()) for kind in KINDS)
         if len(tables) > count:
-            things = " and ".join(kind.plural for kind in KINDS)
-            expected = f"at most {count} groups, as many as measured {things}"
+            nouns = " and ".join(kind.plural for kind in KINDS)
+            expected = f"at most {count} groups, as many as measured {nouns}"
             root.fault("[[group]]", expected, str(len(tables)))
         _note_equal(root, out, data)
     for name in repeated(table.values.get("name") for table in tables if has_name(table)):

@@ -30,7 +30,7 @@ def read_record(table: Table, record: type[T], *, without: Iterable[str] = ()) -
     values first, and where these are right, what contradicts another.
     """
     chosen = [option for option in options(record) if option.name not in without]
-    table.asked.extend(option.name for option in chosen)
+    table.requested.extend(option.name for option in chosen)
     before = len(table.faults)
     values: dict[str, Any] = {}
     for option in chosen:
@@ -40,7 +40,7 @@ def read_record(table: Table, record: type[T], *, without: Iterable[str] = ()) -
                 table.fault(name, requirement.expected, "nothing")
         elif requirement.record and isinstance(table.values[name], dict):
             place, inner = f"{table.place} {name}", table.values[name]
-            within = replace(table, place=place, values=inner, asked=[])
+            within = replace(table, place=place, values=inner, requested=[])
             values[name] = read_record(within, requirement.record)
         elif fault := option.fault(table.values[name]):
             note(table, [fault])

@@ -14,7 +14,7 @@ from modefront.study.tables.options import note, read_record
 from modefront.toml import Table, has_name
 
 Drafts = Sequence[tuple[Table, Prediction]]
-"""Predictions as their tables say them; what follows from the nominal model is still open."""
+"""Predictions as in their tables, without the defaults that follow from the nominal model."""
 
 
 def read_predictions(root: Table, model: Model | None, data: ModalData | None) -> Drafts:

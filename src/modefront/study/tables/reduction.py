@@ -1,4 +1,4 @@
-"""``reduction`` and ``memory``: whether a model is solved in a reduced basis, and how exactly."""
+"""``reduction`` and ``memory``: use, tolerance and memory of a reduced basis."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ def read_reduction(model: Table | None, header: Table | None, kind: ModelKind | 
     for table, name in ((model, "reduction"), (header, "memory")):
         if table is None:
             continue
-        table.asked.append(name)
+        table.requested.append(name)
         if name in table.values:
             out = _with(table, name, out)
     return out
