@@ -23,7 +23,6 @@ import argparse
 import os
 import re
 import signal
-import subprocess
 import sys
 import tempfile
 import time
@@ -35,6 +34,15 @@ from pathlib import Path
 import numpy as np
 import xarray as xr
 from study_tables import PUSHED, uncertainty
+
+import modefront.__main__
+import modefront.cli.progress
+import modefront.cli.show
+import modefront.study.check
+import modefront.study.file
+import modefront.study.session
+from modefront.cli.main import main as modefront_main
+from modefront.study.examples import write_example
 
 FEW = "\n[search]\nstarts = 3\nlimit = 4\n"
 GROUPS = re.compile(r"(?s)\[\[group\]\].*?(?=\n\[pareto\])")
@@ -51,7 +59,7 @@ name = "high"
 shape = [2, 3]
 """
 PREDICTIONS = uncertainty(draws=4) + PUSHED
-EVOLUTION = '[pareto]\nmethod = "nsga2"\npopulation = 20\nevaluations = 200\n'
+EVOLUTION = '[pareto]\nmethod = "nsga2"\npopulation = 20\nevaluations = 120\n'
 
 
 def pareto(text: str, table: str) -> str:
@@ -60,28 +68,79 @@ def pareto(text: str, table: str) -> str:
 
 
 STUDIES: dict[str, tuple[str, Callable[[str], str]]] = {
-    "chain": ("three-story-c0", lambda text: text),
-    "mesh": ("three-story-fe-c0", lambda text: pareto(text, "[pareto]\npoints = 6\n") + FEW),
+    "chain": ("three-story-c0", lambda text: pareto(text, "[pareto]\npoints = 5\n")),
+    "mesh": ("three-story-fe-c0", lambda text: pareto(text, "[pareto]\npoints = 4\n") + FEW),
     "reduced": (
         "three-story-fe-c0",
         lambda text: (
             pareto(
                 text.replace('kind = "mesh"', 'kind = "mesh"\nreduction = 1e-8'),
-                "[pareto]\npoints = 6\n",
+                "[pareto]\npoints = 4\n",
             )
             + FEW
         ),
     ),
     "three": (
         "three-story-c0",
-        lambda text: pareto(GROUPS.sub(THREE, text), "[pareto]\npoints = 4\n"),
+        lambda text: pareto(GROUPS.sub(THREE, text), "[pareto]\npoints = 3\n"),
     ),
     "predictions": (
         "three-story-c0",
-        lambda text: pareto(text, "[pareto]\npoints = 5\n") + PREDICTIONS,
+        lambda text: pareto(text, "[pareto]\npoints = 3\n") + PREDICTIONS,
     ),
     "evolutionary": ("three-story-c0", lambda text: pareto(text, EVOLUTION)),
 }
+
+
+class Forked:
+    """A run of ``modefront`` in a fork of this process, which has imported all that it needs.
+
+    A new interpreter would take longer than most of the studies here. Its processes are spawned
+    by the run itself, as always.
+
+    Attributes
+    ----------
+    pid : of the run, and of the group of its processes
+    messages : what it has printed on standard error
+    """
+
+    def __init__(self, command: list[str], messages: Path) -> None:
+        self.messages = messages
+        self.status: int | None = None
+        self.pid = os.fork()
+        if self.pid:
+            return
+        os.setsid()
+        for stream, path in ((1, Path(os.devnull)), (2, messages)):
+            os.dup2(os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600), stream)
+        sys.argv = ["modefront", *command]
+        sys.modules["__main__"] = modefront.__main__  # what spawned processes import
+        status = 1
+        try:
+            modefront_main()
+        except SystemExit as left:
+            status = left.code if isinstance(left.code, int) else 1
+        finally:  # nothing of what this process would do at its end
+            os._exit(status)
+
+    def poll(self) -> int | None:
+        """Return the status, negative where a signal has ended the run; None while it goes on."""
+        if self.status is None:
+            pid, code = os.waitpid(self.pid, os.WNOHANG)
+            self.status = os.waitstatus_to_exitcode(code) if pid else None
+        return self.status
+
+    def wait(self) -> int:
+        """Return the status, when the run has ended."""
+        while (status := self.poll()) is None:
+            time.sleep(0.002)
+        return status
+
+    def kill(self) -> None:
+        """Kill the run."""
+        if self.poll() is None:
+            os.kill(self.pid, signal.SIGKILL)
+            self.wait()
 
 
 @dataclass
@@ -93,7 +152,7 @@ class Trials:
     study : its file
     workers : numbers of processes, in turn
     expected : results of a run that was not interrupted
-    seconds : that this run took
+    seconds, writes : that this run took, and had at its end
     kills : so far
     differences : what was not as it should be
     """
@@ -102,6 +161,7 @@ class Trials:
     workers: list[int]
     expected: xr.Dataset = field(init=False)
     seconds: float = field(init=False)
+    writes: int = field(init=False)
     kills: int = 0
     differences: list[str] = field(default_factory=list)
 
@@ -110,25 +170,20 @@ class Trials:
         folder = self.study.with_name("whole")
         self.start(folder, 1).wait()
         self.seconds = time.monotonic() - started
+        self.writes = len(written(folder))
         self.expected = results(folder)
 
-    def start(self, folder: Path, workers: int) -> subprocess.Popen[bytes]:
+    def start(self, folder: Path, workers: int) -> Forked:
         """Start a run in a group of processes of its own."""
-        command = [sys.executable, "-m", "modefront", "run", self.study, "-o", folder]
-        return subprocess.Popen(
-            [*map(str, command), "--workers", str(workers)],
-            stdout=subprocess.DEVNULL,
-            stderr=subprocess.PIPE,
-            start_new_session=True,
-        )
+        command = ["run", str(self.study), "-o", str(folder), "--workers", str(workers)]
+        return Forked(command, folder.with_name("messages.txt"))
 
     def at_a_moment(self, rng: np.random.Generator, number: int) -> None:
         """Kill a run at a random moment, and continue it."""
         folder, moment = self.study.with_name(f"moment{number}"), rng.uniform(0, self.seconds)
         workers = self.workers[number % len(self.workers)]
         process = self.start(folder, workers)
-        with suppress(subprocess.TimeoutExpired):
-            process.wait(moment)
+        time.sleep(moment)
         self.kill(process)
         before = written(folder)
         self.finish(folder, workers, before, f"killed after {moment:.2f} s")
@@ -150,10 +205,9 @@ class Trials:
                 break
         self.finish(folder, self.workers[-1], written(folder), "after all writes")
 
-    def kill(self, process: subprocess.Popen[bytes]) -> None:
+    def kill(self, process: Forked) -> None:
         """Kill the process that was started, and wait for those that it has started."""
         process.kill()
-        process.communicate()
         self.kills += 1
         for _ in range(2000):
             if not list(running(process.pid)):
@@ -165,9 +219,8 @@ class Trials:
     def finish(self, folder: Path, workers: int, before: dict[Path, int], name: str) -> None:
         """Continue a run to its end, and compare it."""
         process = self.start(folder, workers)
-        _, err = process.communicate()
-        if process.returncode:
-            self.differences.append(f"{name}: status {process.returncode}, {err.decode()}")
+        if status := process.wait():
+            self.differences.append(f"{name}: status {status}, {process.messages.read_text()}")
             return
         if not results(folder).identical(self.expected):
             self.differences.append(f"{name}: other digits")
@@ -211,11 +264,7 @@ def running(group: int) -> Iterator[int]:
 def study(name: str, folder: Path) -> Path:
     """Write a study, and return its file."""
     example, edit = STUDIES[name]
-    subprocess.run(
-        [sys.executable, "-m", "modefront", "init", str(folder), "--example", example],
-        check=True,
-        stdout=subprocess.DEVNULL,
-    )
+    write_example(example, folder)
     path = folder / "study.toml"
     path.write_text(edit(path.read_text()))
     return path

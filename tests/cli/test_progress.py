@@ -12,11 +12,11 @@ from rich.console import Console
 import modefront as mf
 from modefront.cli.progress import _Lines, _Log
 from modefront.solvers.explore import Search
-from modefront.study.estimate import SHORT, duration, estimate, expected_tasks
+from modefront.study.estimate import SHORT, Estimate, duration, estimate, expected_tasks
 from modefront.study.examples import write_example
 from modefront.work.costs import Costs
 from modefront.work.progress import State
-from modefront.work.steps import listening, note
+from modefront.work.steps import listening, note, note_iteration
 
 
 def drawn(lines: _Lines, width: int) -> list[str]:
@@ -34,12 +34,17 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     now, costs.eigenproblems = 30.0, 143
     with listening(lines.hear):
         note("search 7 of at most 60")
+        note_iteration(12)
     note("heard by nobody")
     first, second = drawn(lines, 80)
     assert len(first) <= 80
     assert first.startswith("a study of a bridge ")
     assert first.rstrip().endswith("2 of about 27 tasks  0:00:30")
-    assert second == "edges, search 7 of at most 60, 143 models solved, about 70 s left"
+    words = "edges, search 7 of at most 60, iteration 12, 143 models solved, about 70 s left"
+    assert second == words
+    with listening(lines.hear):
+        note("search 8 of at most 60")
+    assert "search 8 of at most 60, 143 models" in drawn(lines, 80)[1], "a new one has no steps yet"
     lines.take(State("edge", 3, 0, 27, 30.0, 50.0))
     now = 40.0
     assert drawn(lines, 80)[1] == "edges, 143 models solved, about 40 s left"
@@ -84,6 +89,14 @@ def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Pat
     points = estimate(replace(study, pareto=mf.Pareto(points=9000)))
     assert points is not None
     assert points.evaluations > 10 * short.evaluations
+
+
+def test_steps_in_many_parameters_are_a_part_of_the_estimate() -> None:
+    long = Estimate(8400.0, 20_000, 0.04, 7600.0, (), {})
+    assert "2.1 h for steps in so many parameters" in long.text
+    assert "predictions" not in long.text
+    short = Estimate(840.0, 20_000, 0.04, 40.0, (), {})
+    assert "steps" not in short.text
 
 
 def test_predictions_are_timed_with_few_samples_and_expected_from_the_start(tmp_path: Path) -> None:

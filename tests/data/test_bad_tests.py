@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 from modefront._typing import Complexes, Floats
+from modefront.data.frf_csv import read_test_csv
 from modefront.data.modal_test import read_test
 from modefront.errors import InputError
 from modefront.identification.identify import weighting
@@ -117,6 +118,15 @@ def test_good_files_have_none(tmp_path: Path, letter: str) -> None:
     (data_set,) = read_test(path).sets
     assert data_set.assembled.warnings == ()
     assert data_set.assembled.data.H == pytest.approx(accelerances(), rel=1e-4, abs=1e-6)
+
+
+def test_a_fault_far_down_a_long_file_is_found_by_its_line(tmp_path: Path) -> None:
+    path = tmp_path / "long.csv"
+    rows = [f"{k},1.0,2.0" for k in range(1, 30_001)]
+    rows[25_000] = "25001,x,2.0"
+    path.write_text("\n".join(["frequency,a_re,a_im", *rows]))
+    with pytest.raises(InputError, match=r"line 25002, column 'a_re'.*found 'x'"):
+        read_test_csv(path, "a")
 
 
 def test_a_pair_that_was_hit_once_is_weighted_too(tmp_path: Path) -> None:

@@ -210,6 +210,31 @@ def test_hostile_files(kind: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatc
     assert str(error.value).isprintable()
 
 
+SHAPE = b"{'descr':'<f8','fortran_order':False,'shape':(10**9,10**9)}"
+
+
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("A.npy", b"\x93NUMPY\x01\x00\x40\x00" + SHAPE.ljust(64), "does not say type, order"),
+        ("A.npy", b"\x93NUMPY\x01\x00\x60\xea" + 60_000 * b"(", "does not say type, order"),
+        ("A.npy", b"\x93NUM", "no array of NumPy"),
+        ("A.npz", npz(format=b"coo", shape=[2.5, 2], data=[1.0], row=[0], col=[0]), "2.5 x 2.0"),
+        (
+            "A.npz",
+            npz(format=b"bsr", shape=[2, 2], data=np.ones((1, 0, 2)), indices=[0], indptr=[0, 1]),
+            "found 1 x 0 x 2",
+        ),
+    ],
+)
+def test_headers_are_told_from_what_they_should_be_in_words(
+    name: str, content: bytes, says: str, tmp_path: Path
+) -> None:
+    (tmp_path / name).write_bytes(content)
+    with pytest.raises(mf.InputError, match=says):
+        read_matrix(tmp_path / name)
+
+
 @pytest.mark.parametrize("name", ["A.mtx", "A.npy", "A.npz", "A.mat"])
 @pytest.mark.parametrize("kind", ["pipe", "device", "folder", "nothing"])
 def test_what_is_no_regular_file(name: str, kind: str, tmp_path: Path) -> None:

@@ -103,6 +103,13 @@ def test_fronts_are_measured_in_the_space_of_errors(two: tuple[Path, Path]) -> N
     assert first.optimal_distance == pytest.approx(3.0)
 
 
+def test_results_without_a_pareto_optimal_model_are_refused(tmp_path: Path) -> None:
+    data = results([[0.0, 3.0], [3.0, 0.0]], [[1.0, 1.0], [1.0, 2.0]])
+    data["pareto"] = np.logical_and(data["pareto"], False)
+    with pytest.raises(InputError, match="'pareto': expected at least one Pareto-optimal model"):
+        compare([save(tmp_path / "one", data)])
+
+
 def test_distances_are_those_in_common_parameters_over_their_bounds(
     two: tuple[Path, Path],
 ) -> None:

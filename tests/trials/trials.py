@@ -39,7 +39,7 @@ SECONDS = 180.0
 LINES, CHARACTERS = 20, 2000
 """Length of a message, at most."""
 
-OFTEN = 500
+OFTEN = 100
 """Inputs after which is said how many were tried."""
 
 Answer = tuple[int, str, str, int] | str

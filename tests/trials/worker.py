@@ -7,11 +7,50 @@ import io
 import json
 import sys
 import warnings
+from collections.abc import Sequence
+from pathlib import Path
 
 from modefront.cli.main import main
-from modefront.isolated import limit
+from modefront.isolated import IsolatedError, Read, isolated, limit
+from modefront.results import files
 
 MEMORY = 6 * 10**9
+
+
+class Once:
+    """Reads results once for all commands that come one after another.
+
+    Most of the time of a command on small results is that of reading the file in a process of its
+    own. The answer for a file that has not changed since is that of the command before.
+    """
+
+    def __init__(self) -> None:
+        self.file: tuple[object, ...] = ()
+        self.answer: Read | IsolatedError = IsolatedError("nothing was read")
+
+    def __call__(
+        self,
+        function: str,
+        path: Path,
+        seconds: float,
+        memory: int,
+        arguments: Sequence[str] = (),
+    ) -> Read:
+        """Return what the file holds, as `isolated` does."""
+        found = path.stat()
+        file = (str(path), found.st_ino, found.st_size, found.st_mtime_ns)
+        if file != self.file:
+            try:
+                self.answer = isolated(function, path, seconds, memory, arguments)
+            except IsolatedError as error:
+                self.answer = error
+            self.file = file
+        if isinstance(self.answer, IsolatedError):
+            raise self.answer
+        arrays, texts = self.answer
+        return {name: values.copy() for name, values in arrays.items()}, json.loads(
+            json.dumps(texts)
+        )
 
 
 def command(arguments: list[str]) -> tuple[int, str, str]:
@@ -32,6 +71,7 @@ def command(arguments: list[str]) -> tuple[int, str, str]:
 
 if __name__ == "__main__":
     limit(MEMORY)
+    vars(files)["isolated"] = Once()
     warnings.simplefilter("ignore")
     for line in sys.stdin:
         status, out, err = command(json.loads(line))

@@ -24,6 +24,7 @@ import modefront as mf
 from modefront.errors import InputError, UnfinishedError
 from modefront.study import session
 from modefront.work import workers as module
+from modefront.work.lock import locked
 from modefront.work.pools import Cluster, LocalPool, Pool
 from modefront.work.progress import Progress, State
 from modefront.work.workers import Workers
@@ -217,3 +218,40 @@ def test_signals_interrupt_a_run_and_end_its_processes(name: str, tmp_path: Path
             break
         time.sleep(0.02)
     assert not running(process.pid)
+
+
+FAULTY = Path(__file__).parents[1] / "trials" / "faulty.py"
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")
+@pytest.mark.parametrize("kind", ["full", "read-only"])
+def test_a_drive_that_fails_ends_a_run_and_its_processes(kind: str, tmp_path: Path) -> None:
+    path, folder = write_study(tmp_path, ""), tmp_path / "results"
+    arguments = ["run", path, "-o", folder, "--workers", "2"]
+    command = [sys.executable, str(FAULTY), kind, "30", str(folder), *map(str, arguments)]
+    with subprocess.Popen(
+        command,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        _, err = process.communicate(timeout=60)
+    assert process.returncode == 1, err
+    words = {"full": "no space left on the drive", "read-only": "a drive that is read-only"}
+    assert words[kind] in err.splitlines()[-1]
+    assert err.splitlines()[-1].endswith("what was done is kept")
+    for _ in range(500):
+        if not running(process.pid):
+            break
+        time.sleep(0.02)
+    assert not running(process.pid)
+    assert list(folder.rglob("*.npz"))
+
+
+def test_a_second_run_with_workers_leaves_the_folder_to_the_first(tmp_path: Path) -> None:
+    path, folder = write_study(tmp_path, ""), tmp_path / "results"
+    folder.mkdir()
+    with locked(folder), pytest.raises(InputError, match="no other run in it"):
+        mf.run(mf.load(path), folder, workers=2)
+    assert not list(folder.rglob("*.npz"))

@@ -20,7 +20,7 @@ from rich.text import Text
 from modefront.text import NAME, clean
 from modefront.work.costs import Costs, counted
 from modefront.work.progress import Progress, State
-from modefront.work.steps import listening
+from modefront.work.steps import ITERATION, listening
 
 TITLES: Mapping[str, str] = {
     "check-groups": "check of the groups",
@@ -93,6 +93,7 @@ class _Lines:
     clock: Callable[[], float] = time.monotonic
     state: State | None = None
     step: str = ""
+    iteration: str = ""
     taken: float = 0.0
     began: float = field(default_factory=time.monotonic)
     is_done: bool = False
@@ -100,12 +101,15 @@ class _Lines:
     def take(self, state: State) -> None:
         """Note the state of the run."""
         if self.state is None or state.stage != self.state.stage or state.done != self.state.done:
-            self.step = ""
+            self.step = self.iteration = ""
         self.state, self.taken = state, self.clock()
 
     def hear(self, text: str) -> None:
         """Note the step that the running task reports."""
-        self.step = text
+        if text.startswith(ITERATION):
+            self.iteration = text
+        else:
+            self.step, self.iteration = text, ""
 
     def end(self) -> None:
         """Take note that the run is done."""
@@ -140,6 +144,8 @@ class _Lines:
         parts = [TITLES.get(self.state.stage, self.state.stage)]
         if self.step:
             parts.append(self.step)
+        if self.iteration:
+            parts.append(self.iteration)
         if self.costs.model_evaluations:
             parts.append(f"{self.costs.model_evaluations} models solved")
         left = self._left()

@@ -25,6 +25,12 @@ FREQUENCY, REAL, IMAGINARY, COHERENCE = "frequency", "_re", "_im", "_coherence"
 MOST_FAULTS = 5
 """Faults that are listed of one file."""
 
+TOGETHER = 10_000
+"""Rows that are read at once, where not all can be."""
+
+LARGEST = 2 * 10**9
+"""Bytes of a file, at most."""
+
 
 def read_test_csv(path: Path, reference: str) -> Contents:
     """Return the functions or the blow of one file; raises InputError with what is wrong."""
@@ -98,8 +104,28 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
     faults: list[Fault] = []
     if (read := _together([row for _, row in numbered], len(header))) is not None:
         return header, read
-    values = np.empty((len(numbered), len(header)))
-    for row_number, (number, row) in enumerate(numbered):
+    parts = []
+    for k in range(0, len(numbered), TOGETHER):
+        block = numbered[k : k + TOGETHER]
+        part = _together([row for _, row in block], len(header))
+        if part is None:
+            part, found = _one_by_one(file, header, block)
+            faults += found
+        parts.append(part)
+        if len(faults) >= MOST_FAULTS:
+            break
+    if faults:
+        raise InputError(faults[:MOST_FAULTS])
+    return header, np.vstack(parts)
+
+
+def _one_by_one(
+    file: str, header: Sequence[str], rows: Sequence[tuple[int, str]]
+) -> tuple[Floats, list[Fault]]:
+    """Return numbered rows of numbers, and what is wrong with them."""
+    faults: list[Fault] = []
+    values = np.empty((len(rows), len(header)))
+    for position, (number, row) in enumerate(rows):
         fields = row.split(",")
         if len(fields) != len(header):
             expected = f"{len(header)} fields, as in the header"
@@ -108,15 +134,13 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
         for k, field in enumerate(fields):
             text = field.strip()
             if NUMBER.fullmatch(text) and np.isfinite(float(text)):
-                values[row_number, k] = float(text)
+                values[position, k] = float(text)
             else:
                 place = f"line {number}, column {header[k]!r}"
                 faults.append(Fault(file, place, "a finite number", repr(text)))
         if len(faults) >= MOST_FAULTS:
             break
-    if faults:
-        raise InputError(faults[:MOST_FAULTS])
-    return header, values
+    return values, faults
 
 
 def _together(rows: Sequence[str], columns: int) -> Floats | None:

@@ -37,26 +37,19 @@ from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, first_axis
 from modefront.modes import tridiagonal
 from modefront.modes.result import ModeDerivatives, Modes
-from modefront.modes.tridiagonal import LowestModes, lowest_modes
+from modefront.modes.tridiagonal import COINCIDENT, FINITE, PRECISE, LowestModes, lowest_modes
 
 CLOSE = 1e-2
 """Relative gap of eigenvalues below which a quotient is formed with the gap itself."""
 
-COINCIDENT = 1e-8
-"""Relative error of a quotient, as caused by rounding in its gap, above which it is left out."""
-
 SHIFT = 1e-5
 """sigma over trace(K) / trace(M), where K is singular: balances rounding in low and high modes."""
 
+MIDDLE = 100.0
+"""Factor around the middle of the spectrum within which the two ways of solving are joined."""
+
 RIGID = 1e-4
 """Eigenvalue over the shift, below which a mode counts as a rigid-body mode."""
-
-INFINITE = 1e-13
-"""Share of the greatest mu = 1 / (lambda + sigma) below which a mode has no finite frequency: what
-rounding leaves of the zeros of a singular M."""
-
-NEGATIVE = 1e-10
-"""Negative mu over the greatest one that passes for rounding; below it, M is indefinite."""
 
 INDEFINITE = 1e-2
 """Negative eigenvalue over the shift that passes for rounding; below it, K is indefinite."""
@@ -81,7 +74,7 @@ def modes(
             return Modes(*at_sensors)
         slopes = tridiagonal.derivatives(K, M, sensors, theta, few, count)
         return Modes(*at_sensors, ModeDerivatives(*slopes))
-    decomposition = decompose(Kt, Mt)
+    decomposition = decompose(Kt, Mt, count)
     lam = decomposition.lam
     if lam.size < count:
         raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")
@@ -123,11 +116,16 @@ def lowest(K: Floats, M: Floats, count: int) -> LowestModes | Decomposition:
 
     Raises ModelError where K or M is indefinite.
     """
-    return lowest_modes(K, M, count) or decompose(K, M)
+    return lowest_modes(K, M, count) or decompose(K, M, count)
 
 
-def decompose(K: Floats, M: Floats) -> Decomposition:
-    """Return all modes. Raises ModelError where K or M is indefinite."""
+def decompose(K: Floats, M: Floats, count: int = 0) -> Decomposition:
+    """Return all modes, the ``count`` lowest of which are to be precise.
+
+    Where the mu of one of these lacks digits, or any mu is lost beside the greatest one, the high
+    modes are solved for as those of K phi = lam M phi, if M is positive definite. Raises ModelError
+    where K or M is indefinite.
+    """
     if not np.diag(M).any():
         raise ModelError("the mass matrix has no mass on its diagonal")
     scale = np.abs(np.diag(K)).sum() / np.abs(np.diag(M)).sum()
@@ -138,20 +136,58 @@ def decompose(K: Floats, M: Floats) -> Decomposition:
         mu, X = _inverse_eigensolve(K + shift * M, M)
         if mu.size == 0:
             raise ModelError("the stiffness matrix is indefinite")
-        elastic = mu[(mu > INFINITE * mu[-1]) & (mu < (1 - RIGID) * mu[-1])]
+        elastic = mu[(mu > FINITE * mu[-1]) & (mu < (1 - RIGID) * mu[-1])]
         if elastic.size:
             # A shift of the size of the lowest elastic mode costs no digits of the others.
             shift = float(1 / elastic[-1] - shift)
             mu, X = _inverse_eigensolve(K + shift * M, M)
-    if mu[0] < -NEGATIVE * mu[-1]:
+    if mu[0] < -tridiagonal.INDEFINITE * mu[-1]:
         raise ModelError("the mass matrix is indefinite")
     mu, X = mu[::-1], X[:, ::-1]
-    lam = 1 / mu[mu > INFINITE * mu[0]] - shift
+    known = mu > FINITE * mu[0]
+    lowest = mu[min(count, mu.size) - 1] / mu[0] if count else 1.0
+    if (lowest < PRECISE or mu[-1] < FINITE * mu[0]) and (high := _high_modes(K, M)):
+        mu, X = _joined(mu, X, shift, *high)
+        known = np.ones(mu.size, bool)
+    lam = 1 / mu[known] - shift
     if not lam.size:
         raise ModelError("no mode has a finite frequency: a stiffness vanishes; check its units")
     if lam[0] < -INDEFINITE * shift:
         raise ModelError("the stiffness matrix is indefinite")
     return Decomposition(mu, X, shift, lam)
+
+
+def _high_modes(K: Floats, M: Floats) -> tuple[Floats, Floats] | None:
+    """Solve K phi = lam M phi, precise in the highest modes; None where M is singular.
+
+    M is judged with a diagonal of ones, as units and slender elements have nothing to do with it.
+    """
+    diagonal = np.diag(M)
+    if diagonal.min() <= 0:
+        return None
+    scale = 1 / np.sqrt(diagonal)
+    if scipy.linalg.eigvalsh(M * np.outer(scale, scale), check_finite=False)[0] < FINITE:
+        return None
+    scaled = np.outer(scale, scale)
+    lam, Phi = scipy.linalg.eigh(K * scaled, M * scaled, check_finite=False)
+    return lam, scale[:, None] * Phi
+
+
+def _joined(mu: Floats, X: Floats, shift: float, lam: Floats, Phi: Floats) -> tuple[Floats, Floats]:
+    """Return mu and X with the modes above the middle of the spectrum from lam and Phi.
+
+    They are joined at the widest relative gap there, where both ways have half of all digits.
+    """
+    middle = np.sqrt((lam[-1] + shift) / mu[0])
+    near = np.flatnonzero((lam[1:] > middle / MIDDLE) & (lam[1:] < middle * MIDDLE)) + 1
+    if not near.size:
+        near = np.array([np.searchsorted(lam, middle)])
+    start = int(near[np.argmax(lam[near] / np.maximum(lam[near - 1], middle / MIDDLE**2))])
+    high = lam[start:] + shift
+    return (
+        np.concatenate([mu[:start], 1 / high]),
+        np.hstack([X[:, :start], Phi[:, start:] / np.sqrt(high)]),
+    )
 
 
 def is_singular(K: Floats) -> bool:

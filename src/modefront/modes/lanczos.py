@@ -38,7 +38,7 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.linalg.products import combine, gram, times
-from modefront.modes.dense import NEGATIVE
+from modefront.modes.tridiagonal import INDEFINITE
 
 TOLERANCE = 1e-7
 """Residual of a Ritz pair over its mu; modes are usually refined once more with another shift."""
@@ -110,7 +110,7 @@ def greatest(
             continue
         mu, Y = np.linalg.eigh(H[:d, :d])
         mu, Y = mu[::-1], Y[:, ::-1]
-        if mu[-1] < -NEGATIVE * mu[0]:
+        if mu[-1] < -INDEFINITE * mu[0]:
             raise ModelError("the mass matrix is indefinite")
         good = np.linalg.norm(R @ Y[new], axis=0) <= np.maximum(TOLERANCE * mu, LOST * mu[0])
         leading = d if good.all() else int(np.argmin(good))
@@ -123,6 +123,7 @@ def greatest(
             if complete:
                 break
     keep = min(d, max(leading, wanted) + 1)
+    complete = complete or d == n
     return Ritz(mu[:keep], combine(V[:, :d], Y[:, :keep]), min(leading, keep), complete)
 
 

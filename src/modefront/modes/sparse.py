@@ -7,6 +7,8 @@ r"""Modes and their exact derivatives for large models, with sparse matrices.
 2. B = K - sigma M is factored for a sigma in a gap above the last mode asked for. Its number of
    negative eigenvalues is the number of modes below sigma (Sylvester), however many were found:
    this proves that none is missing. It needs a positive semidefinite M.
+   Where the basis has lost modes, as those far above the lowest are small beside rounding, all are
+   solved for with dense matrices, or the iteration is begun again with a greater s.
 3. One step of subspace iteration with B makes the modes exact to rounding, purges the null space
    of M from them, and its size shows that they have converged.
 
@@ -24,6 +26,8 @@ Source: Ericsson & Ruhe 1980, doi:10.1090/S0025-5718-1980-0583502-2.
 """
 
 from __future__ import annotations
+
+from contextlib import suppress
 
 import numpy as np
 import scipy.linalg
@@ -58,8 +62,11 @@ GAP = 1e-2
 NARROW = 1e-6
 """Relative gap that is too narrow for sigma: more modes are sought."""
 
+RESTART = 1e-2
+"""s over the greatest known eigenvalue, where the iteration has lost modes and is begun again."""
+
 ALL_AT_ONCE = 3000
-"""Degrees of freedom up to which all modes are solved for, where the iteration loses some."""
+"""Degrees of freedom up to which all modes are solved for where the iteration loses some."""
 
 BEYOND = 1e3
 """Eigenvalue up to which modes are counted, over the greatest known one."""
@@ -95,29 +102,28 @@ def modes(
 def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
     """Return at least the ``count`` lowest modes, with the factors that found them."""
     K, M = pencil.K.at(theta), pencil.M.at(theta)
-    wanted, block = count + max(2, count // 2), BLOCK
+    wanted, block, least, lost = count + max(2, count // 2), BLOCK, 0.0, False
     for attempt in range(ATTEMPTS):
         wanted, block = min(wanted, pencil.size), min(block, pencil.size)
         right = np.random.default_rng(attempt).standard_normal((pencil.size, block))
-        below, A, start = _positive_definite(pencil, K, M, wanted, right)
+        below, A, start = _positive_definite(pencil, K, M, wanted, right, least)
         ritz = greatest(below.factor.solve, A, M, start, wanted)
         finite = int(np.sum(ritz.mu > SINGULAR * ritz.mu[0]))
         known = min(ritz.converged, finite)
         lam, X = 1 / ritz.mu[:finite] + below.sigma, ritz.X[:, :known] / np.sqrt(ritz.mu[:known])
         refines = True
-        if known < count and ritz.complete:
-            existing = _finite(pencil, K, M, lam)
-            if existing <= known:
+        if ritz.complete and (known < count or attempt):
+            if known < count and _finite(pencil, K, M, lam) <= known:
                 raise ModelError(
                     f"{count} modes asked for, but only {known} have a finite frequency"
                 )
+            # The basis has lost some, whose mu is too small beside the greatest.
+            if pencil.size > ALL_AT_ONCE and not lost:
+                least, lost = RESTART * float(lam[known - 1]), True
+                continue
             if pencil.size > ALL_AT_ONCE:
-                raise ModelError(
-                    f"{count} modes asked for, of {existing} that have a finite frequency, but the "
-                    f"eigensolver loses those beyond {known}: ask for fewer modes"
-                )
-            # The basis has lost those that are too small beside the greatest: solved all at once.
-            everything = dense.decompose(K.toarray(), M.toarray())
+                break
+            everything = dense.decompose(K.toarray(), M.toarray(), count)
             lam, X = everything.lam, everything.Phi
             known, finite, refines = lam.size, lam.size, False
             if known < count:
@@ -141,6 +147,11 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
                     noise = _noise(K, refined[1])
                     return Spectrum(*refined, M, noise, beyond, lower, (below, above))
         wanted, block = 2 * wanted, 2 * block
+    if lost:
+        raise ModelError(
+            f"{count} modes asked for, but the eigensolver has lost some of them, after a restart "
+            "too, since their frequencies are too far apart: ask for fewer modes"
+        )
     raise ModelError(
         f"the lowest {count} modes could not be told from the next ones, or some were missed: "
         "stiffnesses may be too far apart (are lengths, sections and E in one set of units?)"
@@ -150,7 +161,16 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
 def _finite(
     pencil: Pencil, K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, lam: Floats
 ) -> int:
-    """Return how many modes have a frequency up to far beyond known eigenvalues (Sylvester)."""
+    """Return how many modes have a finite frequency, up to far beyond known eigenvalues.
+
+    All have one where M is positive definite; else those below a shift are counted (Sylvester).
+    """
+    with suppress(SingularMatrixError):
+        if (
+            M.diagonal().min() > 0
+            and pencil.factor(np.zeros_like(K.data), M.data, -1.0).negative == 0
+        ):
+            return pencil.size
     try:
         factor = pencil.factor(K.data, M.data, BEYOND * float(lam[-1]))
     except SingularMatrixError:
@@ -208,11 +228,15 @@ def _positive_definite(
     M: scipy.sparse.csr_array,
     wanted: int,
     right: Floats,
+    least: float,
 ) -> tuple[Shifted, scipy.sparse.csr_array, Floats]:
-    """Return the factor of A = K + s M, A, and A^-1 right to begin the Lanczos iteration with."""
-    factor, start = _regular(pencil, K, M, 0.0, right)
+    """Return the factor of A = K + s M, A, and A^-1 right to begin the Lanczos iteration with.
+
+    s is ``least``, or greater where that leaves A singular.
+    """
+    factor, start = _regular(pencil, K, M, least, right)
     if factor is not None:
-        return Shifted(0.0, factor), K, start
+        return Shifted(-least, factor), K + least * M if least else K, start
     s = SHIFT * K.trace() / M.trace()
     while True:
         factor, start = _regular(pencil, K, M, s, right)

@@ -40,10 +40,14 @@ GAP = 1e-2
 """Relative gap of eigenvalues above the known modes."""
 
 FINITE = 1e-13
-"""mu over the greatest one, above which a mode has a finite frequency."""
+"""mu over the greatest one, above which a mode has a finite frequency: below is rounding of the
+zeros of a singular M."""
+
+PRECISE = 1e-8
+"""mu over the greatest one, below which digits of it are lost that can be had otherwise."""
 
 INDEFINITE = 1e-10
-"""Negative mu over the greatest one, above which M is indefinite."""
+"""Negative mu over the greatest one, beyond which M is indefinite, and not by rounding."""
 
 SINGULAR = 1e-10
 """Eigenvalue over trace(K) / trace(M) below which K counts as singular: rounding in it would spoil
@@ -112,7 +116,7 @@ class LowestModes:
 def lowest_modes(K: Floats, M: Floats, count: int) -> LowestModes | None:
     """Return the ``count`` lowest modes or more; None where all modes have to be solved for.
 
-    That is so for small or singular matrices and for many modes.
+    That is so for small or singular matrices, for many modes, and where one wanted lacks digits.
     """
     N = len(K)
     if N < MANY or count + SPARE > FEW * N:
@@ -124,6 +128,8 @@ def lowest_modes(K: Floats, M: Floats, count: int) -> LowestModes | None:
     C, diagonal, beside, tau, _ = _lapack.dsytrd(C, lower=1, lwork=_BLOCK * N, overwrite_a=1)
     mu, failed = _lapack.dsterf(diagonal, beside)
     if failed or not mu[-1] > 0 or mu[0] < -INDEFINITE * mu[-1]:
+        return None
+    if mu[-count] < PRECISE * mu[-1]:
         return None
     if mu[-1] * np.trace(K) * SINGULAR > np.trace(M):
         return None

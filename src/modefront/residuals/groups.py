@@ -120,7 +120,8 @@ def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str
 def _of_kind(name: str, modes: ModeNumbers, data: ModalData) -> Iterator[tuple[str, str, str]]:
     """Yield the faults of the modes of one kind."""
     measured = _measured_modes(name, data)
-    unknown = [mode for mode in modes if mode not in measured] if modes != "all" else []
+    known = set(measured)
+    unknown = [mode for mode in modes if mode not in known] if modes != "all" else []
     if unknown:
         yield name, f"one of the measured modes {measured}", str(unknown[0])
     elif len(set(modes)) < len(modes) and modes != "all":
@@ -148,4 +149,5 @@ def _measured_modes(name: str, data: ModalData) -> list[int]:
 
 def _positions(name: str, modes: ModeNumbers, data: ModalData) -> tuple[int, ...]:
     numbers = _measured_modes(name, data) if modes == "all" else modes
-    return tuple(data.modes.index(int(mode)) for mode in numbers)
+    places = {mode: position for position, mode in enumerate(data.modes)}
+    return tuple(places[int(mode)] for mode in numbers)

@@ -135,9 +135,13 @@ def compare(folders: Sequence[Path]) -> Comparison:
     Raises
     ------
     InputError
-        Where there are no results, or their groups are not the same.
+        Where there are no results, or their groups are not the same, or no model is Pareto optimal.
     """
     results = read_together(folders, whole=False)
+    for folder, (_, data) in zip(folders, results, strict=True):
+        if not _best(data).sizes["point"]:
+            expected = "at least one Pareto-optimal model"
+            raise InputError(Fault(str(folder), "variable 'pareto'", expected, "none"))
     groups = tuple(map(str, results[0][1]["group"].values))
     fronts = [_summary(name, data, _length(results[0][1])) for name, data in results]
     pairs = [_apart(first, other) for first, other in combinations(results, 2)]
@@ -275,12 +279,16 @@ def _apart(first_results: tuple[str, xr.Dataset], second_results: tuple[str, xr.
     away = cdist(scaled(_best(a)), scaled(_best(b)))
     best = [_optimally_weighted(a), _optimally_weighted(b)]
     between = [scaled(data) for data in best if data is not None]
+    nearest, farthest = nan, nan
+    if away.size:  # no model is Pareto optimal where none has converged
+        nearest = float(away.min())
+        farthest = float(max(away.min(axis=0).max(), away.min(axis=1).max()))
     return Apart(
         first,
         second,
         tuple(common),
-        float(away.min()),
-        float(max(away.min(axis=0).max(), away.min(axis=1).max())),
+        nearest,
+        farthest,
         float(np.linalg.norm(between[0] - between[1])) if len(between) == 2 else nan,
         float(np.linalg.norm(scaled(_reference(a)) - scaled(_reference(b)))),
     )

@@ -544,6 +544,14 @@ TOGETHER: Mapping[str, tuple[str, ...]] = {
         "shape_basis",
         "shape_coefficient",
     ),
+    "equivalent models": (
+        "equal_of",
+        "equal_manifold",
+        "equal_dimension",
+        "equal_extent",
+        "equal_theta",
+        "equal_objective",
+    ),
     "bootstrap": (
         "bootstrap_theta",
         "bootstrap_objective",

@@ -56,6 +56,7 @@ from modefront.solvers.qp import QuadraticProgramme
 from modefront.solvers.scalarisation import Scalarisation
 from modefront.solvers.secant import learned_from
 from modefront.work.codec import record
+from modefront.work.steps import note_iteration
 
 TAKEN, POOR, GOOD = 1e-4, 0.25, 0.7
 """Actual over predicted reduction from which a step is taken, below which the next one is shorter,
@@ -209,6 +210,7 @@ def solve(
     count = -1
     while True:
         count += 1
+        note_iteration(count + 1)
         local = linearised(problem, programme, evaluation)
         if local.f == -np.inf:
             return Solution(evaluation, S, local.df, 0.0, Status.UNBOUNDED, count)

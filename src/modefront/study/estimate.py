@@ -38,6 +38,10 @@ REDUCED = 0.05
 SAMPLES = 100
 """Samples with which a prediction is timed, and three times as many."""
 
+PROGRAMME = 1e-10
+"""Seconds of the quadratic programme of a step over the fourth power of the number of parameters:
+it changes its working set about as often as there are parameters, and decomposes one each time."""
+
 LARGE = 2000
 """Degrees of freedom from which a reduced basis is worth a try."""
 
@@ -67,6 +71,7 @@ class Estimate:
     seconds : in all, by one process
     evaluations : models that are evaluated, about
     each : seconds for one of them
+    steps : seconds for the quadratic programmes of all steps
     advice : what would make the run shorter, that of the longest part first; none for short runs
     stages : seconds of a task of the stages of a run
     """
@@ -74,14 +79,17 @@ class Estimate:
     seconds: float
     evaluations: int
     each: float
+    steps: float
     advice: tuple[str, ...]
     stages: Mapping[str, float]
 
     @property
     def text(self) -> str:
         """The estimate in a sentence."""
-        predicted = self.seconds - self.evaluations * self.each
+        predicted = self.seconds - self.evaluations * self.each - self.steps
         share = f", {duration(predicted)} for predictions" if predicted > self.seconds / 10 else ""
+        if self.steps > self.seconds / 10:
+            share += f", {duration(self.steps)} for steps in so many parameters"
         return (
             f"a run takes about {duration(self.seconds)} (roughly {_round(self.evaluations)} "
             f"models at {duration(self.each)} each{share}; within a factor of 3)"
@@ -95,10 +103,12 @@ def estimate(study: Study) -> Estimate | None:
         each = _seconds(problem)
         if each is None:
             return None
-        parts = [*_parts(study, each), *_predictions(study, each)]
+        step = PROGRAMME * len(problem.start) ** 4
+        parts = [*_parts(study, each, step), *_predictions(study, each)]
     seconds = sum(part.seconds for part in parts)
     solving = sum(part.seconds for part in parts if part.stage != "predict")
-    evaluations = round(solving / each) if each else 0
+    steps = solving - sum(part.seconds for part in _parts(study, each, 0.0))
+    evaluations = round((solving - steps) / each) if each else 0
     long = [part for part in parts if part.seconds > SHARE * seconds and part.advice]
     advice = [part.advice for part in sorted(long, key=lambda part: -part.seconds)]
     if study.problem.model.size >= LARGE and not isinstance(study.problem.model, ReducedModel):
@@ -110,7 +120,9 @@ def estimate(study: Study) -> Estimate | None:
     for part in parts:
         share = part.seconds / max(tasks.get(part.stage, 1), 1)
         stages[part.stage] = stages.get(part.stage, 0.0) + share
-    return Estimate(seconds, evaluations, each, tuple(advice) if seconds > SHORT else (), stages)
+    return Estimate(
+        seconds, evaluations, each, steps, tuple(advice) if seconds > SHORT else (), stages
+    )
 
 
 def expected_tasks(study: Study) -> dict[str, int]:
@@ -179,16 +191,17 @@ def _seconds(problem: UpdatingProblem) -> float | None:
     return best * (REDUCED if isinstance(problem.model, ReducedModel) else 1.0)
 
 
-def _parts(study: Study, each: float) -> Iterator[Part]:
-    """Yield the parts of the work, predictions apart."""
+def _parts(study: Study, each: float, step: float) -> Iterator[Part]:
+    """Yield the parts of the work, predictions apart: seconds of a model and of a step besides."""
     p, n = len(study.problem.start), len(study.problem.groups)
     search, pareto = study.search, study.pareto
     runs = min(search.limit, search.starts + 4)
     local = 8 + p / 2
-    yield Part("optimal-weights", each * runs * local)
+    both = each + step
+    yield Part("optimal-weights", both * runs * local)
     yield Part(
         "edge",
-        each * n * runs * local,
+        both * n * runs * local,
         f"fewer local searches ([search] limit, now {search.limit}; starts, now {search.starts})",
     )
     points = _points(study)
@@ -196,7 +209,7 @@ def _parts(study: Study, each: float) -> Iterator[Part]:
     if pareto.method in ("nbi", "weights"):
         along = points * point
         yield Part(
-            "front", each * along, f"fewer points of the front ([pareto] points), now {points}"
+            "front", both * along, f"fewer points of the front ([pareto] points), now {points}"
         )
     else:
         evaluations = pareto.evaluations
@@ -211,7 +224,7 @@ def _parts(study: Study, each: float) -> Iterator[Part]:
     if samples:
         yield Part(
             "bootstrap",
-            each * samples * points * point,
+            both * samples * points * point,
             f"fewer bootstrap samples ([uncertainty] bootstrap, now {samples})",
         )
     if isinstance(study.problem.model, ReducedModel):

@@ -10,6 +10,9 @@ from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
 
+ITERATION = "iteration "
+"""What a note begins with that is a detail of the one before it."""
+
 Listener = Callable[[str], None]
 
 
@@ -23,6 +26,11 @@ _LISTENER: ContextVar[Listener] = ContextVar("listener", default=_ignore)
 def note(text: str) -> None:
     """Tell the listener the present step of the running task."""
     _LISTENER.get()(text)
+
+
+def note_iteration(number: int) -> None:
+    """Tell the listener which iteration the search at work has come to."""
+    note(f"{ITERATION}{number}")
 
 
 @contextmanager

@@ -36,10 +36,16 @@ def array_header(stream: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any
 
     Raises ValueError for what is no array of plain values.
     """
-    version = np.lib.format.read_magic(stream)
+    try:
+        version = np.lib.format.read_magic(stream)
+    except ValueError:
+        raise ValueError("no array of NumPy, or the end in its first eight bytes") from None
     if version not in READERS:
         raise ValueError(f"an array of the version {version[0]}.{version[1]}")
-    shape, order, dtype = READERS[version](stream)
+    try:
+        shape, order, dtype = READERS[version](stream)
+    except ValueError:  # NumPy's messages are about its own options and syntax trees
+        raise ValueError("a header that does not say type, order and shape of an array") from None
     if dtype.hasobject:
         raise ValueError("Object arrays cannot be loaded: they could run code")
     if any(n < 0 for n in shape):

@@ -96,7 +96,8 @@ def _announced(
         raise wrong(path, f"a readable matrix: {', '.join(PARTS)}", f"the format '{form}'")
     whole = _array(file, "shape", SMALL)
     if whole.dtype.kind not in "iu" or whole.ndim != 1 or whole.size != 2 or (whole < 0).any():
-        raise wrong(path, "a square matrix", f"a shape of {whole.size} numbers")
+        found = " x ".join(str(n) for n in whole.ravel()[:4].tolist())
+        raise wrong(path, "a square matrix", f"the shape {found}")
     if missing := [name for name in PARTS[form] if name not in names]:
         raise wrong(path, f"a readable matrix: '{missing[0]}' of the format {form}", "nothing")
     shapes = {}
@@ -107,6 +108,9 @@ def _announced(
             check_size(shapes[name], dtype, info.file_size - stream.tell())
         if name != "data" and (dtype.kind not in "iu" or len(shapes[name]) != 1):
             raise wrong(path, f"a readable matrix: whole numbers in '{name}'", f"{dtype}")
+    if form == "bsr" and (len(shapes["data"]) != 3 or 0 in shapes["data"][1:]):
+        found = " x ".join(map(str, shapes["data"]))
+        raise wrong(path, "blocks in 'data', counted along its first dimension", found)
     rows, columns = (int(n) for n in whole)
     return form, (rows, columns), shapes
 

@@ -45,7 +45,7 @@ class DenseEigensolver:
     def full_modes(self, theta: Floats, count: int, loads: Floats) -> FullModes:
         """Return the ``count`` lowest modes; see `modefront.modes.eigensolvers.Eigensolver`."""
         Kt = self.K.at(theta)
-        decomposition = dense.decompose(Kt, self.M.at(theta))
+        decomposition = dense.decompose(Kt, self.M.at(theta), count)
         lam, Phi = decomposition.lam, decomposition.Phi
         if lam.size < count:
             raise ModelError(
