@@ -45,6 +45,10 @@ FINITE = 1e-13
 INDEFINITE = 1e-10
 """Negative mu over the greatest one, above which M is indefinite."""
 
+SINGULAR = 1e-10
+"""Eigenvalue over trace(K) / trace(M) below which K counts as singular: rounding in it would spoil
+the others."""
+
 COINCIDENT = 1e-8
 """Relative error of a quotient, as caused by rounding in its gap, above which it is left out."""
 
@@ -120,6 +124,8 @@ def lowest_modes(K: Floats, M: Floats, count: int) -> LowestModes | None:
     C, diagonal, beside, tau, _ = _lapack.dsytrd(C, lower=1, lwork=_BLOCK * N, overwrite_a=1)
     mu, failed = _lapack.dsterf(diagonal, beside)
     if failed or not mu[-1] > 0 or mu[0] < -INDEFINITE * mu[-1]:
+        return None
+    if mu[-1] * np.trace(K) * SINGULAR > np.trace(M):
         return None
     lam = 1 / mu[::-1][: np.sum(mu > FINITE * mu[-1])]
     wide = np.flatnonzero(np.diff(lam[count + SPARE - 1 :]) > GAP * lam[count + SPARE :])

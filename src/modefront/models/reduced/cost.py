@@ -33,10 +33,10 @@ from modefront.models.matrices import MatrixModel
 EVALUATIONS = 300.0, 130.0
 """E without parameters, and for each of them."""
 
-SOLVER = 2.4e-3
+SOLVER = 1e-3
 """o."""
 
-DENSE = 5e-4, 7e-10, 6e-10
+DENSE = 3e-4, 4e-10, 6e-10
 """Of a dense solution: at least, times N^3, and times N^2 for each derivative of a mode."""
 
 SPARSE = 1.5e-2, 1e-5, 4.7e-7
@@ -46,7 +46,7 @@ FILL = 0.2
 """Entries of a factor over those of the lower triangle and the logarithm of N to the base 2: of
 plates. Those of solids fill in more, which a basis saves."""
 
-SETUP = 0.05, 5e-3, 8e-9
+SETUP = 0.03, 4e-3, 2.5e-8
 """Of S: at least, times n, and times n and the entries of a factor."""
 
 COLUMNS = 1.5
