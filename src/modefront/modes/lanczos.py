@@ -78,22 +78,22 @@ def greatest(
     A: scipy.sparse.csr_array,
     M: scipy.sparse.csr_array,
     start: Floats,
-    wanted: int,
+    needed: int,
     steps: int = STEPS,
 ) -> Ritz:
-    """Return Ritz pairs of T with the ``wanted`` greatest mu, or as many as ``steps`` allow.
+    """Return Ritz pairs of T with the ``needed`` greatest mu, or as many as ``steps`` allow.
 
     ``start`` (N, b) is the first block; of an eigenvalue repeated more often than b times, some
     may be missed. Raises ModelError where M is indefinite.
     """
     n, b = start.shape
-    capacity = min(n, max(3 * wanted, 40) + 4 * b)
+    capacity = min(n, max(3 * needed, 40) + 4 * b)
     V, AV, H = np.empty((n, capacity)), np.empty((n, capacity)), np.zeros((capacity, capacity))
     d, complete = 0, False
     Q, AQ, R = _orthonormal(start, A, 0.0)
     for step in range(1, steps + 1):
         if d + Q.shape[1] > capacity:
-            d = _restart(V, AV, H, d, min(capacity - Q.shape[1], wanted + 2 * b))
+            d = _restart(V, AV, H, d, min(capacity - Q.shape[1], needed + 2 * b))
         new = slice(d, d + Q.shape[1])
         V[:, new], AV[:, new] = Q, AQ
         d = new.stop
@@ -106,7 +106,7 @@ def greatest(
         if R.size and np.abs(R).max() < 1e-4 * scale:
             Q, AQ, again = _orthonormal(_outside(Q, V[:, :d], AV[:, :d]), A, 0.0)
             R = again @ R
-        if d < wanted and Q.size and step < steps:
+        if d < needed and Q.size and step < steps:
             continue
         mu, Y = np.linalg.eigh(H[:d, :d])
         mu, Y = mu[::-1], Y[:, ::-1]
@@ -114,7 +114,7 @@ def greatest(
             raise ModelError("the mass matrix is indefinite")
         good = np.linalg.norm(R @ Y[new], axis=0) <= np.maximum(TOLERANCE * mu, LOST * mu[0])
         leading = d if good.all() else int(np.argmin(good))
-        if leading >= wanted and mu[wanted - 1] > LOST * mu[0]:
+        if leading >= needed and mu[needed - 1] > LOST * mu[0]:
             break
         if leading == d:
             Q, AQ = _fresh(solve, A, M, V[:, :d], AV[:, :d], step, b)
@@ -122,7 +122,7 @@ def greatest(
             complete = not Q.size
             if complete:
                 break
-    keep = min(d, max(leading, wanted) + 1)
+    keep = min(d, max(leading, needed) + 1)
     complete = complete or d == n
     return Ritz(mu[:keep], combine(V[:, :d], Y[:, :keep]), min(leading, keep), complete)
 

@@ -102,12 +102,12 @@ def modes(
 def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
     """Return at least the ``count`` lowest modes, with the factors that found them."""
     K, M = pencil.K.at(theta), pencil.M.at(theta)
-    wanted, block, least, lost = count + max(2, count // 2), BLOCK, 0.0, False
+    needed, block, least, lost = count + max(2, count // 2), BLOCK, 0.0, False
     for attempt in range(ATTEMPTS):
-        wanted, block = min(wanted, pencil.size), min(block, pencil.size)
+        needed, block = min(needed, pencil.size), min(block, pencil.size)
         right = np.random.default_rng(attempt).standard_normal((pencil.size, block))
-        below, A, start = _positive_definite(pencil, K, M, wanted, right, least)
-        ritz = greatest(below.factor.solve, A, M, start, wanted)
+        below, A, start = _positive_definite(pencil, K, M, needed, right, least)
+        ritz = greatest(below.factor.solve, A, M, start, needed)
         finite = int(np.sum(ritz.mu > SINGULAR * ritz.mu[0]))
         known = min(ritz.converged, finite)
         lam, X = 1 / ritz.mu[:finite] + below.sigma, ritz.X[:, :known] / np.sqrt(ritz.mu[:known])
@@ -146,7 +146,7 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
                     beyond = lam[refined[0].size] if finite > refined[0].size else np.inf
                     noise = _noise(K, refined[1])
                     return Spectrum(*refined, M, noise, beyond, lower, (below, above))
-        wanted, block = 2 * wanted, 2 * block
+        needed, block = 2 * needed, 2 * block
     if lost:
         raise ModelError(
             f"{count} modes asked for, but the eigensolver has lost some of them, after a restart "
@@ -226,7 +226,7 @@ def _positive_definite(
     pencil: Pencil,
     K: scipy.sparse.csr_array,
     M: scipy.sparse.csr_array,
-    wanted: int,
+    needed: int,
     right: Floats,
     least: float,
 ) -> tuple[Shifted, scipy.sparse.csr_array, Floats]:
@@ -244,11 +244,11 @@ def _positive_definite(
         if factor is None:
             dof = int(np.argmax(np.abs(start).max(axis=1))) if start.size else None
             raise ModelError(_why_not(dof))
-        ritz = greatest(factor.solve, A, M, start, wanted, steps=6)
+        ritz = greatest(factor.solve, A, M, start, needed, steps=6)
         finite = ritz.mu > SINGULAR * ritz.mu[0]
         mu, X = ritz.mu[finite], ritz.X[:, finite]
         noise = 1e3 * SINGULAR * (K.diagonal() @ X**2 / mu).max()
-        elastic = np.maximum(1 / mu - s, noise)[min(wanted, mu.size) - 1 :]
+        elastic = np.maximum(1 / mu - s, noise)[min(needed, mu.size) - 1 :]
         target = elastic[int(np.argmax(elastic > noise))]
         if target > 0.1 * s:
             return Shifted(-s, factor), A, start

@@ -138,8 +138,8 @@ def lowest_modes(K: Floats, M: Floats, count: int) -> LowestModes | None:
     if not wide.size:
         return None
     known = count + SPARE + int(wide[0])
-    one = np.ones(N, dtype=np.int32)
-    S, failed = _lapack.dstein(diagonal, beside, mu[-known:], one, N * one)
+    ones = np.ones(N, dtype=np.int32)
+    S, failed = _lapack.dstein(diagonal, beside, mu[-known:], ones, N * ones)
     if failed:
         return None
     S, Q = S[:, ::-1], np.asfortranarray(C[1:, :-1])

@@ -130,7 +130,7 @@ class CertificateRequest:
     Attributes
     ----------
     theta : (p,) parameters of the model
-    wanted : (modes,) the modes in question, counted from 0
+    modes : (modes,) the modes in question, counted from 0
     lam, Y : (lowest,), (n, lowest) the lowest modes in the basis, mass-normalised
     below : how many of them are below ``sigma``; of the full model there are as many
     sigma : a level above the modes in question
@@ -139,7 +139,7 @@ class CertificateRequest:
     """
 
     theta: Floats
-    wanted: Ints
+    modes: Ints
     lam: Floats
     Y: Floats
     below: int
@@ -172,31 +172,31 @@ def estimates(
     sensors: scipy.sparse.csr_array,
     basis: Basis,
     factor: Factor,
-    asked: Sequence[CertificateRequest],
+    requests: Sequence[CertificateRequest],
 ) -> list[Certificate | None]:
     """Return the certificates of some models, with the factor of another one.
 
     They are None where a factor of their own is needed. Errors of eigenvalues are over lam + s.
     """
     shift, space = factor.below.sigma, basis
-    zeros = [np.zeros(request.lam.shape) for request in asked]
+    zeros = [np.zeros(request.lam.shape) for request in requests]
     errors = [
         _ErrorEstimate(z, z, request.lam, request.Y)
-        for request, z in zip(asked, zeros, strict=True)
+        for request, z in zip(requests, zeros, strict=True)
     ]
-    out: list[Certificate | None] = [None] * len(asked)
+    out: list[Certificate | None] = [None] * len(requests)
     rounding = list(zip(zeros, zeros, strict=True))
-    pending = [k for k, request in enumerate(asked) if _steps(request, shift) <= STEPS]
+    pending = [k for k, request in enumerate(requests) if _steps(request, shift) <= STEPS]
     for step in range(1, STEPS + 1):
         if not pending:
             break
-        models = [(asked[k].theta, errors[k]) for k in pending]
+        models = [(requests[k].theta, errors[k]) for k in pending]
         solved = _solutions(pencil, space, factor, models)
         space = _with_solutions(pencil, space, factor, solved)
         seen = np.hstack([sensors @ block for block in space.blocks])
         unsettled = []
         for k, request in zip(pending, solved, strict=True):
-            of = asked[k]
+            of = requests[k]
             proof = _Proof(of, shift, errors[k].eigenvalue, gram(request.R, request.Z), step)
             if step == 1:
                 K0 = pencil.K.at(of.theta)
@@ -220,7 +220,7 @@ def own_estimate(
     pencil: Pencil,
     sensors: scipy.sparse.csr_array,
     basis: Basis,
-    asked: CertificateRequest,
+    requested: CertificateRequest,
     shifted: Shifted,
 ) -> Certificate:
     """Return the certificate of a model with its own factor of K - sigma M, sigma being the level.
@@ -228,18 +228,18 @@ def own_estimate(
     Errors of eigenvalues are over lam + s, and contain the rounding of the basis where that is
     greater than the one of the model.
     """
-    m, shift = asked.below, basis.sigma
-    K, M = pencil.K.at(asked.theta), pencil.M.at(asked.theta)
-    X = basis.combine(asked.Y[:, :m])
+    m, shift = requested.below, basis.sigma
+    K, M = pencil.K.at(requested.theta), pencil.M.at(requested.theta)
+    X = basis.combine(requested.Y[:, :m])
     try:
         inner, mass = gram(X, times(K, X)), gram(X, times(M, X))
         start = dense.decompose(inner, mass)
         if start.lam.size < m:
-            return missing(asked.wanted.size)
-        lam = asked.lam[:m]
+            return missing(requested.modes.size)
+        lam = requested.lam[:m]
         rounding = _rounding(K, X, inner - mass * lam, lam)
         unit = np.sqrt(start.lam - shift)
-        of = replace(asked, lam=start.lam, Y=np.diag(unit))
+        of = replace(requested, lam=start.lam, Y=np.diag(unit))
         S, n = combine(X, start.Phi / unit), m
         errors = _ErrorEstimate(np.zeros(m), np.zeros(m), of.lam, of.Y)
         for step in range(1, OWN_STEPS + 1):
@@ -255,7 +255,7 @@ def own_estimate(
                 return _certificate(proof, errors, sensors @ S, rounding)
     except ModelError:
         pass
-    return missing(asked.wanted.size)
+    return missing(requested.modes.size)
 
 
 @dataclass(frozen=True, eq=False)
@@ -294,7 +294,7 @@ class _Proof:
         )
         eigenvalues = iterated | self._bounded(errors.eigenvalue, FOUND)
         shapes = FOUND * self.most(errors) <= np.maximum(errors.shape[: of.below], TOO_SMALL)
-        return bool((eigenvalues & shapes)[of.wanted].all())
+        return bool((eigenvalues & shapes)[of.modes].all())
 
     def most(self, errors: _ErrorEstimate) -> Floats:
         """Return the errors of shapes that what is left of the energy allows, (below,)."""
@@ -356,7 +356,7 @@ def _rate(of: CertificateRequest, shift: float) -> Floats:
 
 def _steps(of: CertificateRequest, shift: float) -> float:
     """Return after how many extensions enough is found of the errors, to leading order."""
-    rate = float(_rate(of, shift)[of.wanted].min())
+    rate = float(_rate(of, shift)[of.modes].min())
     return np.arccosh(1 / np.sqrt(1 - FOUND)) / rate if rate > 0 else np.inf
 
 
@@ -370,7 +370,7 @@ def _certificate(
     error = error + rounding[0][:m]
     relative = error / np.maximum(of.lam[:m] - proof.shift - error, tiny)
     phi = seen @ errors.Y
-    return Certificate(relative[of.wanted], shape[of.wanted], errors.lam, phi)
+    return Certificate(relative[of.modes], shape[of.modes], errors.lam, phi)
 
 
 def _rounding(

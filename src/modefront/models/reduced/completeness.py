@@ -80,7 +80,7 @@ def condition_within(K: DenseAffine, M: DenseAffine, theta: Floats, sigma: float
 
 
 def gap_above(lam: Floats, last: int) -> tuple[int, float]:
-    """Return how many Ritz values are below a sigma in a gap above the last one wanted.
+    """Return how many Ritz values are below a sigma in a gap above the last one requested.
 
     It is the wider one of the next two, if that is no cluster, else the widest of all.
     """

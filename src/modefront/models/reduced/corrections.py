@@ -177,7 +177,7 @@ def with_modes(
     factor: Factor,
     thetas: Sequence[Floats],
     count: int,
-    wanted: CorrectionRequest,
+    request: CorrectionRequest,
 ) -> tuple[Basis, Floats] | None:
     """Return the basis with what the ``count`` lowest modes at some parameters lack in it.
 
@@ -190,8 +190,8 @@ def with_modes(
         some = thetas[first : first + width]
         columns = np.arange(len(some) * count).reshape(-1, count)
         sought = partial(_modes, pencil, some, count)
-        corrected = _with(pencil, basis, factor, sought, columns, wanted)
-        if not (corrected.settled or wanted.share):
+        corrected = _with(pencil, basis, factor, sought, columns, request)
+        if not (corrected.settled or request.share):
             return None
         basis = corrected.basis
         errors.append(corrected.errors)
@@ -206,7 +206,7 @@ def with_derivatives(
     theta: Floats,
     count: int,
     half_range: Floats,
-    wanted: CorrectionRequest,
+    request: CorrectionRequest,
 ) -> Basis:
     """Return the basis with what the derivatives of the ``count`` lowest modes lack in it.
 
@@ -217,7 +217,7 @@ def with_derivatives(
     columns, width = count * theta.size, together(pencil.size)
     for first in range(0, columns, width):
         some = np.arange(first, min(first + width, columns))
-        basis = _with(pencil, basis, factor, sought, some[None], wanted).basis
+        basis = _with(pencil, basis, factor, sought, some[None], request).basis
     return basis
 
 
@@ -243,7 +243,7 @@ def _with(
     factor: Factor,
     sought: Callable[[Basis], _KnownColumns],
     columns: Ints,
-    wanted: CorrectionRequest,
+    request: CorrectionRequest,
 ) -> _Known:
     """Return the basis with some of what is sought.
 
@@ -256,23 +256,23 @@ def _with(
         R = current.residuals(active)
         Z = factor.below.factor.solve(R)
         worth = np.einsum("nc,nc->c", R, Z)
-        space = factor.extend(pencil, space, Z, R, wanted.shortest)
+        space = factor.extend(pencil, space, Z, R, request.shortest)
         before, current = current, sought(space)
         if step == 0:
             gain = (before.lam - current.lam) / (current.lam - space.sigma)
             errors = np.maximum(gain[columns].max(axis=1), 0.0)
-            columns = columns[errors >= wanted.enough]
+            columns = columns[errors >= request.enough]
         total[active] += worth
         ratio = np.full(worth.shape, SLOWEST)
         np.divide(worth, last[active], out=ratio, where=last[active] > 0)
         left = worth * np.minimum(ratio, SLOWEST)
         last[active] = worth
-        active = active[left > np.maximum(wanted.share * total[active], wanted.shortest**2)]
+        active = active[left > np.maximum(request.share * total[active], request.shortest**2)]
         active = active[np.isin(active, columns)]
         if not active.size:
             break
     Y = current.Y[:, columns.ravel()]
-    kept = trimmed(basis, space, Y, wanted.shortest, wanted.capacity)
+    kept = trimmed(basis, space, Y, request.shortest, request.capacity)
     return _Known(kept, errors, not active.size)
 
 

@@ -81,7 +81,7 @@ class SnapshotRequest:
     Attributes
     ----------
     theta : (p,) parameters of the model, or (models, p)
-    modes : how many modes are wanted; 0 where the stiffness matrix is indefinite, and the basis is
+    modes : number of modes; 0 where the stiffness matrix is indefinite, and the basis is
         to know that
     enough : relative error of eigenvalues below which a model is left as it is
     """
@@ -174,7 +174,7 @@ class ReducedModel:
     tolerance: float = TOLERANCE
     memory: float = MEMORY
     spare: int = 0
-    _wanted: tuple[SnapshotRequest, ...] = ()
+    _requested: tuple[SnapshotRequest, ...] = ()
     _state: _State | None = None
     _sent: _Projected | None = None
 
@@ -188,7 +188,7 @@ class ReducedModel:
     @property
     def version(self) -> tuple[tuple[bytes, int, float], ...]:
         """Snapshots in use."""
-        return tuple((x.theta.tobytes(), x.modes, x.enough) for x in self._wanted)
+        return tuple((x.theta.tobytes(), x.modes, x.enough) for x in self._requested)
 
     @property
     def parts(self) -> tuple[MatrixModel]:
@@ -253,15 +253,15 @@ class ReducedModel:
     @property
     def snapshots(self) -> tuple[SnapshotRequest, ...]:
         """The snapshots in use."""
-        return self._wanted
+        return self._requested
 
     def restart(self) -> None:
         """Use no snapshots. Those at hand are not computed again, but count when taken again."""
-        self._wanted = ()
+        self._requested = ()
 
     def resume(self, snapshots: Sequence[SnapshotRequest]) -> None:
         """Use these snapshots, which were counted before; they are computed when needed."""
-        self._wanted = tuple(snapshots)
+        self._requested = tuple(snapshots)
 
     def take(self, what: SnapshotRequest) -> float:
         """Add a snapshot and return the greatest relative error of an eigenvalue before it.
@@ -269,12 +269,12 @@ class ReducedModel:
         The error is an estimate, and infinite where the model had to be solved in full. Raises
         ModelError where the model has no modes there.
         """
-        before = self._wanted
-        self._wanted = (*before, what)
+        before = self._requested
+        self._requested = (*before, what)
         try:
             last = self.ready().taken[-1]
         except ModelError:
-            self._wanted = before
+            self._requested = before
             raise
         spend(last.costs)
         return last.error
@@ -310,27 +310,31 @@ class ReducedModel:
     def distance(self, theta: Floats) -> float:
         """Return how far the nearest snapshot is, over the ranges of the parameters."""
         span = self.upper - self.lower
-        thetas = [nearby for snap in self._wanted if snap.modes for nearby in snap.models]
+        thetas = [nearby for snap in self._requested if snap.modes for nearby in snap.models]
         return float(min(np.linalg.norm((theta - nearby) / span) for nearby in thetas))
 
-    def certify(self, asked: Sequence[tuple[Floats, Ints]], lowest: int = 0) -> list[Certificate]:
+    def certify(
+        self, requests: Sequence[tuple[Floats, Ints]], lowest: int = 0
+    ) -> list[Certificate]:
         """Return the estimated errors of modes at some parameters; see `Certificate`.
 
-        ``asked`` are theta (p,) and the modes wanted there, counted from 0. Their errors are
-        infinite where one of the ``lowest`` modes, or a mode below the wanted ones, is missing.
-        That is looked for by a factorisation where it is in doubt, and what it proves speaks for
+        ``requests`` are theta (p,) and the modes in question, counted from 0. Their errors are
+        infinite where one of the ``lowest`` modes, or a mode below the requested ones, is missing.
+        That is decided by a factorisation where it is in doubt, and what it proves speaks for
         the other models nearby.
         """
         space = self.ready().space
         started = time.perf_counter()
         proofs = list(space.proofs)
-        counts = [max(lowest, int(wanted.max()) + 1) for _, wanted in asked]
+        counts = [max(lowest, int(indices.max()) + 1) for _, indices in requests]
         width = max(1, together(self.size) // (max(counts, default=1) + 1))
         certificates: list[Certificate] = []
-        for first in range(0, len(asked), width):
-            some = range(first, min(first + width, len(asked)))
-            certificates += self._certified(space, [(*asked[k], counts[k]) for k in some], proofs)
-        spend(Costs(certificates=len(asked), certificate_time=time.perf_counter() - started))
+        for first in range(0, len(requests), width):
+            some = range(first, min(first + width, len(requests)))
+            certificates += self._certified(
+                space, [(*requests[k], counts[k]) for k in some], proofs
+            )
+        spend(Costs(certificates=len(requests), certificate_time=time.perf_counter() - started))
         return certificates
 
     def lacking(self, lowest: int) -> list[Floats]:
@@ -367,10 +371,10 @@ class ReducedModel:
         pencil, sensors = self.full.pencil, self.full.selection
         certificates: dict[int, Certificate] = {}
         shared: dict[int, CertificateRequest] = {}
-        for k, (theta, wanted, count) in enumerate(some):
-            near = _near(space, theta, wanted, count, proofs)
+        for k, (theta, indices, count) in enumerate(some):
+            near = _near(space, theta, indices, count, proofs)
             if near is None:
-                certificates[k] = self._certified_alone(space, theta, wanted, count, proofs)
+                certificates[k] = self._certified_alone(space, theta, indices, count, proofs)
             else:
                 shared[k] = near
         known = estimates(pencil, sensors, space.basis, space.factor, list(shared.values()))
@@ -379,33 +383,33 @@ class ReducedModel:
         return [certificates[k] for k in range(len(some))]
 
     def _certified_alone(
-        self, space: _Space, theta: Floats, wanted: Ints, count: int, proofs: list[InertiaProof]
+        self, space: _Space, theta: Floats, indices: Ints, count: int, proofs: list[InertiaProof]
     ) -> Certificate:
         """Return the certificate of a model with its own factor, which proves modes complete."""
         basis, pencil = space.basis, self.full.pencil
         try:
             ritz = dense.lowest(basis.K.at(theta), basis.M.at(theta), count + completeness.LATER)
         except ModelError:
-            return missing(wanted.size)
+            return missing(indices.size)
         gap = completeness.level(ritz.lam, count, basis.sigma, np.inf)
         if gap is None:
-            return missing(wanted.size)
+            return missing(indices.size)
         below, sigma = gap
         try:
             factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
         except SingularMatrixError:
-            return missing(wanted.size)
+            return missing(indices.size)
         if factor.negative != below:
-            return missing(wanted.size)
+            return missing(indices.size)
         proofs.append(InertiaProof(theta, sigma, below))
         lam, Y = ritz.lam[:below], ritz.Phi[:, :below]
-        request = CertificateRequest(theta, wanted, lam, Y, below, sigma)
+        request = CertificateRequest(theta, indices, lam, Y, below, sigma)
         return own_estimate(pencil, self.full.selection, basis, request, Shifted(sigma, factor))
 
     def _misses(
         self, basis: Basis, theta: Floats, lam: Floats, last: int, proofs: list[InertiaProof]
     ) -> bool:
-        """Return whether modes below the Ritz value of the ``last`` one wanted are missing.
+        """Return whether modes below the Ritz value of the ``last`` one requested are missing.
 
         Where that is in doubt, a factor tells, and a proof of the contrary joins the others.
         """
@@ -423,27 +427,27 @@ class ReducedModel:
         return False
 
     def _at_hand(self) -> _Projected | None:
-        """Return the matrices in the basis of the snapshots wanted, if they are at hand."""
+        """Return the matrices in the basis of the requested snapshots, if they are at hand."""
         sent, state = self._sent, self._state
-        if sent is not None and sent.snapshots is self._wanted:
+        if sent is not None and sent.snapshots is self._requested:
             return sent
-        if state is None or len(state.taken) != len(self._wanted) or not self._wanted:
+        if state is None or len(state.taken) != len(self._requested) or not self._requested:
             return None
-        return self._projected(state) if _begins(self._wanted, state.taken) else None
+        return self._projected(state) if _begins(self._requested, state.taken) else None
 
     def _projected(self, state: _State) -> _Projected:
         basis = state.space.basis
-        return _Projected(self._wanted, basis.K, basis.M, state.sensed)
+        return _Projected(self._requested, basis.K, basis.M, state.sensed)
 
     def ready(self) -> _State:
-        """Return the basis of the snapshots wanted; only those not yet in it are computed."""
-        if not self._wanted:
+        """Return the basis of the requested snapshots; only those not yet in it are computed."""
+        if not self._requested:
             self.take(self.first)
-        if self._state is not None and not _begins(self._wanted, self._state.taken):
+        if self._state is not None and not _begins(self._requested, self._state.taken):
             self._state = None
         with uncounted():  # `take` counts a snapshot, once
-            while self._state is None or len(self._state.taken) < len(self._wanted):
-                what = self._wanted[len(self._state.taken) if self._state else 0]
+            while self._state is None or len(self._state.taken) < len(self._requested):
+                what = self._requested[len(self._state.taken) if self._state else 0]
                 with counted() as costs:
                     taken, space, error = self._added(what)
                 last = _TakenSnapshot(what, costs, error)
@@ -567,9 +571,9 @@ class ReducedModel:
             return None
         new = tuple(proofs[len(space.proofs) :])
         count = what.modes + SPARE if new else what.modes  # all modes that a proof is of
-        wanted = CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
+        request = CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
         try:
-            augmented = with_modes(self.full.pencil, basis, factor, here, count, wanted)
+            augmented = with_modes(self.full.pencil, basis, factor, here, count, request)
         except ModelError:
             return None  # a larger space sees that a matrix is indefinite
         if augmented is None:
@@ -598,10 +602,10 @@ class ReducedModel:
     def _with_derivatives(self, basis: Basis, factor: Factor, theta: Floats, modes: int) -> Basis:
         """Return the basis of some modes with their derivatives."""
         count, half = min(modes, basis.columns - 1), (self.upper - self.lower) / 2
-        wanted = CorrectionRequest(SHARE, self._shortest, self.capacity)
+        request = CorrectionRequest(SHARE, self._shortest, self.capacity)
         if count < 1:
             return basis
-        return with_derivatives(self.full.pencil, basis, factor, theta, count, half, wanted)
+        return with_derivatives(self.full.pencil, basis, factor, theta, count, half, request)
 
     def _bounds(self, basis: Basis, theta: Floats, sigma: float) -> list[Floats]:
         """Return the parameters with one of them at a bound, or nearer to ``theta``."""
@@ -625,14 +629,14 @@ class ReducedModel:
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis
-        wanted = CorrectionRequest(SHARE, COARSE, capacity)
+        request = CorrectionRequest(SHARE, COARSE, capacity)
         try:
-            augmented = with_modes(self.full.pencil, basis, factor, bounds, count, wanted)
+            augmented = with_modes(self.full.pencil, basis, factor, bounds, count, request)
             return augmented[0] if augmented else basis
         except ModelError:  # a larger space sees that a matrix is indefinite at one of them
             for theta in bounds:
                 with suppress(ModelError):
-                    augmented = with_modes(self.full.pencil, basis, factor, [theta], count, wanted)
+                    augmented = with_modes(self.full.pencil, basis, factor, [theta], count, request)
                     basis = augmented[0] if augmented else basis
             return basis
 
@@ -652,7 +656,7 @@ def _knows(basis: Basis, proofs: Sequence[InertiaProof], theta: Floats, lam: flo
 
 
 def _near(
-    space: _Space, theta: Floats, wanted: Ints, count: int, proofs: Sequence[InertiaProof]
+    space: _Space, theta: Floats, indices: Ints, count: int, proofs: Sequence[InertiaProof]
 ) -> CertificateRequest | None:
     """Return the request that the factor at hand can judge; None where modes may be missing."""
     basis, factor = space.basis, space.factor
@@ -673,12 +677,12 @@ def _near(
             below, sigma = gap
             some = below + int(not proved)
             lam, Y = ritz.lam[:some], ritz.Phi[:, :some]
-            request = CertificateRequest(theta, wanted, lam, Y, below, sigma, bounds, proved)
+            request = CertificateRequest(theta, indices, lam, Y, below, sigma, bounds, proved)
     return request
 
 
-def _begins(wanted: Sequence[SnapshotRequest], taken: Sequence[_TakenSnapshot]) -> bool:
-    """Return whether the snapshots wanted begin with those that were taken."""
-    return len(taken) <= len(wanted) and all(
-        entry.what.same(other) for entry, other in zip(taken, wanted, strict=False)
+def _begins(requests: Sequence[SnapshotRequest], taken: Sequence[_TakenSnapshot]) -> bool:
+    """Return whether the requested snapshots begin with those that were taken."""
+    return len(taken) <= len(requests) and all(
+        entry.what.same(other) for entry, other in zip(taken, requests, strict=False)
     )
