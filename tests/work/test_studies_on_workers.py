@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import gc
 import os
 import signal
 import subprocess
@@ -28,6 +29,17 @@ from modefront.work.lock import locked
 from modefront.work.pools import Cluster, LocalPool, Pool
 from modefront.work.progress import Progress, State
 from modefront.work.workers import Workers
+
+# A scheduler that is gone leaves half-open connections, which Dask closes as they are collected.
+pytestmark = pytest.mark.filterwarnings("ignore:unclosed <socket:ResourceWarning")
+
+
+@pytest.fixture(autouse=True)
+def connections() -> Iterator[None]:
+    """Collect connections within the test that opened them, and not in a later one."""
+    yield
+    gc.collect()
+
 
 EVOLUTION = "points = 3", 'points = 3\nmethod = "spea2"\npopulation = 6\nevaluations = 18'
 
