@@ -21,7 +21,7 @@ def test_inputs_that_are_spoilt_by_chance(tmp_path: Path) -> None:
 @pytest.mark.slow
 def test_results_that_are_damaged(tmp_path: Path) -> None:
     right_files(tmp_path)
-    assert not damaged(tmp_path, READING, 40, seed=20).wrong
+    assert not damaged(tmp_path, READING, 70, seed=20).wrong
 
 
 @pytest.mark.slow
