@@ -11,9 +11,10 @@ from problems import Derivatives, Known, box
 from modefront._typing import Floats
 from modefront.solvers.attainment import Attainment
 from modefront.solvers.border import without_slack
-from modefront.solvers.competition import from_points_beside, heights
+from modefront.solvers.competition import Comparison, from_points_beside
 from modefront.solvers.continuation import simplex
 from modefront.solvers.payoff import Payoff
+from modefront.solvers.problem import infeasible
 from modefront.solvers.sqp import Solution, begin, solve
 
 CENTRES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
@@ -69,6 +70,15 @@ def test_a_point_far_from_all_others_is_compared_with_the_nearest() -> None:
     assert (worse.J - ends[0].J).min() > 0.9 * STEP
 
 
+def test_models_that_cannot_be_evaluated_do_not_compete() -> None:
+    worse, better = solved(PROBLEM, [0.3, 0.4, 0.3], -1.0), solved(PROBLEM, [0.3, 0.3, 0.4], 1.0)
+    nowhere = begin(infeasible(np.zeros(3), 3))
+    ends = from_points_beside(PROBLEM, TARGET, simplex(3, 10), [worse, nowhere, better])
+    assert (worse.J - ends[0].J).min() > 0.9 * STEP
+    assert ends[1] is nowhere
+    assert ends[2] is better
+
+
 def test_one_smooth_branch_costs_nothing() -> None:
     betas = simplex(3, 10).beta
     inner = betas[betas.min(axis=1) >= 0.2]
@@ -82,11 +92,10 @@ def test_one_smooth_branch_costs_nothing() -> None:
 def test_heights_over_tangent_planes_are_equal_along_a_branch_of_even_curvature() -> None:
     """The point at beta minimises a weighted sum: h_kj = |theta_k - theta_j|^2 = h_jk."""
     points = [solved(PROBLEM, [0.3, y, 0.7 - y], 1.0) for y in (0.3, 0.4)]
-    h = heights(points, TARGET)
+    height, back = Comparison.of(PROBLEM, TARGET, simplex(3, 10), points).heights(0)
     expected = ((points[0].theta - points[1].theta) ** 2).sum()
-    assert h[0, 1] == pytest.approx(expected, rel=1e-5)
-    assert h[1, 0] == pytest.approx(expected, rel=1e-5)
-    assert np.diag(h) == pytest.approx(0.0, abs=1e-15)
+    assert height == pytest.approx([0.0, expected], rel=1e-5)
+    assert back == pytest.approx([0.0, expected], rel=1e-5)
 
 
 def test_pairs_of_points_that_were_compared_cost_nothing() -> None:

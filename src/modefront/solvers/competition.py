@@ -95,7 +95,7 @@ def from_points_beside(
     attempts = {(k, points[j].theta.tobytes()) for k in kept for j in kept}
     gained = 0
     for turn in range(ROUNDS):
-        comparison = _Comparison.of(problem, target, lattice, current)
+        comparison = Comparison.of(problem, target, lattice, current)
         starts: list[tuple[int, int]] = []
         for k in comparison.open.tolist():
             for j in comparison.starts(k, MANY if gained else NEAREST):
@@ -122,94 +122,85 @@ def from_points_beside(
 
 
 @dataclass(frozen=True)
-class _Comparison:
-    """The points of a front (k,) beside one another.
+class Comparison:
+    """The points of a front beside one another.
 
     Attributes
     ----------
     open : indices of the points that a model can dominate in all objectives
-    away : (k, k) distances of the objectives, over the ranges
-    height : (k, k) of each point above the tangent plane at each other
-    other : (k, k) whether the parameters are far from one another
+    theta : (k, p) parameters over their ranges
+    y : (k, n) objectives over theirs; infinite ones where a model cannot be evaluated
+    w : (k, n) weights of the objectives, of sum 1
+    reach : distance of points that lie beside one another, over the ranges
+    far : change of a parameter from which points are far from one another, over its range
     unequal : ratio of the heights of two points of one smooth branch at most
-    beside : (k, k) whether points are near in the objectives
     """
 
     open: Ints
-    away: Floats
-    height: Floats
-    other: Bools
+    theta: Floats
+    y: Floats
+    w: Floats
+    reach: float
+    far: float
     unequal: float
-    beside: Bools
 
     @classmethod
     def of(
         cls, problem: Problem, target: Payoff, lattice: Simplex, points: Sequence[Solution]
-    ) -> _Comparison:
+    ) -> Comparison:
         """Return the comparison of points of a lattice."""
         theta = np.array([point.theta for point in points]) / (problem.upper - problem.lower)
         y = np.array([point.J for point in points]) / target.scale
-        coarse = max(1.0, COARSE / lattice.divisions)
-        other = np.asarray((np.abs(theta[:, None] - theta) > coarse * JUMP).any(axis=2))
+        w = np.nan_to_num([np.maximum(point.weights, 0) * target.scale for point in points])
+        total = w.sum(axis=1, keepdims=True)
+        w = np.divide(w, total, out=np.zeros_like(w), where=total > 0)
         feasible = np.asarray(np.isfinite(y).all(axis=1))
-        y = np.where(feasible[:, None], y, 0.0)
         above = (y - target.utopia / target.scale).min(axis=1) > SAME
-        away = np.abs(y[:, None] - y).max(axis=2)
-        away[~feasible] = away[:, ~feasible] = np.inf
-        np.fill_diagonal(away, np.inf)
-        return cls(
-            np.flatnonzero(feasible & above),
-            away,
-            heights(points, target),
-            other,
-            UNEQUAL * coarse,
-            np.asarray(away <= BESIDE / lattice.divisions),
+        coarse = max(1.0, COARSE / lattice.divisions)
+        reach, far = BESIDE / lattice.divisions, JUMP * coarse
+        y = np.where(feasible[:, None], y, np.inf)
+        return cls(np.flatnonzero(feasible & above), theta, y, w, reach, far, UNEQUAL * coarse)
+
+    def heights(self, k: int) -> tuple[Floats, Floats]:
+        """Return how far a point lies above the tangent plane of the front at each other, and back.
+
+        Both (points,), over the ranges; a point that cannot be evaluated has no height.
+        """
+        y = np.where(np.isfinite(self.y), self.y, self.y[k])
+        return (
+            np.asarray(((self.y[k] - y) * self.w).sum(axis=1)),
+            np.asarray((y - self.y[k]) @ self.w[k]),
         )
 
     def starts(self, k: int, count: int) -> list[int]:
         """Return the points from which a point is solved again, ``count`` nearest ones at most."""
-        away, height, back = self.away[k], self.height[k], self.height[:, k]
+        away = np.abs(self.y - self.y[k]).max(axis=1)
+        away[k] = np.inf
+        other, beside = self._far(k), away <= self.reach
+        height, back = self.heights(k)
+        least, most = np.minimum(height, back), np.maximum(height, back)
+        smooth = ~other & (least >= -LEVEL) & (most <= self.unequal * least + LEVEL)
         nearest = away.argsort(kind="stable")[:count]
-        chosen = nearest[~self._continues(k)[nearest] & np.isfinite(away[nearest])]
-        below = np.flatnonzero(self.beside[k] & (height > HEIGHT + 2 * np.maximum(back, 0)))
+        chosen = nearest[~smooth[nearest] & np.isfinite(away[nearest])]
+        below = np.flatnonzero(beside & (height > HEIGHT + 2 * np.maximum(back, 0)))
         above = below[height[below].argsort(kind="stable")][-LOWER:]
-        return list(dict.fromkeys([*self._branches(k), *above.tolist(), *chosen.tolist()]))
+        branches = np.flatnonzero(beside & other)
+        branches = branches[away[branches].argsort(kind="stable")]
+        return list(dict.fromkeys([*self._apart(branches), *above.tolist(), *chosen.tolist()]))
 
-    def _branches(self, k: int) -> list[int]:
-        """Return the nearest point of each other branch beside a point, the nearest ones first."""
-        beside = np.flatnonzero(self.beside[k] & self.other[k])
+    def _far(self, k: int) -> Bools:
+        """Return which points have parameters far from those of a point, (points,)."""
+        return np.asarray((np.abs(self.theta - self.theta[k]) > self.far).any(axis=1))
+
+    def _apart(self, indices: Ints) -> list[int]:
+        """Return some points in their order, without those that are not far from one before."""
         out: list[int] = []
-        for j in beside[self.away[k, beside].argsort(kind="stable")].tolist():
-            if len(out) < BRANCHES and self.other[j, out].all():
+        for j in indices.tolist():
+            if len(out) == BRANCHES:
+                break
+            if self._far(j)[out].all():
                 out.append(j)
         return out
-
-    def _continues(self, k: int) -> Bools:
-        """Return which points lie on the same smooth branch as a point, (k,)."""
-        least = np.minimum(self.height[k], self.height[:, k])
-        most = np.maximum(self.height[k], self.height[:, k])
-        smooth = (least >= -LEVEL) & (most <= self.unequal * least + LEVEL)
-        return np.asarray(~self.other[k] & smooth)
-
-
-def heights(points: Sequence[Solution], target: Payoff) -> Floats:
-    """Return how far each point lies above the tangent plane of the front at each other (k, k).
-
-    Parameters
-    ----------
-    points : k points of a front
-    target : with the ranges of the objectives
-
-    Returns
-    -------
-    (k, k) heights in units of the ranges: rows are points, columns the tangent planes
-    """
-    y = np.array([point.J for point in points]) / target.scale
-    w = np.nan_to_num([np.maximum(point.weights, 0) * target.scale for point in points])
-    total = w.sum(axis=1, keepdims=True)
-    w = np.divide(w, total, out=np.zeros_like(w), where=total > 0)
-    y = np.where(np.isfinite(y), y, 0.0)
-    return np.asarray(y @ w.T - (w * y).sum(axis=1))
 
 
 def _wins(target: Payoff, end: Solution, point: Solution) -> bool:
