@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 TURNS = 3
 """Refinements of a front at most, each with the gaps that the one before has shown; and comparisons
-of its points with other branches, each with the points that the one before has lowered."""
+of its points with those beside them, each with the points that the one before has lowered."""
 
 COPY = 1e-5
 """Distance of two points, over the ranges of the objectives, below which they are copies."""
