@@ -37,7 +37,7 @@ import scipy.linalg
 from scipy.optimize import linear_sum_assignment, lsq_linear, minimize
 from updating_problems import Affine, Case
 
-from modefront._typing import Floats, Ints
+from modefront._typing import Bools, Floats, Ints
 from modefront.residuals.groups import ModeNumbers
 from modefront.solvers.edges import sample
 from modefront.work.task import seed_sequence
@@ -55,9 +55,15 @@ Along a valley the others fall with the root of what the first one gives: 1e-6 o
 half a percent of them.
 """
 
-STRICT, MARGIN = 1e-12, 1e-9
-"""The share where a tie is not enough, and by which limits are lowered so that an optimiser that
-meets them to its own tolerance exceeds none."""
+STRICT = 1e-12
+"""The share where a tie is not enough."""
+
+DOUBTFUL = 1e-3
+"""Gain from which on it is checked that it needs no tie."""
+
+MARGINS, BACK = (1e-9, 1e-8), 6
+"""Shares by which limits are lowered, since an optimiser exceeds them by its own tolerance; steps
+at most that bring a model back to them."""
 
 ROUNDING = 1e-14
 """The same of exact fits, over the typical size of the objective."""
@@ -538,18 +544,42 @@ def strict_gain(equation: Equation, point: Floats, model: Known, k: int, floor: 
     """Return by which share a model shows that J_k of a point can fall while no other one grows.
 
     On a cliff, J_k falls by percents where the others grow by no more than a tie. A model that
-    needs the tie is solved again with the others held below the point. Where the optimiser cannot
-    hold them there, the model counts as it is.
+    needs the tie is brought back by the shortest steps that make the others as small as at the
+    point, and so is where the optimiser ends from there with lower limits. Where none of them can
+    be brought back, the model counts as it is.
     """
-    gain = (point[k] - model.J[k]) / max(point[k], floor[k])
     others = np.arange(point.size) != k
     limits = np.maximum(point, floor)
-    if (limits * (1 + STRICT) >= model.J)[others].all():
-        return float(gain)
-    J = equation.J(bounded(equation, k, limits * (1 - MARGIN), model.theta, 200))
-    if not (limits * (1 + STRICT) >= J)[others].all():
-        return float(gain)
-    return float(max(0.0, (point[k] - J[k]) / max(point[k], floor[k])))
+    starts = [model.theta, *(bounded(equation, k, limits * (1 - m), model.theta) for m in MARGINS)]
+    gains = []
+    for start in starts:
+        J = equation.J(_brought_back(equation, start, limits, others))
+        if (limits * (1 + STRICT) >= J)[others].all():
+            gains.append((point[k] - J[k]) / max(point[k], floor[k]))
+    if not gains:
+        return float((point[k] - model.J[k]) / max(point[k], floor[k]))
+    return float(max(0.0, *gains))
+
+
+def _brought_back(equation: Equation, theta: Floats, limits: Floats, held: Bools) -> Floats:
+    """Return parameters at which the objectives that are held do not exceed their limits."""
+    for _ in range(BACK):
+        parts = equation.parts(theta)
+        if parts is None:
+            break
+        J = np.array([part.r @ part.r for part in parts])
+        above = held & (limits < J)
+        if not above.any():
+            break
+        dJ = np.array([2 * part.r @ part.dr for part in parts])[above] * equation.span
+        scale = limits[above]
+        missing = (limits[above] * (1 - STRICT / 2) - J[above]) / scale
+        step = np.linalg.lstsq(dJ / scale[:, None], missing, rcond=None)[0]
+        theta = theta + equation.span * step
+        theta = equation.lower + equation.span * np.clip(
+            (theta - equation.lower) / equation.span, 0.0, 1.0
+        )
+    return theta
 
 
 @dataclass
@@ -683,5 +713,7 @@ def better(
     held = (point * (1 + TIE) + ROUNDING / EXACT * floor >= J)[:, :k].all(axis=1)
     gain = np.where(held, (point[k] - J[:, k]) / max(point[k], floor[k]), 0.0)
     best = [*result, *near][int(gain.argmax())]
-    share = strict_gain(equation, point, best, k, floor) if gain.max() > 0 else 0.0
+    share = float(max(0.0, gain.max()))
+    if share > DOUBTFUL:
+        share = strict_gain(equation, point, best, k, floor)
     return share, [best, *result]

@@ -89,6 +89,7 @@ FINISHES = 2
 _ROUGH = Options(step=1e-4, iterations=20)
 
 
+# 7 arguments: the front, and what is known beside it.
 def from_points_beside(
     problem: Problem,
     target: Payoff,
