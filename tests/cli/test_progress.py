@@ -77,7 +77,7 @@ def test_the_time_of_a_run_is_estimated_and_more_work_takes_longer(tmp_path: Pat
     study = mf.load(tmp_path / "study.toml")
     short = estimate(study)
     assert short is not None
-    assert 300 < short.evaluations < 3000  # a run evaluates 847
+    assert 300 < short.evaluations < 3000  # a run evaluates 836
     assert short.seconds == pytest.approx(short.evaluations * short.each, rel=0.01)
     assert "models at" in short.text
     many = replace(study, search=Search(starts=10**6, limit=10**6))

@@ -38,9 +38,9 @@ REDUCED = 0.05
 SAMPLES = 100
 """Samples with which a prediction is timed, and three times as many."""
 
-PROGRAMME = 1e-10
-"""Seconds of the quadratic programme of a step over the fourth power of the number of parameters:
-it changes its working set about as often as there are parameters, and decomposes one each time."""
+PROGRAMME = 4e-9
+"""Seconds of the quadratic programme of a step over the third power of the number of parameters:
+that of some ten decompositions."""
 
 LARGE = 2000
 """Degrees of freedom from which a reduced basis is worth a try."""
@@ -103,7 +103,7 @@ def estimate(study: Study) -> Estimate | None:
         each = _seconds(problem)
         if each is None:
             return None
-        step = PROGRAMME * len(problem.start) ** 4
+        step = PROGRAMME * len(problem.start) ** 3
         parts = [*_parts(study, each, step), *_predictions(study, each)]
     seconds = sum(part.seconds for part in parts)
     solving = sum(part.seconds for part in parts if part.stage != "predict")
