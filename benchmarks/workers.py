@@ -13,6 +13,7 @@ Results are compared to the last digit. Where other programs use the cores, the 
 from __future__ import annotations
 
 import argparse
+import sys
 import tempfile
 import time
 from collections.abc import Sequence
@@ -24,10 +25,12 @@ import numpy as np
 from study_tables import PUSHED, uncertainty
 
 import modefront as mf
+import modefront.__main__
 from modefront import fem
 from modefront.models.mesh import mesh_model
 from modefront.study import session
 from modefront.study.examples import write_example
+from modefront.study.processes import processes
 from modefront.work.run import Run
 from modefront.work.task import R, Task
 from modefront.work.workers import Workers, backend
@@ -112,7 +115,7 @@ STUDIES = {"building": building, "footbridge": footbridge}
 def done(study: mf.Study, workers: int) -> tuple[Any, dict[str, float]]:
     """Return the results of a study and the elapsed seconds of its stages and of the whole."""
     started = time.perf_counter()
-    with backend(workers, warm=session.__name__) as carrier:
+    with processes(workers, None) as carrier:
         work = Timed(backend=carrier)
         data = session._Session(study.completed(), work).results()
     return data, work.seconds | {"whole study": time.perf_counter() - started}
@@ -136,6 +139,7 @@ def main() -> None:
     options.add_argument("--workers", type=int, default=2)
     options.add_argument("--studies", nargs="+", choices=STUDIES, default=list(STUDIES))
     given = options.parse_args()
+    sys.modules["__main__"] = modefront.__main__  # what processes of the command import
     print(f"a task: {1e3 * overhead(given.workers):.2f} ms")
     for name in given.studies:
         with tempfile.TemporaryDirectory() as folder:

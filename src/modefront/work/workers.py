@@ -333,10 +333,12 @@ def available_memory() -> float:
 
 
 @contextmanager
-def backend(workers: int, scheduler: str | None = None, warm: str = "") -> Iterator[Backend]:
+def backend(
+    workers: int, scheduler: str | None = None, warm: Sequence[str] = ()
+) -> Iterator[Backend]:
     """Open the backend of so many processes, or of the cluster with this scheduler.
 
-    Processes import the module ``warm`` when they start. Raises InputError for a number of
+    Processes import the modules ``warm`` when they start. Raises InputError for a number of
     processes that is not possible, and what `Cluster` raises.
     """
     if not isinstance(workers, int) or not 1 <= workers <= MOST:
