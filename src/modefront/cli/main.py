@@ -121,7 +121,13 @@ def run(
     from modefront.cli.show import print_summary
     from modefront.results.selection import not_converged, uncertified
 
-    print_summary(data, directory, spent)
+    try:
+        print_summary(data, directory, spent)
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except BrokenPipeError:  # as by `| head`: the status is that of the run all the same
+        _abandon_output()
+        complain(f"modefront: nobody reads the summary; the results are in {directory}")
     failed = not_converged(data)
     if failed:
         raise UnfinishedError(f"not converged, kept and marked as such: {', '.join(failed)}")
