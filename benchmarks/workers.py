@@ -1,23 +1,29 @@
 """Gain of several processes over one, in one run.
 
-    python benchmarks/workers.py [--workers 2] [--studies building footbridge]
+    python benchmarks/workers.py [--workers 2] [--studies building footbridge] [--plain]
 
 Studies of a building (576 degrees of freedom, all solved in full) and of a footbridge (2,000, in a
 reduced basis where the cost model takes one) are done by one process and then by several, with a
-bootstrap, posterior draws and predictions. Printed are the elapsed seconds of both and their ratio,
-for each stage of the work that takes a second at least and for the whole, without the start of the
-program but with that of the processes; and what a task costs that does nothing, in milliseconds.
-Results are compared to the last digit. Where other programs use the cores, the ratios say nothing.
+bootstrap, posterior draws and predictions, or without (``--plain``). Printed are the elapsed
+seconds of both and their ratio, for each stage of the work that takes a second at least and for the
+whole, without the start of the program but with that of the processes; and what a task costs that
+does nothing, in milliseconds. Results are compared to the last digit.
+
+Where other programs use the cores, elapsed seconds say nothing. So printed are processor seconds as
+well: of one process alone, and of the first process and each other one where there are several;
+and the ratio as it would be if the first and the busiest other one never worked at the same time.
 """
 
 from __future__ import annotations
 
 import argparse
+import multiprocessing
+import os
 import sys
 import tempfile
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Any, Literal
 
@@ -112,13 +118,36 @@ def footbridge_problem(reduction: float | Literal["auto", "off"] = "auto") -> mf
 STUDIES = {"building": building, "footbridge": footbridge}
 
 
-def done(study: mf.Study, workers: int) -> tuple[Any, dict[str, float]]:
-    """Return the results of a study and the elapsed seconds of its stages and of the whole."""
-    started = time.perf_counter()
+def study(name: str, folder: Path, plain: bool) -> mf.Study:
+    """Return a study, without bootstrap, draws and predictions if it is to be plain."""
+    out = STUDIES[name](folder)
+    if not plain:
+        return out
+    return replace(out, uncertainty=mf.Uncertainty(source="sets"), predictions=())
+
+
+def done(of: mf.Study, workers: int) -> tuple[Any, dict[str, float], list[float]]:
+    """Return the results of a study, and the elapsed seconds of its stages and of the whole.
+
+    Returned as well are the processor seconds of the first process and of each other one.
+    """
+    before = set(multiprocessing.active_children())
+    started, first = time.perf_counter(), time.process_time()
     with processes(workers, None) as carrier:
         work = Timed(backend=carrier)
-        data = session._Session(study.completed(), work).results()
-    return data, work.seconds | {"whole study": time.perf_counter() - started}
+        data = session._Session(of.completed(), work).results()
+        others = set(multiprocessing.active_children()) - before
+        busy = [time.process_time() - first, *(processor_seconds(each.pid) for each in others)]
+    return data, work.seconds | {"whole study": time.perf_counter() - started}, busy
+
+
+def processor_seconds(process: int | None) -> float:
+    """Return the processor time that a process has taken so far, 0 where that is not known."""
+    try:
+        fields = Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()
+    except OSError:
+        return 0.0
+    return (int(fields[11]) + int(fields[12])) / os.sysconf("SC_CLK_TCK")
 
 
 def overhead(workers: int) -> float:
@@ -138,15 +167,22 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--workers", type=int, default=2)
     options.add_argument("--studies", nargs="+", choices=STUDIES, default=list(STUDIES))
+    options.add_argument("--plain", action="store_true")
     given = options.parse_args()
     sys.modules["__main__"] = modefront.__main__  # what processes of the command import
     print(f"a task: {1e3 * overhead(given.workers):.2f} ms")
     for name in given.studies:
         with tempfile.TemporaryDirectory() as folder:
-            study = STUDIES[name](Path(folder) / name)
-            serial, alone = done(study, 1)
-            many, shared = done(study, given.workers)
+            # Each has a model of its own, which knows no basis yet.
+            serial, alone, (whole,) = done(study(name, Path(folder) / "one", given.plain), 1)
+            several = study(name, Path(folder) / "several", given.plain)
+            many, shared, (first, *others) = done(several, given.workers)
         print(f"{name}: same digits {serial.identical(many)}")
+        each = " ".join(f"{seconds:.2f}" for seconds in others)
+        print(
+            f"  processor seconds {whole:.2f}; {first:.2f} in the first process and {each} in "
+            f"others; bound {whole / (first + max(others)):.2f}"
+        )
         for stage, seconds in alone.items():
             if seconds >= 1:
                 print(

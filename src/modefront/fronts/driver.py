@@ -218,14 +218,19 @@ class _Run:
         These are sought where the minima of an objective form a manifold, of which a search only
         meets some.
         """
-        out = []
-        for i, (name, known) in enumerate(zip(self.problem.objectives, edges, strict=True)):
-            if not Lexicographic(i, sizes).is_open(self.problem, known.best.evaluation):
-                out.append(known)
-                continue
-            arguments = (self.problem, i, sizes, list(models))
-            (minima,) = self.work.run([Task(("edge", name, "from"), refined_from, arguments)])
-            out.append(ordered(self.problem, i, sizes, [*known.minima, *minima]) or known)
+        names, out = self.problem.objectives, list(edges)
+        some = [
+            i
+            for i, known in enumerate(edges)
+            if Lexicographic(i, sizes).is_open(self.problem, known.best.evaluation)
+        ]
+        tasks = [
+            Task(("edge", names[i], "from"), refined_from, (self.problem, i, sizes, list(models)))
+            for i in some
+        ]
+        for i, minima in zip(some, self.work.run(tasks), strict=True):
+            known = edges[i]
+            out[i] = ordered(self.problem, i, sizes, [*known.minima, *minima]) or known
         return out
 
     def _along(
