@@ -49,6 +49,7 @@ from independent import (
     better,
     dominance,
     reference,
+    strict_gain,
     worth,
 )
 from smu import FOLDER
@@ -145,8 +146,12 @@ def compare(case: Case, data: xr.Dataset, best_known: Reference, equation: Equat
     for k in map(int, np.flatnonzero(pareto)):
         beaten = dominance(JJ, J[k], best_known.floor)
         if beaten.max() > WORSE:
-            line.dominated[f"{labels[k]}*"] = float(beaten.max())
-            line.better.append((f"{labels[k]}*", beaten.max(), everything[int(beaten.argmax())]))
+            model = everything[int(beaten.argmax())]
+            i = int(((J[k] - model.J) / np.maximum(J[k], best_known.floor)).argmax())
+            share = strict_gain(equation, J[k], model, i, best_known.floor)
+            if share > WORSE:
+                line.dominated[f"{labels[k]}*"] = share
+                line.better.append((f"{labels[k]}*", share, model))
     line.front = {name: x for name, x in line.front.items() if x > WORSE / 2}
     return line
 

@@ -55,6 +55,10 @@ Along a valley the others fall with the root of what the first one gives: 1e-6 o
 half a percent of them.
 """
 
+STRICT, MARGIN = 1e-12, 1e-9
+"""The share where a tie is not enough, and by which limits are lowered so that an optimiser that
+meets them to its own tolerance exceeds none."""
+
 ROUNDING = 1e-14
 """The same of exact fits, over the typical size of the objective."""
 
@@ -530,6 +534,24 @@ def dominance(J: Floats, point: Floats, floor: Floats) -> Floats:
     return out
 
 
+def strict_gain(equation: Equation, point: Floats, model: Known, k: int, floor: Floats) -> float:
+    """Return by which share a model shows that J_k of a point can fall while no other one grows.
+
+    On a cliff, J_k falls by percents where the others grow by no more than a tie. A model that
+    needs the tie is solved again with the others held below the point. Where the optimiser cannot
+    hold them there, the model counts as it is.
+    """
+    gain = (point[k] - model.J[k]) / max(point[k], floor[k])
+    others = np.arange(point.size) != k
+    limits = np.maximum(point, floor)
+    if (limits * (1 + STRICT) >= model.J)[others].all():
+        return float(gain)
+    J = equation.J(bounded(equation, k, limits * (1 - MARGIN), model.theta, 200))
+    if not (limits * (1 + STRICT) >= J)[others].all():
+        return float(gain)
+    return float(max(0.0, (point[k] - J[k]) / max(point[k], floor[k])))
+
+
 @dataclass
 class _Collection:
     """Models of an equation that were found so far."""
@@ -660,4 +682,6 @@ def better(
     J = np.array([known_point.J for known_point in [*result, *near]])
     held = (point * (1 + TIE) + ROUNDING / EXACT * floor >= J)[:, :k].all(axis=1)
     gain = np.where(held, (point[k] - J[:, k]) / max(point[k], floor[k]), 0.0)
-    return max(0.0, float(gain.max())), [[*result, *near][int(gain.argmax())], *result]
+    best = [*result, *near][int(gain.argmax())]
+    share = strict_gain(equation, point, best, k, floor) if gain.max() > 0 else 0.0
+    return share, [best, *result]

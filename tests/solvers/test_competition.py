@@ -9,9 +9,10 @@ import pytest
 from problems import Derivatives, Known, box
 
 from modefront._typing import Floats
+from modefront.solvers.archive import Archive
 from modefront.solvers.attainment import Attainment
 from modefront.solvers.border import without_slack
-from modefront.solvers.competition import Comparison, from_points_beside
+from modefront.solvers.competition import Comparison, Visited, from_points_beside
 from modefront.solvers.continuation import simplex
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import infeasible
@@ -77,6 +78,33 @@ def test_models_that_cannot_be_evaluated_do_not_compete() -> None:
     assert (worse.J - ends[0].J).min() > 0.9 * STEP
     assert ends[1] is nowhere
     assert ends[2] is better
+
+
+def test_points_are_solved_again_from_a_basin_that_a_search_has_only_visited() -> None:
+    worse = solved(PROBLEM, [0.3, 0.4, 0.3], -1.0)
+    visited = Archive(PROBLEM)
+    visited.evaluate(np.array([*worse.theta[:2], 0.85]))
+    assert (visited.J > worse.J).all(), "no model that is known is ahead of the point"
+    ends = from_points_beside(PROBLEM, TARGET, simplex(3, 10), [worse], visited=visited)
+    assert ends[0].J == pytest.approx(solved(PROBLEM, [0.3, 0.4, 0.3], 1.0).J, abs=1e-6)
+
+
+def test_starts_are_the_best_visited_models_far_from_a_point_and_from_one_another() -> None:
+    point = solved(PROBLEM, [0.3, 0.4, 0.3], -1.0)
+    visited = Archive(PROBLEM)
+    x, y = point.theta[:2]
+    models = {
+        "near the point": ([x, y, -0.95], [0.0, 0.0, 1e-3]),
+        "best": ([x, y, 1.0], [2e-3, -1e-3, 0.0]),
+        "near the best": ([x, y, 0.8], [3e-3, -2e-3, 0.0]),
+        "next": ([x + 0.7, y, 1.0], [-1e-3, 5e-3, 5e-3]),
+        "far behind": ([x, y + 0.7, 1.0], [-1e-2, 0.4, -1e-2]),
+    }
+    for theta, behind in models.values():
+        visited.add(np.array(theta), point.J + behind)
+    assert len(visited.theta) == len(models), "no model dominates another one"
+    starts = Visited.of(PROBLEM, TARGET, simplex(3, 10), visited).starts(point)
+    assert np.array(starts) == pytest.approx(np.array([models[x][0] for x in ("best", "next")]))
 
 
 def test_one_smooth_branch_costs_nothing() -> None:

@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from modefront._typing import Floats
-from modefront.solvers.qp import NORMAL, QuadraticProgramme, solve_qp
+from modefront.solvers.qp import MANY, NORMAL, QuadraticProgramme, solve_qp
 
 SEEDS = st.integers(0, 2**31)
 
@@ -197,3 +197,47 @@ def test_a_very_steep_objective() -> None:
     s = solve_qp(programme(B, -B @ (target - n * b), hi, n[None], np.array([b]))).s
     assert s[1:] == pytest.approx(hi[1:], rel=1e-6)
     assert n @ s == pytest.approx(b, rel=1e-6)
+
+
+# ---- many variables: held and let go many at once --------------------------------------------
+
+
+@pytest.mark.parametrize("share", [1.0, 0.2, 0.02])
+@pytest.mark.parametrize("k", [0, 4])
+@pytest.mark.parametrize("p", [MANY, 120])
+def test_many_variables_end_at_the_box_or_within(p: int, k: int, share: float) -> None:
+    rng = np.random.default_rng(p + k)
+    half = rng.uniform(0.5, 2, p)
+    A = rng.normal(size=(k, p))
+    b = A @ (0.2 * half * rng.uniform(-1, 1, p))
+    g = 3 * rng.normal(size=p) / share
+    optimal(programme(convex(rng, p, 2 * p) / p + 0.1 * np.eye(p), g, half, A, b))
+
+
+@pytest.mark.parametrize("share", [1.0, 0.05])
+def test_many_variables_held_by_few_residuals(share: float) -> None:
+    """Of all s with the least value any is a solution: an independent method finds no lower one."""
+    rng = np.random.default_rng(3)
+    slopes, r = rng.normal(size=(30, 90)), rng.normal(size=30)
+    qp = programme(2 * slopes.T @ slopes, 2 * slopes.T @ r, 0.4 * share)
+    found = scipy.optimize.lsq_linear(slopes, -r, (qp.lo, qp.hi), tol=1e-14).x
+    assert value(qp, solve_qp(qp).s) == pytest.approx(value(qp, found), abs=1e-8)
+
+
+@pytest.mark.parametrize("k", [0, 3])
+def test_many_variables_with_negative_curvature_end_at_a_vertex_of_their_box(k: int) -> None:
+    """The slopes of the solution press against the box, and it is far below the start."""
+    rng = np.random.default_rng(5)
+    p = 80
+    root, S = rng.normal(size=(20, p)), rng.normal(size=(p, p))
+    A = rng.normal(size=(k, p))
+    qp = programme(root.T @ root + S + S.T, rng.normal(size=p), 0.1, A, np.zeros(k))
+    step = solve_qp(qp)
+    inside = (step.s > qp.lo) & (step.s < qp.hi)
+    mu, _ = qp.multipliers(step.s, [], inside)
+    slope = qp.g + qp.B @ step.s + qp.A.T @ mu
+    assert np.abs(slope[inside]).max() < 1e-6
+    assert (slope[step.s >= qp.hi] < 1e-6).all()
+    assert (slope[step.s <= qp.lo] > -1e-6).all()
+    assert qp.A @ step.s == pytest.approx(0, abs=1e-9)
+    assert value(qp, step.s) < -0.05 * np.abs(qp.g).sum()

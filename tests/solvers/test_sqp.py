@@ -85,9 +85,42 @@ def test_second_derivatives_of_quadratic_objectives_are_learned(seed: int, p: in
     S, position = np.zeros((n, p, p)), evaluation(rng.normal(size=p))
     for step in np.linalg.qr(rng.normal(size=(p, p)))[0]:
         new = evaluation(position.theta + step)
-        S, position = learned_from(S, position, new), new
+        S, position = learned_from(S, position, new, np.ones(p)), new
         assert S @ step == pytest.approx(full @ step), "the last step is reproduced"
         assert S == pytest.approx(S.transpose(0, 2, 1))
+
+
+def test_learned_second_derivatives_do_not_depend_on_the_units_of_parameters() -> None:
+    rng = np.random.default_rng(0)
+    full = rng.normal(size=(2, 3, 3))
+    full, unit = full + full.transpose(0, 2, 1), np.array([1e6, 1.0, 1e-4])
+
+    def learned(unit: Floats) -> Floats:
+        at = [
+            Evaluation(
+                u * unit,
+                np.zeros(2),
+                ObjectiveDerivatives(full @ u / unit, np.stack([np.diag(unit**-2.0)] * 2)),
+            )
+            for u in np.random.default_rng(1).normal(size=(3, 3))
+        ]
+        S = learned_from(np.zeros((2, 3, 3)), at[0], at[1], 2 * unit)
+        return learned_from(S, at[1], at[2], 2 * unit) * np.outer(unit, unit)
+
+    assert learned(unit) == pytest.approx(learned(np.ones(3)), rel=1e-9)
+
+
+def test_only_what_adds_to_known_second_derivatives_shrinks_with_them() -> None:
+    """A residual alone has no known part: its curvature changes sign without being forgotten."""
+    s = np.array([1.0, 0.0])
+
+    def at(theta: Floats, slope: Floats, H: Floats) -> Evaluation:
+        return Evaluation(theta, np.zeros(1), ObjectiveDerivatives(slope[None], H[None]))
+
+    for H, kept in ((np.zeros((2, 2)), 1.0), (np.diag([0.0, 1.0]), 0.0)):
+        S = np.diag([1.0, 1.0])[None]
+        new = learned_from(S, at(0 * s, 0 * s, H), at(s, 0 * s, H), np.ones(2))
+        assert new[0] == pytest.approx(np.diag([0.0, kept]))
 
 
 # ---- second-order correction -----------------------------------------------------------------

@@ -67,7 +67,7 @@ def test_all_methods_give_the_same_variables_and_count_alike(method: str) -> Non
     assert data["label"].values[:n].tolist() == [f"{method}-{i + 1}" for i in range(n)]
     evolutionary = method in ("spea2", "nsga2")
     spent = data.attrs["front_evaluations"]
-    few = {"nbi": 93, "weights": 64}
+    few = {"nbi": 79, "weights": 54}
     assert spent == (EVALUATIONS if evolutionary else pytest.approx(few[method], rel=0.05))
     converged = data["converged"].values[:n]
     assert not converged.any() if evolutionary else converged.all()
@@ -100,7 +100,7 @@ def test_the_weight_sweep_misses_the_branch_next_to_the_frequency_edge() -> None
     assert nondominated(result).all(), "what it finds is optimal"
 
 
-@pytest.mark.parametrize(("size", "expected"), [(0.06, (17, 85)), (0.02, (111, 369))])
+@pytest.mark.parametrize(("size", "expected"), [(0.06, (17, 67)), (0.02, (111, 317))])
 def test_refining_closes_the_gaps_of_each_piece_up_to_its_end(
     size: float, expected: tuple[int, int]
 ) -> None:

@@ -117,7 +117,7 @@ def test_the_optimal_weights_of_M0_are_regular_and_confirmed() -> None:
 
 
 def test_the_front_costs_few_eigenproblems() -> None:
-    for model, front, total in (("M0", 93, 847), ("M1", 83, 580)):
+    for model, front, total in (("M0", 79, 840), ("M1", 74, 590)):
         data = results(model)
         assert data.attrs["nbi_evaluations"] == pytest.approx(front, rel=0.05)
         assert data.attrs["model_evaluations"] == pytest.approx(total, rel=0.05)

@@ -15,7 +15,8 @@ as every step is as short as the manifold is curved.
 
 Residuals may be redundant (more rows than rank). With :math:`\partial r_i = U \Sigma V^T` at the
 start, the rows are combined to :math:`Q^T r_i`, Q being the columns of U that belong to singular
-values above `RANK`. Along a manifold Q turns; both steps are repeated until nothing is gained.
+values above `RANK`. Along a manifold Q turns, unless it combines all rows; both steps are repeated
+until nothing is gained.
 
 Where the objectives are no sums of squares, step 2 is the limit of the minimisers of
 
@@ -123,6 +124,11 @@ class Lexicographic:
             and self._changing(problem, evaluation).shape[1] < evaluation.theta.size
         )
 
+    def _holds_all(self, problem: Problem, evaluation: Evaluation) -> bool:
+        """Return whether Q combines all residuals of the first objective, so that it turns not."""
+        rows, k = self._changing(problem, evaluation).shape
+        return rows == k
+
     def _changing(self, problem: Problem, evaluation: Evaluation) -> Floats:
         """Return Q."""
         dr = evaluation.residuals[self.objective].dr * (problem.upper - problem.lower)
@@ -163,7 +169,8 @@ class Lexicographic:
             kept = solution if self._accepts(solution.J, least.J) else least
             if not self._accepts(kept.J, best.J):
                 return replace(best, evaluations=least.evaluations)
-            gained = self.better(kept.J, best.J)
+            again = not (solution.converged and self._holds_all(problem, solution.evaluation))
+            gained = again and self.better(kept.J, best.J)
             best = replace(kept, status=solution.status, evaluations=least.evaluations)
             if not gained:
                 break

@@ -15,6 +15,12 @@ they are let go as their multipliers have the wrong sign. Where B has negative c
 null space of the working set, its absolute value is used: variables that are held and changes of
 the maximum have no say in it. Without functions (m = 0), the maximum is left out.
 
+Of many variables, hundreds may end at the box, and each change of the working set takes a
+decomposition. They are therefore held and let go many at once first, as long as what is minimised
+falls: a step ends at its projection onto the box, and where it stays inside, all that have a wrong
+multiplier are let go (Moré & Toraldo 1991, doi:10.1137/0801008). The method above starts from
+there, and has little left to do.
+
 ========  =========  ================================================================
 symbol    shape      meaning
 ========  =========  ================================================================
@@ -54,6 +60,13 @@ Wright, equation 18.46)."""
 
 WRONG = 1e-9
 """Multiplier of the wrong sign, over the greatest gradient, below which it is rounding."""
+
+MANY, FACES, HALVINGS = 48, 30, 8
+"""Variables from which on many are held and let go at once; such changes at most; halvings at most
+of a step until its projection falls."""
+
+RETURNS = 4
+"""Times that variables move back to the equalities, after others were held, and meet the box."""
 
 PASSES = 4
 """Changes of the working set, over the number of variables and functions, after which the method
@@ -116,6 +129,10 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
     s = _normal_step(qp.A, qp.b, lo, hi)
     free = (s > lo) & (s < hi)
     width = float((hi - lo).max())
+    if s.size >= MANY and not len(qp.C):
+        s, free, solved = _many_at_once(qp, s, free, width)
+        if solved:
+            return QuadraticStep(s, [])
     active = [int(np.argmax(qp.c + qp.C @ s))] if len(qp.C) else []
     for _ in range(PASSES * (s.size + len(qp.C))):
         d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free, width)
@@ -140,12 +157,77 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
             active = [i for i in active if i != int(np.argmin(kappa))]
             continue
         slope = qp.g + qp.B @ s + qp.C.T @ kappa
-        scale = float(np.abs(slope).max())
+        scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
         wrong = _wrong(slope + qp.A.T @ mu, scale, free, s <= lo, s >= hi)
         if wrong is None:
             break
         free[wrong] = True
     return QuadraticStep(s, active)
+
+
+def _many_at_once(
+    qp: QuadraticProgramme, s: Floats, free: Bools, width: float
+) -> tuple[Floats, Bools, bool]:
+    """Return a step, its free variables, and whether it is the solution."""
+    for _ in range(FACES):
+        d = _descent(qp.B, qp.slope(s, []), qp.A, free, width)
+        if ((s + d > qp.lo) & (s + d < qp.hi))[free].all():
+            s = s + d
+            wrong = _all_wrong(qp, s, free)
+            if not wrong.any():
+                return s, free, True
+            free = free | wrong
+            continue
+        new = _projected(qp, s, d, free)
+        if new is None:
+            stopped = free & ((s <= qp.lo) & (d < 0) | (s >= qp.hi) & (d > 0))
+            if not stopped.any():
+                break
+            free = free & ~stopped
+        else:
+            s, free = new, free & (new > qp.lo) & (new < qp.hi)
+    return s, free, False
+
+
+def _all_wrong(qp: QuadraticProgramme, s: Floats, free: Bools) -> Bools:
+    """Return which held variables have multipliers of the wrong sign, without functions."""
+    slope = qp.slope(s, [])
+    left = slope + qp.A.T @ qp.multipliers(s, [], free)[0]
+    scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
+    return np.asarray(_gain(left, free, s <= qp.lo, s >= qp.hi) > WRONG * scale)
+
+
+def _projected(qp: QuadraticProgramme, s: Floats, d: Floats, free: Bools) -> Floats | None:
+    """Return where a step d, or its half and so on, ends on the box; None where nothing falls.
+
+    Variables inside the box keep the equalities as they are.
+    """
+    slope = qp.slope(s, [])
+    for halvings in range(HALVINGS):
+        new = _returned(qp, s, np.clip(s + 0.5**halvings * d, qp.lo, qp.hi), free)
+        if new is not None:
+            change = new - s
+            if slope @ change + 0.5 * change @ qp.B @ change < 0:
+                return new
+    return None
+
+
+def _returned(qp: QuadraticProgramme, s: Floats, new: Floats, free: Bools) -> Floats | None:
+    """Return a step with A new = A s again, by changes of free variables; None where there is none.
+
+    The changes are the least ones within the box.
+    """
+    if not len(qp.A):
+        return new
+    for _ in range(RETURNS):
+        inside = free & (new > qp.lo) & (new < qp.hi)
+        new = new.copy()
+        new[inside] -= np.linalg.lstsq(qp.A[:, inside], qp.A @ (new - s), rcond=FLAT)[0]
+        if (new >= qp.lo).all() and (new <= qp.hi).all():
+            left = np.abs(qp.A @ (new - s)) <= FLAT * (np.abs(qp.A) @ (qp.hi - qp.lo))
+            return new if left.all() else None
+        new = np.clip(new, qp.lo, qp.hi)
+    return None
 
 
 def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools, width: float) -> Floats:
@@ -187,9 +269,14 @@ def _wrong(left: Floats, scale: float, free: Bools, low: Bools, high: Bools) -> 
 
     ``left`` (p,) is what the multipliers leave of the slope, which is of this ``scale``.
     """
-    gain = np.where(free | (low & high), 0.0, np.where(low, -left, left))
+    gain = _gain(left, free, low, high)
     best = int(np.argmax(gain))
     return best if gain[best] > WRONG * scale else None
+
+
+def _gain(left: Floats, free: Bools, low: Bools, high: Bools) -> Floats:
+    """Return how steeply what is minimised falls as each held variable leaves the box's side."""
+    return np.where(free | (low & high), 0.0, np.where(low, -left, left))
 
 
 def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> Floats:

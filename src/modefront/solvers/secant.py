@@ -5,13 +5,19 @@ step s from one evaluation to another tells of S that
 
 .. math:: S s = y, \qquad y = \partial J(\theta + s) - \partial J(\theta) - H(\theta + s)\, s,
 
-and the symmetric correction of rank one (Conn, Gould & Toint 1991, doi:10.1007/BF01594934)
+and the least symmetric change (Powell's; Dennis & Schnabel, *Numerical Methods for Unconstrained
+Optimization*, 1983, section 9.2), with s and S over the ranges of the parameters,
 
-.. math:: S \leftarrow S + \frac{v v^T}{v^T s}, \qquad v = y - S s
+.. math:: S \leftarrow S + v u^T + u v^T - (v^T s)\, u u^T, \qquad v = y - S s,
+    \quad u = \frac{s}{s^T s}
 
-makes it so. S vanishes with the residuals: before it is corrected it is sized by
-:math:`s^T y / s^T S s` where that is below 1 (Dennis, Gay & Welsch 1981,
-doi:10.1145/355958.355965).
+makes it so. Unlike the correction of rank one, v v^T / v^T s, it is never greater than what the
+step tells, so that what earlier steps have told is kept: with many parameters, of which steps show
+one direction each, the correction of rank one takes two to three times as many.
+
+S vanishes with the residuals: before it is corrected it is sized by :math:`s^T y / s^T S s` where
+that is below 1 (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965). An objective of which H
+knows nothing, such as one residual, is none of squares, and its S is not sized.
 """
 
 from __future__ import annotations
@@ -21,21 +27,21 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.solvers.problem import Evaluation
 
-SURE = 1e-6
-"""Cosine between v and s from which a correction is made: below it, v is divided by rounding. With
-the usual 1e-8 (Nocedal & Wright, *Numerical Optimization*, 2006, equation 6.26), fronts of
-three objectives cost the same."""
 
+def learned_from(S: Floats, before: Evaluation, after: Evaluation, span: Floats) -> Floats:
+    """Return S (n, p, p) with what the difference of two evaluations tells of it.
 
-def learned_from(S: Floats, before: Evaluation, after: Evaluation) -> Floats:
-    """Return S (n, p, p) with what the difference of two evaluations tells of it."""
+    ``span`` (p,) are the ranges of the parameters; S is with respect to the parameters themselves.
+    """
     s = after.theta - before.theta
+    if not s.any():
+        return S
     y = after.dJ - before.dJ - after.H @ s
     claimed = np.abs(S @ s @ s)
     size = np.minimum(np.abs(y @ s), claimed) / np.where(claimed > 0, claimed, 1.0)
+    size[~after.H.any(axis=(1, 2))] = 1.0
     S = size[:, None, None] * S
-    v = y - S @ s
-    along = v @ s
-    sure = np.abs(along) > SURE * np.linalg.norm(v, axis=1) * np.linalg.norm(s)
-    scale = np.where(sure, 1 / np.where(sure, along, 1.0), 0.0)
-    return np.asarray(S + scale[:, None, None] * v[:, :, None] * v[:, None, :])
+    v, along = y - S @ s, s / span**2
+    u = along / (s @ along)
+    vu = v[:, :, None] * u
+    return np.asarray(S + vu + vu.transpose(0, 2, 1) - (v @ s)[:, None, None] * np.outer(u, u))

@@ -252,7 +252,7 @@ def solve(
         noise = local.noise(multipliers)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if options.learn:
-            S = learned_from(S, evaluation, new)
+            S = learned_from(S, evaluation, new, local.span)
         if ratio > TAKEN:
             evaluation = new
         radius = _next_radius(radius, length(s), ratio)

@@ -39,6 +39,9 @@ from modefront.solvers.scalarisation import LogSum, weighted
 from modefront.solvers.sqp import Options, Solution, Status, solve
 from modefront.work.task import IMMEDIATE, Executor
 
+WITHIN = 0.1
+"""Tolerance of a model of the iteration of weights, over the length of the step before it."""
+
 _TIGHT = Options(reduction=1e-17)
 """Steps end at the tolerance of the parameters, whatever f: a sum of logarithms has any size."""
 
@@ -116,9 +119,11 @@ def iterate_weights(
 ) -> Solution | None:
     """Return the fixed point of w = a / J, from a start; None where an objective vanishes.
 
-    The status says whether successive models agree to the tolerance of the parameters.
+    The status says whether successive models agree to the tolerance of the parameters. Each is
+    solved for to a share of the step before it: the next weights move it by more than that.
     """
     options = Options()
+    tolerance = WITHIN * options.radius
     span = problem.upper - problem.lower
     evaluations = 0
     status = Status.EXHAUSTED
@@ -126,11 +131,12 @@ def iterate_weights(
         if not regular(start.J, sizes):
             return None
         w = a / start.J
-        solution = solve(problem, weighted(w / w.sum()), start, options)
+        solution = solve(problem, weighted(w / w.sum()), start, replace(options, step=tolerance))
         evaluations += solution.evaluations
         moved = float(np.abs((solution.theta - start.theta) / span).max())
         start = replace(solution, weights=w)
-        if moved <= options.step:
+        if moved <= options.step and tolerance == options.step:
             status = solution.status
             break
+        tolerance = max(options.step, WITHIN * (moved or tolerance))
     return replace(start, status=status, evaluations=evaluations)

@@ -18,10 +18,9 @@ from modefront.solvers.flat import same
 from modefront.solvers.gaps import gaps
 from modefront.solvers.nbi import nbi
 from modefront.solvers.payoff import Payoff
-from modefront.solvers.problem import Problem
 from modefront.solvers.refine import refine
 from modefront.solvers.sqp import Solution
-from modefront.work.task import Executor, Within, seed_sequence
+from modefront.work.task import Within, seed_sequence
 
 if TYPE_CHECKING:
     from modefront.fronts.options import Pareto
@@ -75,27 +74,22 @@ class NormalBoundaryIntersection:
             setting.archive,
         )
         if len(setting.edges) > 2:
-            along = _settled(problem, target, lattice, along, setting.work)
+            along = _settled(setting, target, along)
         front = without_copies(lattice, solved, along, target)
         return _branches(setting, front) if len(setting.edges) == 2 else front
 
 
-def _settled(
-    problem: Problem,
-    target: Payoff,
-    lattice: Simplex,
-    points: Sequence[Solution],
-    work: Executor,
-) -> list[Solution]:
-    """Return the points, compared with the points beside them and lowered at the border.
+def _settled(setting: Setting, target: Payoff, points: Sequence[Solution]) -> list[Solution]:
+    """Return the points, compared with models beside them and lowered at the border.
 
     What is lowered may have left the best branch, or lead to a better one.
     """
+    problem, lattice, visited = setting.problem, setting.lattice, setting.archive
     compared: list[Solution] = []
     lowered = list(points)
     for turn in range(TURNS):
-        part = Within(work, turn=("turn", turn + 1))
-        compared = from_points_beside(problem, target, lattice, lowered, part, compared)
+        part = Within(setting.work, turn=("turn", turn + 1))
+        compared = from_points_beside(problem, target, lattice, lowered, part, compared, visited)
         if turn and all(map(same, compared, lowered)):
             break
         lowered = without_slack(problem, target, compared, part, lowered if turn else ())
