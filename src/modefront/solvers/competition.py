@@ -1,4 +1,4 @@
-r"""Points of a front of three and more objectives, solved again from the points beside them.
+r"""Points of a front solved again from the points beside them, and from visited models.
 
 Where branches of the front meet, or the front folds, the lattice leads along one branch as far as
 it goes, and another one may be better. So each point of the front is compared with the points
@@ -38,7 +38,8 @@ import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.solvers.archive import Archive
-from modefront.solvers.attainment import SAME, Attainment
+from modefront.solvers.attainment import SAME
+from modefront.solvers.basins import programmes_of
 from modefront.solvers.continuation import JUMP, Simplex
 from modefront.solvers.flat import same
 from modefront.solvers.payoff import Payoff
@@ -115,6 +116,27 @@ def from_points_beside(
         new = competition.won(tasks, work)
         gained += len(new)
         if turn and not new and (not tasks or not gained):
+            break
+    return competition.points
+
+
+# 6 arguments: the front, and what is known beside it.
+def from_visited(
+    problem: Problem,
+    target: Payoff,
+    lattice: Simplex,
+    points: Sequence[Solution],
+    visited: Archive,
+    work: Executor = IMMEDIATE,
+) -> list[Solution]:
+    """Return the points, each solved again from models that the run has visited in other basins."""
+    competition = _Competition(problem, target, lattice, list(points), set())
+    new: Collection[int] = range(len(points))
+    for turn in range(ROUNDS):
+        new = competition.won(
+            competition.from_visited(("front", "nbi", "visited", turn), new, visited), work
+        )
+        if not new:
             break
     return competition.points
 
@@ -328,7 +350,7 @@ def _from_other(problem: Problem, target: Payoff, point: Solution, start: Soluti
     It is not solved to the end where it ends behind the point, or comes to it.
     """
     beta = target.place(point.J)
-    programme = Attainment(target, np.zeros((0, point.theta.size))).subproblem(beta)
+    programme = programmes_of(problem, target).subproblem(beta)
     end = solve(problem, programme, start, _ROUGH)
     evaluations = end.evaluations
     lead = target.excess(beta, point.J).max() - target.excess(beta, end.J).max()

@@ -11,7 +11,7 @@ import numpy as np
 from modefront.fronts.methods.base import Along, Setting
 from modefront.solvers.basins import explore_between
 from modefront.solvers.border import without_slack
-from modefront.solvers.competition import from_points_beside
+from modefront.solvers.competition import from_points_beside, from_visited
 from modefront.solvers.continuation import Simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.flat import same
@@ -75,6 +75,8 @@ class NormalBoundaryIntersection:
         )
         if len(setting.edges) > 2:
             along = _settled(setting, target, along)
+        else:
+            along = from_visited(problem, target, lattice, along, setting.archive, setting.work)
         front = without_copies(lattice, solved, along, target)
         return _branches(setting, front) if len(setting.edges) == 2 else front
 
