@@ -44,6 +44,7 @@ from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Solution
 from modefront.work.backend import InTurn
+from modefront.work.costs import counted
 from modefront.work.run import Run
 from modefront.work.store import Store
 from modefront.work.task import Executor, Task, Within, seed_sequence
@@ -67,11 +68,12 @@ def test_results_costs_and_random_numbers_are_those_of_one_after_another(
     expected = alone.run(tasks)
     with Workers(Threads(count, delays)) as workers:
         work = Run(backend=workers)
-        results = work.run(tasks, squares(100, 101))
+        with counted() as spent:
+            results = work.run(tasks, squares(100, 101))
     for first, other in zip(results, expected, strict=True):
         np.testing.assert_array_equal(first, other)
     assert set(work.costs) == set(alone.costs)
-    assert work.total().eigenproblems == alone.total().eigenproblems
+    assert work.total().eigenproblems == alone.total().eigenproblems == spent.eigenproblems
 
 
 def searched(problem: Problem, work: Executor) -> list[Solution]:

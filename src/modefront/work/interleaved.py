@@ -16,6 +16,7 @@ from queue import SimpleQueue
 from typing import Any, TypeAlias
 
 from modefront.work.backend import Backend, Done
+from modefront.work.costs import uncounted
 from modefront.work.task import Task
 
 
@@ -139,9 +140,14 @@ def interleaved(
     try:
         for k, talk in enumerate(talks):
             yield from heard(k, talk.begin())
-        for place, done in backend.compute(tasks, ahead, lambda _: None):
-            k, position = origins[place]
-            yield from heard(k, talks[k].answer(position, done))
+        results = backend.compute(tasks, ahead, lambda _: None)
+        while True:
+            with uncounted():  # a part counts where its function takes the result
+                answer = next(results, None)
+            if answer is None:
+                break
+            k, position = origins[answer[0]]
+            yield from heard(k, talks[k].answer(position, answer[1]))
         if errors:
             raise errors[min(errors)]
     finally:
