@@ -187,7 +187,9 @@ def quotients(K: Floats, M: Floats, X: Floats) -> Floats:
 def compared(model: ReducedModel, thetas: Floats) -> list[Comparison]:
     """Return estimated and true errors at some parameters (models, p)."""
     requested = np.arange(MODES)
-    certificates = model.certify([(theta, requested) for theta in thetas], MODES + SPARE)
+    certificates = model.certifier().certify(
+        [(theta, requested) for theta in thetas], MODES + SPARE
+    )
     basis, pencil, out = model.ready().space.basis, model.full.pencil, []
     for theta, certificate in zip(thetas, certificates, strict=True):
         K, M = pencil.K.at(theta).toarray(), pencil.M.at(theta).toarray()

@@ -179,7 +179,7 @@ def sharpness(full: MatrixModel, model: ReducedModel, result: xr.Dataset) -> Flo
     basis = model.ready().space.basis
     models = requests_of(result)
     ratios = []
-    for (theta, r), certificate in zip(models, model.certify(models), strict=True):
+    for (theta, r), certificate in zip(models, model.certifier().certify(models), strict=True):
         K, M = full.pencil.K.at(theta), full.pencil.M.at(theta)
         exact = lowest(full.pencil, theta, model.count)
         ritz = basis.combine(dense.decompose(basis.K.at(theta), basis.M.at(theta)).Phi[:, r])
@@ -231,7 +231,7 @@ def line(
     out["error"] = float(data_of["eigenvalue_error"].max())
     out["converged"] = float(data_of["converged"].mean())
     alone = reduced_model(full, count)
-    nominal = alone.certify(requests_of(data_of))
+    nominal = alone.certifier().certify(requests_of(data_of))
     out["error_nominal"] = max(float(certificate.eigenvalue.max()) for certificate in nominal)
     out |= {name: value for name, value in vars(costs).items() if name.endswith("_time")}
     if exact:

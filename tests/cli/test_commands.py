@@ -350,7 +350,7 @@ def test_what_goes_wrong_on_the_way_is_one_message(
     study: Path,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr(session, "run", failing(error))
+    monkeypatch.setattr(session, "run_on", failing(error))
     result, out, err = modefront_("run", study)
     assert (result, out) == (status, "")
     assert says in err
@@ -359,7 +359,7 @@ def test_what_goes_wrong_on_the_way_is_one_message(
 def test_the_traceback_is_there_for_those_who_ask(
     study: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(session, "run", failing(ZeroDivisionError("oh")))
+    monkeypatch.setattr(session, "run_on", failing(ZeroDivisionError("oh")))
     monkeypatch.setattr(sys, "argv", ["modefront", "run", str(study)])
     monkeypatch.setenv("MODEFRONT_TRACEBACK", "1")
     with pytest.raises(ZeroDivisionError):
@@ -369,14 +369,14 @@ def test_the_traceback_is_there_for_those_who_ask(
 def test_points_that_did_not_converge_are_said_and_kept(
     modefront_: Run, study: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    run = session.run
+    run = session.run_on
 
     def doubtful(*arguments: Any, **options: Any) -> modefront.Results:
         data = run(*arguments, **options)
         data["converged"][1] = False
         return data
 
-    monkeypatch.setattr(session, "run", doubtful)
+    monkeypatch.setattr(session, "run_on", doubtful)
     status, out, err = modefront_("run", study)
     assert status == 1
     assert "not converged: nbi-2" in out

@@ -36,6 +36,13 @@ def test_part_of_a_wider_array() -> None:
     close(products.combine(X, Y[:17]), X @ Y[:17])
 
 
+@pytest.mark.parametrize(("a", "b"), [(300, 9), (9, 300), (130, 70), (65, 64)])
+def test_wide_matrices_are_products_of_tiles(a: int, b: int) -> None:
+    rng = np.random.default_rng(a)
+    X, Y = rng.standard_normal((501, a)), rng.standard_normal((501, b))
+    close(products.gram(X, Y), X.T @ Y)
+
+
 def test_nothing_with_more_rows_than_a_block() -> None:
     tall = np.ones((3 * products.WORK, 1))
     assert products.gram(tall[:, :0], tall).shape == (0, 1)
@@ -44,7 +51,7 @@ def test_nothing_with_more_rows_than_a_block() -> None:
     assert not nothing.any()
 
 
-@pytest.mark.parametrize("columns", [1, 2, 30])
+@pytest.mark.parametrize("columns", [1, 2, 30, 200])
 def test_sharing_among_threads_changes_no_digit(
     columns: int, monkeypatch: pytest.MonkeyPatch
 ) -> None:

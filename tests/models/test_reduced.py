@@ -142,7 +142,7 @@ def test_errors_are_what_the_certificate_says(full: MatrixModel, snapshots: int)
     for theta in rng.uniform(0.5, 2.3, (3, 3)):
         exact_modes, result = lowest(full.pencil, theta, 8), model.modes(theta, 8)
         r = elastic(result.lam)
-        (certificate,) = model.certify([(theta, r)])
+        (certificate,) = model.certifier().certify([(theta, r)])
         shift = model.ready().space.factor.below.sigma
         noise = 1e2 * exact_modes.noise[r] / exact_modes.lam[r]
         truth = (result.lam[r] - exact_modes.lam[r]) / (result.lam[r] - shift)
@@ -328,20 +328,20 @@ def test_a_mode_that_the_basis_misses_is_found_by_inertia(costs: Costs) -> None:
     full = two_structures()
     bounds = np.full(2, 1e-4), np.full(2, 2.0)
     model = ReducedModel(full, 4, np.ones(2), *bounds)
-    (near,) = model.certify([(np.array([0.99, 1.0]), np.arange(3))])
+    (near,) = model.certifier().certify([(np.array([0.99, 1.0]), np.arange(3))])
     assert near.eigenvalue.max() < 1e-3
     assert costs.factorisations == 2, "there is no doubt near a snapshot"
     theta = np.array([1e-4, 1.0])
     with uncounted():
         assert model.modes(theta, 4).lam[0] > 1.5 * full.modes(theta, 4).lam[0]
-    first, other = model.certify([(np.ones(2), np.arange(3)), (theta, np.arange(3))])
+    first, other = model.certifier().certify([(np.ones(2), np.arange(3)), (theta, np.arange(3))])
     assert np.isfinite(first.eigenvalue).all()
     assert np.isinf(other.eigenvalue).all()
     assert costs.factorisations == 3
-    (alone,) = model.certify([(theta, np.arange(3))])
+    (alone,) = model.certifier().certify([(theta, np.arange(3))])
     assert np.isinf(alone.eigenvalue).all()
     model.take(SnapshotRequest(theta, 10))
-    (known,) = model.certify([(theta, np.arange(3))])
+    (known,) = model.certifier().certify([(theta, np.arange(3))])
     assert known.eigenvalue.max() < 1e-8
 
 
@@ -351,16 +351,16 @@ def test_a_proof_that_no_mode_is_missing_speaks_for_models_nearby(
 ) -> None:
     point, requested = np.array([2.4, 0.6, 2.4]), np.arange(9)
     model = reduced(plate())
-    (certificate,) = model.certify([(point, requested)])
+    (certificate,) = model.certifier().certify([(point, requested)])
     assert certificate.known
     assert costs.factorisations == 2, "the first snapshot has twice the modes for that"
     monkeypatch.setattr("modefront.models.reduced.model.WIDE", 1)
     model, before = reduced(plate()), costs.factorisations
     thetas = [point, 0.995 * point, 1.005 * point, np.ones(3)]
-    for certificate in model.certify([(theta, requested) for theta in thetas]):
+    for certificate in model.certifier().certify([(theta, requested) for theta in thetas]):
         assert np.isfinite(certificate.eigenvalue).all()
     assert costs.factorisations - before == 3, "two of the snapshot, one where it was in doubt"
-    model.certify([(np.ones(3), requested)])
+    model.certifier().certify([(np.ones(3), requested)])
     assert costs.factorisations - before == 3, "the snapshot speaks for itself"
 
 
@@ -389,10 +389,10 @@ def test_an_estimate_that_does_not_settle_takes_a_factor_of_its_own(
     model = ReducedModel(full, 10, np.ones(3), *bounds)
     theta, requested = np.array([1.0, 0.2, 2.4]), np.arange(6)
     lam, exact = model.modes(theta, 6).lam, full.modes(theta, 6).lam
-    (settled,) = model.certify([(theta, requested)])
+    (settled,) = model.certifier().certify([(theta, requested)])
     factorisations = costs.factorisations
     monkeypatch.setattr("modefront.models.reduced.certificate.STEPS", 0)
-    (chosen,) = model.certify([(theta, requested)])
+    (chosen,) = model.certifier().certify([(theta, requested)])
     assert costs.factorisations == factorisations + 1
     assert settled.eigenvalue == pytest.approx(lam / exact - 1, rel=0.3)
     assert chosen.eigenvalue == pytest.approx(lam / exact - 1, rel=1e-3)
@@ -401,16 +401,18 @@ def test_an_estimate_that_does_not_settle_takes_a_factor_of_its_own(
         raise SingularMatrixError("pivot of zero")
 
     monkeypatch.setattr("modefront.linalg.pencil.Pencil.factor", singular)
-    (unknown,) = model.certify([(theta, requested)])
+    (unknown,) = model.certifier().certify([(theta, requested)])
     assert np.isinf(unknown.eigenvalue).all(), "no number is better than a wrong one"
 
 
 def test_certificates_asked_for_together_are_sharper_than_alone() -> None:
     model, requested = reduced(plate()), np.arange(6)
     thetas = np.random.default_rng(1).uniform(0.5, 2.3, (4, 3))
-    together = model.certify([(theta, requested[: 6 - k]) for k, theta in enumerate(thetas)])
+    together = model.certifier().certify(
+        [(theta, requested[: 6 - k]) for k, theta in enumerate(thetas)]
+    )
     for k, (theta, certificate) in enumerate(zip(thetas, together, strict=True)):
-        (alone,) = model.certify([(theta, requested[: 6 - k])])
+        (alone,) = model.certifier().certify([(theta, requested[: 6 - k])])
         result = model.modes(theta, 6 - k).lam
         truth = result / model.full.modes(theta, 6 - k).lam - 1
         assert (0.999 * alone.eigenvalue <= certificate.eigenvalue).all(), "but for the steps taken"
@@ -452,7 +454,7 @@ def test_a_third_of_every_error_is_found_over_many_decades(bounds: tuple[float, 
         thetas = np.exp(rng.uniform(np.log(lower), np.log(upper), (5, members)))
         thetas[-1] = np.where(rng.uniform(size=members) < 0.5, lower, upper)
         for theta, certificate in zip(
-            thetas, model.certify([(x, requested) for x in thetas]), strict=True
+            thetas, model.certifier().certify([(x, requested) for x in thetas]), strict=True
         ):
             K, M = full.pencil.K.at(theta).toarray(), full.pencil.M.at(theta).toarray()
             X = scipy.linalg.eigh(M, K)[1][:, ::-1][:, requested]
@@ -532,7 +534,7 @@ def test_a_model_without_modes_ends_nothing() -> None:
     good, bad = np.array([-0.5, 0.5]), np.array([0.5, -1.1])
     with pytest.raises(ModelError):
         full.modes(bad, 3)
-    here, other = model.certify([(good, np.arange(3)), (bad, np.arange(3))])
+    here, other = model.certifier().certify([(good, np.arange(3)), (bad, np.arange(3))])
     assert np.isfinite(here.eigenvalue).all()
     assert np.isinf(other.eigenvalue).all()
     model.take(SnapshotRequest(np.array([good, bad]), 4))

@@ -14,7 +14,7 @@ from independent import Equation, Reference, agreement, edge_reference
 from updating_problems import chain_case, make
 
 import modefront as mf
-from modefront.solvers.edges import edge
+from modefront.solvers.edges import Edge, edge_of_each
 from modefront.solvers.explore import Search
 from modefront.solvers.sqp import Solution
 
@@ -38,11 +38,17 @@ def reference(key: Key, i: int) -> Reference:
     return edge_reference(equation(key), i)
 
 
+@cache
+def computed_edges(key: Key) -> list[Edge | None]:
+    problem, sizes = equation(key).case.problem, reference(key, 0).sizes
+    seeds = [np.random.SeedSequence(k) for k in range(sizes.size)]
+    return edge_of_each(problem, sizes, seeds, SEARCH)
+
+
 def computed_edge(key: Key, i: int) -> Solution:
-    problem, sizes = equation(key).case.problem, reference(key, i).sizes
-    other = edge(problem, i, sizes, np.random.SeedSequence(i), SEARCH)
-    assert other is not None
-    return other.best
+    edge = computed_edges(key)[i]
+    assert edge is not None
+    return edge.best
 
 
 def regime(key: Key, i: int) -> tuple[bool, float]:

@@ -6,7 +6,7 @@ from problems import Derivatives, Known, box, circles
 
 from modefront._typing import Floats
 from modefront.solvers.continuation import simplex
-from modefront.solvers.edges import edge
+from modefront.solvers.edges import edge_of_each
 from modefront.solvers.explore import Search
 from modefront.solvers.flat import flat_points, identifiable_part
 from modefront.solvers.nbi import nbi
@@ -23,11 +23,10 @@ def flat(theta: Floats) -> Derivatives:
 
 
 def whole_front(problem: Known, sizes: Floats) -> tuple[list[Solution], list[Solution]]:
-    edges = []
-    for i in range(2):
-        result = edge(problem, i, sizes, np.random.SeedSequence(i), Search(starts=3))
-        assert result is not None
-        edges.append(result.best)
+    seeds = [np.random.SeedSequence(i) for i in range(2)]
+    result = edge_of_each(problem, sizes, seeds, Search(starts=3))
+    edges = [edge.best for edge in result if edge]
+    assert len(edges) == 2
     target = payoff(edges, sizes)
     assert target is not None
     return edges, nbi(problem, edges, target, simplex(2, 19))
@@ -108,9 +107,8 @@ def flat_three(theta: Floats) -> Derivatives:
 def test_a_flat_patch_of_three_objectives_is_left_out() -> None:
     problem = box(flat_three, [0, -1], [4, 2], 3)
     sizes = np.ones(3)
-    result = [
-        edge(problem, i, sizes, np.random.SeedSequence(i), Search(starts=3)) for i in range(3)
-    ]
+    seeds = [np.random.SeedSequence(i) for i in range(3)]
+    result = edge_of_each(problem, sizes, seeds, Search(starts=3))
     edges = [solution.best for solution in result if solution]
     target = payoff(edges, sizes)
     assert target is not None

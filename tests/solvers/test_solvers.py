@@ -31,7 +31,7 @@ from modefront._typing import Floats
 from modefront.solvers.attainment import Attainment
 from modefront.solvers.continuation import continuation, neighbours, simplex
 from modefront.solvers.dominance import nondominated
-from modefront.solvers.edges import edge, sample, typical_sizes
+from modefront.solvers.edges import edge_of_each, sample, typical_sizes
 from modefront.solvers.explore import Descent, Search, evolve, explore
 from modefront.solvers.gaps import branch_numbers, gaps
 from modefront.solvers.indicators import hypervolume, igd_plus, largest_gap
@@ -52,13 +52,13 @@ def sizes_of(problem: Known) -> Floats:
 
 
 def edges_of(problem: Known) -> list[Solution]:
-    sizes = sizes_of(problem)
-    out = []
-    for i in range(len(problem.objectives)):
-        result = edge(problem, i, sizes, np.random.SeedSequence(i), Search())
-        assert result is not None
-        out.append(result.best)
-    return out
+    result = edge_of_each(problem, sizes_of(problem), seeds(len(problem.objectives)), Search())
+    assert all(result)
+    return [edge.best for edge in result if edge]
+
+
+def seeds(count: int) -> list[np.random.SeedSequence]:
+    return [np.random.SeedSequence(i) for i in range(count)]
 
 
 def front_of(problem: Known, points: int = 11) -> list[Solution]:
@@ -337,7 +337,7 @@ def test_steps_that_are_expected_have_other_names_where_they_turn_out_to_be_othe
 def test_a_piece_of_the_front_between_the_edges_is_reached_from_its_own_minimum() -> None:
     problem = box(three_wells, [-1, -1.5], [2, 1.5])
     sizes = sizes_of(problem)
-    result = [edge(problem, i, sizes, np.random.SeedSequence(i), Search()) for i in range(2)]
+    result = edge_of_each(problem, sizes, seeds(2), Search())
     edges = [solution.best for solution in result if solution]
     assert [round(edge.theta[1]) for edge in edges] == [-1, 1]
     target = payoff(edges, sizes)
@@ -372,7 +372,7 @@ def test_fronts_of_three_objectives_are_covered_beyond_the_simplex(
 ) -> None:
     problem = box(function, lower, upper, 3)
     sizes = sizes_of(problem)
-    result = [edge(problem, i, sizes, np.random.SeedSequence(i), Search()) for i in range(3)]
+    result = edge_of_each(problem, sizes, seeds(3), Search())
     edges = [solution.best for solution in result if solution]
     minima = [minimum for each in result if each for minimum in each.minima]
     target = payoff(edges, sizes, minima)

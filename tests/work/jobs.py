@@ -40,6 +40,20 @@ def chain(number: int, *, work: Executor) -> list[int]:
     return out
 
 
+def fragile(error: Exception, *, work: Executor) -> int:
+    """Raise the error of a part."""
+    return work.run([*squares(1), Task(("fails",), failing, (error,))])[0]
+
+
+def broken_off(*, work: Executor) -> int:
+    """Raise an error between two parts."""
+    raise ZeroDivisionError(work.run(squares(2, 3)))
+
+
+def one_part(*, work: Executor) -> int:
+    return work.run([Task(("nap",), nap, (1,))])[0]
+
+
 def negative(x: int) -> int:
     return -x * x
 

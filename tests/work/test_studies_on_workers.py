@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import multiprocessing
 import os
 import signal
 import subprocess
@@ -140,10 +141,27 @@ def test_results_do_not_depend_on_who_does_the_work(
     files = sorted(x.name for x in (tmp_path / "one").rglob("*.npz"))
     for name in names:
         with monkeypatch.context() as patch:
-            patch.setattr(session, "backend", lambda *_, x=pools[name], **__: nullcontext(x))
+            patch.setattr(session, "processes", lambda *_, x=pools[name]: nullcontext(x))
             result = mf.run(of(tmp_path), tmp_path / name).dataset
         xr.testing.assert_identical(result, expected)
         assert sorted(x.name for x in (tmp_path / name).rglob("*.npz")) == files
+
+
+def test_a_process_that_is_killed_during_a_certificate_is_replaced(tmp_path: Path) -> None:
+    expected = mf.run(reduced(tmp_path), tmp_path / "whole").dataset
+    killed: list[Any] = []
+    others = set(multiprocessing.active_children())
+
+    def report(state: State) -> None:
+        if state.stage == "certificate" and state.running and not killed:
+            killed.extend(set(multiprocessing.active_children()) - others)
+            killed[0].kill()
+
+    folder, progress = tmp_path / "killed", Progress(report)
+    result = mf.run(reduced(tmp_path), folder, workers=2, progress=progress).dataset
+    xr.testing.assert_identical(result, expected)
+    assert len(killed) == 2
+    assert set(multiprocessing.active_children()) <= others
 
 
 @pytest.mark.slow
@@ -259,6 +277,34 @@ def test_a_drive_that_fails_ends_a_run_and_its_processes(kind: str, tmp_path: Pa
         time.sleep(0.02)
     assert not running(process.pid)
     assert list(folder.rglob("*.npz"))
+
+
+@pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")
+def test_a_run_whose_output_nobody_reads_is_done_and_says_so_once(tmp_path: Path) -> None:
+    path, folder = write_study(tmp_path, ""), tmp_path / "results"
+    expected = mf.run(mf.load(path), tmp_path / "whole").dataset
+    code = "from modefront.cli.main import main; main()"
+    arguments = ["run", path, "-o", folder, "--workers", "2"]
+    with subprocess.Popen(
+        [sys.executable, "-c", code, *map(str, arguments)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    ) as process:
+        assert process.stdout is not None
+        assert process.stderr is not None
+        process.stdout.close()
+        lines = process.stderr.read().splitlines()
+    assert process.returncode == 0
+    said = f"modefront: nobody reads the summary; the results are in {folder}"
+    assert [line for line in lines if "tasks done" not in line] == [said]
+    assert mf.read_results(folder).dataset.identical(expected)
+    for _ in range(500):
+        if not running(process.pid):
+            break
+        time.sleep(0.02)
+    assert not running(process.pid)
 
 
 def test_a_second_run_with_workers_leaves_the_folder_to_the_first(tmp_path: Path) -> None:

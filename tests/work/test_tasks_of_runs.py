@@ -132,3 +132,12 @@ def test_weights_named_like_work_have_no_part_in_it(tmp_path: Path) -> None:
 def test_weights_named_like_a_point_of_the_study_are_refused(tmp_path: Path) -> None:
     with pytest.raises(mf.InputError, match=r"\[\[weighted\]\].*'edge-shapes'"):
         named(tmp_path / "one", "edge-shapes")
+
+
+def test_groups_whose_names_differ_in_case_only_have_files_of_their_own(tmp_path: Path) -> None:
+    names = ('name = "frequencies"', 'name = "Shapes"'), ('name = "shapes"', 'name = "shapes"')
+    mf.run(study(tmp_path, *names), tmp_path / "results")
+    files = [path.name for path in (tmp_path / "results").rglob("*.npz")]
+    assert any("Shapes" in name for name in files)
+    assert any("shapes" in name for name in files)
+    assert len({name.casefold() for name in files}) == len(files), "one drive may take them for one"

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,18 +17,21 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jobs import (
     Big,
+    broken_off,
     chain,
     deadly,
     failing,
+    fragile,
     nap,
     negative,
     normal,
+    one_part,
     process_of,
     slow,
     squares,
     totals,
 )
-from pools import Threads
+from pools import Interrupting, Threads
 from problems import box, circles
 
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
@@ -40,6 +44,7 @@ from modefront.solvers.problem import Problem
 from modefront.solvers.scalarisation import weighted
 from modefront.solvers.sqp import Solution
 from modefront.work.backend import InTurn
+from modefront.work.costs import counted
 from modefront.work.run import Run
 from modefront.work.store import Store
 from modefront.work.task import Executor, Task, Within, seed_sequence
@@ -63,25 +68,27 @@ def test_results_costs_and_random_numbers_are_those_of_one_after_another(
     expected = alone.run(tasks)
     with Workers(Threads(count, delays)) as workers:
         work = Run(backend=workers)
-        results = work.run(tasks, squares(100, 101))
+        with counted() as spent:
+            results = work.run(tasks, squares(100, 101))
     for first, other in zip(results, expected, strict=True):
         np.testing.assert_array_equal(first, other)
     assert set(work.costs) == set(alone.costs)
-    assert work.total().eigenproblems == alone.total().eigenproblems
+    assert work.total().eigenproblems == alone.total().eigenproblems == spent.eigenproblems
 
 
 def searched(problem: Problem, work: Executor) -> list[Solution]:
     """Return minima of a search and a front between the first two of them."""
-    minima = []
-    for i, w in enumerate(np.eye(2)):
-        task = Task(
+    tasks = [
+        Task(
             ("search", i),
             explore,
             (problem, Descent(weighted(w)), Search(starts=6, limit=8, evolutions=0)),
             seed_sequence(0, i),
             has_parts=True,
         )
-        minima.append(work.run([task])[0][0])
+        for i, w in enumerate(np.eye(2))
+    ]
+    minima = [found[0] for found in work.run(tasks)]
     target = payoff(minima, np.ones(2), minima)
     assert target is not None
     return [*minima, *nbi(problem, minima, target, simplex(2, 6), work)]
@@ -222,6 +229,37 @@ def test_without_a_cluster_the_run_ends_with_what_it_has(tmp_path: Path) -> None
     again = Run(store)
     assert again.run(tasks) == list(range(8))
     assert again.progress.state.done == 8
+
+
+def test_where_a_part_fails_the_other_tasks_with_parts_are_done_and_kept(tmp_path: Path) -> None:
+    tasks: list[Task[Any]] = [
+        Task(("chain", 1), chain, (1,), has_parts=True),
+        Task(("fragile",), fragile, (ModelError("no modes"),), has_parts=True),
+        Task(("broken",), broken_off, has_parts=True),
+        Task(("chain", 2), chain, (2,), has_parts=True),
+    ]
+    store, threads = Store(tmp_path), threading.active_count()
+    pool = Threads(2, (2, 0))
+    with Workers(pool) as workers, pytest.raises(ModelError, match="no modes"):
+        Run(store, backend=workers).run(tasks)
+    assert [store.has(task) for task in tasks] == [True, False, False, True]
+    assert threading.active_count() == threads, "none waits for parts that will not come"
+
+
+def test_an_interrupt_ends_all_tasks_with_parts() -> None:
+    tasks = [Task(("chain", k), chain, (k,), has_parts=True) for k in range(3)]
+    threads = threading.active_count()
+    with Workers(Interrupting(2)) as workers, pytest.raises(KeyboardInterrupt):
+        Run(backend=workers).run(tasks)
+    assert threading.active_count() == threads
+
+
+def test_parts_of_several_tasks_are_computed_at_the_same_time() -> None:
+    pool = Threads(2, (5,))
+    with Workers(pool) as workers:
+        tasks = [Task(("one", k), one_part, has_parts=True) for k in range(2)]
+        Run(backend=workers).run(tasks)
+    assert pool.most == 2
 
 
 def test_long_parts_are_kept_until_their_task_is_done(

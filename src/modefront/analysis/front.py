@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -29,7 +30,7 @@ from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
 from modefront.solvers.sqp import Solution, begin, solve
 from modefront.uncertainty.bootstrap import redraw
 from modefront.uncertainty.laplace import Posterior, laplace
-from modefront.uncertainty.linear import Local, front_scatter
+from modefront.uncertainty.linear import DEPENDENT, Local, front_scatter
 from modefront.uncertainty.noise import Noise, Source, noise
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.points import Role, SolvedPoint, solve_again
@@ -92,9 +93,11 @@ def analyse_front(
     work.expect(_extent(front, options, source))
     part = _identifiable_part(problem, front, options, work)
     points = _points(problem, front, part)
-    manifolds = _manifolds(problem, front, options.identifiability, work)
     solved = _solved_points(problem, front, points, part, options)
     derivatives = _Derivatives(problem, source, work, {})
+    if source is not None and front.scale is not None:
+        derivatives.expect(solved)
+    manifolds = _manifolds(problem, front, options.identifiability, work, derivatives.ahead)
     scatter: Mapping[str, Scatter] = {}
     replicates: list[Mapping[str, Solution]] = []
     if source is not None and front.scale is not None:
@@ -163,16 +166,23 @@ def _points(problem: UpdatingProblem, front: Front, part: Identifiable | None) -
 
 
 def _manifolds(
-    problem: UpdatingProblem, front: Front, options: Identifiability, work: Executor
+    problem: UpdatingProblem,
+    front: Front,
+    options: Identifiability,
+    work: Executor,
+    ahead: Sequence[Task[Any]],
 ) -> list[tuple[str, Sequence[Manifold]]]:
-    """Return the manifolds of equivalent models of each group and of the optimal weights."""
+    """Return the manifolds of equivalent models of each group and of the optimal weights.
+
+    One follows after another; tasks ``ahead`` are asked for when all of them are known.
+    """
     out: list[tuple[str, Sequence[Manifold]]] = []
     if options.models == 0:
         return out
     for i, (name, programme, minima) in enumerate(_equivalent_minima(problem, front)):
         before = [manifold for _, manifold in followed(out)]
         arguments = (problem, programme, minima, options, before)
-        (manifolds,) = work.run([Task(("manifold", i + 1, name), _equivalent, arguments)])
+        (manifolds,) = work.run([Task(("manifold", i + 1, name), _equivalent, arguments)], ahead)
         out.append((name, manifolds))
     return out
 
@@ -316,21 +326,26 @@ class _Derivatives:
     source: Source | None
     work: Executor
     known: dict[str, Local | None]
+    ahead: list[Task[Local | None]] = field(default_factory=list)
+
+    def expect(self, points: Sequence[SolvedPoint]) -> None:
+        """Note the points that are asked for last, as far as they need no weights."""
+        chosen = [point for point in points if point.role.kind in DEPENDENT[-1]]
+        self.ahead.extend(self._task(point, None) for point in chosen)
 
     def __call__(self, points: Sequence[tuple[SolvedPoint, Floats | None]]) -> list[Local | None]:
         """Return derivatives and noise of each point, solved with weights (n,) where given."""
         new = [(point, w) for point, w in points if point.label not in self.known]
-        tasks = [
-            Task(
-                ("second-derivatives", point.label),
-                _differentiate,
-                (self.problem, point.solution, w, self.source),
-            )
-            for point, w in new
-        ]
-        for (point, _), local in zip(new, self.work.run(tasks), strict=True):
+        tasks = [self._task(point, w) for point, w in new]
+        chosen = {task.key for task in tasks}
+        ahead = [task for task in self.ahead if task.key not in chosen]
+        for (point, _), local in zip(new, self.work.run(tasks, ahead), strict=True):
             self.known[point.label] = local
         return [self.known[point.label] for point, _ in points]
+
+    def _task(self, point: SolvedPoint, w: Floats | None) -> Task[Local | None]:
+        key = ("second-derivatives", point.label)
+        return Task(key, _differentiate, (self.problem, point.solution, w, self.source))
 
 
 def _differentiate(

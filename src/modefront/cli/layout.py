@@ -34,6 +34,14 @@ Line = tuple[str, str]
 BLANK: Line = ("", "")
 
 
+class _Output(Console):
+    """A console that lets its caller know that nobody reads any more; rich leaves the program."""
+
+    def on_broken_pipe(self) -> None:
+        """Raise BrokenPipeError."""
+        raise BrokenPipeError
+
+
 @dataclass(frozen=True)
 class Screen:
     """A terminal, or a file of the width that ``COLUMNS`` says, 80 unless given."""
@@ -43,7 +51,7 @@ class Screen:
     @classmethod
     def of_output(cls) -> Screen:
         """Return the screen of standard output."""
-        return cls(Console(highlight=False))
+        return cls(_Output(highlight=False))
 
     @property
     def width(self) -> int:

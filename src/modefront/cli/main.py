@@ -11,7 +11,7 @@ import signal
 import sys
 import threading
 from collections.abc import Iterator
-from contextlib import contextmanager, suppress
+from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -24,7 +24,11 @@ from modefront.errors import InputError, UnfinishedError, reason
 from modefront.text import one_line
 
 if TYPE_CHECKING:
+    import xarray as xr
+
     from modefront.study.definition import Study
+    from modefront.work.backend import Backend
+    from modefront.work.costs import Costs
 
 OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 """Exit statuses; 130 is that of shells for an interrupt."""
@@ -106,28 +110,24 @@ def run(
     scheduler: str | None,
 ) -> None:
     """Do the work of STUDY; continue where an interrupted run stopped."""
-    from modefront.cli.progress import progress_bar
-    from modefront.cli.show import print_summary, say_estimate
-    from modefront.results.selection import not_converged, uncertified
-    from modefront.study.estimate import SHORT, estimate
-    from modefront.study.file import load
-    from modefront.study.session import run as run_study
+    from modefront.study.processes import processes
 
-    loaded = _refined(load(study), refine)
     directory = directory or study.with_name(f"{study.stem}-results")
-    expected = estimate(loaded)
-    if expected is not None and expected.seconds > SHORT:
-        say_estimate(expected, err=True)
-    with progress_bar(loaded.name, expected.stages if expected else {}) as progress:
-        data = run_study(
-            loaded,
-            directory,
-            fresh=fresh,
-            progress=progress,
-            workers=workers,
-            scheduler=scheduler,
-        ).dataset
-    print_summary(data, directory, progress.spent)
+    carrier = processes(workers, scheduler)
+    with ExitStack() as early:
+        if scheduler is None:  # they start while the study is read
+            carrier = nullcontext(early.enter_context(carrier))
+        data, spent = _run(study, directory, carrier, fresh=fresh, refine=refine)
+    from modefront.cli.show import print_summary
+    from modefront.results.selection import not_converged, uncertified
+
+    try:
+        print_summary(data, directory, spent)
+        if sys.stdout is not None:
+            sys.stdout.flush()
+    except BrokenPipeError:  # as by `| head`: the status is that of the run all the same
+        _abandon_output()
+        complain(f"modefront: nobody reads the summary; the results are in {directory}")
     failed = not_converged(data)
     if failed:
         raise UnfinishedError(f"not converged, kept and marked as such: {', '.join(failed)}")
@@ -348,6 +348,30 @@ def export(
     from modefront.cli.export import run_export
 
     run_export(directory, point, study, output, modes)
+
+
+def _run(
+    study: Path,
+    directory: Path,
+    carrier: AbstractContextManager[Backend],
+    *,
+    fresh: bool,
+    refine: float | None,
+) -> tuple[xr.Dataset, Costs]:
+    """Do the work of a study; return its results and what it cost."""
+    from modefront.cli.progress import progress_bar
+    from modefront.cli.show import say_estimate
+    from modefront.study.estimate import SHORT, estimate
+    from modefront.study.file import load
+    from modefront.study.session import run_on
+
+    loaded = _refined(load(study), refine)
+    expected = estimate(loaded)
+    if expected is not None and expected.seconds > SHORT:
+        say_estimate(expected, err=True)
+    with progress_bar(loaded.name, expected.stages if expected else {}) as progress:
+        results = run_on(carrier, loaded, directory, fresh=fresh, progress=progress)
+    return results.dataset, progress.spent
 
 
 def _refined(study: Study, size: float | None) -> Study:

@@ -18,7 +18,7 @@ from modefront.solvers.archive import Archive, Archiving
 from modefront.solvers.continuation import Simplex, default_points, simplex
 from modefront.solvers.edges import (
     Edge,
-    edge,
+    edge_of_each,
     near_best,
     ordered,
     refined_from,
@@ -177,11 +177,15 @@ class _Run:
 
     def _edges(self, sizes: Floats) -> list[Edge]:
         """Return the edge of each objective."""
+        names = self.problem.objectives
+        near = []
+        if self.known:
+            pairs = zip(names, self.known.edges, strict=True)
+            near = [self._again(("edge", name), before.minima) for name, before in pairs]
+        seeds = [seed_sequence(self.seed, "edge", name) for name in names]
         out = []
-        for i, name in enumerate(self.problem.objectives):
-            near = self._again(("edge", name), self.known.edges[i].minima) if self.known else ()
-            seed = seed_sequence(self.seed, "edge", name)
-            best = edge(self.problem, i, sizes, seed, self.search, self.work, near)
+        found = edge_of_each(self.problem, sizes, seeds, self.search, self.work, near)
+        for name, best in zip(names, found, strict=True):
             if best is None:
                 raise UnfinishedError(f"no minimum of group '{name}' was found from any start")
             out.append(best)
@@ -214,14 +218,19 @@ class _Run:
         These are sought where the minima of an objective form a manifold, of which a search only
         meets some.
         """
-        out = []
-        for i, (name, known) in enumerate(zip(self.problem.objectives, edges, strict=True)):
-            if not Lexicographic(i, sizes).is_open(self.problem, known.best.evaluation):
-                out.append(known)
-                continue
-            arguments = (self.problem, i, sizes, list(models))
-            (minima,) = self.work.run([Task(("edge", name, "from"), refined_from, arguments)])
-            out.append(ordered(self.problem, i, sizes, [*known.minima, *minima]) or known)
+        names, out = self.problem.objectives, list(edges)
+        some = [
+            i
+            for i, known in enumerate(edges)
+            if Lexicographic(i, sizes).is_open(self.problem, known.best.evaluation)
+        ]
+        tasks = [
+            Task(("edge", names[i], "from"), refined_from, (self.problem, i, sizes, list(models)))
+            for i in some
+        ]
+        for i, minima in zip(some, self.work.run(tasks), strict=True):
+            known = edges[i]
+            out[i] = ordered(self.problem, i, sizes, [*known.minima, *minima]) or known
         return out
 
     def _along(

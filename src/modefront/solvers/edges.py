@@ -49,26 +49,29 @@ def typical_sizes(points: Sequence[Solution]) -> Floats | None:
     return np.maximum(np.median(J, axis=0), np.finfo(float).tiny)
 
 
-# 7 arguments: the problem and one search, the executor by keyword.
-def edge(
+def edge_of_each(
     problem: Problem,
-    objective: int,
     sizes: Floats,
-    seed: np.random.SeedSequence,
+    seeds: Sequence[np.random.SeedSequence],
     search: Search,
     work: Executor = IMMEDIATE,
-    starts: Sequence[Solution] = (),
-) -> Edge | None:
-    """Return the edge of one objective, or None where no minimum was found.
+    starts: Sequence[Sequence[Solution]] = (),
+) -> list[Edge | None]:
+    """Return the edge of each objective, None where no minimum was found.
 
-    ``sizes`` are typical sizes of the objectives, shape (n,); ``starts`` are solved from first.
+    ``sizes`` are typical sizes of the objectives, shape (n,); each has a seed of its own, and
+    ``starts`` that are solved from first. The searches are independent of each other.
     """
-    name = problem.objectives[objective]
-    order = Lexicographic(objective, sizes)
-    arguments = (problem, order, search, starts, _TIGHT)
-    task = Task(("edge", name), explore, arguments, seed, has_parts=True)
-    (minima,) = work.run([task])
-    return ordered(problem, objective, sizes, minima)
+    objectives = range(len(problem.objectives))
+    tasks = []
+    for i in objectives:
+        arguments = (problem, Lexicographic(i, sizes), search, starts[i] if starts else (), _TIGHT)
+        name = problem.objectives[i]
+        tasks.append(Task(("edge", name), explore, arguments, seeds[i], has_parts=True))
+    solved = work.run(tasks)
+    return [
+        ordered(problem, i, sizes, minima) for i, minima in zip(objectives, solved, strict=True)
+    ]
 
 
 def ordered(

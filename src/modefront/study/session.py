@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import hashlib
 from collections.abc import Sequence
+from contextlib import AbstractContextManager
 from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
@@ -36,15 +37,16 @@ from modefront.solvers.sqp import Solution, given
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
 from modefront.study.estimate import expected_tasks
+from modefront.study.processes import processes
 from modefront.study.whereabouts import note_study
 from modefront.uncertainty.noise import noise_floor
 from modefront.uncertainty.options import Uncertainty
+from modefront.work.backend import Backend
 from modefront.work.lock import locked
 from modefront.work.progress import Progress
 from modefront.work.run import Run
 from modefront.work.store import FOLDER, Store
 from modefront.work.task import Task
-from modefront.work.workers import backend
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -160,6 +162,20 @@ def run(
     UnfinishedError
         If the work cannot be done; what is done is kept.
     """
+    carrier = processes(workers, scheduler)
+    return run_on(carrier, study, folder, fresh=fresh, refined=refined, progress=progress)
+
+
+def run_on(
+    carrier: AbstractContextManager[Backend],
+    study: Study,
+    folder: Path | str,
+    *,
+    fresh: bool = False,
+    refined: float | None = None,
+    progress: Progress | None = None,
+) -> Results:
+    """Do the work of `run` with a backend, which is opened when the folder is at hand."""
     from modefront.results.files import FILE, write
     from modefront.results.results import Results
 
@@ -173,9 +189,9 @@ def run(
     with locked(folder):
         _prepare(tasks, (tasks, folder / FILE) if fresh or not study.work else ())
         _remove_leftovers(folder / FILE, tasks)
-        with backend(workers, scheduler, warm=pareto_front.__module__) as carrier:
-            progress.workers = carrier.workers
-            data = _Session(study, Run(Store(tasks), progress, carrier)).results()
+        with carrier as opened:
+            progress.workers = opened.workers
+            data = _Session(study, Run(Store(tasks), progress, opened)).results()
         _keep_other(folder / FILE, study.digest)
         write(data, folder / FILE)
         if study.origin is not None:

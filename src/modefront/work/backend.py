@@ -40,7 +40,8 @@ class Backend(Protocol):
     ) -> Iterator[tuple[int, Done]]:
         """Yield the positions and results of tasks as they end; ``begun`` is called at their start.
 
-        Tasks ``ahead`` may be computed as well where there is nothing else to do.
+        Tasks ``ahead`` may be computed as well where there is nothing else to do. Of a list, the
+        caller may add tasks while it takes results, and exchange those ahead.
         """
 
 

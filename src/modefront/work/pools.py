@@ -89,11 +89,11 @@ class _Context(SpawnContext):
 class LocalPool:
     """Processes of this machine, spawned, with one thread of the BLAS each.
 
-    They import the module ``warm`` when they start, and with it what most tasks need.
+    They import the modules ``warm`` when they start, and with them what most tasks need.
     """
 
     count: int
-    warm: str = ""
+    warm: Sequence[str] = ()
     _before: Sequence[SpawnProcess] = ()
     _executor: ProcessPoolExecutor = field(init=False)
     _first: Future[None] = field(init=False)
@@ -142,14 +142,14 @@ def _started() -> None:
     """Show that a process works."""
 
 
-def _prepare(warm: str) -> None:
+def _prepare(warm: Sequence[str]) -> None:
     """Prepare a process: one thread of the BLAS, no interrupts, an end with its parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})
     threading.Thread(target=_end_with_parent, daemon=True).start()
-    if warm:
-        importlib.import_module(warm)
+    for module in warm:
+        importlib.import_module(module)
     threadpool_limits(1, user_api="blas")
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from functools import partial
 from typing import Any
 
 from modefront.work.backend import Backend, Done, InTurn, computed
 from modefront.work.costs import Costs, spend, total, uncounted
+from modefront.work.interleaved import interleaved
 from modefront.work.progress import Progress
 from modefront.work.store import Store
 from modefront.work.task import Key, R, Task
@@ -65,13 +67,24 @@ class Run:
             for position, done in self.backend.compute(chosen, likely, begun):
                 k = elsewhere[position]
                 results[k] = self._ended(tasks[k], done)
-        for k in left:
-            if k not in results:
-                self.progress.start(tasks[k].stage)
-                parts = Parts(self.backend, self.store, (*names[k], "part"))
-                results[k] = self._ended(tasks[k], computed(tasks[k], parts))
-                parts.forget()
+        here = [k for k in left if k not in results]
+        with_parts = [k for k in here if tasks[k].has_parts]
+        if self.backend.workers > 1 and len(with_parts) > 1:
+            here = [k for k in here if k not in with_parts]
+            functions = [partial(self._in_parts, tasks[k], names[k]) for k in with_parts]
+            for place, result in interleaved(functions, self.backend):
+                results[with_parts[place]] = result
+        for k in here:
+            results[k] = self._in_parts(tasks[k], names[k], self.backend)
         return [results[k] for k in range(len(tasks))]
+
+    def _in_parts(self, task: Task[R], name: Key, backend: Backend) -> R:
+        """Return the result of a task whose function is called in this process."""
+        self.progress.start(task.stage)
+        parts = Parts(backend, self.store, (*name, "part"))
+        result = self._ended(task, computed(task, parts))
+        parts.forget()
+        return result
 
     def total(self, chosen: Callable[[str], bool] = lambda _: True) -> Costs:
         """Return the costs of the tasks of the chosen stages."""

@@ -14,6 +14,7 @@ from collections import OrderedDict
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeVar
+from weakref import ref
 
 from modefront.work.backend import Done, computed
 from modefront.work.task import Task
@@ -62,7 +63,7 @@ class Message:
 class Sender:
     """Makes bytes of tasks."""
 
-    _objects: dict[tuple[int, Hashable], tuple[str, Shared]] = field(default_factory=dict)
+    _objects: dict[tuple[int, Hashable], tuple[str, ref[Shared]]] = field(default_factory=dict)
 
     def message(self, tasks: Sequence[Task[Any]]) -> Message:
         """Return tasks as bytes. Raises what `pickle` raises for what cannot be pickled."""
@@ -75,7 +76,7 @@ class Sender:
 
     def objects(self, names: Sequence[str]) -> dict[str, bytes]:
         """Return shared objects by their names, in this order."""
-        values = dict(self._objects.values())
+        values = {name: found() for name, found in self._objects.values()}
         out = {}
         for name in names:
             stream = io.BytesIO()
@@ -86,12 +87,14 @@ class Sender:
     def name(self, value: Shared) -> str:
         """Return the name of a shared object; another version of it has another name."""
         key = id(value), value.version
-        if key not in self._objects:
-            # Of an object that changes, no task asks for an earlier version again.
-            for other in [x for x in self._objects if x[0] == key[0]]:
-                del self._objects[other]
-            self._objects[key] = uuid.uuid4().hex, value
-        return self._objects[key][0]
+        name, known = self._objects.get(key, ("", None))
+        if known is None or known() is not value:
+            # Of an object that changes, no task asks for an earlier version again, and of one that
+            # nobody holds, for none.
+            kept = {x: y for x, y in self._objects.items() if x[0] != key[0] and y[1]() is not None}
+            name = uuid.uuid4().hex
+            self._objects = kept | {key: (name, ref(value))}
+        return name
 
 
 class _Pickler(pickle.Pickler):

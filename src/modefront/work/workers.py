@@ -60,7 +60,8 @@ class _Call:
 
     Attributes
     ----------
-    tasks : of the call
+    tasks : of the call, to which others may be added
+    seen : number of tasks that were taken up
     position : of each task that has no result yet, by its identity
     pending : positions of tasks to be sent
     alone : positions of tasks that are sent one at a time, since a process was lost with them
@@ -68,7 +69,8 @@ class _Call:
     """
 
     tasks: Sequence[Task[Any]]
-    position: dict[Identity, int]
+    seen: int = 0
+    position: dict[Identity, int] = field(default_factory=dict)
     pending: deque[int] = field(default_factory=deque)
     alone: deque[int] = field(default_factory=deque)
     errors: dict[int, Exception] = field(default_factory=dict)
@@ -120,19 +122,14 @@ class Workers:
         the model cannot be sent to another process, and what tasks raise; but for a cluster that
         is gone, all other tasks are computed first.
         """
-        call = _Call(tasks, {task.identity: k for k, task in enumerate(tasks)})
-        self._forget(call, ahead)
-        flying = {task.identity for sent in self._flying.values() for task in sent.tasks}
-        for k, task in enumerate(tasks):
-            if task.identity in self._ready:
-                begun(k)
-                yield self._finished(call, task, self._ready.pop(task.identity))
-            elif task.identity in flying:
-                begun(k)
-            else:
-                call.pending.append(k)
-        yield from self._here(call, ahead, begun)
-        while call.position:
+        call = _Call(tasks)
+        while True:
+            yield from self._taken_up(call, ahead, begun)
+            if not call.position:
+                break
+            if self._is_for_this_process(call, ahead):
+                yield self._computed_here(call, begun)
+                continue
             self._send(call, begun)
             self._send_ahead(call, ahead)
             for future in wait(self._flying, return_when=FIRST_COMPLETED).done:
@@ -141,33 +138,55 @@ class Workers:
         if call.errors:
             raise call.errors[min(call.errors)]
 
+    def _taken_up(
+        self, call: _Call, ahead: Sequence[Task[Any]], begun: Callable[[int], None]
+    ) -> Iterator[tuple[int, Done]]:
+        """Take up the tasks that are new in a call; yield those that were computed ahead."""
+        while call.seen < len(call.tasks):
+            new = range(call.seen, len(call.tasks))
+            call.seen = len(call.tasks)
+            call.position |= {call.tasks[k].identity: k for k in new}
+            self._forget(call, ahead)
+            flying = {task.identity for sent in self._flying.values() for task in sent.tasks}
+            for k in new:
+                task = call.tasks[k]
+                if task.identity in self._ready:
+                    begun(k)
+                    yield self._finished(call, task, self._ready.pop(task.identity))
+                elif task.identity in flying:
+                    begun(k)
+                else:
+                    call.pending.append(k)
+
     def _forget(self, call: _Call, ahead: Sequence[Task[Any]]) -> None:
         """Forget what was computed ahead and is not wanted any more."""
-        requested = {task.identity for task in (*ahead, *call.tasks)}
+        requested = {*(task.identity for task in ahead), *call.position}
         self._ready = {x: done for x, done in self._ready.items() if x in requested}
         for future, sent in list(self._flying.items()):
             if requested.isdisjoint(task.identity for task in sent.tasks) and future.cancel():
                 del self._flying[future]
 
-    def _here(
-        self, call: _Call, ahead: Sequence[Task[Any]], begun: Callable[[int], None]
-    ) -> Iterator[tuple[int, Done]]:
-        """Compute tasks in this process: a single one, tiny ones, and while the pool starts.
+    def _is_for_this_process(self, call: _Call, ahead: Sequence[Task[Any]]) -> bool:
+        """Return whether the next task is computed here: a single one, and while the pool starts.
 
-        Where a process was lost, none is: it might have been the fault of a task.
+        So are tiny ones. Where a process was lost, none is: it might have been the fault of a task.
         """
-        while call.pending and not self._losses:
-            next_ones = [*(call.tasks[k] for k in call.pending), *ahead]
-            seconds = sum(self._seconds.get(_kind(task), SHORT) for task in next_ones)
-            lone = len(next_ones) == 1 and not self._flying
-            if self.pool.ready and not lone and seconds >= TINY:
-                return
-            k = call.pending.popleft()
-            begun(k)
-            done = computed(call.tasks[k])
-            self._learn(call.tasks[k], done.seconds)
-            del call.position[call.tasks[k].identity]
-            yield k, done
+        if not call.pending or self._losses:
+            return False
+        if not self.pool.ready:
+            return True
+        next_ones = [*(call.tasks[k] for k in call.pending), *ahead]
+        lone = len(next_ones) == 1 and not self._flying
+        return lone or sum(self._seconds.get(_kind(task), SHORT) for task in next_ones) < TINY
+
+    def _computed_here(self, call: _Call, begun: Callable[[int], None]) -> tuple[int, Done]:
+        """Return the position and the result of the next task, computed in this process."""
+        k = call.pending.popleft()
+        begun(k)
+        done = computed(call.tasks[k])
+        self._learn(call.tasks[k], done.seconds)
+        del call.position[call.tasks[k].identity]
+        return k, done
 
     def _send(self, call: _Call, begun: Callable[[int], None]) -> None:
         """Send tasks of a call, as many as the processes have room for."""
@@ -314,10 +333,12 @@ def available_memory() -> float:
 
 
 @contextmanager
-def backend(workers: int, scheduler: str | None = None, warm: str = "") -> Iterator[Backend]:
+def backend(
+    workers: int, scheduler: str | None = None, warm: Sequence[str] = ()
+) -> Iterator[Backend]:
     """Open the backend of so many processes, or of the cluster with this scheduler.
 
-    Processes import the module ``warm`` when they start. Raises InputError for a number of
+    Processes import the modules ``warm`` when they start. Raises InputError for a number of
     processes that is not possible, and what `Cluster` raises.
     """
     if not isinstance(workers, int) or not 1 <= workers <= MOST:

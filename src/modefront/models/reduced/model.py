@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from modefront._typing import Floats, Ints
+from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
 from modefront.linalg.factorisation import SingularMatrixError
@@ -19,17 +19,10 @@ from modefront.models.load_case import LoadCase, Transfer
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced import completeness
 from modefront.models.reduced.basis import Basis, Snapshot, empty, extended, snapshot
-from modefront.models.reduced.certificate import (
-    Certificate,
-    CertificateRequest,
-    estimates,
-    missing,
-    own_estimate,
-)
+from modefront.models.reduced.certifier import Certifier, InertiaProof, knows, reach_of
 from modefront.models.reduced.corrections import (
     CorrectionRequest,
     Factor,
-    together,
     with_derivatives,
     with_modes,
 )
@@ -102,15 +95,6 @@ class SnapshotRequest:
 
 
 @dataclass(frozen=True)
-class InertiaProof:
-    """The proof that at ``theta`` as many modes as ``count`` are below an eigenvalue."""
-
-    theta: Floats
-    beyond: float
-    count: int
-
-
-@dataclass(frozen=True)
 class _TakenSnapshot:
     """A snapshot, what it took, and the error that it found."""
 
@@ -147,7 +131,7 @@ class _Projected:
     sensed: Floats
 
 
-# 11 fields: eight describe the basis, three are its state.
+# 12 fields: eight describe the basis, four are its state.
 @shared
 @dataclass(eq=False)
 class ReducedModel:
@@ -177,13 +161,14 @@ class ReducedModel:
     _requested: tuple[SnapshotRequest, ...] = ()
     _state: _State | None = None
     _sent: _Projected | None = None
+    _certifier: Certifier | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state with the projected matrices, and without basis and factor.
 
         Modes need no more; for anything else, snapshots are taken again when needed.
         """
-        return {**vars(self), "_state": None, "_sent": self._at_hand()}
+        return {**vars(self), "_state": None, "_sent": self._at_hand(), "_certifier": None}
 
     @property
     def version(self) -> tuple[tuple[bytes, int, float], ...]:
@@ -313,29 +298,15 @@ class ReducedModel:
         thetas = [nearby for snap in self._requested if snap.modes for nearby in snap.models]
         return float(min(np.linalg.norm((theta - nearby) / span) for nearby in thetas))
 
-    def certify(
-        self, requests: Sequence[tuple[Floats, Ints]], lowest: int = 0
-    ) -> list[Certificate]:
-        """Return the estimated errors of modes at some parameters; see `Certificate`.
-
-        ``requests`` are theta (p,) and the modes in question, counted from 0. Their errors are
-        infinite where one of the ``lowest`` modes, or a mode below the requested ones, is missing.
-        That is decided by a factorisation where it is in doubt, and what it proves speaks for
-        the other models nearby.
-        """
+    def certifier(self) -> Certifier:
+        """Return what judges modes of the basis."""
         space = self.ready().space
-        started = time.perf_counter()
-        proofs = list(space.proofs)
-        counts = [max(lowest, int(indices.max()) + 1) for _, indices in requests]
-        width = max(1, together(self.size) // (max(counts, default=1) + 1))
-        certificates: list[Certificate] = []
-        for first in range(0, len(requests), width):
-            some = range(first, min(first + width, len(requests)))
-            certificates += self._certified(
-                space, [(*requests[k], counts[k]) for k in some], proofs
+        if self._certifier is None or self._certifier.basis is not space.basis:
+            theta, below = space.factor.theta, space.factor.below
+            self._certifier = Certifier(
+                self.full, space.basis, space.proofs, theta, below.sigma, below.factor
             )
-        spend(Costs(certificates=len(requests), certificate_time=time.perf_counter() - started))
-        return certificates
+        return self._certifier
 
     def lacking(self, lowest: int) -> list[Floats]:
         """Return models with two parameters at their lower bounds where modes are missing.
@@ -355,56 +326,14 @@ class ReducedModel:
             except ModelError:
                 continue
             last = min(lowest, ritz.lam.size - 1) - 1
-            if last >= 0 and not _knows(basis, proofs, theta, ritz.lam[last]):
-                reach = max(_reach(basis, proof, theta) for proof in proofs) / ritz.lam[last]
+            if last >= 0 and not knows(basis, proofs, theta, ritz.lam[last]):
+                reach = max(reach_of(basis, proof, theta) for proof in proofs) / ritz.lam[last]
                 doubtful.append((reach, pair, theta, ritz.lam, last))
         return [
             theta
             for _, _, theta, lam, last in sorted(doubtful, key=lambda entry: entry[:2])[:PROBES]
             if self._misses(basis, theta, lam, last, proofs)
         ]
-
-    def _certified(
-        self, space: _Space, some: Sequence[tuple[Floats, Ints, int]], proofs: list[InertiaProof]
-    ) -> list[Certificate]:
-        """Return the certificates of some models, with the factor at hand where that will do."""
-        pencil, sensors = self.full.pencil, self.full.selection
-        certificates: dict[int, Certificate] = {}
-        shared: dict[int, CertificateRequest] = {}
-        for k, (theta, indices, count) in enumerate(some):
-            near = _near(space, theta, indices, count, proofs)
-            if near is None:
-                certificates[k] = self._certified_alone(space, theta, indices, count, proofs)
-            else:
-                shared[k] = near
-        known = estimates(pencil, sensors, space.basis, space.factor, list(shared.values()))
-        for k, entry in zip(shared, known, strict=True):
-            certificates[k] = entry or self._certified_alone(space, *some[k], proofs)
-        return [certificates[k] for k in range(len(some))]
-
-    def _certified_alone(
-        self, space: _Space, theta: Floats, indices: Ints, count: int, proofs: list[InertiaProof]
-    ) -> Certificate:
-        """Return the certificate of a model with its own factor, which proves modes complete."""
-        basis, pencil = space.basis, self.full.pencil
-        try:
-            ritz = dense.lowest(basis.K.at(theta), basis.M.at(theta), count + completeness.LATER)
-        except ModelError:
-            return missing(indices.size)
-        gap = completeness.level(ritz.lam, count, basis.sigma, np.inf)
-        if gap is None:
-            return missing(indices.size)
-        below, sigma = gap
-        try:
-            factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
-        except SingularMatrixError:
-            return missing(indices.size)
-        if factor.negative != below:
-            return missing(indices.size)
-        proofs.append(InertiaProof(theta, sigma, below))
-        lam, Y = ritz.lam[:below], ritz.Phi[:, :below]
-        request = CertificateRequest(theta, indices, lam, Y, below, sigma)
-        return own_estimate(pencil, self.full.selection, basis, request, Shifted(sigma, factor))
 
     def _misses(
         self, basis: Basis, theta: Floats, lam: Floats, last: int, proofs: list[InertiaProof]
@@ -413,7 +342,7 @@ class ReducedModel:
 
         Where that is in doubt, a factor tells, and a proof of the contrary joins the others.
         """
-        if _knows(basis, proofs, theta, lam[last]):
+        if knows(basis, proofs, theta, lam[last]):
             return False
         pencil = self.full.pencil
         below, sigma = completeness.gap_above(lam, last)
@@ -478,7 +407,7 @@ class ReducedModel:
                 continue
             known, proofs = space.basis, space.proofs
             del space
-            self._state = None  # its factor makes room for those of the snapshot
+            self._state = self._certifier = None  # its factor makes room for those of the snapshot
             try:
                 space, _ = self._solved(known, proofs, rest.pop(0), what.modes)
                 solved, error = solved + 1, np.inf
@@ -643,42 +572,6 @@ class ReducedModel:
     @property
     def _shortest(self) -> float:
         return SHORTEST * float(np.sqrt(self.tolerance))
-
-
-def _reach(basis: Basis, proof: InertiaProof, theta: Floats) -> float:
-    """Return the level at ``theta`` below which a proof says that no modes are missing."""
-    return completeness.lower_bound(basis.K, basis.M, theta, proof.theta) * proof.beyond
-
-
-def _knows(basis: Basis, proofs: Sequence[InertiaProof], theta: Floats, lam: float) -> bool:
-    """Return whether proofs rule out that modes below ``lam`` are missing in the basis."""
-    return basis.semidefinite and any(_reach(basis, proof, theta) > lam for proof in proofs)
-
-
-def _near(
-    space: _Space, theta: Floats, indices: Ints, count: int, proofs: Sequence[InertiaProof]
-) -> CertificateRequest | None:
-    """Return the request that the factor at hand can judge; None where modes may be missing."""
-    basis, factor = space.basis, space.factor
-    if not basis.semidefinite:
-        return None
-    try:
-        ritz = dense.lowest(basis.K.at(theta), basis.M.at(theta), count + completeness.LATER)
-    except ModelError:
-        return None
-    K, M, shift = basis.K, basis.M, factor.below.sigma
-    bounds = completeness.bounds(K, M, theta, factor.theta, shift)
-    request: CertificateRequest | None = None
-    for proof in proofs:
-        most = _reach(basis, proof, theta)
-        gap = completeness.level(ritz.lam, count, shift, most)
-        proved = int((ritz.lam < most).sum()) == proof.count
-        if gap and (request is None or (proved, gap[1]) > (request.proved, request.sigma)):
-            below, sigma = gap
-            some = below + int(not proved)
-            lam, Y = ritz.lam[:some], ritz.Phi[:, :some]
-            request = CertificateRequest(theta, indices, lam, Y, below, sigma, bounds, proved)
-    return request
 
 
 def _begins(requests: Sequence[SnapshotRequest], taken: Sequence[_TakenSnapshot]) -> bool:
