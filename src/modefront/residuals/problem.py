@@ -8,7 +8,7 @@ count :math:`a_i` of measured properties is the sum of theirs.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Hashable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 
@@ -25,8 +25,10 @@ from modefront.pairing.match import Pairing, Pairs, match, mean_mac, modes_neede
 from modefront.residuals.base import Member, ModeErrors
 from modefront.residuals.groups import Group
 from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
+from modefront.work.transfer import Shared, is_shared, shared
 
 
+@shared
 @dataclass(frozen=True)
 class UpdatingProblem:
     """Objectives of a model, measured data and groups; `updating_problem` makes it.
@@ -59,6 +61,21 @@ class UpdatingProblem:
     def __post_init__(self) -> None:
         members = tuple(tuple(group.members(self.data)) for group in self.groups)
         object.__setattr__(self, "members", members)
+
+    @property
+    def version(self) -> Hashable:
+        """That of the model, of which other processes have another one when it changes."""
+        return getattr(self.model, "version", 0)
+
+    @property
+    def footprint(self) -> float:
+        """Bytes that it takes besides its model: nothing to speak of."""
+        return 0.0
+
+    @property
+    def parts(self) -> tuple[Shared, ...]:
+        """The model, which is sent to other processes on its own."""
+        return (self.model,) if is_shared(self.model) else ()
 
     @property
     def objectives(self) -> tuple[str, ...]:

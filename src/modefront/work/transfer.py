@@ -13,13 +13,13 @@ import uuid
 from collections import OrderedDict
 from collections.abc import Hashable, Sequence
 from dataclasses import dataclass, field
-from typing import Any, Protocol, TypeVar
+from typing import Any, Protocol, TypeGuard, TypeVar
 from weakref import ref
 
 from modefront.work.backend import Done, computed
 from modefront.work.task import Task
 
-KNOWN = 2
+KNOWN = 3
 """Shared objects that a process keeps at most: those used last."""
 
 
@@ -48,6 +48,11 @@ def shared(kind: S) -> S:
     """Register a class of objects that are sent to a process once; they are `Shared`."""
     _REGISTERED.add(kind)
     return kind
+
+
+def is_shared(value: object) -> TypeGuard[Shared]:
+    """Return whether an object is of a class that is registered."""
+    return type(value) in _REGISTERED
 
 
 @dataclass(frozen=True)
@@ -111,10 +116,14 @@ class _Pickler(pickle.Pickler):
         self.met: dict[str, Shared] = {}
 
     def persistent_id(self, value: Any) -> str | None:
-        if type(value) not in _REGISTERED or value is self.root:
+        if not is_shared(value) or value is self.root:
             return None
+        return self._meet(value)
+
+    def _meet(self, value: Shared) -> str:
+        """Take note of a shared object after its parts; return its name."""
         for part in value.parts:
-            self.met[self.sender.name(part)] = part
+            self._meet(part)
         name = self.sender.name(value)
         self.met[name] = value
         return name
