@@ -31,7 +31,11 @@ GAIN = 1e-5
 VANISHING = 1e-5
 """An objective below this share of its range nearly vanishes: residuals of 3e-3 of theirs."""
 
-_FEW = Options(iterations=60)
+SMALL = 1e-3
+"""An objective below this share of its range may be curved so much that no step keeps it: where its
+value cannot be held, its residuals are."""
+
+_FEW, _MORE = Options(iterations=60), Options(iterations=120)
 
 
 def without_slack(
@@ -120,34 +124,41 @@ def _lowered(problem: Problem, target: Payoff, start: Solution, lowered: Bools) 
     """Return the least sum of some objectives, the others held at their values.
 
     Where one of the others nearly vanishes, its slope says nothing of how to keep it: its residuals
-    are held in its place (`modefront.solvers.lexicographic`).
+    are held in its place (`modefront.solvers.lexicographic`). So they are where one is small and
+    cannot be held otherwise.
     """
     J, scale = start.J, target.scale
     least = int(np.where(lowered, np.inf, J / scale).argmin())
+    order = Lexicographic(least, scale)
     if start.evaluation.residuals and J[least] <= VANISHING * scale[least]:
-        order = Lexicographic(least, scale)
         return (
-            _around(problem, order, start, lowered)
+            _around(problem, order, start, lowered, _FEW)
             if order.is_open(problem, start.evaluation)
             else start
         )
     held = np.eye(J.size)[~lowered] / scale
-    return solve(
-        problem, constrained(np.where(lowered, 1 / scale, 0.0), held, held @ J), start, _FEW
-    )
+    programme = constrained(np.where(lowered, 1 / scale, 0.0), held, held @ J)
+    end = solve(problem, programme, start, _FEW)
+    small = J[least] <= SMALL * scale[least]
+    if end.converged or not (small and order.is_open(problem, start.evaluation)):
+        return end
+    around = _around(problem, order, start, lowered, _MORE)
+    return replace(around, evaluations=end.evaluations + around.evaluations)
 
 
-def _around(problem: Problem, order: Lexicographic, start: Solution, lowered: Bools) -> Solution:
+def _around(
+    problem: Problem, order: Lexicographic, start: Solution, lowered: Bools, options: Options
+) -> Solution:
     """Return the least sum of some objectives around an exact fit of another one.
 
     At a given sum of squares, residuals along their multipliers are the best.
     """
     w, r = np.where(lowered, 1 / order.sizes, 0.0), start.evaluation.residuals[order.objective].r
-    end, mu = order.lowered(problem, start, w, ~lowered, r, _FEW)
+    end, mu = order.lowered(problem, start, w, ~lowered, r, options)
     if not (end.converged and mu.any()):
         return end
     aim = mu * float(np.linalg.norm(r) / np.linalg.norm(mu))
-    turned, _ = order.lowered(problem, end, w, ~lowered, aim, _FEW)
+    turned, _ = order.lowered(problem, end, w, ~lowered, aim, options)
     J, known = turned.J, end.J
     kept = J[~lowered] <= known[~lowered] + VANISHING * SAME * order.sizes[~lowered]
     better = turned.feasible and kept.all() and w @ J < w @ known
