@@ -12,7 +12,7 @@ from modefront._typing import Floats
 from modefront.solvers.archive import Archive
 from modefront.solvers.attainment import Attainment
 from modefront.solvers.border import without_slack
-from modefront.solvers.competition import Comparison, Visited, from_points_beside
+from modefront.solvers.competition import Comparison, Visited, from_points_beside, polished
 from modefront.solvers.continuation import simplex
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import infeasible
@@ -133,6 +133,25 @@ def test_pairs_of_points_that_were_compared_cost_nothing() -> None:
     again = from_points_beside(forbidden, TARGET, simplex(3, 10), first, before=first)
     assert all(x is y for x, y in zip(again, first, strict=True))
     assert without_slack(forbidden, TARGET, first, before=first) == first
+
+
+def test_points_that_have_stopped_short_of_the_front_are_solved_to_the_end() -> None:
+    exact = solved(PROBLEM, [0.3, 0.4, 0.3], 1.0)
+    assert exact.learned.any()
+    short = replace(exact, evaluation=PROBLEM.evaluate(exact.theta + 1e-3 * np.eye(3)[2]))
+    same, end = polished(PROBLEM, TARGET, [exact, short])
+    assert same.J == pytest.approx(exact.J, abs=1e-12)
+    assert (end.J < short.J).all()
+    assert end.theta == pytest.approx(exact.theta, abs=1e-5)
+    assert end.evaluations > short.evaluations
+
+
+def test_polishing_costs_nothing_where_the_first_step_is_below_the_tolerance() -> None:
+    exact = solve(
+        PROBLEM, ATTAINMENT.subproblem(np.full(3, 1 / 3)), solved(PROBLEM, [1 / 3] * 3, 1.0)
+    )
+    forbidden = box(unreachable, [-0.5, -0.5, -1.5], [1.5, 1.5, 1.5], 3)
+    assert polished(forbidden, TARGET, [exact]) == [exact]
 
 
 def unreachable(theta: Floats) -> Derivatives:

@@ -11,7 +11,7 @@ import numpy as np
 from modefront.fronts.methods.base import Along, Setting
 from modefront.solvers.basins import explore_between
 from modefront.solvers.border import without_slack
-from modefront.solvers.competition import from_points_beside, from_visited
+from modefront.solvers.competition import from_points_beside, from_visited, polished
 from modefront.solvers.continuation import Simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.flat import same
@@ -95,7 +95,7 @@ def _settled(setting: Setting, target: Payoff, points: Sequence[Solution]) -> li
         if turn and all(map(same, compared, lowered)):
             break
         lowered = without_slack(problem, target, compared, part, lowered if turn else ())
-    return lowered
+    return polished(problem, target, lowered, setting.work)
 
 
 def without_copies(
