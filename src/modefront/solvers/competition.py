@@ -361,9 +361,12 @@ def _wins(target: Payoff, end: Solution, point: Solution) -> bool:
 
 
 def _through(problem: Problem, target: Payoff, point: Solution) -> Solution:
-    """Return the programme through a point of the front, solved from the point itself."""
+    """Return the programme through a point of the front, solved from the point itself.
+
+    The weights stay those of the programme of its place, whose bounds need not all be active.
+    """
     programme = programmes_of(problem, target).subproblem(target.place(point.J))
-    return replace(solve(problem, programme, point), beta=point.beta)
+    return replace(solve(problem, programme, point), beta=point.beta, weights=point.weights)
 
 
 def _from_visited(problem: Problem, target: Payoff, point: Solution, theta: Floats) -> Solution:
