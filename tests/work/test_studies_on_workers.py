@@ -203,6 +203,15 @@ def running(group: int) -> list[str]:
     return result
 
 
+def ends(group: int) -> bool:
+    """Wait for the processes of a group; return whether all have ended within ten seconds."""
+    for _ in range(500):
+        if not running(group):
+            return True
+        time.sleep(0.02)
+    return False
+
+
 @pytest.mark.skipif(not Path("/proc").is_dir(), reason="processes are found in /proc")
 def test_processes_of_a_pool_never_see_interrupts_of_the_terminal() -> None:
     code = """if __name__ == "__main__":
@@ -271,11 +280,7 @@ def test_a_drive_that_fails_ends_a_run_and_its_processes(kind: str, tmp_path: Pa
     words = {"full": "no space left on the drive", "read-only": "a drive that is read-only"}
     assert words[kind] in err.splitlines()[-1]
     assert err.splitlines()[-1].endswith("what was done is kept")
-    for _ in range(500):
-        if not running(process.pid):
-            break
-        time.sleep(0.02)
-    assert not running(process.pid)
+    assert ends(process.pid)
     assert list(folder.rglob("*.npz"))
 
 
@@ -300,11 +305,7 @@ def test_a_run_whose_output_nobody_reads_is_done_and_says_so_once(tmp_path: Path
     said = f"modefront: nobody reads the summary; the results are in {folder}"
     assert [line for line in lines if "tasks done" not in line] == [said]
     assert mf.read_results(folder).dataset.identical(expected)
-    for _ in range(500):
-        if not running(process.pid):
-            break
-        time.sleep(0.02)
-    assert not running(process.pid)
+    assert ends(process.pid)
 
 
 def test_a_second_run_with_workers_leaves_the_folder_to_the_first(tmp_path: Path) -> None:

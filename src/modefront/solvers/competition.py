@@ -31,7 +31,7 @@ r         (n,)      the normal, towards greater objectives
 from __future__ import annotations
 
 from collections.abc import Callable, Collection, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from typing import TypeAlias
 
 import numpy as np
@@ -149,7 +149,8 @@ def polished(
 
     Where the front is a cliff, a point that has converged may lie 1e-8 of the ranges behind it,
     which is worth percents of the objective that falls there. Others cost nothing: their first step
-    is below the tolerance.
+    is below the tolerance. Points that have learned no second derivatives, which are not of such a
+    programme's making, would begin anew: they stay.
     """
     chosen = [k for k, point in enumerate(points) if point.converged and point.learned.any()]
     tasks = [
@@ -176,13 +177,17 @@ class _Competition:
     lattice: Simplex
     points: list[Solution]
     attempts: set[tuple[int, bytes]]
+    comparison: Comparison = field(init=False)
+
+    def __post_init__(self) -> None:
+        self.comparison = Comparison.of(self.problem, self.target, self.lattice, self.points)
 
     def from_visited(self, name: Key, new: Collection[int], archive: Archive) -> list[Start]:
         """Return the tasks that solve points that are ``new`` from the models of an archive."""
         visited = Visited.of(self.problem, self.target, self.lattice, archive)
         return [
             self._start(k, (*name, k + 1, "visited", rank + 1), _from_visited, theta)
-            for k in self._comparison.open.tolist()
+            for k in self.comparison.open.tolist()
             if k in new
             for rank, theta in enumerate(visited.starts(self.points[k]))
             if self._is_untried(k, theta)
@@ -190,11 +195,10 @@ class _Competition:
 
     def from_points(self, name: Key, count: int) -> list[Start]:
         """Return the tasks that solve points from ``count`` nearest others, and other branches."""
-        comparison = self._comparison
         return [
             self._start(k, (*name, k + 1, j + 1), _from_other, self.points[j])
-            for k in comparison.open.tolist()
-            for j in comparison.starts(k, count)
+            for k in self.comparison.open.tolist()
+            for j in self.comparison.starts(k, count)
             if self._is_untried(k, self.points[j].theta)
         ]
 
@@ -206,11 +210,9 @@ class _Competition:
             if _wins(self.target, end, self.points[k]):
                 self.points[k] = end
                 out.add(k)
+        if out:
+            self.comparison = Comparison.of(self.problem, self.target, self.lattice, self.points)
         return out
-
-    @property
-    def _comparison(self) -> Comparison:
-        return Comparison.of(self.problem, self.target, self.lattice, self.points)
 
     def _is_untried(self, k: int, theta: Floats) -> bool:
         """Return whether a point was not solved from these parameters, and take note of them."""
