@@ -43,7 +43,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.optimize
 
 from modefront._typing import Bools, Floats
 
@@ -288,6 +287,8 @@ def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> Floats:
     rank = _rank(sigma)
     s = Vt[:rank].T @ ((U.T @ b)[:rank] / sigma[:rank])
     if (s < NORMAL * lo).any() or (s > NORMAL * hi).any():
+        import scipy.optimize
+
         inside = hi - lo > 0
         s = np.zeros(lo.size)
         bounds = (NORMAL * lo[inside], NORMAL * hi[inside])
