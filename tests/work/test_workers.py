@@ -311,6 +311,18 @@ def test_a_killed_process_is_replaced_and_its_tasks_are_done_again(
     assert [store.has(task) for task in tasks] == [k != 2 for k in range(6)]
 
 
+def test_processes_import_only_what_most_tasks_need() -> None:
+    spared = "click", "rich", "xarray", "pandas", "h5py", "scipy.optimize", "scipy.stats"
+    code = (
+        "import sys, importlib, modefront.__main__\n"
+        "from modefront.study.processes import WARM\n"
+        "for name in WARM: importlib.import_module(name)\n"
+        f"sys.exit(' '.join({{*{spared}, 'modefront.fem.structure'}} & set(sys.modules)) or 0)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
+
+
 def test_one_worker_is_the_process_itself_and_other_numbers_are_refused() -> None:
     with backend(1) as alone:
         assert isinstance(alone, InTurn)
