@@ -29,6 +29,7 @@ from jobs import (
     process_of,
     slow,
     squares,
+    threads,
     totals,
 )
 from pools import Interrupting, Threads
@@ -294,6 +295,10 @@ def test_processes_share_the_work_and_are_not_this_one(two: Workers) -> None:
     result = Run(backend=two).run([Task(("process", k), process_of, (k,)) for k in range(8)])
     assert os.getpid() not in result
     assert 1 <= len(set(result)) <= 2
+
+
+def test_processes_share_nothing_among_threads(two: Workers) -> None:
+    assert set(Run(backend=two).run([Task(("threads", k), threads, (k,)) for k in range(8)])) == {1}
 
 
 @pytest.mark.skipif(os.name == "nt", reason="there is no such signal on Windows")
