@@ -136,6 +136,7 @@ class CertificateRequest:
     sigma : a level above the modes in question
     bounds : g and b, between which K + s M is over that of the factor
     proved : whether ``below`` is proved; else the next mode has to be found above ``sigma``
+    small : error of a shape, if it is proved to be no greater, of which no share has to be found
     """
 
     theta: Floats
@@ -146,6 +147,7 @@ class CertificateRequest:
     sigma: float
     bounds: tuple[float, float] = (0.0, np.inf)
     proved: bool = True
+    small: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -287,13 +289,17 @@ class _Proof:
         return bool(small.all() and (of.proved or (above.size and above[0] > of.sigma)))
 
     def holds(self, errors: _ErrorEstimate) -> bool:
-        """Return whether a third of the errors of all modes in question is found."""
+        """Return whether a third of the errors of all modes in question is found.
+
+        Errors of shapes may be small instead.
+        """
         of = self.of
         iterated = (
             (1 - self._missed >= FOUND) if self.exact_shift is None else np.zeros(1, dtype=np.bool_)
         )
         eigenvalues = iterated | self._bounded(errors.eigenvalue, FOUND)
-        shapes = FOUND * self.most(errors) <= np.maximum(errors.shape[: of.below], TOO_SMALL)
+        found = np.maximum(errors.shape[: of.below], TOO_SMALL) / FOUND
+        shapes = self.most(errors) <= np.maximum(found, of.small)
         return bool((eigenvalues & shapes)[of.modes].all())
 
     def most(self, errors: _ErrorEstimate) -> Floats:
