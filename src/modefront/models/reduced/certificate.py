@@ -201,8 +201,8 @@ def estimates(
             of = requests[k]
             proof = _Proof(of, shift, errors[k].eigenvalue, gram(request.R, request.Z), step)
             if step == 1:
-                K0 = pencil.K.at(of.theta)
-                rounding[k] = _rounding(K0, request.X, gram(request.X, request.R), of.lam)
+                forms = gram(request.X, request.R)
+                rounding[k] = _rounding(pencil.K.diagonal(of.theta), request.X, forms, of.lam)
             try:
                 K, M = space.K.at(of.theta), space.M.at(of.theta)
                 errors[k] = _judged(K, M, basis.columns, of.lam, of.Y)
@@ -239,7 +239,7 @@ def own_estimate(
         if start.lam.size < m:
             return missing(requested.modes.size)
         lam = requested.lam[:m]
-        rounding = _rounding(K, X, inner - mass * lam, lam)
+        rounding = _rounding(K.diagonal(), X, inner - mass * lam, lam)
         unit = np.sqrt(start.lam - shift)
         of = replace(requested, lam=start.lam, Y=np.diag(unit))
         S, n = combine(X, start.Phi / unit), m
@@ -379,14 +379,13 @@ def _certificate(
     return Certificate(relative[of.modes], shape[of.modes], errors.lam, phi)
 
 
-def _rounding(
-    K: scipy.sparse.csr_array, X: Floats, forms: Floats, lam: Floats
-) -> tuple[Floats, Floats]:
+def _rounding(diagonal: Floats, X: Floats, forms: Floats, lam: Floats) -> tuple[Floats, Floats]:
     """Return errors of eigenvalues and shapes of the basis beyond the rounding of the full model.
 
-    ``forms`` are X^T (K - lam M) X of its modes (modes, modes), which should vanish.
+    ``diagonal`` is that of K, and ``forms`` are X^T (K - lam M) X of the modes of the basis (modes,
+    modes), which should vanish.
     """
-    noise = np.finfo(float).eps * (K.diagonal() @ X**2)
+    noise = np.finfo(float).eps * (diagonal @ X**2)
     forms = np.where(np.abs(forms) > ROUNDING * np.sqrt(np.outer(noise, noise)), forms, 0.0)
     eigenvalue = np.abs(np.diag(forms))
     distance = np.abs(lam[:, None] - lam)
