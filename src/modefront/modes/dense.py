@@ -28,6 +28,7 @@ those of :math:`\Phi_c^T (K' - \lambda M') \Phi_c`, and the quotient is left out
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
@@ -103,7 +104,7 @@ class Decomposition:
     sigma: float
     lam: Floats
 
-    @property
+    @cached_property
     def Phi(self) -> Floats:
         """Mass-normalised modes, shape (N, modes)."""
         finite = self.lam.size
@@ -199,11 +200,8 @@ def is_singular(K: Floats) -> bool:
 
 def _inverse_eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
     """Solve M x = mu K x; empty arrays where K is not positive definite."""
-    try:
-        mu, X = scipy.linalg.eigh(M, K, check_finite=False)
-    except np.linalg.LinAlgError:
-        return np.zeros(0), np.zeros((len(K), 0))
-    return mu, X
+    mu, X, failed = scipy.linalg.lapack.dsygvd(M, K)
+    return (np.zeros(0), np.zeros((len(K), 0))) if failed else (mu, X)
 
 
 def nelson(
@@ -216,15 +214,19 @@ def nelson(
     lam, Phi = decomposition.lam, decomposition.Phi
     magnitude = np.abs(lam) + SHIFT * lam[-1]
     rounding = _ROUNDING * magnitude**2 / magnitude[0]
-    distance = np.abs(lam[:, None] - lam)
-    same = distance * COINCIDENT <= np.maximum(rounding, rounding[:, None])
-    while count < lam.size and same[count, :count].any():
+    while True:
+        distance = np.abs(lam[:, None] - lam[:count])
+        same = distance * COINCIDENT <= np.maximum(rounding[:count], rounding[:, None])
+        if count == lam.size or not same[count].any():
+            break
         count += 1
-    r = np.arange(count)
-    same, close = same[:, r], distance[:, r] <= CLOSE * magnitude[r]
+    r, close = np.arange(count), distance <= CLOSE * magnitude[:count]
 
-    dM_phi = M.derivatives_times(theta, Phi[:, r])
-    force = K.derivatives_times(theta, Phi[:, r]) - lam[r, None] * dM_phi
+    Phi = Phi[:, r]
+    force = K.derivatives_times(theta, Phi)
+    if M.varies:
+        dM_phi = M.derivatives_times(theta, Phi)
+        force = force - lam[r, None] * dM_phi
     S = first_axis(decomposition.X.T, force)  # S[j, r] = x_j^T (K' - lam_r M') phi_r
     dlam = S[r, r] / np.sqrt(decomposition.mu[r, None])
     coincident = np.asarray(same.sum(axis=0) > 1)
@@ -237,5 +239,6 @@ def nelson(
     denominator[: lam.size][close] = exact[close]
     denominator[: lam.size][same] = np.inf
     S /= -denominator[:, :, None]
-    S[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi) / np.sqrt(decomposition.mu[r, None])
+    if M.varies:
+        S[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi, dM_phi) / np.sqrt(decomposition.mu[r, None])
     return dlam, S, coincident
