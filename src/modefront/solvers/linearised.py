@@ -15,7 +15,7 @@ and the fall of the surplus of y.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -65,16 +65,19 @@ class Linearised:
         ``multipliers`` of the step before; where there is none, those of the slopes at the point
         and, of functions of which the maximum counts, those of another step.
         """
-        dJ, span = self.evaluation.dJ * self.span, np.outer(self.span, self.span)
+        dJ, span = self.evaluation.dJ * self.span, self.span[:, None] * self.span
         lo, hi = np.maximum(self.reach[0], -radius), np.minimum(self.reach[1], radius)
         curved = dJ.T @ self.programme.hessian(self.evaluation.J) @ dJ
-        qp = QuadraticProgramme(curved, self.g, self.dc, -self.c, lo, hi, self.dy, self.y)
+
+        def with_curvature(B: Floats) -> QuadraticProgramme:
+            return QuadraticProgramme(B, self.g, self.dc, -self.c, lo, hi, self.dy, self.y)
+
         passes = 1
         if multipliers is None:
-            multipliers, passes = self._first(qp), 2 if self.y.size else 1
+            multipliers, passes = self._first(with_curvature(curved)), 2 if self.y.size else 1
         for _ in range(passes):
             w = multipliers.weights(self.programme, self.evaluation.J)
-            qp = replace(qp, B=weighted(w, H) * span + curved)
+            qp = with_curvature(weighted(w, H) * span + curved)
             step = solve_qp(qp)
             multipliers = self._bounded(qp, step)
         return qp, step, multipliers
@@ -90,6 +93,8 @@ class Linearised:
 
         Where the constraints hardly depend on the variables that are free, they say nothing.
         """
+        if not (self.c.size or self.y.size):
+            return Multipliers(np.zeros(0), np.zeros(0))
         A = self.programme.constraints.matrix
         most = STEEP * length(self.df) / float(np.abs(A).max(initial=np.finfo(float).tiny))
         free = (qp.lo - step.s < 0) & (qp.hi - step.s > 0)

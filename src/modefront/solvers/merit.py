@@ -54,8 +54,12 @@ class Multipliers:
 
     def weights(self, programme: Scalarisation, J: Floats) -> Floats:
         """Return the slope (n,) of the Lagrangian with respect to the objectives."""
-        w = programme.gradient(J) + programme.constraints.matrix.T @ self.mu
-        return np.asarray(w + programme.maximised.matrix.T @ self.kappa)
+        w = programme.gradient(J)
+        if self.mu.size:
+            w = w + programme.constraints.matrix.T @ self.mu
+        if self.kappa.size:
+            w = w + programme.maximised.matrix.T @ self.kappa
+        return w
 
 
 @dataclass(frozen=True)

@@ -231,12 +231,13 @@ def solve(
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
         new = problem.evaluate(local.end(problem, s))
         merit = Merit(programme, multipliers, penalty)
-        correction = Correction(merit, local.tied(step.active))
+        before = merit.at(evaluation)
         for _ in range(
             CORRECTIONS if new.feasible and evaluation.residuals and count >= SLOW else 0
         ):
-            if failed >= FAILURES or merit.at(evaluation) - merit.at(new) > BENT * predicted:
+            if failed >= FAILURES or before - merit.at(new) > BENT * predicted:
                 break
+            correction = Correction(merit, local.tied(step.active))
             corrected = correction.evaluated(problem, evaluation, s, new)
             failed = 0 if corrected else failed + 1
             if corrected is None:
@@ -245,7 +246,7 @@ def solve(
         if not new.feasible or length(programme.constraints.at(new.J)) > progress.farthest:
             radius = length(s) / 4
             continue
-        actual = merit.at(evaluation) - merit.at(new)
+        actual = before - merit.at(new)
         rest = 0.5 * w @ (S @ (s * local.span) @ (s * local.span)) * (1 if trusted else -1)
         if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):
             trusted = not trusted
