@@ -76,9 +76,12 @@ class Merit:
             return np.inf
         c, y = self.programme.constraints.at(point.J), self.programme.maximised.at(point.J)
         mu, kappa = self.multipliers.mu, self.multipliers.kappa
-        squares = 0.5 * self.penalty * (c @ c)
-        smooth = self.programme.value(point.J) + mu @ c + squares
-        return float(smooth + kappa @ y + surplus(y, kappa, self.penalty))
+        value = self.programme.value(point.J)
+        if c.size:
+            value = float(value + mu @ c + 0.5 * self.penalty * (c @ c))
+        if y.size:
+            value = float(value + kappa @ y + surplus(y, kappa, self.penalty))
+        return value
 
 
 def surplus(y: Floats, kappa: Floats, penalty: float) -> float:

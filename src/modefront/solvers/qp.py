@@ -140,9 +140,8 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
     active = [int(np.argmax(qp.c + qp.C @ s))] if len(qp.C) else []
     for _ in range(PASSES * (s.size + len(qp.C))):
         d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free, width)
-        share = np.full(s.size, np.inf)
-        np.divide(hi - s, d, out=share, where=d > 0)
-        np.divide(lo - s, d, out=share, where=d < 0)
+        bound = np.where(d > 0, hi, lo)
+        share = np.divide(bound - s, d, out=np.full(s.size, np.inf), where=d != 0)
         stop = int(share.argmin())
         within, (joining, met) = float(share[stop]), _met(qp, s, d, active)
         if min(within, met) < 1:
@@ -150,7 +149,7 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
             if met < within:
                 active = [*active, joining]
             else:
-                s[stop] = (hi if d[stop] > 0 else lo)[stop]
+                s[stop] = bound[stop]
                 free[stop] = False
             continue
         s = _clipped(s + d, lo, hi)
@@ -294,7 +293,7 @@ def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> Floats:
     s = np.zeros(lo.size)
     if len(A) == 0:
         return s
-    U, sigma, Vt = np.linalg.svd(A, full_matrices=False)
+    U, sigma, Vt = svd(A, full=False)
     rank = _rank(sigma)
     s = Vt[:rank].T @ ((U.T @ b)[:rank] / sigma[:rank])
     if (s < NORMAL * lo).any() or (s > NORMAL * hi).any():
