@@ -127,9 +127,10 @@ def decompose(K: Floats, M: Floats, count: int = 0) -> Decomposition:
     modes are solved for as those of K phi = lam M phi, if M is positive definite. Raises ModelError
     where K or M is indefinite.
     """
-    if not np.diag(M).any():
+    mass = float(np.abs(M.diagonal()).sum())
+    if mass == 0:
         raise ModelError("the mass matrix has no mass on its diagonal")
-    scale = np.abs(np.diag(K)).sum() / np.abs(np.diag(M)).sum()
+    scale = float(np.abs(K.diagonal()).sum()) / mass
     mu, X = _inverse_eigensolve(K, M)
     shift = 0.0
     if mu.size == 0 or mu[-1] * scale * SHIFT**2 > 1:
@@ -214,8 +215,9 @@ def nelson(
     lam, Phi = decomposition.lam, decomposition.Phi
     magnitude = np.abs(lam) + SHIFT * lam[-1]
     rounding = _ROUNDING * magnitude**2 / magnitude[0]
-    while True:
-        distance = np.abs(lam[:, None] - lam[:count])
+    while True:  # until no mode beyond coincides with one of these
+        gap = lam[:, None] - lam[:count]
+        distance = np.abs(gap)
         same = distance * COINCIDENT <= np.maximum(rounding[:count], rounding[:, None])
         if count == lam.size or not same[count].any():
             break
@@ -235,9 +237,9 @@ def nelson(
         dlam[list(group)] = np.linalg.eigvalsh(np.moveaxis(block, 2, 0)).T
 
     denominator = 1 - (lam[r] + decomposition.sigma) * decomposition.mu[:, None]
-    exact = decomposition.mu[: lam.size, None] * (lam[:, None] - lam[r])
-    denominator[: lam.size][close] = exact[close]
-    denominator[: lam.size][same] = np.inf
+    finite = denominator[: lam.size]
+    np.copyto(finite, decomposition.mu[: lam.size, None] * gap, where=close)
+    finite[same] = np.inf
     S /= -denominator[:, :, None]
     if M.varies:
         S[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi, dM_phi) / np.sqrt(decomposition.mu[r, None])

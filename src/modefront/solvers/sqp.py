@@ -187,7 +187,7 @@ def begin(evaluation: Evaluation) -> Solution:
     return Solution(evaluation, np.zeros((n, p, p)), np.zeros(n), np.inf, status, 0)
 
 
-# 61 lines: the loop reads as the algorithm in the head of the module.
+# 63 lines: the loop reads as the algorithm in the head of the module.
 def solve(
     problem: Problem, programme: Scalarisation, start: Solution, options: Options | None = None
 ) -> Solution:
@@ -218,13 +218,13 @@ def solve(
             evaluation.H + S if trusted else evaluation.H, radius, multipliers
         )
         s, w = step.s, multipliers.weights(programme, evaluation.J)
-        violation = length(local.c)
-        progress.proposed(length(s), radius)
-        still = length(s) <= options.step or local.unchanging(s, options.reduction)
+        violation, far = length(local.c), length(s)
+        progress.proposed(far, radius)
+        still = far <= options.step or local.unchanging(s, options.reduction)
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
-            still = not s.any()
-        status = progress.outcome(count, violation, still, length(s), radius)
+            still, far = not s.any(), length(s)
+        status = progress.outcome(count, violation, still, far, radius)
         if status or count == options.iterations:
             return Solution(evaluation, S, w, violation, status or Status.EXHAUSTED, count)
 
@@ -244,10 +244,11 @@ def solve(
                 break
             new = corrected
         if not new.feasible or length(programme.constraints.at(new.J)) > progress.farthest:
-            radius = length(s) / 4
+            radius = far / 4
             continue
         actual = before - merit.at(new)
-        rest = 0.5 * w @ (S @ (s * local.span) @ (s * local.span)) * (1 if trusted else -1)
+        change = s * local.span
+        rest = 0.5 * w @ (S @ change @ change) * (1 if trusted else -1)
         if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):
             trusted = not trusted
         noise = local.noise(multipliers)
@@ -256,7 +257,7 @@ def solve(
             S = learned_from(S, evaluation, new, local.span)
         if ratio > TAKEN:
             evaluation = new
-        radius = _next_radius(radius, length(s), ratio)
+        radius = _next_radius(radius, far, ratio)
 
 
 @dataclass
