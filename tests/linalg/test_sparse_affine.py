@@ -34,6 +34,7 @@ def test_same_as_dense(case: tuple[int, int, int, int]) -> None:
     assert sparse.size == dense.size
     assert sparse.used.tolist() == dense.used.tolist()
     assert sparse.at(theta).toarray() == pytest.approx(dense.at(theta), abs=1e-12)
+    assert sparse.diagonal(theta) == pytest.approx(np.diag(dense.at(theta)), abs=1e-12)
     assert sparse.dense().terms == pytest.approx(dense.terms, abs=0)
     expected = dense.derivatives_times(theta, V)
     assert sparse.derivatives_times(theta, V) == pytest.approx(expected, abs=1e-12)

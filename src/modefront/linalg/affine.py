@@ -194,6 +194,19 @@ class SparseAffine:
         shape = self.size, self.size
         return scipy.sparse.csr_array((values, self.indices, self.indptr), shape=shape)
 
+    def diagonal(self, theta: Floats) -> Floats:
+        """Return the diagonal (N,) of A(theta)."""
+        return np.asarray(self._diagonals @ self.coefficients.values(theta))
+
+    @cached_property
+    def _diagonals(self) -> scipy.sparse.csr_array:
+        """The diagonal of each term, (N, terms)."""
+        row, terms = _expand(self.indptr), self.terms
+        chosen = np.flatnonzero((self.indices == row)[terms.indices])
+        place = row[terms.indices[chosen]], _expand(terms.indptr)[chosen]
+        shape = self.size, terms.shape[1]
+        return scipy.sparse.csr_array((terms.data[chosen], place), shape=shape)
+
     def dense(self) -> DenseAffine:
         """Return the same matrix with dense terms."""
         out = np.zeros((self.terms.shape[1], self.size, self.size))

@@ -136,6 +136,7 @@ class CertificateRequest:
     sigma : a level above the modes in question
     bounds : g and b, between which K + s M is over that of the factor
     proved : whether ``below`` is proved; else the next mode has to be found above ``sigma``
+    small : error of a shape, if it is proved to be no greater, of which no share has to be found
     """
 
     theta: Floats
@@ -146,6 +147,7 @@ class CertificateRequest:
     sigma: float
     bounds: tuple[float, float] = (0.0, np.inf)
     proved: bool = True
+    small: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -199,8 +201,8 @@ def estimates(
             of = requests[k]
             proof = _Proof(of, shift, errors[k].eigenvalue, gram(request.R, request.Z), step)
             if step == 1:
-                K0 = pencil.K.at(of.theta)
-                rounding[k] = _rounding(K0, request.X, gram(request.X, request.R), of.lam)
+                forms = gram(request.X, request.R)
+                rounding[k] = _rounding(pencil.K.diagonal(of.theta), request.X, forms, of.lam)
             try:
                 K, M = space.K.at(of.theta), space.M.at(of.theta)
                 errors[k] = _judged(K, M, basis.columns, of.lam, of.Y)
@@ -237,7 +239,7 @@ def own_estimate(
         if start.lam.size < m:
             return missing(requested.modes.size)
         lam = requested.lam[:m]
-        rounding = _rounding(K, X, inner - mass * lam, lam)
+        rounding = _rounding(K.diagonal(), X, inner - mass * lam, lam)
         unit = np.sqrt(start.lam - shift)
         of = replace(requested, lam=start.lam, Y=np.diag(unit))
         S, n = combine(X, start.Phi / unit), m
@@ -287,13 +289,17 @@ class _Proof:
         return bool(small.all() and (of.proved or (above.size and above[0] > of.sigma)))
 
     def holds(self, errors: _ErrorEstimate) -> bool:
-        """Return whether a third of the errors of all modes in question is found."""
+        """Return whether a third of the errors of all modes in question is found.
+
+        Errors of shapes may be small instead.
+        """
         of = self.of
         iterated = (
             (1 - self._missed >= FOUND) if self.exact_shift is None else np.zeros(1, dtype=np.bool_)
         )
         eigenvalues = iterated | self._bounded(errors.eigenvalue, FOUND)
-        shapes = FOUND * self.most(errors) <= np.maximum(errors.shape[: of.below], TOO_SMALL)
+        found = np.maximum(errors.shape[: of.below], TOO_SMALL) / FOUND
+        shapes = self.most(errors) <= np.maximum(found, of.small)
         return bool((eigenvalues & shapes)[of.modes].all())
 
     def most(self, errors: _ErrorEstimate) -> Floats:
@@ -373,14 +379,13 @@ def _certificate(
     return Certificate(relative[of.modes], shape[of.modes], errors.lam, phi)
 
 
-def _rounding(
-    K: scipy.sparse.csr_array, X: Floats, forms: Floats, lam: Floats
-) -> tuple[Floats, Floats]:
+def _rounding(diagonal: Floats, X: Floats, forms: Floats, lam: Floats) -> tuple[Floats, Floats]:
     """Return errors of eigenvalues and shapes of the basis beyond the rounding of the full model.
 
-    ``forms`` are X^T (K - lam M) X of its modes (modes, modes), which should vanish.
+    ``diagonal`` is that of K, and ``forms`` are X^T (K - lam M) X of the modes of the basis (modes,
+    modes), which should vanish.
     """
-    noise = np.finfo(float).eps * (K.diagonal() @ X**2)
+    noise = np.finfo(float).eps * (diagonal @ X**2)
     forms = np.where(np.abs(forms) > ROUNDING * np.sqrt(np.outer(noise, noise)), forms, 0.0)
     eigenvalue = np.abs(np.diag(forms))
     distance = np.abs(lam[:, None] - lam)

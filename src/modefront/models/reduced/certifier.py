@@ -49,6 +49,7 @@ class Certifier:
     basis : with the model in it
     proofs : what is known of modes that are missing in the basis
     theta, sigma : of the factor of K(theta) - sigma M(theta)
+    small : error of a shape that need not be known better, if it is proved to be no greater
     """
 
     full: MatrixModel
@@ -56,6 +57,7 @@ class Certifier:
     proofs: tuple[InertiaProof, ...]
     theta: Floats
     sigma: float
+    small: float = 0.0
     _factor: Factorisation | None = None
 
     def __getstate__(self) -> dict[str, Any]:
@@ -147,7 +149,7 @@ class Certifier:
             return missing(indices.size)
         proofs.append(InertiaProof(theta, sigma, below))
         lam, Y = ritz.lam[:below], ritz.Phi[:, :below]
-        request = CertificateRequest(theta, indices, lam, Y, below, sigma)
+        request = CertificateRequest(theta, indices, lam, Y, below, sigma, small=self.small)
         return own_estimate(pencil, self.full.selection, basis, request, Shifted(sigma, factor))
 
 
@@ -183,5 +185,7 @@ def _near(
             below, sigma = gap
             some = below + int(not proved)
             lam, Y = ritz.lam[:some], ritz.Phi[:, :some]
-            request = CertificateRequest(theta, indices, lam, Y, below, sigma, bounds, proved)
+            request = CertificateRequest(
+                theta, indices, lam, Y, below, sigma, bounds, proved, by.small
+            )
     return request

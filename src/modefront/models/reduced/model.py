@@ -304,7 +304,13 @@ class ReducedModel:
         if self._certifier is None or self._certifier.basis is not space.basis:
             theta, below = space.factor.theta, space.factor.below
             self._certifier = Certifier(
-                self.full, space.basis, space.proofs, theta, below.sigma, below.factor
+                self.full,
+                space.basis,
+                space.proofs,
+                theta,
+                below.sigma,
+                float(np.sqrt(self.tolerance)),
+                below.factor,
             )
         return self._certifier
 
