@@ -84,7 +84,7 @@ def test_counts_are_of_what_was_measured() -> None:
         Group("f2", frequency=[2]),
         Group("again", frequency=[1, 2]),
     )
-    assert problem_of(data, single).properties.tolist() == [4, 1, 2]
+    assert problem_of(data, tuple(single)).properties.tolist() == [4, 1, 2]
 
 
 def test_what_is_not_measured_drops_out() -> None:
@@ -100,6 +100,20 @@ def test_what_is_not_measured_drops_out() -> None:
     assert rphi.r.size == 5
     full = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS)).residuals(theta)[0]
     assert rf.r == pytest.approx(full.r[[0, 2]])
+
+
+def test_residuals_of_several_modes_are_those_of_each_one_after_the_other() -> None:
+    frequency, shape = np.array([FREQUENCY, 1.01 * FREQUENCY]), np.array([SHAPE, SHAPE + 0.05])
+    frequency[1, 0] = shape[0, 1, 2] = shape[1, 2, :2] = np.nan  # 3, 3, 2, 3, 3 and 1 components
+    data = modal_data(frequency, shape, FLOORS)
+    theta = np.array([1.1, 0.9, 1.2, 1.0])
+    together = problem_of(data, (Group("all", frequency="all", shape="all"),)).residuals(theta)[0]
+    single = [Group(f"f{r}", frequency=[r]) for r in (1, 2, 3)]
+    single += [Group(f"s{r}", shape=[r]) for r in (1, 2, 3)]
+    parts = problem_of(data, tuple(single)).residuals(theta)
+    assert [part.r.size for part in parts] == [1, 2, 2, 6, 5, 4]
+    np.testing.assert_array_equal(together.r, np.concatenate([part.r for part in parts]))
+    np.testing.assert_array_equal(together.dr, np.concatenate([part.dr for part in parts]))
 
 
 def test_objectives_are_means_over_data_sets() -> None:

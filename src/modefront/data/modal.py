@@ -7,7 +7,7 @@ from functools import cached_property
 
 import numpy as np
 
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Floats
 
 
 @dataclass(frozen=True, eq=False)
@@ -16,16 +16,21 @@ class MeasuredShapes:
 
     Attributes
     ----------
-    measured : (sets, modes, sensors) which components were measured
+    measured : (sets, modes, sensors) 1 for components that were measured, or 0
     shape : (sets, modes, sensors) components, or 0
     squares : (sets, modes, 1) sum of their squares
-    sets : (modes, 1) number of data sets with the shape of each mode
+    sets : (modes, 1) number of data sets with the shape of each mode; NaN where there is none
     """
 
-    measured: Bools
+    measured: Floats
     shape: Floats
     squares: Floats
-    sets: Ints
+    sets: Floats
+
+    @cached_property
+    def complete(self) -> bool:
+        """Whether every mode has a shape in some data set."""
+        return bool(np.isfinite(self.sets).all())
 
 
 @dataclass(frozen=True)
@@ -67,7 +72,10 @@ class ModalData:
         measured = np.isfinite(self.shape)
         shape = np.where(measured, self.shape, 0.0)
         squares = (shape**2).sum(axis=2)[:, :, None]
-        return MeasuredShapes(measured, shape, squares, measured.any(axis=2).sum(axis=0)[:, None])
+        sets = measured.any(axis=2).sum(axis=0)[:, None]
+        return MeasuredShapes(
+            measured.astype(float), shape, squares, np.where(sets > 0, sets, np.nan)
+        )
 
 
 # 7 arguments: the parts of modal data, the optional ones by keyword.

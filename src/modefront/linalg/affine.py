@@ -67,6 +67,11 @@ class Monomials:
         return bool(np.isin(e, (0, 1)).all() and (e.sum(axis=1) <= 1).all())
 
     @cached_property
+    def varies(self) -> bool:
+        """Whether any coefficient depends on a parameter."""
+        return bool(self.exponents.any())
+
+    @cached_property
     def _constant(self) -> Floats:
         return np.asarray(1.0 - self.exponents.any(axis=1))
 
@@ -113,11 +118,24 @@ class DenseAffine:
 
     def at(self, theta: Floats) -> Floats:
         """Return A(theta), shape (N, N)."""
+        return self._at(theta) if self.varies else self._constant
+
+    @property
+    def varies(self) -> bool:
+        """Whether the matrix depends on any parameter."""
+        return self.coefficients.varies
+
+    @cached_property
+    def _constant(self) -> Floats:
+        """The matrix that does not depend on theta."""
+        return self._at(np.ones(self.coefficients.exponents.shape[1]))
+
+    def _at(self, theta: Floats) -> Floats:
         return first_axis(self.coefficients.values(theta)[None], self.terms)[0]
 
     def derivatives_times(self, theta: Floats, vectors: Floats) -> Floats:
         """Return dA/dtheta_i V for vectors V of shape (N, m); the result is (N, m, parameters)."""
-        if not self.coefficients.exponents.any():
+        if not self.varies:
             return np.zeros((*vectors.shape, self.coefficients.exponents.shape[1]))
         products = self.terms @ vectors
         return first_axis(self.coefficients.jacobian(theta).T, products).transpose(1, 2, 0)
@@ -164,7 +182,7 @@ class SparseAffine:
 
     def at(self, theta: Floats) -> scipy.sparse.csr_array:
         """Return A(theta), N x N; it holds every entry of the pattern, zero or not."""
-        return self._constant if not self.coefficients.exponents.any() else self._at(theta)
+        return self._at(theta) if self.coefficients.varies else self._constant
 
     @cached_property
     def _constant(self) -> scipy.sparse.csr_array:
@@ -238,7 +256,7 @@ class SparseAffine:
 
     def each(self, thetas: Floats, vectors: Floats) -> Floats:
         """Return A(theta_k) v_k for every row of thetas (m, p) and column of vectors (N, m)."""
-        if not self.coefficients.exponents.any():
+        if not self.coefficients.varies:
             return times(self._constant, vectors)
         stack, dof, starts = self._stack
         coefficients = np.transpose([self.coefficients.values(theta) for theta in thetas])

@@ -28,6 +28,7 @@ those of :math:`\Phi_c^T (K' - \lambda M') \Phi_c`, and the quotient is left out
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
@@ -103,7 +104,7 @@ class Decomposition:
     sigma: float
     lam: Floats
 
-    @property
+    @cached_property
     def Phi(self) -> Floats:
         """Mass-normalised modes, shape (N, modes)."""
         finite = self.lam.size
@@ -126,9 +127,10 @@ def decompose(K: Floats, M: Floats, count: int = 0) -> Decomposition:
     modes are solved for as those of K phi = lam M phi, if M is positive definite. Raises ModelError
     where K or M is indefinite.
     """
-    if not np.diag(M).any():
+    mass = float(np.abs(M.diagonal()).sum())
+    if mass == 0:
         raise ModelError("the mass matrix has no mass on its diagonal")
-    scale = np.abs(np.diag(K)).sum() / np.abs(np.diag(M)).sum()
+    scale = float(np.abs(K.diagonal()).sum()) / mass
     mu, X = _inverse_eigensolve(K, M)
     shift = 0.0
     if mu.size == 0 or mu[-1] * scale * SHIFT**2 > 1:
@@ -199,11 +201,8 @@ def is_singular(K: Floats) -> bool:
 
 def _inverse_eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
     """Solve M x = mu K x; empty arrays where K is not positive definite."""
-    try:
-        mu, X = scipy.linalg.eigh(M, K, check_finite=False)
-    except np.linalg.LinAlgError:
-        return np.zeros(0), np.zeros((len(K), 0))
-    return mu, X
+    mu, X, failed = scipy.linalg.lapack.dsygvd(M, K)
+    return (np.zeros(0), np.zeros((len(K), 0))) if failed else (mu, X)
 
 
 def nelson(
@@ -216,15 +215,20 @@ def nelson(
     lam, Phi = decomposition.lam, decomposition.Phi
     magnitude = np.abs(lam) + SHIFT * lam[-1]
     rounding = _ROUNDING * magnitude**2 / magnitude[0]
-    distance = np.abs(lam[:, None] - lam)
-    same = distance * COINCIDENT <= np.maximum(rounding, rounding[:, None])
-    while count < lam.size and same[count, :count].any():
+    while True:  # until no mode beyond coincides with one of these
+        gap = lam[:, None] - lam[:count]
+        distance = np.abs(gap)
+        same = distance * COINCIDENT <= np.maximum(rounding[:count], rounding[:, None])
+        if count == lam.size or not same[count].any():
+            break
         count += 1
-    r = np.arange(count)
-    same, close = same[:, r], distance[:, r] <= CLOSE * magnitude[r]
+    r, close = np.arange(count), distance <= CLOSE * magnitude[:count]
 
-    dM_phi = M.derivatives_times(theta, Phi[:, r])
-    force = K.derivatives_times(theta, Phi[:, r]) - lam[r, None] * dM_phi
+    Phi = Phi[:, r]
+    force = K.derivatives_times(theta, Phi)
+    if M.varies:
+        dM_phi = M.derivatives_times(theta, Phi)
+        force = force - lam[r, None] * dM_phi
     S = first_axis(decomposition.X.T, force)  # S[j, r] = x_j^T (K' - lam_r M') phi_r
     dlam = S[r, r] / np.sqrt(decomposition.mu[r, None])
     coincident = np.asarray(same.sum(axis=0) > 1)
@@ -233,9 +237,10 @@ def nelson(
         dlam[list(group)] = np.linalg.eigvalsh(np.moveaxis(block, 2, 0)).T
 
     denominator = 1 - (lam[r] + decomposition.sigma) * decomposition.mu[:, None]
-    exact = decomposition.mu[: lam.size, None] * (lam[:, None] - lam[r])
-    denominator[: lam.size][close] = exact[close]
-    denominator[: lam.size][same] = np.inf
+    finite = denominator[: lam.size]
+    np.copyto(finite, decomposition.mu[: lam.size, None] * gap, where=close)
+    finite[same] = np.inf
     S /= -denominator[:, :, None]
-    S[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi) / np.sqrt(decomposition.mu[r, None])
+    if M.varies:
+        S[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi, dM_phi) / np.sqrt(decomposition.mu[r, None])
     return dlam, S, coincident

@@ -79,7 +79,6 @@ class Modes:
         Raises ValueError where derivatives were not requested.
         """
         omega = np.sqrt(np.maximum(self.lam, 0.0))
-        with np.errstate(divide="ignore", invalid="ignore"):
-            scale = np.where(omega > 0, 1 / (4 * np.pi * omega), 0.0)
+        scale = np.divide(1, 4 * np.pi * omega, out=np.zeros(omega.shape), where=omega > 0)
         out: Floats = self.dlam * scale[:, None]
         return out

@@ -164,8 +164,10 @@ def derivatives(
     while c < known and same[c, :c].any():
         c += 1
     r = np.arange(c)
-    dM_phi = M.derivatives_times(theta, Phi[:, :c])
-    force = K.derivatives_times(theta, Phi[:, :c]) - lam[r, None] * dM_phi
+    force = K.derivatives_times(theta, Phi[:, :c])
+    if M.varies:
+        dM_phi = M.derivatives_times(theta, Phi[:, :c])
+        force = force - lam[r, None] * dM_phi
     G = (Phi.T @ force.reshape(len(Phi), -1)).reshape(known, c, p)
     dlam, coincident = G[r, r], np.asarray(same[:, :c].sum(axis=0) > 1)
     for group in {tuple(np.flatnonzero(same[:, k])) for k in np.flatnonzero(coincident)}:
@@ -175,7 +177,8 @@ def derivatives(
     r = r[:count]
     gap = np.where(same, np.inf, lam - lam[:, None])[:, r]
     inside = G[:, r] / gap[:, :, None]
-    inside[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi[:, r])
+    if M.varies:
+        inside[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi[:, r])
     both = np.hstack([force[:, r].reshape(len(Phi), -1), sensors.T])
     right, seen = np.split(modes.transformed(both), [count * p], axis=1)
     beyond = modes.beyond(right.reshape(len(Phi), count, p), lam[r]).reshape(len(Phi), -1)

@@ -84,13 +84,15 @@ def match(pairing: Pairing, data: ModalData, frequency: Floats, phi: Floats) -> 
         return Pairs(index, values[np.arange(m), index])
     if q < m:
         raise ValueError(f"{m} measured modes cannot be paired with {q} model modes")
-    with np.errstate(divide="ignore"):
-        distance = np.abs(np.log(np.maximum(frequency, TINY) / data.mean_frequency[:, None]))
-    cost = np.where(np.isnan(values), distance, 1 - values)
-    if pairing.window is not None:
-        cost = cost + OUTSIDE * (distance > np.log(pairing.window))
-    index = np.argmin(cost, axis=1)
-    if np.unique(index).size < m:
+    cost = 1 - values
+    if pairing.window is not None or not data.measured_shapes.complete:
+        with np.errstate(divide="ignore"):
+            distance = np.abs(np.log(np.maximum(frequency, TINY) / data.mean_frequency[:, None]))
+        cost = np.where(np.isnan(values), distance, cost)
+        if pairing.window is not None:
+            cost = cost + OUTSIDE * (distance > np.log(pairing.window))
+    index = cost.argmin(axis=1)
+    if len(set(index.tolist())) < m:
         from scipy.optimize import linear_sum_assignment
 
         index = np.asarray(linear_sum_assignment(cost)[1])
@@ -109,5 +111,4 @@ def mean_mac(data: ModalData, phi: Floats) -> Floats:
     cross = (known.shape @ phi) ** 2
     norm = known.squares * (known.measured @ phi**2)
     values = np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)
-    total, count = values.sum(axis=0), known.sets
-    return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+    return np.asarray(values.sum(axis=0) / known.sets)

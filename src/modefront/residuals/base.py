@@ -10,8 +10,9 @@ On the scale ``"std"`` the unit is the standard deviation of each measured value
 equation (1) of Christodoulou et al. (2008, doi:10.1016/j.cma.2008.04.010). Everything but the
 unit is the same on both.
 
-A kind (`ResidualKind`) says which measured modes it can be formed of and makes the members of
-groups (`Member`). Each kind is one file of this folder, named in `modefront.residuals.kinds`.
+A kind (`ResidualKind`) says which measured modes it can be formed of, makes the members of groups
+(`Member`) and evaluates the residuals of several members at once (`Stack`). Each kind is one file
+of this folder, named in `modefront.residuals.kinds`.
 """
 
 from __future__ import annotations
@@ -78,12 +79,6 @@ class Member(Protocol):
     def remark(self) -> str:
         """Reason why any model fits the property; empty where models can miss it."""
 
-    def r(self, modes: Modes, pairs: Pairs) -> Floats:
-        """Return the residuals at the modes of a model, shape (rows,)."""
-
-    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
-        """Return the derivatives of the residuals, shape (rows, p)."""
-
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
 
@@ -101,6 +96,16 @@ class Member(Protocol):
 
         It is 0 for a property measured in one data set only.
         """
+
+
+class Stack(Protocol):
+    """The residuals of members of one kind, those of one member after those of the other."""
+
+    def r(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the residuals at the modes of a model, shape (rows,)."""
+
+    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the derivatives of the residuals, shape (rows, p)."""
 
 
 class ResidualKind(Protocol):
@@ -127,6 +132,9 @@ class ResidualKind(Protocol):
     def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
         """Return the residuals of measured modes, given by their positions in the data."""
 
+    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> Stack:
+        """Return the same members as one; there is one of them at least."""
+
 
 def value_numbers(data: ModalData, k: int, r: int) -> Ints:
     """Return the numbers of the values of mode r in data set k, shape (1 + sensors,).
@@ -140,3 +148,8 @@ def value_numbers(data: ModalData, k: int, r: int) -> Ints:
 def known_std(std: Floats) -> Floats:
     """Return standard deviations with 0 where none is known."""
     return np.where(std > 0, std, 0.0)
+
+
+def joined(parts: Sequence[Floats]) -> Floats:
+    """Return residuals, or their derivatives, one part after the other."""
+    return parts[0] if len(parts) == 1 else np.concatenate(parts)

@@ -72,14 +72,6 @@ class FrequencyResiduals:
         """Factors of the errors of frequencies, shape (rows,)."""
         return 1 / (self.unit * np.sqrt(self.sets.size))
 
-    def r(self, modes: Modes, pairs: Pairs) -> Floats:
-        """Return the residuals; see `modefront.residuals.base.Member`."""
-        return (modes.frequency[pairs.index[self.mode]] - self.measured) * self.weight
-
-    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
-        """Return the derivatives of the residuals, shape (rows, p)."""
-        return self.weight[:, None] * modes.dfrequency[pairs.index[self.mode]]
-
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
         size = self.weight * self.measured
@@ -108,6 +100,30 @@ class FrequencyResiduals:
         return float((self.weight**2).sum() * self.measured.var(ddof=1))
 
 
+@dataclass(frozen=True, eq=False)
+class FrequencyStack:
+    """Residuals of frequencies; see `modefront.residuals.base.Stack`.
+
+    Attributes
+    ----------
+    mode : (rows,) position of the measured mode in the data
+    measured : (rows,) measured frequencies in Hz
+    weight : (rows,) factors of their errors
+    """
+
+    mode: Ints
+    measured: Floats
+    weight: Floats
+
+    def r(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the residuals, shape (rows,)."""
+        return (modes.frequency[pairs.index[self.mode]] - self.measured) * self.weight
+
+    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the derivatives of the residuals, shape (rows, p)."""
+        return self.weight[:, None] * modes.dfrequency[pairs.index[self.mode]]
+
+
 class FrequencyKind:
     """Natural frequencies; see `modefront.residuals.base.ResidualKind`."""
 
@@ -127,3 +143,12 @@ class FrequencyKind:
     def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
         """Return the residuals of the frequency of each mode."""
         return [FrequencyResiduals(data, r, scale) for r in modes]
+
+    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> FrequencyStack:
+        """Return the residuals of the frequencies of some modes."""
+        members = [FrequencyResiduals(data, r, scale) for r in modes]
+        return FrequencyStack(
+            np.repeat(modes, [member.sets.size for member in members]),
+            np.concatenate([member.measured for member in members]),
+            np.concatenate([member.weight for member in members]),
+        )

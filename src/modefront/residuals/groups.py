@@ -8,7 +8,7 @@ from typing import Literal, get_args
 
 from modefront.data.modal import ModalData
 from modefront.errors import suggestion
-from modefront.residuals.base import Member, ResidualKind, Scale
+from modefront.residuals.base import Member, ResidualKind, Scale, Stack
 from modefront.residuals.kinds import KINDS, kind_named
 
 ModeNumbers = Sequence[int] | Literal["all"]
@@ -94,6 +94,14 @@ class Group:
             member
             for kind, positions in self.positions(data)
             for member in kind.members(data, positions, self.scale)
+        ]
+
+    def stacks(self, data: ModalData) -> list[Stack]:
+        """Return the members of the group, those of each kind together, in the same order."""
+        return [
+            kind.stack(data, positions, self.scale)
+            for kind, positions in self.positions(data)
+            if positions
         ]
 
 

@@ -22,7 +22,7 @@ from modefront.models.parameters import Parameter, in_order, parameters_of
 from modefront.models.reduced.options import Reduction
 from modefront.modes.result import Modes
 from modefront.pairing.match import Pairing, Pairs, match, mean_mac, modes_needed
-from modefront.residuals.base import Member, ModeErrors
+from modefront.residuals.base import Member, ModeErrors, Stack, joined
 from modefront.residuals.groups import Group
 from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
 from modefront.work.transfer import Shared, is_shared, shared
@@ -62,6 +62,11 @@ class UpdatingProblem:
         members = tuple(tuple(group.members(self.data)) for group in self.groups)
         object.__setattr__(self, "members", members)
 
+    @cached_property
+    def _stacks(self) -> tuple[tuple[Stack, ...], ...]:
+        """The members of each group, those of a kind together."""
+        return tuple(tuple(group.stacks(self.data)) for group in self.groups)
+
     @property
     def version(self) -> Hashable:
         """That of the model, of which other processes have another one when it changes."""
@@ -93,16 +98,16 @@ class UpdatingProblem:
             modes, pairs = self.modes(theta, derivatives=derivatives)
         except ModelError:
             return infeasible(theta, len(self.groups))
-        vectors = self._vectors(modes, pairs)
-        J = np.array([r @ r for r in vectors])
         residuals: tuple[Residual, ...] = ()
         slopes = None
         if derivatives:
-            residuals = self._residuals(modes, pairs, vectors)
+            residuals = self.residuals_at(modes, pairs)
             slopes = ObjectiveDerivatives(
                 np.array([2 * residual.r @ residual.dr for residual in residuals]),
                 np.array([2 * residual.dr.T @ residual.dr for residual in residuals]),
             )
+        vectors = [x.r for x in residuals] if residuals else self._vectors(modes, pairs)
+        J = np.array([r @ r for r in vectors])
         quantities = {
             "frequency": modes.frequency[pairs.index],
             "mac": pairs.mac,
@@ -130,18 +135,16 @@ class UpdatingProblem:
 
         Raises ModelError where the model has no modes at ``theta``.
         """
-        modes, pairs = self.modes(theta)
-        return self._residuals(modes, pairs, self._vectors(modes, pairs))
+        return self.residuals_at(*self.modes(theta))
 
-    def _residuals(
-        self, modes: Modes, pairs: Pairs, vectors: Sequence[Floats]
-    ) -> tuple[Residual, ...]:
-        slopes = [_stacked([member.dr(modes, pairs) for member in row]) for row in self.members]
-        return tuple(map(Residual, vectors, slopes))
+    def residuals_at(self, modes: Modes, pairs: Pairs) -> tuple[Residual, ...]:
+        """Return the residual vector of each group at paired modes with derivatives."""
+        slopes = [joined([stack.dr(modes, pairs) for stack in row]) for row in self._stacks]
+        return tuple(map(Residual, self._vectors(modes, pairs), slopes))
 
     def _vectors(self, modes: Modes, pairs: Pairs) -> list[Floats]:
         """Return the residual vector of each group without derivatives."""
-        return [_stacked([member.r(modes, pairs) for member in row]) for row in self.members]
+        return [joined([stack.r(modes, pairs) for stack in row]) for row in self._stacks]
 
     def margins(self, eigenvalue: Floats, shape: Floats) -> Floats:
         """Return how far the root of each objective may be off, (groups,).
@@ -206,7 +209,3 @@ def updating_problem(
         np.array([each.nominal for each in chosen]),
         pairing or Pairing(),
     )
-
-
-def _stacked(parts: Sequence[Floats]) -> Floats:
-    return parts[0] if len(parts) == 1 else np.concatenate(parts)

@@ -28,6 +28,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
+from itertools import groupby
 
 import numpy as np
 
@@ -41,6 +42,7 @@ from modefront.residuals.base import (
     ModeErrors,
     Scale,
     Sensitivity,
+    joined,
     known_std,
     value_numbers,
 )
@@ -111,30 +113,6 @@ class ShapeResiduals:
             return ""
         return "a shape that is measured at a single sensor fits any model"
 
-    def r(self, modes: Modes, pairs: Pairs) -> Floats:
-        """Return the residuals; see `modefront.residuals.base.Member`."""
-        q, parts = pairs.index[self.mode], []
-        for part in self.shapes:
-            chi = part.weight * modes.phi[part.sensors, q]
-            b = chi @ chi
-            parts.append((part.psi @ chi / b if b > 0 else 0.0) * chi - part.psi)
-        return np.concatenate(parts)
-
-    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
-        """Return the derivatives of the residuals, shape (rows, p); 0 for a shape that is 0."""
-        q, parts = pairs.index[self.mode], []
-        for part in self.shapes:
-            chi = part.weight * modes.phi[part.sensors, q]
-            dchi = part.weight[:, None] * modes.dphi[part.sensors, q]
-            b = chi @ chi
-            if b == 0:
-                parts.append(np.zeros(dchi.shape))
-                continue
-            beta = part.psi @ chi / b
-            dbeta = (part.psi @ dchi - 2 * beta * (chi @ dchi)) / b
-            parts.append(chi[:, None] * dbeta + beta * dchi)
-        return np.concatenate(parts)
-
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
         return float(
@@ -195,6 +173,68 @@ class ShapeResiduals:
         return out * len(sets) / (len(sets) - 1)
 
 
+@dataclass(frozen=True, eq=False)
+class ShapeStack:
+    """Residuals of shapes; see `modefront.residuals.base.Stack`.
+
+    Attributes
+    ----------
+    blocks : shapes one after the other, those of as many components together
+    """
+
+    blocks: tuple[ShapeBlock, ...]
+
+    def r(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the residuals, shape (rows,)."""
+        return joined([block.r(modes, pairs) for block in self.blocks])
+
+    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the derivatives of the residuals, shape (rows, p); 0 for a shape that is 0."""
+        return joined([block.dr(modes, pairs) for block in self.blocks])
+
+
+@dataclass(frozen=True, eq=False)
+class ShapeBlock:
+    """Shapes with as many measured components.
+
+    Attributes
+    ----------
+    mode : (shapes, 1) position of the measured mode in the data
+    sensors, weight, psi : (shapes, components) those of each `MeasuredShape`
+    """
+
+    mode: Ints
+    sensors: Ints
+    weight: Floats
+    psi: Floats
+
+    def r(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the residuals, shape (rows,)."""
+        chi, _, beta = self._scaled(modes, pairs)
+        return (beta * chi - self.psi).ravel()
+
+    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
+        """Return the derivatives of the residuals, shape (rows, p); 0 for a shape that is 0."""
+        chi, b, beta = self._scaled(modes, pairs)
+        dchi = self.weight[:, :, None] * modes.dphi[self.sensors, pairs.index[self.mode]]
+        slope = _times(self.psi, dchi) - 2 * beta * _times(chi, dchi)
+        dbeta = np.divide(slope, b, out=np.zeros(slope.shape), where=b > 0)
+        dr = chi[:, :, None] * dbeta[:, None] + beta[:, :, None] * dchi
+        return dr.reshape(-1, dr.shape[2])
+
+    def _scaled(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Floats]:
+        """Return chi (shapes, components), its squared length b and beta, (shapes, 1)."""
+        chi = self.weight * modes.phi[self.sensors, pairs.index[self.mode]]
+        b = np.vecdot(chi, chi)[:, None]
+        c = np.vecdot(self.psi, chi)[:, None]
+        return chi, b, np.divide(c, b, out=np.zeros(b.shape), where=b > 0)
+
+
+def _times(chi: Floats, dchi: Floats) -> Floats:
+    """Return each row of chi (shapes, components) times dchi (shapes, components, p)."""
+    return np.asarray((chi[:, None] @ dchi)[:, 0])
+
+
 class ShapeKind:
     """Mode shapes; see `modefront.residuals.base.ResidualKind`."""
 
@@ -219,6 +259,19 @@ class ShapeKind:
     def members(self, data: ModalData, modes: Sequence[int], scale: Scale) -> list[Member]:
         """Return the residuals of the shape of each mode."""
         return [ShapeResiduals(data, r, scale) for r in modes]
+
+    def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> ShapeStack:
+        """Return the residuals of the shapes of some modes."""
+        parts = [(r, part) for r in modes for part in ShapeResiduals(data, r, scale).shapes]
+        blocks = []
+        for _, alike in groupby(parts, lambda each: each[1].sensors.size):
+            numbers, shapes = zip(*alike, strict=True)
+            sensors, weight, psi = (
+                np.array([getattr(shape, name) for shape in shapes])
+                for name in ("sensors", "weight", "psi")
+            )
+            blocks.append(ShapeBlock(np.array(numbers)[:, None], sensors, weight, psi))
+        return ShapeStack(tuple(blocks))
 
 
 def without_negligible(std: Floats) -> Floats:

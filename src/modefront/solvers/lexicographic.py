@@ -276,12 +276,13 @@ class Held:
         if not evaluation.feasible:
             return infeasible(evaluation.theta, k + evaluation.J.size - 1)
         residual, nothing = evaluation.residuals[i], Residual(np.zeros(0), np.zeros((0, p)))
+        others = np.arange(evaluation.J.size) != i
         return Evaluation(
             evaluation.theta,
-            np.concatenate([self.Q.T @ residual.r, np.delete(evaluation.J, i)]),
+            np.concatenate([self.Q.T @ residual.r, evaluation.J[others]]),
             ObjectiveDerivatives(
-                np.vstack([self.Q.T @ residual.dr, np.delete(evaluation.dJ, i, axis=0)]),
-                np.concatenate([np.zeros((k, p, p)), np.delete(evaluation.H, i, axis=0)]),
+                np.concatenate([self.Q.T @ residual.dr, evaluation.dJ[others]]),
+                np.concatenate([np.zeros((k, p, p)), evaluation.H[others]]),
             ),
             residuals=[*[nothing] * k, *(x for j, x in enumerate(evaluation.residuals) if j != i)],
             branch=evaluation.branch,

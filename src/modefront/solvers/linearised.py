@@ -15,7 +15,7 @@ and the fall of the surplus of y.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -52,6 +52,11 @@ class Linearised:
     dy: Floats
 
     @property
+    def free(self) -> bool:
+        """Whether there are neither constraints nor functions of which the maximum counts."""
+        return not (self.c.size or self.y.size)
+
+    @property
     def f(self) -> float:
         """Smooth part of what is minimised."""
         return self.programme.value(self.evaluation.J)
@@ -65,16 +70,19 @@ class Linearised:
         ``multipliers`` of the step before; where there is none, those of the slopes at the point
         and, of functions of which the maximum counts, those of another step.
         """
-        dJ, span = self.evaluation.dJ * self.span, np.outer(self.span, self.span)
+        dJ, span = self.evaluation.dJ * self.span, self.span[:, None] * self.span
         lo, hi = np.maximum(self.reach[0], -radius), np.minimum(self.reach[1], radius)
         curved = dJ.T @ self.programme.hessian(self.evaluation.J) @ dJ
-        qp = QuadraticProgramme(curved, self.g, self.dc, -self.c, lo, hi, self.dy, self.y)
+
+        def with_curvature(B: Floats) -> QuadraticProgramme:
+            return QuadraticProgramme(B, self.g, self.dc, -self.c, lo, hi, self.dy, self.y)
+
         passes = 1
         if multipliers is None:
-            multipliers, passes = self._first(qp), 2 if self.y.size else 1
+            multipliers, passes = self._first(with_curvature(curved)), 2 if self.y.size else 1
         for _ in range(passes):
             w = multipliers.weights(self.programme, self.evaluation.J)
-            qp = replace(qp, B=weighted(w, H) * span + curved)
+            qp = with_curvature(weighted(w, H) * span + curved)
             step = solve_qp(qp)
             multipliers = self._bounded(qp, step)
         return qp, step, multipliers
@@ -90,6 +98,8 @@ class Linearised:
 
         Where the constraints hardly depend on the variables that are free, they say nothing.
         """
+        if self.free:
+            return Multipliers(np.zeros(0), np.zeros(0))
         A = self.programme.constraints.matrix
         most = STEEP * length(self.df) / float(np.abs(A).max(initial=np.finfo(float).tiny))
         free = (qp.lo - step.s < 0) & (qp.hi - step.s > 0)
@@ -99,6 +109,8 @@ class Linearised:
 
     def slope(self, multipliers: Multipliers) -> Floats:
         """Return the slope of the Lagrangian, shape (p,)."""
+        if self.free:
+            return self.g
         return np.asarray(self.g + multipliers.mu @ self.dc + multipliers.kappa @ self.dy)
 
     def tied(self, active: list[int]) -> Floats:
@@ -119,9 +131,11 @@ class Linearised:
 
         That is as great as makes the reduction positive; it falls slowly.
         """
+        gain = -self.slope(multipliers) @ s - 0.5 * s @ B @ s
+        if self.free:
+            return float(gain), penalty
         c, y = self.c + self.dc @ s, self.y + self.dy @ s
         kappa = multipliers.kappa
-        gain = -self.slope(multipliers) @ s - 0.5 * s @ B @ s
         squares = 0.5 * (self.c @ self.c - c @ c)
         drop = squares + (surplus(self.y, kappa, penalty) - surplus(y, kappa, penalty)) / penalty
         if drop > 0:
@@ -131,10 +145,13 @@ class Linearised:
 
     def end(self, problem: Problem, s: Floats) -> Floats:
         """Return the parameters at the end of a step."""
-        return np.clip(self.evaluation.theta + s * self.span, problem.lower, problem.upper)
+        theta = self.evaluation.theta + s * self.span
+        return np.minimum(np.maximum(theta, problem.lower), problem.upper)
 
     def noise(self, multipliers: Multipliers) -> float:
         """Return the change of the augmented Lagrangian that may be rounding."""
+        if self.free:
+            return NOISE * abs(self.f)
         A, C = self.programme.constraints.matrix, self.programme.maximised.matrix
         rows = np.abs(multipliers.mu) @ np.abs(A @ self.evaluation.J)
         rows += multipliers.kappa @ np.abs(C @ self.evaluation.J)

@@ -54,8 +54,12 @@ class Multipliers:
 
     def weights(self, programme: Scalarisation, J: Floats) -> Floats:
         """Return the slope (n,) of the Lagrangian with respect to the objectives."""
-        w = programme.gradient(J) + programme.constraints.matrix.T @ self.mu
-        return np.asarray(w + programme.maximised.matrix.T @ self.kappa)
+        w = programme.gradient(J)
+        if self.mu.size:
+            w = w + programme.constraints.matrix.T @ self.mu
+        if self.kappa.size:
+            w = w + programme.maximised.matrix.T @ self.kappa
+        return w
 
 
 @dataclass(frozen=True)
@@ -72,9 +76,12 @@ class Merit:
             return np.inf
         c, y = self.programme.constraints.at(point.J), self.programme.maximised.at(point.J)
         mu, kappa = self.multipliers.mu, self.multipliers.kappa
-        squares = 0.5 * self.penalty * (c @ c)
-        smooth = self.programme.value(point.J) + mu @ c + squares
-        return float(smooth + kappa @ y + surplus(y, kappa, self.penalty))
+        value = self.programme.value(point.J)
+        if c.size:
+            value = float(value + mu @ c + 0.5 * self.penalty * (c @ c))
+        if y.size:
+            value = float(value + kappa @ y + surplus(y, kappa, self.penalty))
+        return value
 
 
 def surplus(y: Floats, kappa: Floats, penalty: float) -> float:

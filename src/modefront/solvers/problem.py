@@ -15,6 +15,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
+from math import isfinite
 from typing import Protocol
 
 import numpy as np
@@ -63,7 +64,7 @@ class Evaluation:
     @property
     def feasible(self) -> bool:
         """Whether the objectives are defined here."""
-        return bool(np.isfinite(self.J).all())
+        return all(map(isfinite, self.J.tolist()))
 
     @property
     def dJ(self) -> Floats:

@@ -45,6 +45,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Bools, Floats
+from modefront.linalg.small import eigh, svd
 
 FLAT = 1e-10
 """Curvature, singular value or slope, over the greatest one, below which it counts as none: well
@@ -66,6 +67,9 @@ of a step until its projection falls."""
 
 RETURNS = 4
 """Times that variables move back to the equalities, after others were held, and meet the box."""
+
+_LEAST = float(np.finfo(float).tiny ** 0.5)
+"""Curvature at least: a slope over it does not overflow."""
 
 PASSES = 4
 """Changes of the working set, over the number of variables and functions, after which the method
@@ -135,20 +139,19 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
     active = [int(np.argmax(qp.c + qp.C @ s))] if len(qp.C) else []
     for _ in range(PASSES * (s.size + len(qp.C))):
         d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free, width)
-        share = np.full(s.size, np.inf)
-        np.divide(hi - s, d, out=share, where=d > 0)
-        np.divide(lo - s, d, out=share, where=d < 0)
-        stop = int(np.argmin(share))
-        joining, met = _met(qp, s, d, active)
-        if min(share[stop], met) < 1:
-            s = np.clip(s + min(share[stop], met) * d, lo, hi)
-            if met < share[stop]:
+        bound = np.where(d > 0, hi, lo)
+        share = np.divide(bound - s, d, out=np.full(s.size, np.inf), where=d != 0)
+        stop = int(share.argmin())
+        within, (joining, met) = float(share[stop]), _met(qp, s, d, active)
+        if min(within, met) < 1:
+            s = _clipped(s + min(within, met) * d, lo, hi)
+            if met < within:
                 active = [*active, joining]
             else:
-                s[stop] = (hi if d[stop] > 0 else lo)[stop]
+                s[stop] = bound[stop]
                 free[stop] = False
             continue
-        s = np.clip(s + d, lo, hi)
+        s = _clipped(s + d, lo, hi)
         if free.all() and len(active) < 2:
             break
         mu, kappa = qp.multipliers(s, active, free)
@@ -231,18 +234,24 @@ def _returned(qp: QuadraticProgramme, s: Floats, new: Floats, free: Bools) -> Fl
 
 def _descent(B: Floats, gradient: Floats, E: Floats, free: Bools, width: float) -> Floats:
     """Return the step of the free variables to their minimum that leaves E s as it is."""
-    d = np.zeros(free.size)
-    inner = B if free.all() else B[np.ix_(free, free)]
-    Z = _null_space(E[:, free]) if len(E) else None
-    if free.any() if Z is None else Z.shape[1]:
-        curvature, V = np.linalg.eigh(inner if Z is None else Z.T @ inner @ Z)
+    d, inside = np.zeros(free.size), free.nonzero()[0]
+    if inside.size < free.size:
+        B, gradient, E = B.take(inside, 0).take(inside, 1), gradient[inside], E.take(inside, 1)
+    Z = _null_space(E) if len(E) else None
+    if inside.size if Z is None else Z.shape[1]:
+        curvature, V = eigh(B if Z is None else Z.T @ B @ Z)
         curvature = np.abs(curvature)
         T = V if Z is None else Z @ V
-        slope = T.T @ gradient[free]
+        slope = T.T @ gradient
         steepest = float(np.abs(slope).max()) / width
-        floor = max(FLAT * curvature.max(), FAR * steepest, np.finfo(float).tiny ** 0.5)
-        d[free] = -T @ (slope / np.maximum(curvature, floor))
+        floor = max(FLAT * curvature.max(), FAR * steepest, _LEAST)
+        d[inside] = -T @ (slope / np.maximum(curvature, floor))
     return d
+
+
+def _clipped(s: Floats, lo: Floats, hi: Floats) -> Floats:
+    """Return the point of the box next to s."""
+    return np.minimum(np.maximum(s, lo), hi)
 
 
 def _met(qp: QuadraticProgramme, s: Floats, d: Floats, active: list[int]) -> tuple[int, float]:
@@ -283,7 +292,7 @@ def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> Floats:
     s = np.zeros(lo.size)
     if len(A) == 0:
         return s
-    U, sigma, Vt = np.linalg.svd(A, full_matrices=False)
+    U, sigma, Vt = svd(A, full=False)
     rank = _rank(sigma)
     s = Vt[:rank].T @ ((U.T @ b)[:rank] / sigma[:rank])
     if (s < NORMAL * lo).any() or (s > NORMAL * hi).any():
@@ -300,7 +309,7 @@ def _null_space(A: Floats) -> Floats:
     """Return an orthonormal basis of the null space, shape (p, p - rank)."""
     if 0 in A.shape:
         return np.eye(A.shape[1])
-    _, sigma, Vt = np.linalg.svd(A)
+    _, sigma, Vt = svd(A)
     return np.asarray(Vt[_rank(sigma) :].T)
 
 

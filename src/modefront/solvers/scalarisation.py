@@ -47,7 +47,7 @@ class Rows:
 
     def at(self, J: Floats) -> Floats:
         """Return the values, shape (rows,)."""
-        return np.asarray(self.matrix @ J - self.offset)
+        return self.matrix @ J - self.offset if self.offset.size else self.offset
 
 
 def no_rows(objectives: int) -> Rows:
@@ -90,7 +90,7 @@ class Linear:
 
     def gradient(self, J: Floats) -> Floats:
         """Return w, whatever J is."""
-        return np.broadcast_to(self.w, J.shape)
+        return np.full(J.shape, self.w)
 
     def hessian(self, J: Floats) -> Floats:
         """Return zeros."""

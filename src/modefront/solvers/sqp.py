@@ -187,7 +187,7 @@ def begin(evaluation: Evaluation) -> Solution:
     return Solution(evaluation, np.zeros((n, p, p)), np.zeros(n), np.inf, status, 0)
 
 
-# 61 lines: the loop reads as the algorithm in the head of the module.
+# 63 lines: the loop reads as the algorithm in the head of the module.
 def solve(
     problem: Problem, programme: Scalarisation, start: Solution, options: Options | None = None
 ) -> Solution:
@@ -218,35 +218,37 @@ def solve(
             evaluation.H + S if trusted else evaluation.H, radius, multipliers
         )
         s, w = step.s, multipliers.weights(programme, evaluation.J)
-        violation = length(local.c)
-        progress.proposed(length(s), radius)
-        still = length(s) <= options.step or local.unchanging(s, options.reduction)
+        violation, far = length(local.c), length(s)
+        progress.proposed(far, radius)
+        still = far <= options.step or local.unchanging(s, options.reduction)
         if still and violation <= options.constraint and not escaped:
             escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
-            still = not s.any()
-        status = progress.outcome(count, violation, still, length(s), radius)
+            still, far = not s.any(), length(s)
+        status = progress.outcome(count, violation, still, far, radius)
         if status or count == options.iterations:
             return Solution(evaluation, S, w, violation, status or Status.EXHAUSTED, count)
 
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
         new = problem.evaluate(local.end(problem, s))
         merit = Merit(programme, multipliers, penalty)
-        correction = Correction(merit, local.tied(step.active))
+        before = merit.at(evaluation)
         for _ in range(
             CORRECTIONS if new.feasible and evaluation.residuals and count >= SLOW else 0
         ):
-            if failed >= FAILURES or merit.at(evaluation) - merit.at(new) > BENT * predicted:
+            if failed >= FAILURES or before - merit.at(new) > BENT * predicted:
                 break
+            correction = Correction(merit, local.tied(step.active))
             corrected = correction.evaluated(problem, evaluation, s, new)
             failed = 0 if corrected else failed + 1
             if corrected is None:
                 break
             new = corrected
         if not new.feasible or length(programme.constraints.at(new.J)) > progress.farthest:
-            radius = length(s) / 4
+            radius = far / 4
             continue
-        actual = merit.at(evaluation) - merit.at(new)
-        rest = 0.5 * w @ (S @ (s * local.span) @ (s * local.span)) * (1 if trusted else -1)
+        actual = before - merit.at(new)
+        change = s * local.span
+        rest = 0.5 * w @ (S @ change @ change) * (1 if trusted else -1)
         if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):
             trusted = not trusted
         noise = local.noise(multipliers)
@@ -255,7 +257,7 @@ def solve(
             S = learned_from(S, evaluation, new, local.span)
         if ratio > TAKEN:
             evaluation = new
-        radius = _next_radius(radius, length(s), ratio)
+        radius = _next_radius(radius, far, ratio)
 
 
 @dataclass

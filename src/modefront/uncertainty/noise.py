@@ -94,13 +94,14 @@ def _from_std(problem: UpdatingProblem, modes: Modes, pairs: Pairs) -> Noise:
 def _from_sets(problem: UpdatingProblem, modes: Modes, pairs: Pairs) -> Noise:
     n, p = len(problem.groups), len(problem.model.parameters)
     J, dJ = np.zeros((len(problem.data.sets), n)), np.zeros((len(problem.data.sets), n, p))
-    for i, row in enumerate(problem.members):
-        for member in row:
-            sets = np.unique(member.sets)
-            K = sets.size
+    for i, residual in enumerate(problem.residuals_at(modes, pairs)):
+        end = 0
+        for member in problem.members[i]:
+            sets, rows = np.unique(member.sets), slice(end, end + member.sets.size)
+            K, end = sets.size, rows.stop
             if K < 2:
                 continue
-            r, dr = member.r(modes, pairs), member.dr(modes, pairs)
+            r, dr = residual.r[rows], residual.dr[rows]
             terms = np.array([K * _square(r[member.sets == k]) for k in sets])
             slopes = np.array([2 * K * r[member.sets == k] @ dr[member.sets == k] for k in sets])
             J[sets, i] += (terms - terms.mean()) / np.sqrt(K * (K - 1))

@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from contextlib import contextmanager
 from contextvars import ContextVar
-from dataclasses import dataclass, fields
+from dataclasses import dataclass
 
 
 @dataclass
@@ -43,8 +43,9 @@ class Costs:
 
     def add(self, other: Costs) -> None:
         """Add other costs to these."""
-        for field in fields(self):
-            setattr(self, field.name, getattr(self, field.name) + getattr(other, field.name))
+        for name, spent in vars(other).items():
+            if spent:
+                setattr(self, name, getattr(self, name) + spent)
 
 
 _OPEN: ContextVar[tuple[Costs, ...]] = ContextVar("open", default=())

@@ -1,0 +1,37 @@
+"""Decompositions of small matrices, straight from LAPACK.
+
+Of matrices of some ten rows, numpy's functions of the same name take more time to look at their
+arguments than to decompose them. Here these are real, and results have the same digits.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+import scipy.linalg
+
+from modefront._typing import Floats
+
+_lapack = scipy.linalg.lapack
+
+
+def eigh(A: Floats) -> tuple[Floats, Floats]:
+    """Return the eigenvalues, ascending, and eigenvectors of a symmetric matrix (n, n).
+
+    Raises LinAlgError where they cannot be computed, as of a matrix that is not finite.
+    """
+    lam, V, failed = _lapack.dsyevd(A, lower=1)
+    if failed:
+        raise np.linalg.LinAlgError("eigenvalues did not converge")
+    return lam, np.ascontiguousarray(V)
+
+
+def svd(A: Floats, full: bool = True) -> tuple[Floats, Floats, Floats]:
+    """Return U (m, m), the singular values, descending, and V^T (n, n) of a matrix (m, n).
+
+    If not ``full``, only the columns and rows that belong to the min(m, n) singular values.
+    Raises LinAlgError where they cannot be computed, as of a matrix that is not finite.
+    """
+    U, sigma, Vt, failed = _lapack.dgesdd(A, full_matrices=full)
+    if failed:
+        raise np.linalg.LinAlgError("singular values did not converge")
+    return np.ascontiguousarray(U), sigma, np.ascontiguousarray(Vt)
