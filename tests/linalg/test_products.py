@@ -72,3 +72,14 @@ def test_sharing_among_threads_changes_no_digit(
             for expected, shared in zip(whole, products_of(), strict=True):
                 assert np.array_equal(expected, shared)
     close(whole[2], A @ X)
+
+
+@pytest.mark.parametrize(("given", "expected"), [("3", 3), ("0", None), ("all", None), ("", None)])
+def test_the_number_of_threads_is_that_of_the_environment(
+    given: str, expected: int | None, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.delenv(products.THREADS, raising=False)
+    _, usual = products.shared_pool.__wrapped__()
+    monkeypatch.setenv(products.THREADS, given)
+    _, threads = products.shared_pool.__wrapped__()
+    assert threads == (expected or usual)

@@ -203,15 +203,18 @@ def test_a_very_steep_objective() -> None:
 
 
 @pytest.mark.parametrize("share", [1.0, 0.2, 0.02])
+@pytest.mark.parametrize("m", [0, 4])
 @pytest.mark.parametrize("k", [0, 4])
 @pytest.mark.parametrize("p", [MANY, 120])
-def test_many_variables_end_at_the_box_or_within(p: int, k: int, share: float) -> None:
+def test_many_variables_end_at_the_box_or_within(p: int, k: int, m: int, share: float) -> None:
     rng = np.random.default_rng(p + k)
     half = rng.uniform(0.5, 2, p)
     A = rng.normal(size=(k, p))
     b = A @ (0.2 * half * rng.uniform(-1, 1, p))
     g = 3 * rng.normal(size=p) / share
-    optimal(programme(convex(rng, p, 2 * p) / p + 0.1 * np.eye(p), g, half, A, b))
+    B = convex(rng, p, 2 * p) / p + 0.1 * np.eye(p)
+    C, c = 5 * rng.normal(size=(m, p)) / share, rng.normal(size=m)
+    optimal(programme(B, g, half, A, b, C, c))
 
 
 @pytest.mark.parametrize("share", [1.0, 0.05])

@@ -13,6 +13,7 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.linalg.products import shared_pool
 from modefront.work.costs import Costs, spend
 from modefront.work.task import Executor, Task
 from modefront.work.transfer import shared
@@ -109,6 +110,11 @@ def deadly(marker: str, times: int, number: int) -> int:
             path.write_text("x" * (before + 1))
             os.kill(os.getpid(), signal.SIGKILL)
     return number
+
+
+def threads(_: int) -> int:
+    time.sleep(0.05)
+    return shared_pool()[1]
 
 
 def process_of(_: int) -> int:

@@ -29,6 +29,7 @@ from jobs import (
     process_of,
     slow,
     squares,
+    threads,
     totals,
 )
 from pools import Interrupting, Threads
@@ -296,6 +297,10 @@ def test_processes_share_the_work_and_are_not_this_one(two: Workers) -> None:
     assert 1 <= len(set(result)) <= 2
 
 
+def test_processes_share_nothing_among_threads(two: Workers) -> None:
+    assert set(Run(backend=two).run([Task(("threads", k), threads, (k,)) for k in range(8)])) == {1}
+
+
 @pytest.mark.skipif(os.name == "nt", reason="there is no such signal on Windows")
 def test_a_killed_process_is_replaced_and_its_tasks_are_done_again(
     two: Workers, tmp_path: Path
@@ -309,6 +314,18 @@ def test_a_killed_process_is_replaced_and_its_tasks_are_done_again(
     with pytest.raises(UnfinishedError, match="task 'deadly-2-turn-2' could not be done"):
         Run(store, backend=two).run(tasks)
     assert [store.has(task) for task in tasks] == [k != 2 for k in range(6)]
+
+
+def test_processes_import_only_what_most_tasks_need() -> None:
+    spared = "click", "rich", "xarray", "pandas", "h5py", "scipy.optimize", "scipy.stats"
+    code = (
+        "import sys, importlib, modefront.__main__\n"
+        "from modefront.study.processes import WARM\n"
+        "for name in WARM: importlib.import_module(name)\n"
+        f"sys.exit(' '.join({{*{spared}, 'modefront.fem.structure'}} & set(sys.modules)) or 0)"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, check=False)
+    assert done.returncode == 0, done.stderr
 
 
 def test_one_worker_is_the_process_itself_and_other_numbers_are_refused() -> None:

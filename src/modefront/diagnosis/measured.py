@@ -14,7 +14,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.data.modal import ModalData
@@ -102,6 +101,8 @@ def assigned(cost: Floats) -> tuple[Ints, float]:
     """Return the model mode of each measured mode, each taken once at most, and the whole cost."""
     index = np.argmin(cost, axis=1)
     if np.unique(index).size < index.size <= cost.shape[1]:
+        from scipy.optimize import linear_sum_assignment
+
         index = np.asarray(linear_sum_assignment(cost)[1])
     return index, float(cost[np.arange(index.size), index].sum())
 

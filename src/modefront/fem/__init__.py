@@ -14,29 +14,71 @@
 >>> model = fem.assemble(beam)
 >>> model.stiffness.at(np.array([1.1])).shape
 (48, 48)
+
+The names are imported when they are first used: processes that solve models need no elements.
 """
 
-from modefront.fem import grids
-from modefront.fem.assembly import StructureMatrices, assemble
-from modefront.fem.dofs import DIRECTIONS, Dofs
-from modefront.fem.errors import FemError
-from modefront.fem.material import Material
-from modefront.fem.mesh import Mesh, read_mesh
-from modefront.fem.section import Section, circle, hollow_rectangle, rectangle, tube
-from modefront.fem.structure import (
-    ALL,
-    Beams,
-    Direction,
-    Link,
-    Mass,
-    Parameter,
-    Sensor,
-    Shells,
-    Solids,
-    Spring,
-    Structure,
-    Support,
-)
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from modefront.fem import grids as grids
+    from modefront.fem.assembly import StructureMatrices as StructureMatrices
+    from modefront.fem.assembly import assemble as assemble
+    from modefront.fem.dofs import DIRECTIONS as DIRECTIONS
+    from modefront.fem.dofs import Dofs as Dofs
+    from modefront.fem.errors import FemError as FemError
+    from modefront.fem.material import Material as Material
+    from modefront.fem.mesh import Mesh as Mesh
+    from modefront.fem.mesh import read_mesh as read_mesh
+    from modefront.fem.section import Section as Section
+    from modefront.fem.section import circle as circle
+    from modefront.fem.section import hollow_rectangle as hollow_rectangle
+    from modefront.fem.section import rectangle as rectangle
+    from modefront.fem.section import tube as tube
+    from modefront.fem.structure import ALL as ALL
+    from modefront.fem.structure import Beams as Beams
+    from modefront.fem.structure import Direction as Direction
+    from modefront.fem.structure import Link as Link
+    from modefront.fem.structure import Mass as Mass
+    from modefront.fem.structure import Parameter as Parameter
+    from modefront.fem.structure import Sensor as Sensor
+    from modefront.fem.structure import Shells as Shells
+    from modefront.fem.structure import Solids as Solids
+    from modefront.fem.structure import Spring as Spring
+    from modefront.fem.structure import Structure as Structure
+    from modefront.fem.structure import Support as Support
+
+_HOMES = {
+    "ALL": "structure",
+    "Beams": "structure",
+    "DIRECTIONS": "dofs",
+    "Direction": "structure",
+    "Dofs": "dofs",
+    "FemError": "errors",
+    "Link": "structure",
+    "Mass": "structure",
+    "Material": "material",
+    "Mesh": "mesh",
+    "Parameter": "structure",
+    "Section": "section",
+    "Sensor": "structure",
+    "Shells": "structure",
+    "Solids": "structure",
+    "Spring": "structure",
+    "Structure": "structure",
+    "StructureMatrices": "assembly",
+    "Support": "structure",
+    "assemble": "assembly",
+    "circle": "section",
+    "hollow_rectangle": "section",
+    "read_mesh": "mesh",
+    "rectangle": "section",
+    "tube": "section",
+}
+"""Modules of the names."""
 
 __all__ = [
     "ALL",
@@ -66,3 +108,15 @@ __all__ = [
     "rectangle",
     "tube",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "grids":
+        return import_module("modefront.fem.grids")
+    if name not in _HOMES:
+        raise AttributeError(f"module 'modefront.fem' has no attribute '{name}'")
+    return getattr(import_module(f"modefront.fem.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

@@ -13,15 +13,11 @@ numbers to expect are measured by ``benchmarks/elements.py``.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from modefront._typing import Floats, Ints
+from modefront.fem.element_limits import Limits, Thickness
 from modefront.fem.structure import Shells, Solids, Structure
-
-THICK = 0.02
-"""Relative error of eigenvalues by shear from which on it is warned of."""
 
 SKEW = 30.0
 """Degrees between the lines through opposite midpoints of a quadrilateral and a right angle."""
@@ -43,59 +39,6 @@ CORNERS = np.array(
     [[1, 3, 4], [2, 0, 5], [3, 1, 6], [0, 2, 7], [7, 5, 0], [4, 6, 1], [5, 7, 2], [6, 4, 3]]
 )
 """Neighbours of each corner of a brick, in the order of a right-handed system."""
-
-
-@dataclass(frozen=True)
-class Thickness:
-    """Thickness of a group of shells beside its span.
-
-    Attributes
-    ----------
-    group : name
-    ratio : thickness over the span
-    span : lesser of the two extents of the group
-    shear : error of the eigenvalue over the square of the wave number
-    bending : square of the wave number over the circular frequency
-    """
-
-    group: str
-    ratio: float
-    span: float
-    shear: float
-    bending: float
-
-    def warning(self, frequency: float) -> str:
-        """Return the warning for modes up to a frequency in Hz; nothing where there is no need."""
-        k2 = max((np.pi / self.span) ** 2, 2 * np.pi * frequency * self.bending)
-        error = self.shear * k2
-        if error < THICK:
-            return ""
-        return (
-            f"shells of group '{self.group}' are {self.ratio:.2g} of their span thick, and waves "
-            f"are {2 * np.pi / np.sqrt(k2):.3g} long at {frequency:.4g} Hz: without shear, "
-            f"their stiffness is some {100 * error:.0f} % too great (frequencies "
-            f"{50 * error:.0f} %), three times that where edges are clamped; use bricks, or "
-            "expect that in E"
-        )
-
-
-@dataclass(frozen=True)
-class Limits:
-    """Limits of the elements of a structure.
-
-    Attributes
-    ----------
-    thickness : of groups of shells
-    shapes : warnings on the shapes of elements
-    """
-
-    thickness: tuple[Thickness, ...] = ()
-    shapes: tuple[str, ...] = ()
-
-    def warnings(self, frequency: float) -> list[str]:
-        """Return the warnings for modes up to a frequency in Hz."""
-        out = [each.warning(frequency) for each in self.thickness]
-        return [*filter(None, out), *self.shapes]
 
 
 def limits_of(structure: Structure, nodes: Floats) -> Limits:

@@ -38,6 +38,9 @@ SHARED = 2**22
 WIDE = 2
 """Columns from which on that pays for a sparse matrix."""
 
+THREADS = "RAYON_NUM_THREADS"
+"""Variable of the environment that limits the threads, as it does those of rslab."""
+
 
 Sharing = Callable[[Callable[[int, int], None], int, int], None]
 """Does some work on pieces, see `_share`."""
@@ -156,6 +159,9 @@ def _alone(work: Callable[[int, int], None], count: int, _: int) -> None:
 @cache
 def shared_pool() -> tuple[ThreadPoolExecutor, int]:
     """Return the threads that products are shared among, and their number."""
+    given = os.environ.get(THREADS, "")
+    if given.isdecimal() and int(given) > 0:
+        return ThreadPoolExecutor(int(given), "products"), int(given)
     threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
     return ThreadPoolExecutor(threads, "products"), threads or 1
 

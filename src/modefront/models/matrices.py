@@ -14,7 +14,7 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, suggestion, wrong
-from modefront.fem.limits import Limits
+from modefront.fem.element_limits import Limits
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Factorisation, Symbolic
 from modefront.linalg.pencil import Pencil, pencil

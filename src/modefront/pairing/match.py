@@ -12,7 +12,6 @@ from dataclasses import dataclass
 from typing import Annotated, Literal
 
 import numpy as np
-from scipy.optimize import linear_sum_assignment
 
 from modefront._typing import Floats, Ints
 from modefront.data.modal import ModalData
@@ -94,6 +93,8 @@ def match(pairing: Pairing, data: ModalData, frequency: Floats, phi: Floats) -> 
             cost = cost + OUTSIDE * (distance > np.log(pairing.window))
     index = cost.argmin(axis=1)
     if len(set(index.tolist())) < m:
+        from scipy.optimize import linear_sum_assignment
+
         index = np.asarray(linear_sum_assignment(cost)[1])
     return Pairs(index, values[np.arange(m), index])
 

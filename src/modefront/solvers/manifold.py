@@ -48,7 +48,6 @@ from enum import Enum
 
 import numpy as np
 import scipy.linalg
-import scipy.optimize
 
 from modefront._typing import Bools, Floats
 from modefront.solvers.problem import Evaluation, Problem, Wrapped
@@ -379,6 +378,8 @@ def _walk(
 
 def _best_step(point: TangentPoint, aim: Floats, length: float) -> Floats:
     """Return the tangent step, no longer than ``length`` and within the bounds, best for an aim."""
+    import scipy.optimize
+
     T, u = point.T, point.u
     limits = np.maximum(np.concatenate([np.minimum(length, 1 - u), np.minimum(length, u)]), 0.0)
     best = scipy.optimize.linprog(

@@ -18,8 +18,8 @@ the maximum have no say in it. Without functions (m = 0), the maximum is left ou
 Of many variables, hundreds may end at the box, and each change of the working set takes a
 decomposition. They are therefore held and let go many at once first, as long as what is minimised
 falls: a step ends at its projection onto the box, and where it stays inside, all that have a wrong
-multiplier are let go (Moré & Toraldo 1991, doi:10.1137/0801008). The method above starts from
-there, and has little left to do.
+multiplier are let go (Moré & Toraldo 1991, doi:10.1137/0801008). Functions join and leave one by
+one, as above. The method above starts from there, and has little left to do.
 
 ========  =========  ================================================================
 symbol    shape      meaning
@@ -43,7 +43,6 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 import numpy as np
-import scipy.optimize
 
 from modefront._typing import Bools, Floats
 from modefront.linalg.small import eigh, lstsq, svd
@@ -101,6 +100,14 @@ class QuadraticProgramme:
         slope = self.g + self.B @ s
         return slope + self.C[active[0]] if active else slope
 
+    def attaining(self, s: Floats, active: list[int]) -> list[int]:
+        """Return which of the active functions still attain the maximum, or the one that does."""
+        if not active:
+            return active
+        value = self.c + self.C @ s
+        least = value.max() - FLAT * float((np.abs(self.C) @ (self.hi - self.lo)).max())
+        return [i for i in active if value[i] >= least] or [int(np.argmax(value))]
+
     def multipliers(self, s: Floats, active: list[int], free: Bools) -> tuple[Floats, Floats]:
         """Return mu (k,) and kappa (m,), with which least is left of the slope of free variables.
 
@@ -133,11 +140,11 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
     s = _normal_step(qp.A, qp.b, lo, hi)
     free = (s > lo) & (s < hi)
     width = float((hi - lo).max())
-    if s.size >= MANY and not len(qp.C):
-        s, free, solved = _many_at_once(qp, s, free, width)
-        if solved:
-            return QuadraticStep(s, [])
     active = [int(np.argmax(qp.c + qp.C @ s))] if len(qp.C) else []
+    if s.size >= MANY:
+        s, free, active, solved = _many_at_once(qp, s, free, active, width)
+        if solved:
+            return QuadraticStep(s, active)
     for _ in range(PASSES * (s.size + len(qp.C))):
         d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free, width)
         bound = np.where(d > 0, hi, lo)
@@ -169,65 +176,75 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
 
 
 def _many_at_once(
-    qp: QuadraticProgramme, s: Floats, free: Bools, width: float
-) -> tuple[Floats, Bools, bool]:
-    """Return a step, its free variables, and whether it is the solution."""
+    qp: QuadraticProgramme, s: Floats, free: Bools, active: list[int], width: float
+) -> tuple[Floats, Bools, list[int], bool]:
+    """Return a step, its free variables and active functions, and whether it is the solution."""
     for _ in range(FACES):
-        d = _descent(qp.B, qp.slope(s, []), qp.A, free, width)
-        if ((s + d > qp.lo) & (s + d < qp.hi))[free].all():
-            s = s + d
-            wrong = _all_wrong(qp, s, free)
-            if not wrong.any():
-                return s, free, True
-            free = free | wrong
+        d = _descent(qp.B, qp.slope(s, active), qp.ties(active), free, width)
+        joining, met = _met(qp, s, d, active)
+        end = s + min(met, 1.0) * d
+        if not ((end > qp.lo) & (end < qp.hi))[free].all():
+            new = _projected(qp, s, d, active, free)
+            if new is None:
+                stopped = free & ((s <= qp.lo) & (d < 0) | (s >= qp.hi) & (d > 0))
+                if not stopped.any():
+                    break
+                free = free & ~stopped
+            else:
+                s, free = new, free & (new > qp.lo) & (new < qp.hi)
+                active = qp.attaining(s, active)
             continue
-        new = _projected(qp, s, d, free)
-        if new is None:
-            stopped = free & ((s <= qp.lo) & (d < 0) | (s >= qp.hi) & (d > 0))
-            if not stopped.any():
-                break
-            free = free & ~stopped
-        else:
-            s, free = new, free & (new > qp.lo) & (new < qp.hi)
-    return s, free, False
+        s = end
+        if met < 1:
+            active = [*active, joining]
+            continue
+        mu, kappa = qp.multipliers(s, active, free)
+        if kappa.min(initial=0.0) < -WRONG:
+            active = [i for i in active if i != int(np.argmin(kappa))]
+            continue
+        slope = qp.g + qp.B @ s + qp.C.T @ kappa
+        scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
+        gain = _gain(slope + qp.A.T @ mu, free, s <= qp.lo, s >= qp.hi)
+        wrong = gain > WRONG * scale
+        if not wrong.any():
+            return s, free, active, True
+        free = free | wrong
+    return s, free, active, False
 
 
-def _all_wrong(qp: QuadraticProgramme, s: Floats, free: Bools) -> Bools:
-    """Return which held variables have multipliers of the wrong sign, without functions."""
-    slope = qp.slope(s, [])
-    left = slope + qp.A.T @ qp.multipliers(s, [], free)[0]
-    scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
-    return np.asarray(_gain(left, free, s <= qp.lo, s >= qp.hi) > WRONG * scale)
-
-
-def _projected(qp: QuadraticProgramme, s: Floats, d: Floats, free: Bools) -> Floats | None:
+def _projected(
+    qp: QuadraticProgramme, s: Floats, d: Floats, active: list[int], free: Bools
+) -> Floats | None:
     """Return where a step d, or its half and so on, ends on the box; None where nothing falls.
 
-    Variables inside the box keep the equalities as they are.
+    Variables inside the box keep the equalities, and active functions equal, as they are.
     """
-    slope = qp.slope(s, [])
+    E, slope = qp.ties(active), qp.g + qp.B @ s
     for halvings in range(HALVINGS):
-        new = _returned(qp, s, np.clip(s + 0.5**halvings * d, qp.lo, qp.hi), free)
+        new = _returned(qp, E, s, np.clip(s + 0.5**halvings * d, qp.lo, qp.hi), free)
         if new is not None:
             change = new - s
-            if slope @ change + 0.5 * change @ qp.B @ change < 0:
+            rise = float(np.max(qp.c + qp.C @ new) - np.max(qp.c + qp.C @ s)) if active else 0.0
+            if slope @ change + 0.5 * change @ qp.B @ change + rise < 0:
                 return new
     return None
 
 
-def _returned(qp: QuadraticProgramme, s: Floats, new: Floats, free: Bools) -> Floats | None:
-    """Return a step with A new = A s again, by changes of free variables; None where there is none.
+def _returned(
+    qp: QuadraticProgramme, E: Floats, s: Floats, new: Floats, free: Bools
+) -> Floats | None:
+    """Return a step with E new = E s again, by changes of free variables; None where there is none.
 
     The changes are the least ones within the box.
     """
-    if not len(qp.A):
+    if not len(E):
         return new
     for _ in range(RETURNS):
         inside = free & (new > qp.lo) & (new < qp.hi)
         new = new.copy()
-        new[inside] -= np.linalg.lstsq(qp.A[:, inside], qp.A @ (new - s), rcond=FLAT)[0]
+        new[inside] -= np.linalg.lstsq(E[:, inside], E @ (new - s), rcond=FLAT)[0]
         if (new >= qp.lo).all() and (new <= qp.hi).all():
-            left = np.abs(qp.A @ (new - s)) <= FLAT * (np.abs(qp.A) @ (qp.hi - qp.lo))
+            left = np.abs(E @ (new - s)) <= FLAT * (np.abs(E) @ (qp.hi - qp.lo))
             return new if left.all() else None
         new = np.clip(new, qp.lo, qp.hi)
     return None
@@ -297,6 +314,8 @@ def _normal_step(A: Floats, b: Floats, lo: Floats, hi: Floats) -> Floats:
     rank = _rank(sigma)
     s = Vt[:rank].T @ ((U.T @ b)[:rank] / sigma[:rank])
     if (s < NORMAL * lo).any() or (s > NORMAL * hi).any():
+        import scipy.optimize
+
         inside = hi - lo > 0
         s = np.zeros(lo.size)
         bounds = (NORMAL * lo[inside], NORMAL * hi[inside])

@@ -87,7 +87,7 @@ class _Context(SpawnContext):
 
 @dataclass
 class LocalPool:
-    """Processes of this machine, spawned, with one thread of the BLAS each.
+    """Processes of this machine, spawned, with one thread each.
 
     They import the modules ``warm`` when they start, and with them what most tasks need.
     """
@@ -143,13 +143,19 @@ def _started() -> None:
 
 
 def _prepare(warm: Sequence[str]) -> None:
-    """Prepare a process: one thread of the BLAS, no interrupts, an end with its parent."""
+    """Prepare a process: one thread, no interrupts, an end with its parent."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)
     if hasattr(signal, "pthread_sigmask"):
         signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})
     threading.Thread(target=_end_with_parent, daemon=True).start()
     for module in warm:
         importlib.import_module(module)
+    _take_one_thread()
+
+
+def _take_one_thread() -> None:
+    """Limit the BLAS of this process, and what it first shares among threads later, to one."""
+    os.environ["RAYON_NUM_THREADS"] = "1"  # of rslab, and of `modefront.linalg.products`
     threadpool_limits(1, user_api="blas")
 
 
@@ -254,10 +260,10 @@ class Cluster:
 
 
 def _work_of_one_thread(message: Message, objects: dict[str, bytes]) -> Reply:
-    """Compute a message with one thread of the BLAS."""
+    """Compute a message with one thread."""
     global _LIMITED
     if not _LIMITED:
-        threadpool_limits(1, user_api="blas")
+        _take_one_thread()
         _LIMITED = True
     return work(message, objects)
 
