@@ -13,6 +13,8 @@ from modefront._typing import Floats
 
 _lapack = scipy.linalg.lapack
 
+_ROUNDING = float(np.finfo(float).eps)
+
 
 def eigh(A: Floats) -> tuple[Floats, Floats]:
     """Return the eigenvalues, ascending, and eigenvectors of a symmetric matrix (n, n).
@@ -35,3 +37,22 @@ def svd(A: Floats, full: bool = True) -> tuple[Floats, Floats, Floats]:
     if failed:
         raise np.linalg.LinAlgError("singular values did not converge")
     return np.ascontiguousarray(U), sigma, np.ascontiguousarray(Vt)
+
+
+def lstsq(A: Floats, b: Floats) -> Floats:
+    """Return the shortest x (n,) that makes A x - b least, for a matrix (m, n) and b (m,).
+
+    Singular values that are rounding of the greatest one count as 0. Raises LinAlgError where it
+    cannot be computed, as of a matrix that is not finite.
+    """
+    m, n = A.shape
+    if not m:
+        return np.zeros(n)
+    rounding = _ROUNDING * max(m, n)
+    lwork, liwork, _ = _lapack.dgelsd_lwork(m, n, 1, rounding)
+    right = np.zeros(max(m, n))
+    right[:m] = b
+    x, _, _, failed = _lapack.dgelsd(A, right, int(lwork), liwork, rounding)
+    if failed:
+        raise np.linalg.LinAlgError("singular values did not converge")
+    return np.asarray(x[:n])

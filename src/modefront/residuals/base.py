@@ -104,8 +104,8 @@ class Stack(Protocol):
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals at the modes of a model, shape (rows,)."""
 
-    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
-        """Return the derivatives of the residuals, shape (rows, p)."""
+    def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
+        """Return the residuals and their derivatives, shape (rows, p)."""
 
 
 class ResidualKind(Protocol):

@@ -119,9 +119,10 @@ class FrequencyStack:
         """Return the residuals, shape (rows,)."""
         return (modes.frequency[pairs.index[self.mode]] - self.measured) * self.weight
 
-    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
-        """Return the derivatives of the residuals, shape (rows, p)."""
-        return self.weight[:, None] * modes.dfrequency[pairs.index[self.mode]]
+    def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
+        """Return the residuals and their derivatives, shape (rows, p)."""
+        dr = self.weight[:, None] * modes.dfrequency[pairs.index[self.mode]]
+        return self.r(modes, pairs), dr
 
 
 class FrequencyKind:

@@ -139,8 +139,11 @@ class UpdatingProblem:
 
     def residuals_at(self, modes: Modes, pairs: Pairs) -> tuple[Residual, ...]:
         """Return the residual vector of each group at paired modes with derivatives."""
-        slopes = [joined([stack.dr(modes, pairs) for stack in row]) for row in self._stacks]
-        return tuple(map(Residual, self._vectors(modes, pairs), slopes))
+        out = []
+        for row in self._stacks:
+            parts = [stack.with_slopes(modes, pairs) for stack in row]
+            out.append(Residual(joined([r for r, _ in parts]), joined([dr for _, dr in parts])))
+        return tuple(out)
 
     def _vectors(self, modes: Modes, pairs: Pairs) -> list[Floats]:
         """Return the residual vector of each group without derivatives."""

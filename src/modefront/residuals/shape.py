@@ -188,9 +188,10 @@ class ShapeStack:
         """Return the residuals, shape (rows,)."""
         return joined([block.r(modes, pairs) for block in self.blocks])
 
-    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
-        """Return the derivatives of the residuals, shape (rows, p); 0 for a shape that is 0."""
-        return joined([block.dr(modes, pairs) for block in self.blocks])
+    def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
+        """Return the residuals and their derivatives, (rows, p), which are 0 of a shape that is."""
+        parts = [block.with_slopes(modes, pairs) for block in self.blocks]
+        return joined([r for r, _ in parts]), joined([dr for _, dr in parts])
 
 
 @dataclass(frozen=True, eq=False)
@@ -213,14 +214,14 @@ class ShapeBlock:
         chi, _, beta = self._scaled(modes, pairs)
         return (beta * chi - self.psi).ravel()
 
-    def dr(self, modes: Modes, pairs: Pairs) -> Floats:
-        """Return the derivatives of the residuals, shape (rows, p); 0 for a shape that is 0."""
+    def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
+        """Return the residuals and their derivatives, (rows, p), which are 0 of a shape that is."""
         chi, b, beta = self._scaled(modes, pairs)
         dchi = self.weight[:, :, None] * modes.dphi[self.sensors, pairs.index[self.mode]]
         slope = _times(self.psi, dchi) - 2 * beta * _times(chi, dchi)
         dbeta = np.divide(slope, b, out=np.zeros(slope.shape), where=b > 0)
         dr = chi[:, :, None] * dbeta[:, None] + beta[:, :, None] * dchi
-        return dr.reshape(-1, dr.shape[2])
+        return (beta * chi - self.psi).ravel(), dr.reshape(-1, dr.shape[2])
 
     def _scaled(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Floats]:
         """Return chi (shapes, components), its squared length b and beta, (shapes, 1)."""

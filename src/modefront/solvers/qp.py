@@ -45,7 +45,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Bools, Floats
-from modefront.linalg.small import eigh, svd
+from modefront.linalg.small import eigh, lstsq, svd
 
 FLAT = 1e-10
 """Curvature, singular value or slope, over the greatest one, below which it counts as none: well
@@ -117,7 +117,7 @@ class QuadraticProgramme:
         both = np.zeros(0)
         if len(E):
             left = -self.slope(s, active)[free]
-            both = np.asarray(np.linalg.lstsq(E[:, free].T, left, rcond=None)[0], dtype=float)
+            both = lstsq(E[:, free].T, left)
         mu, others = both[: len(self.A)], both[len(self.A) :]
         kappa = np.zeros(len(self.C))
         if active:
