@@ -257,7 +257,8 @@ def main() -> None:
     given = options.parse_args()
     kind = KINDS[given.kind]
     data = measured(kind)
-    work(kind(300, REGIONS), data)  # what Python imports on the way is no part of the times
+    # What Python imports on the way is no part of the times.
+    work(shell(300, REGIONS), measured(shell))
     for size in given.sizes:
         row = line(kind, size, data, size <= given.full_up_to, size <= given.exact_up_to)
         print("\n".join(f"{name:22s} {value:.5g}" for name, value in row.items()), flush=True)
