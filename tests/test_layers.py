@@ -12,7 +12,7 @@ import pytest
 import modefront
 
 LAYERS = (
-    ("_typing", "_version", "rounding", "text"),
+    ("_lazy", "_typing", "_version", "rounding", "text"),
     ("errors", "variables"),
     ("inputs", "hdf5", "isolated"),
     ("toml", "linalg", "response", "work"),

@@ -5,9 +5,9 @@ The public names are imported when they are first used, so that ``import modefro
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
+from modefront._lazy import lazy
 from modefront._version import __version__ as __version__
 
 if TYPE_CHECKING:
@@ -91,9 +91,6 @@ _HOMES = {
 }
 """Modules of the public names."""
 
-_PACKAGES = ("fem",)
-"""Public parts that are packages."""
-
 __all__ = [
     "Group",
     "Identifiability",
@@ -135,14 +132,4 @@ __all__ = [
     "updating_problem",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    if name in _PACKAGES:
-        return import_module(f"modefront.{name}")
-    if name not in _HOMES:
-        raise AttributeError(f"module 'modefront' has no attribute '{name}'")
-    return getattr(import_module(f"modefront.{_HOMES[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazy("modefront", _HOMES, ("fem",))

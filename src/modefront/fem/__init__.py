@@ -20,8 +20,9 @@ The names are imported when they are first used: processes that solve models nee
 
 from __future__ import annotations
 
-from importlib import import_module
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
+
+from modefront._lazy import lazy
 
 if TYPE_CHECKING:
     from modefront.fem import grids as grids
@@ -109,14 +110,4 @@ __all__ = [
     "tube",
 ]
 
-
-def __getattr__(name: str) -> Any:
-    if name == "grids":
-        return import_module("modefront.fem.grids")
-    if name not in _HOMES:
-        raise AttributeError(f"module 'modefront.fem' has no attribute '{name}'")
-    return getattr(import_module(f"modefront.fem.{_HOMES[name]}"), name)
-
-
-def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+__getattr__, __dir__ = lazy("modefront.fem", _HOMES, ("grids",))
