@@ -173,6 +173,24 @@ def test_no_starts_mean_no_exploration() -> None:
     assert costs.eigenproblems == pytest.approx(146, rel=0.05)
 
 
+def test_a_front_that_is_resumed_keeps_what_was_explored() -> None:
+    front, spent = rugged()
+    with counted() as costs:
+        again = pareto_front(
+            box(rastrigin, [-2.0] * 4, [2.0] * 4),
+            np.array([4.0, 4.0]),
+            Pareto(points=12),
+            seed=1,
+            search=FEW,
+            known=front,
+        )
+    J, before = objectives(again), objectives(front)
+    assert len(J) == len(before) > 12
+    utopia, scale = before.min(axis=0), np.ptp(before, axis=0)
+    assert hypervolume((J - utopia) / scale) > 0.998 * hypervolume((before - utopia) / scale)
+    assert costs.eigenproblems < 0.15 * spent
+
+
 def test_ranks_are_those_of_dominance() -> None:
     J = np.array([[0.0, 1.0], [1.0, 0.0], [1.0, 1.0], [2.0, 2.0], [0.5, 2.0]])
     assert ranks(J).tolist() == [0, 0, 1, 2, 1]

@@ -57,6 +57,10 @@ AIM = 0.1
 """Error, over the tolerance, below which models need no snapshot on the way; derivatives of modes,
 and with them the parameters, are less exact than eigenvalues."""
 
+ELSEWHERE = 0.05
+"""Distance over the ranges from all models of the round before, from which on the errors of a model
+are looked at before certificates."""
+
 ERRORS = ("eigenvalue_error", "shape_error")
 """Names under which the estimates are kept with a solution."""
 
@@ -110,10 +114,10 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
             break
         here = Within(work, turn=("round", number))
         work.expect({"snapshot": 1, "certificate": 1})
-        front = search(work=here, known=front if taken.error <= POOR else None)
+        before, front = front, search(work=here, known=front if taken.error <= POOR else None)
         if taken.full:
             break
-        if not taken.enough:
+        if not taken.enough or _has_moved(problem, before, front):
             taken = _take_some(model, "ahead", _farthest(model, front), front, here)
             if not taken.enough or taken.added:
                 continue
@@ -245,6 +249,16 @@ def _farthest(model: ReducedModel, front: Front) -> SnapshotRequest:
     distinct = list({_key(solution): solution for solution in _of_the_front(front)}.values())
     ranked = sorted(distinct, key=lambda solution: model.distance(solution.theta), reverse=True)
     return _snap(ranked[:MODELS], AIM * model.tolerance)
+
+
+def _has_moved(problem: UpdatingProblem, before: Front | None, front: Front) -> bool:
+    """Return whether some model of a front lies elsewhere than all models of the one before."""
+    span = problem.upper - problem.lower
+    known = np.array([x.theta for x in _reported(before)]) if before else np.zeros((0, span.size))
+    return any(
+        (np.linalg.norm((known - solution.theta) / span, axis=1) > ELSEWHERE).all()
+        for solution in _of_the_front(front)
+    )
 
 
 def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Floats]:

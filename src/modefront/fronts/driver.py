@@ -19,6 +19,7 @@ from modefront.solvers.continuation import Simplex, default_points, simplex
 from modefront.solvers.edges import (
     Edge,
     edge_of_each,
+    edge_options,
     near_best,
     ordered,
     refined_from,
@@ -216,17 +217,19 @@ class _Run:
         """Return the edges, with the minima to which weighted models lead among the others.
 
         These are sought where the minima of an objective form a manifold, of which a search only
-        meets some.
+        meets some. Those of a known front have them already.
         """
+        if self.known:
+            return list(edges)
         names, out = self.problem.objectives, list(edges)
         some = [
             i
             for i, known in enumerate(edges)
             if Lexicographic(i, sizes).is_open(self.problem, known.best.evaluation)
         ]
+        rest = (sizes, list(models), edge_options(self.search))
         tasks = [
-            Task(("edge", names[i], "from"), refined_from, (self.problem, i, sizes, list(models)))
-            for i in some
+            Task(("edge", names[i], "from"), refined_from, (self.problem, i, *rest)) for i in some
         ]
         for i, minima in zip(some, self.work.run(tasks), strict=True):
             known = edges[i]
@@ -318,7 +321,8 @@ class _Run:
                 out.append(known)
                 continue
             first = min(ahead, key=lambda k: order.value(J[k]))
-            arguments = (self.problem, i, sizes, archive.theta[first])
+            options = edge_options(self.search)
+            arguments = (self.problem, i, sizes, archive.theta[first], options)
             (minima,) = work.run([Task(("edge", name, "archive"), _refined_again, arguments)])
             refined = ordered(self.problem, i, sizes, [*known.minima, *minima])
             better = refined and order.better(refined.best.J, known.best.J)
@@ -358,9 +362,13 @@ class _Run:
         """
         weighted_models = [model.solution for model in models]
         rivals = [*weighted_models, *along.points]
-        near = [*weighted_models, *bests, *least_along(along.points, self.a, sizes)]
-        if self.known and self.known.optimal:
-            near = self._again(("optimal-weights",), self.known.optimal)
+        near = least_along(along.points, self.a, sizes)
+        if self.known:
+            bounded = [point.solution for point in of_kind(self.known.points, Kind.BOUNDED)]
+            before = self._again(("optimal-weights",), self.known.optimal or bounded)
+            near = before if self.known.optimal else [*before, *near]
+        else:
+            near = [*weighted_models, *bests, *near]
         arguments = (self.problem, self.a, sizes, self.search, near)
         seed = seed_sequence(self.seed, "optimal-weights")
         task = Task(("optimal-weights",), optimal_minima, arguments, seed, has_parts=True)
@@ -410,6 +418,6 @@ def _descended(problem: Problem, descent: Descent, theta: Floats) -> Solution:
 
 
 def _refined_again(
-    problem: Problem, objective: int, sizes: Floats, theta: Floats
+    problem: Problem, objective: int, sizes: Floats, theta: Floats, options: Options
 ) -> list[Solution]:
-    return refined_from(problem, objective, sizes, [begin(problem.evaluate(theta))])
+    return refined_from(problem, objective, sizes, [begin(problem.evaluate(theta))], options)

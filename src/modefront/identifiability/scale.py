@@ -248,11 +248,7 @@ def _diagonals(matrix: DenseAffine | SparseAffine) -> Floats:
     """Return the diagonal of each term as a column, (N, terms)."""
     if isinstance(matrix, DenseAffine):
         return np.asarray(np.einsum("tii->it", matrix.terms))
-    row = np.repeat(np.arange(matrix.size), np.diff(matrix.indptr))
-    on = np.flatnonzero(row == matrix.indices)
-    out = np.zeros((matrix.size, matrix.terms.shape[1]))
-    out[row[on]] = matrix.terms[on].toarray()
-    return out
+    return np.asarray(matrix.diagonals.toarray())
 
 
 def whole_scalings(model: MatrixModel, theta: Floats, unit: Floats) -> list[Scaling]:
@@ -290,9 +286,10 @@ def _rows(matrix: DenseAffine | SparseAffine, theta: Floats) -> tuple[Floats, Fl
         gram = T.T @ T
     else:
         row = np.repeat(np.arange(matrix.size), np.diff(matrix.indptr))
-        weights = scipy.sparse.diags_array(d[row] * d[matrix.indices])
-        scaled = weights @ matrix.terms
-        gram = (scaled.T @ scaled).toarray()
+        terms, weights = matrix.terms, d[row] * d[matrix.indices]
+        scaled = (terms.data * weights[terms.indices], terms.indices, terms.indptr)
+        T = scipy.sparse.csc_array(scaled, shape=terms.shape)
+        gram = (T.T @ T).toarray()
     length = np.sqrt(np.diag(gram))
     over = np.where(length > 0, length, 1.0)
     lam, V = np.linalg.eigh(gram / np.outer(over, over))

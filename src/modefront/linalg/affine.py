@@ -196,10 +196,10 @@ class SparseAffine:
 
     def diagonal(self, theta: Floats) -> Floats:
         """Return the diagonal (N,) of A(theta)."""
-        return np.asarray(self._diagonals @ self.coefficients.values(theta))
+        return np.asarray(self.diagonals @ self.coefficients.values(theta))
 
     @cached_property
-    def _diagonals(self) -> scipy.sparse.csr_array:
+    def diagonals(self) -> scipy.sparse.csr_array:
         """The diagonal of each term, (N, terms)."""
         row, terms = _expand(self.indptr), self.terms
         chosen = np.flatnonzero((self.indices == row)[terms.indices])

@@ -253,6 +253,20 @@ def explore_between(
     return between.with_others(better, models)
 
 
+def resumed(
+    problem: Problem, target: Payoff, points: Sequence[Solution], work: Executor
+) -> list[Solution]:
+    """Return points besides the lattice of a front of nearly the same problem, solved again.
+
+    Each is projected from where it lies: the edges may have moved.
+    """
+    tasks = [
+        Task(("front", "nbi", "beside", k + 1), _resumed, (problem, target, point))
+        for k, point in enumerate(points)
+    ]
+    return work.run(tasks)
+
+
 def _models_in(visited: Archive | None) -> Models | None:
     """Return the models of an archive, of which none is followed."""
     if visited is None:
@@ -477,6 +491,13 @@ def _again(problem: Problem, target: Payoff, point: Solution, theta: Floats) -> 
     """Return the programme of a point of the front solved from another model."""
     start = begin(problem.evaluate(theta))
     return programmes_of(problem, target).solve_again(problem, place_of(target, point), start)
+
+
+def _resumed(problem: Problem, target: Payoff, point: Solution) -> Solution:
+    """Return the programme through a point, solved from it."""
+    start = replace(point, evaluation=problem.evaluate(point.theta))
+    beta = target.place(start.J)
+    return programmes_of(problem, target).solve_again(problem, beta, start)
 
 
 def _others(

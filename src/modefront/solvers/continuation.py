@@ -42,6 +42,11 @@ class Simplex:
         """Barycentric coordinates, shape (points, n)."""
         return np.asarray(self.counts / self.divisions)
 
+    def has(self, beta: Floats) -> bool:
+        """Return whether coordinates (n,) are those of a point, within the simplex or beyond it."""
+        steps = self.divisions * beta
+        return bool(np.abs(steps - np.rint(steps)).max() <= SAME * self.divisions)
+
 
 def simplex(objectives: int, divisions: int) -> Simplex:
     """Return the lattice of Das and Dennis with ``divisions`` steps along each edge.

@@ -26,6 +26,15 @@ ATTEMPTS = 4
 _TIGHT = Options(step=1e-8)
 
 
+def edge_options(search: Search) -> Options:
+    """Return the tolerances of edges: those of any point where the search goes on from known ones.
+
+    These are edges of nearly the same problem, in a basis whose eigenvalues have errors themselves.
+    Where an objective does not change in some direction, tighter ones would be met by chance only.
+    """
+    return _TIGHT if search.limit else Options()
+
+
 @dataclass(frozen=True)
 class Edge:
     """The edge of one objective, and all other minima of that objective."""
@@ -63,9 +72,9 @@ def edge_of_each(
     ``starts`` that are solved from first. The searches are independent of each other.
     """
     objectives = range(len(problem.objectives))
-    tasks = []
+    tasks, options = [], edge_options(search)
     for i in objectives:
-        arguments = (problem, Lexicographic(i, sizes), search, starts[i] if starts else (), _TIGHT)
+        arguments = (problem, Lexicographic(i, sizes), search, starts[i] if starts else (), options)
         name = problem.objectives[i]
         tasks.append(Task(("edge", name), explore, arguments, seeds[i], has_parts=True))
     solved = work.run(tasks)
@@ -97,11 +106,15 @@ def ordered(
 
 
 def refined_from(
-    problem: Problem, objective: int, sizes: Floats, starts: Sequence[Solution]
+    problem: Problem,
+    objective: int,
+    sizes: Floats,
+    starts: Sequence[Solution],
+    options: Options,
 ) -> list[Solution]:
     """Return the lexicographic minimum of one objective below each start."""
     order = Lexicographic(objective, sizes)
-    return [order.solve(problem, solution, _TIGHT) for solution in starts]
+    return [order.solve(problem, solution, options) for solution in starts]
 
 
 def near_best(

@@ -164,12 +164,15 @@ def explore(
     """Return the distinct minima that a local search leads to, best first.
 
     ``starts`` that are known to be good are solved from first, then the problem's own start, then
-    others until the rule is met. Solutions that did not converge are among them where they are
+    others until the rule is met; nothing but known starts where the search allows no others.
+    Solutions that did not converge are among them where they are
     better than all minima. Empty where the problem is defined at no start. The arguments are more
     than six because each is independent of the others.
     """
     run = _Exploration(problem, local, options or Options(), work)
-    known: list[Start] = [*starts, problem.start]
+    known: list[Start] = [*starts]
+    if search.limit or not starts:
+        known.append(problem.start)
     for k, start in enumerate(known):
         run.follow(start, known[k + 1 :])
     fewest = 0 if starts else search.starts

@@ -55,6 +55,11 @@ class Setting:
     archive: Archive
     work: Executor
 
+    @property
+    def resumed(self) -> bool:
+        """Whether the front goes on from one that was explored, of nearly the same problem."""
+        return self.search.limit == 0 and len(self.before) > 0
+
 
 @dataclass(frozen=True)
 class Along:

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 
 from modefront.fronts.methods.base import Along, Setting
-from modefront.solvers.basins import explore_between
+from modefront.solvers.basins import explore_between, resumed
 from modefront.solvers.border import without_slack
 from modefront.solvers.competition import from_points_beside, from_visited, polished
 from modefront.solvers.continuation import Simplex
@@ -51,21 +51,28 @@ class NormalBoundaryIntersection:
         return len(lattice.counts)
 
     def along(self, setting: Setting) -> Along:
-        """Return the points, each once; of two objectives with the gaps between them."""
+        """Return the points, each once; of two objectives with the gaps between them.
+
+        A front that is resumed was explored, and has competed with models in other basins, before.
+        """
         problem, target, lattice = setting.problem, setting.target, setting.lattice
+        before, beside = list(setting.before), list[Solution]()
+        if setting.resumed:
+            beside = [x for x in before if x.beta is None or not lattice.has(x.beta)]
+            before = [x for x in before if x.beta is not None and lattice.has(x.beta)]
         solved = nbi(
             problem,
             setting.edges,
             target,
             lattice,
             setting.work,
-            setting.corners,
-            before=setting.before,
+            () if setting.resumed else setting.corners,
+            before=before,
         )
         along = explore_between(
             problem,
             target,
-            solved,
+            [*solved, *resumed(problem, target, beside, setting.work)],
             setting.minima,
             lattice,
             np.random.default_rng(seed_sequence(setting.seed, "between")),
@@ -75,8 +82,10 @@ class NormalBoundaryIntersection:
         )
         if len(setting.edges) > 2:
             along = _settled(setting, target, along)
-        else:
+        elif not setting.resumed:
             along = from_visited(problem, target, lattice, along, setting.archive, setting.work)
+        elif beside:
+            along = sorted(along, key=lambda point: -float(target.place(point.J)[0]))
         front = without_copies(lattice, solved, along, target)
         return _branches(setting, front) if len(setting.edges) == 2 else front
 
@@ -86,7 +95,8 @@ def _settled(setting: Setting, target: Payoff, points: Sequence[Solution]) -> li
 
     What is lowered may have left the best branch, or lead to a better one.
     """
-    problem, lattice, visited = setting.problem, setting.lattice, setting.archive
+    problem, lattice = setting.problem, setting.lattice
+    visited = None if setting.resumed else setting.archive
     compared: list[Solution] = []
     lowered = list(points)
     for turn in range(TURNS):
