@@ -4,8 +4,10 @@ from __future__ import annotations
 
 import shutil
 import sys
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -15,12 +17,18 @@ from interruptions import interrupt_after
 from texts import two_of_each
 
 import modefront as mf
+from modefront.analysis.certified import certified_front
 from modefront.cli.main import main
 from modefront.fem import grids
+from modefront.fronts.driver import pareto_front
+from modefront.fronts.front import Front
 from modefront.models.reduced.model import ReducedModel
 from modefront.results.files import read_dataset
+from modefront.solvers.sqp import given
 from modefront.study.check import check
 from modefront.work.costs import Costs, counted
+from modefront.work.run import Run
+from modefront.work.task import Executor, R, Task
 
 N = 14
 STUDY = (
@@ -276,6 +284,33 @@ def test_a_model_without_a_basis_says_so(
     assert command(monkeypatch, "show", tmp_path / "study-results", "--findings") == 0
     out = capfd.readouterr().out
     assert "no reduced basis: the model has only 90 degrees of freedom" in out
+
+
+def test_models_that_have_moved_get_a_snapshot_before_certificates(file: Path) -> None:
+    study = mf.load(file)
+    problem, pareto, starts = study.problem, study.pareto, study.search
+    a = problem.properties
+    moved, names = given(problem.evaluate(np.array([2.3, 0.5]))), list[str]()
+
+    class Recorded(Run):
+        def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
+            names.extend(task.name for task in tasks)
+            return super().run(tasks, ahead)
+
+    def search(*, work: Executor, known: Front | None) -> Front:
+        """Find another branch in the second round."""
+        front = pareto_front(problem, a, pareto, search=starts, work=work, known=known)
+        if known is None:
+            return front
+        points = [replace(x, solution=moved) if x.label == "nbi-1" else x for x in front.points]
+        return replace(front, points=points)
+
+    front = certified_front(problem, search, Recorded())
+    rounds = [name for name in names if name.startswith(("snapshot-ahead", "certificate"))]
+    first = next(k for k, name in enumerate(rounds) if name.startswith("certificate"))
+    assert "snapshot-ahead-1-round-2" in rounds[:first]
+    errors = [x.solution.evaluation.quantities["eigenvalue_error"].max() for x in front.points]
+    assert max(errors) <= 1e-8
 
 
 def test_bounds_are_checked_in_the_full_model(file: Path) -> None:
