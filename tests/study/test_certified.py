@@ -24,8 +24,10 @@ from modefront.fronts.driver import pareto_front
 from modefront.fronts.front import Front
 from modefront.models.reduced.model import ReducedModel
 from modefront.results.files import read_dataset
+from modefront.solvers.edges import Edge
 from modefront.solvers.sqp import given
 from modefront.study.check import check
+from modefront.study.definition import Study
 from modefront.work.costs import Costs, counted
 from modefront.work.run import Run
 from modefront.work.task import Executor, R, Task
@@ -286,31 +288,57 @@ def test_a_model_without_a_basis_says_so(
     assert "no reduced basis: the model has only 90 degrees of freedom" in out
 
 
-def test_models_that_have_moved_get_a_snapshot_before_certificates(file: Path) -> None:
-    study = mf.load(file)
-    problem, pareto, starts = study.problem, study.pareto, study.search
-    a = problem.properties
-    moved, names = given(problem.evaluate(np.array([2.3, 0.5]))), list[str]()
+class Recorded(Run):
+    """A run that remembers the names of its tasks."""
 
-    class Recorded(Run):
-        def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
-            names.extend(task.name for task in tasks)
-            return super().run(tasks, ahead)
+    def __init__(self) -> None:
+        super().__init__()
+        self.names: list[str] = []
+
+    def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
+        self.names += [task.name for task in tasks]
+        return super().run(tasks, ahead)
+
+
+def searched(study: Study, work: Executor, known: Front | None) -> Front:
+    problem, a = study.problem, study.problem.properties
+    return pareto_front(problem, a, study.pareto, search=study.search, work=work, known=known)
+
+
+def test_models_that_have_moved_get_a_snapshot_before_certificates(file: Path) -> None:
+    study, run = mf.load(file), Recorded()
+    moved = given(study.problem.evaluate(np.array([2.3, 0.5])))
 
     def search(*, work: Executor, known: Front | None) -> Front:
         """Find another branch in the second round."""
-        front = pareto_front(problem, a, pareto, search=starts, work=work, known=known)
+        front = searched(study, work, known)
         if known is None:
             return front
         points = [replace(x, solution=moved) if x.label == "nbi-1" else x for x in front.points]
         return replace(front, points=points)
 
-    front = certified_front(problem, search, Recorded())
-    rounds = [name for name in names if name.startswith(("snapshot-ahead", "certificate"))]
+    front = certified_front(study.problem, search, run)
+    rounds = [name for name in run.names if name.startswith(("snapshot-ahead", "certificate"))]
     first = next(k for k, name in enumerate(rounds) if name.startswith("certificate"))
     assert "snapshot-ahead-1-round-2" in rounds[:first]
     errors = [x.solution.evaluation.quantities["eigenvalue_error"].max() for x in front.points]
     assert max(errors) <= 1e-8
+
+
+def test_a_minimum_as_good_as_the_best_one_gets_a_snapshot_before_certificates(file: Path) -> None:
+    study, run = mf.load(file), Recorded()
+    far = study.problem.evaluate(np.array([2.3, 0.5]))
+
+    def search(*, work: Executor, known: Front | None) -> Front:
+        """Find a minimum far away that is as good as the edge."""
+        front = searched(study, work, known)
+        edge, *others = front.edges
+        twin = given(replace(far, J=edge.best.J))
+        return replace(front, edges=[Edge(edge.best, [*edge.minima, twin]), *others])
+
+    front = certified_front(study.problem, search, run)
+    assert {name[-7:] for name in run.names if name.startswith("certificate")} == {"round-2"}
+    assert front.edges[0].minima[-1].evaluation.quantities["eigenvalue_error"].max() <= 1e-9
 
 
 def test_bounds_are_checked_in_the_full_model(file: Path) -> None:

@@ -29,6 +29,7 @@ from modefront.models.reduced.model import ReducedModel, SnapshotRequest
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 from modefront.solvers.edges import Edge
+from modefront.solvers.lexicographic import EXACT
 from modefront.solvers.scalarisation import LogSum
 from modefront.solvers.sqp import Solution
 from modefront.work.codec import record
@@ -60,6 +61,10 @@ and with them the parameters, are less exact than eigenvalues."""
 ELSEWHERE = 0.05
 """Distance over the ranges from all models of the round before, from which on the errors of a model
 are looked at before certificates."""
+
+CLOSE = 1e-2
+"""Relative excess of a minimum over the best one, up to which errors of the basis may have
+exchanged them."""
 
 ERRORS = ("eigenvalue_error", "shape_error")
 """Names under which the estimates are kept with a solution."""
@@ -103,12 +108,12 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
         return search(work=work, known=None)
     model.restart()
     front: Front | None = None
-    taken = _take_some(model, "first", model.first, None, work)
+    taken = _take_some(model, "first", model.first, [], work)
     if taken.added and not taken.full:
         (lacking,) = work.run([Task(("probe-basis",), _lacking, (problem, model), in_process=True)])
         if lacking:
             request = SnapshotRequest(np.array(lacking), _lowest(problem))
-            _take_some(model, "probes", request, None, work)
+            _take_some(model, "probes", request, [], work)
     for number in range(1, ROUNDS + 1):
         if not taken.added:
             break
@@ -117,8 +122,9 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
         before, front = front, search(work=here, known=front if taken.error <= POOR else None)
         if taken.full:
             break
+        candidates = _candidates(problem, front)
         if not taken.enough or _has_moved(problem, before, front):
-            taken = _take_some(model, "ahead", _farthest(model, front), front, here)
+            taken = _take_some(model, "ahead", _farthest(model, candidates), candidates, here)
             if not taken.enough or taken.added:
                 continue
         front = _with_errors(problem, model, front, here)
@@ -132,7 +138,7 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
         worst = _snap(sorted(wrong, key=_error, reverse=True)[:MODELS], 0.0)
         if not all(map(np.isfinite, map(_error, wrong))):
             worst = replace(worst, modes=max(worst.modes, _lowest(problem)))
-        taken = _take_some(model, "worst", worst, front, here)
+        taken = _take_some(model, "worst", worst, candidates, here)
     if front is None:
         raise UnfinishedError("the model cannot be solved at the nominal parameters")
     return _with_errors(problem, model, front, work)
@@ -195,10 +201,10 @@ def _take_some(
     model: ReducedModel,
     name: str,
     request: SnapshotRequest,
-    front: Front | None,
+    candidates: Sequence[Solution],
     work: Executor,
 ) -> _Taken:
-    """Take a snapshot, and others where a front from which it goes on would need them next."""
+    """Take a snapshot, and others that the candidates for the next round would need next."""
     error, added = np.inf, False
     for count in range(AHEAD):
         before = model.snapshots
@@ -212,9 +218,9 @@ def _take_some(
             return _Taken(error, added, enough=True, full=False)
         added = added or taken.added > 0
         full = taken.columns >= model.capacity
-        if front is None or full or error > POOR or not taken.added:
+        if not candidates or full or error > POOR or not taken.added:
             return _Taken(error, added, enough=False, full=full)
-        request = _farthest(model, front)
+        request = _farthest(model, candidates)
     return _Taken(error, added, enough=False, full=False)
 
 
@@ -244,10 +250,22 @@ def _snap(solutions: Sequence[Solution], enough: float) -> SnapshotRequest:
     return SnapshotRequest(np.array([solution.theta for solution in solutions]), modes, enough)
 
 
-def _farthest(model: ReducedModel, front: Front) -> SnapshotRequest:
+def _candidates(problem: UpdatingProblem, front: Front) -> list[Solution]:
+    """Return the models that are reported, and minima that may be the best ones, each once."""
+    models = list(_of_the_front(front))
+    for i, edge in enumerate(front.edges):
+        most = (1 + CLOSE) * edge.best.J[i] + EXACT * front.sizes[i]
+        models += [solution for solution in edge.minima if solution.J[i] <= most]
+    if front.optimal:
+        programme = LogSum(problem.properties)
+        most = programme.value(front.optimal[0].J) + CLOSE * problem.properties.sum()
+        models += [solution for solution in front.optimal if programme.value(solution.J) <= most]
+    return list({_key(solution): solution for solution in models}.values())
+
+
+def _farthest(model: ReducedModel, candidates: Sequence[Solution]) -> SnapshotRequest:
     """Return the snapshot of the models that are the farthest from all others."""
-    distinct = list({_key(solution): solution for solution in _of_the_front(front)}.values())
-    ranked = sorted(distinct, key=lambda solution: model.distance(solution.theta), reverse=True)
+    ranked = sorted(candidates, key=lambda solution: model.distance(solution.theta), reverse=True)
     return _snap(ranked[:MODELS], AIM * model.tolerance)
 
 

@@ -153,7 +153,12 @@ class _Run:
     def _extent(self) -> dict[str, int]:
         """Return the expected number of tasks of each stage."""
         n, lattice = self.n, self.lattice
-        out = {"sample": 0 if self.known else 1, "known": 0, "edge": n, "weights": len(self.given) + 1}
+        out = {
+            "sample": 0 if self.known else 1,
+            "known": 0,
+            "edge": n,
+            "weights": len(self.given) + 1,
+        }
         if self.known:
             out["known"] = n + len(self.given) + 3
         if lattice:
