@@ -84,6 +84,8 @@ class NormalBoundaryIntersection:
             along = _settled(setting, target, along)
         elif not setting.resumed:
             along = from_visited(problem, target, lattice, along, setting.archive, setting.work)
+            if len(along) > len(solved):
+                along = from_points_beside(problem, target, lattice, along, setting.work)
         elif beside:
             along = sorted(along, key=lambda point: -float(target.place(point.J)[0]))
         front = without_copies(lattice, solved, along, target)
