@@ -156,7 +156,7 @@ class _Run:
     def _extent(self) -> dict[str, int]:
         """Return the expected number of tasks of each stage."""
         n, lattice = self.n, self.lattice
-        out = {"sample": 1, "known": 0, "edge": n, "weights": len(self.given) + 1}
+        out = {"sample": 0 if self.known else 1, "known": 0, "edge": n, "weights": len(self.given) + 1}
         if self.known:
             out["known"] = n + len(self.given) + 3
         if lattice:
@@ -169,7 +169,9 @@ class _Run:
         return self.work.run([Task(("known", *key), _evaluated_again, arguments)])[0]
 
     def _sizes(self) -> Floats:
-        """Return the typical size of each objective, (n,), of random models."""
+        """Return the typical size of each objective, (n,), of random models, unless it is known."""
+        if self.known:
+            return self.known.sizes
         seed = seed_sequence(self.seed, "sample")
         (points,) = self.work.run([Task(("sample",), sample, (self.problem,), seed)])
         sizes = typical_sizes(points)
