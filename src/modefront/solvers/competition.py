@@ -15,7 +15,8 @@ up to the third order of their distance. Where that does not hold, the programme
 which is negative as soon as a model dominates the point, is solved from the other one
 (`modefront.solvers.attainment`). So it is from the models that some search has visited on its way
 and that lie little behind the point, far from it in the parameters: a basin in which no search has
-ended, and so no point of the front lies, shows in these only.
+ended, and so no point of the front lies, shows in these only. Of two objectives, only these are
+tried, each at one point first.
 
 ========  ========  ==========================================================
 symbol    shape     meaning
