@@ -1,16 +1,21 @@
 """The archive of evaluated models: nondominated ones by comparison of all, and after a break."""
 
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
 import pytest
 from interruptions import interrupt_after
-from problems import box, circles, disconnected
+from problems import Derivatives, box, circles, disconnected
 
 from modefront._typing import Floats
 from modefront.fronts.driver import pareto_front
 from modefront.fronts.front import Front
+from modefront.fronts.methods import METHODS
+from modefront.fronts.methods.base import Along, Setting
+from modefront.fronts.methods.nbi import NormalBoundaryIntersection
 from modefront.fronts.options import Pareto
+from modefront.fronts.point import Kind, of_kind
 from modefront.solvers.archive import Archive
 from modefront.solvers.explore import Search
 from modefront.work.costs import Costs
@@ -83,3 +88,39 @@ def test_a_run_that_is_continued_knows_the_same_models(
     for gap, other_gap in zip(again.gaps, whole.gaps, strict=True):
         for end, other_end in zip(gap.ends, other_gap.ends, strict=True):
             assert end.J.tobytes() == other_end.J.tobytes()
+
+
+def narrow(depth: float) -> Callable[[Floats], Derivatives]:
+    """Return two distances of x, the second one with a well at z = 0.7 that no search leads to."""
+
+    def function(theta: Floats) -> Derivatives:
+        x, z = theta
+        e = np.exp(-(((z - 0.7) / 0.02) ** 2))
+        J = np.array([x**2, (x - 1) ** 2 + depth * (1 - e)])
+        dJ = np.array([[2 * x, 0.0], [2 * x - 2, depth * e * 2 * (z - 0.7) / 0.02**2]])
+        return J, dJ, np.array([np.diag([2.0, 0.0])] * 2)
+
+    return function
+
+
+@pytest.mark.parametrize(("depth", "times"), [(0.005, 1), (0.5, 2)])
+def test_a_front_is_sought_again_only_where_an_edge_has_become_much_better(
+    depth: float, times: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    sought: list[Along] = []
+
+    class Meeting(NormalBoundaryIntersection):
+        def along(self, setting: Setting) -> Along:
+            """Return the front, on the way to which a model in the well is evaluated."""
+            setting.archive.evaluate(np.array([1.0, 0.701]))
+            sought.append(super().along(setting))
+            return sought[-1]
+
+    monkeypatch.setitem(METHODS, "nbi", Meeting())
+    problem = box(narrow(depth), [-0.5, -1.0], [1.5, 1.0])
+    search = Search(starts=1, limit=1, evolutions=0)
+    front = pareto_front(problem, np.ones(2), Pareto(points=5), search=search)
+    assert len(sought) == times
+    assert front.edges[1].best.theta == pytest.approx([1.0, 0.7], abs=1e-4)
+    along = [point.solution for point in of_kind(front.points, Kind.FRONT)]
+    assert along[-1].J == pytest.approx(front.edges[1].best.J, abs=1e-9), "the edge ends the front"

@@ -1,4 +1,4 @@
-"""Points of fronts of three objectives compete with other branches, and with their neighbours."""
+"""Points of fronts compete with visited models; of three objectives, with other branches too."""
 
 from __future__ import annotations
 
@@ -12,11 +12,19 @@ from modefront._typing import Floats
 from modefront.solvers.archive import Archive
 from modefront.solvers.attainment import Attainment
 from modefront.solvers.border import without_slack
-from modefront.solvers.competition import Comparison, Visited, from_points_beside, polished
+from modefront.solvers.competition import (
+    Comparison,
+    Visited,
+    from_points_beside,
+    from_visited,
+    polished,
+)
 from modefront.solvers.continuation import simplex
+from modefront.solvers.nbi import Projection
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import infeasible
-from modefront.solvers.sqp import Solution, begin, solve
+from modefront.solvers.sqp import Solution, Status, begin, solve
+from modefront.work.run import Run
 
 CENTRES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 STEP = 0.05
@@ -167,3 +175,82 @@ def test_of_equal_greatest_excess_the_lower_sum_is_better() -> None:
         assert not programmes.is_better(beta, J, lower)
         assert not programmes.is_better(beta, lower + 1e-5, J), "a greater excess"
         assert not programmes.is_better(beta, J - 1e-8, J), "the same point"
+
+
+TWO = Payoff(np.zeros(2), np.ones(2), np.ones((2, 2)) - np.eye(2))
+LATTICE = simplex(2, 10)
+
+
+def in_two_basins(theta: Floats) -> Derivatives:
+    J, dJ, H = two_basins(theta)
+    return J[:2], dJ[:2], H[:2]
+
+
+BASINS = box(in_two_basins, [-0.5, -0.5, -1.5], [1.5, 1.5, 1.5], 2)
+
+
+def projected(problem: Known, beta: Floats, start: list[float]) -> Solution:
+    """Return the point of a front of two objectives at beta, from a start."""
+    begun = begin(problem.evaluate(np.array(start)))
+    solution = replace(solve(problem, Projection(TWO).subproblem(beta), begun), beta=beta)
+    assert solution.converged
+    return solution
+
+
+def along(z: float) -> list[Solution]:
+    """Return three points of the front of two basins, in that near z."""
+    betas = LATTICE.beta[[4, 5, 6]]
+    return [projected(BASINS, beta, [beta[1], 0.0, z]) for beta in betas]
+
+
+def searches(work: Run) -> list[tuple[int, int]]:
+    """Return the point and the rank of the visited model of each search."""
+    return [(key[4], key[6]) for key in work.costs]
+
+
+def test_a_visited_model_that_gains_is_tried_at_all_points_that_it_is_best_for() -> None:
+    visited, work = Archive(BASINS), Run()
+    visited.evaluate(np.array([0.52, 0.0, 0.95]))
+    worse = along(-1.0)
+    ends = from_visited(BASINS, TWO, LATTICE, worse, visited, work)
+    for end, point, better in zip(ends, worse, along(1.0), strict=True):
+        assert end.J == pytest.approx(better.J, abs=1e-6)
+        assert (point.J - end.J).min() > 0.9 * STEP
+    assert searches(work)[0] == (2, 1), "the point that it is the least behind"
+    assert sorted(searches(work)) == [(1, 1), (2, 1), (3, 1)]
+
+
+def test_a_visited_model_that_gains_nothing_is_tried_at_one_point_and_ends_it() -> None:
+    visited, work = Archive(BASINS), Run()
+    points = along(1.0)[:2]
+    visited.add(np.array([0.52, 0.0, -0.85]), points[1].J + np.array([1e-3, 2e-3]))
+    visited.add(np.array([0.9, 0.9, 1.0]), points[1].J + np.array([4e-3, 1e-3]))
+    ranked = [Visited.of(BASINS, TWO, LATTICE, visited).best(point) for point in points]
+    assert ranked == [[0, 1]] * 2, "two models that are far from all points"
+    ends = from_visited(BASINS, TWO, LATTICE, points, visited, work)
+    assert all(end is point for end, point in zip(ends, points, strict=True))
+    assert searches(work) == [(2, 1)]
+
+
+def many_parameters(theta: Floats) -> Derivatives:
+    """Squared distances from two places, and a bowl in others of which no derivative is known."""
+    r, u = theta[:1] - CENTRES[:2, :1], theta[1:]
+    steep = np.geomspace(1e-3, 1.0, u.size)
+    J = (r**2).sum(axis=1) + steep @ u**4
+    dJ = np.column_stack([2 * r, np.tile(4 * steep * u**3, (2, 1))])
+    return J, dJ, np.array([np.diag([2.0, *np.zeros(u.size)])] * 2)
+
+
+def test_a_search_that_does_not_catch_up_is_given_up() -> None:
+    problem = box(many_parameters, [-0.5] + [-1.0] * 40, [1.5] + [1.0] * 40, 2)
+    beta = np.array([0.5, 0.5])
+    point = begin(problem.evaluate(np.array([0.5, *np.zeros(40)])))
+    point = replace(point, beta=beta, status=Status.CONVERGED, weights=np.ones(2))
+    start = np.array([0.5, *np.linspace(0.3, 0.9, 40)])
+    whole = solve(problem, Projection(TWO).subproblem(beta), begin(problem.evaluate(start)))
+    visited, work = Archive(problem), Run()
+    visited.add(start, point.J + 0.05)
+    assert from_visited(problem, TWO, LATTICE, [point], visited, work) == [point]
+    assert whole.status is Status.EXHAUSTED
+    assert (whole.J > point.J).all(), "the point is not reached in a hundred steps"
+    assert work.total().eigenproblems < 0.7 * whole.evaluations

@@ -15,7 +15,8 @@ up to the third order of their distance. Where that does not hold, the programme
 which is negative as soon as a model dominates the point, is solved from the other one
 (`modefront.solvers.attainment`). So it is from the models that some search has visited on its way
 and that lie little behind the point, far from it in the parameters: a basin in which no search has
-ended, and so no point of the front lies, shows in these only.
+ended, and so no point of the front lies, shows in these only. Of two objectives, only these are
+tried, each at one point first.
 
 ========  ========  ==========================================================
 symbol    shape     meaning
@@ -44,7 +45,7 @@ from modefront.solvers.continuation import JUMP, Simplex
 from modefront.solvers.flat import same
 from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import Problem
-from modefront.solvers.sqp import Options, Solution, begin, solve
+from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 from modefront.work.task import IMMEDIATE, Executor, Key, Task
 
 ROUNDS = 4
@@ -92,7 +93,17 @@ improve 32 of 208 points with 9,000 evaluations, and three of 0.3 steps 23 with 
 FINISHES = 2
 """Searches at most from a model that dominates a point: beside exact fits one does not suffice."""
 
+WORTH = 0.1
+"""Share of the best visited models that have to lead to a better point, or the next best ones are
+left out, of two objectives. On 74 problems (`benchmarks/edges.py`), 7 of 464 searches from the best
+models for each point did, by up to 0.8 of the ranges, and 1 of 465 from the next two, by 5e-4."""
+
+PARTS = 10
+"""Parts of a search that goes on as long as it catches up with the point, at most: no longer than
+the two searches that finish others."""
+
 _ROUGH = Options(step=1e-4, iterations=20)
+_PART = Options(iterations=20)
 
 
 # 7 arguments: the front, and what is known beside it.
@@ -137,15 +148,39 @@ def from_visited(
     visited: Archive,
     work: Executor = IMMEDIATE,
 ) -> list[Solution]:
-    """Return the points, each solved again from models that the run has visited in other basins."""
+    """Return the points, each solved again from models that the run has visited in other basins.
+
+    A model is tried at the one point that it is the least behind, of those for which it is the best
+    one; only where that gains, it is tried at the others, and only where enough have gained, the
+    next best models are. A search that does not catch up is given up: where parameters outnumber
+    data, every search leaves models behind that are far from all points, and lead to others with
+    the same objectives, slowly.
+    """
     competition = _Competition(problem, target, lattice, list(points), set())
-    new: Collection[int] = range(len(points))
+    new = set(range(len(points)))
     for turn in range(ROUNDS):
-        new = competition.won(
-            competition.from_visited(("front", "nbi", "visited", turn), new, visited), work
-        )
-        if not new:
+        gained: set[int] = set()
+        for rank in range(VISITED):
+            name: Key = ("front", "nbi", "visited", turn)
+            groups = competition.by_best_visited(new - gained, visited, rank)
+            firsts = [
+                start
+                for theta, of in groups
+                for start in competition.from_one(name, rank, theta, of[:1])
+            ]
+            better = competition.won(firsts, work)
+            rest = [
+                start
+                for theta, of in groups
+                if of[0] in better
+                for start in competition.from_one(name, rank, theta, of[1:])
+            ]
+            gained |= better | competition.won(rest, work)
+            if len(better) < WORTH * len(groups):
+                break
+        if not gained:
             break
+        new = gained
     return competition.points
 
 
@@ -197,6 +232,31 @@ class _Competition:
             for k in self.comparison.open.tolist()
             if k in new
             for rank, theta in enumerate(visited.starts(self.points[k]))
+            if self._is_untried(k, theta)
+        ]
+
+    def by_best_visited(
+        self, new: Collection[int], archive: Archive, rank: int
+    ) -> list[tuple[Floats, list[int]]]:
+        """Return models of an archive, each with the points that it is to be tried at.
+
+        These are ``new``, the model is the best one for them, or of lower ``rank``, and it is the
+        least behind the first of them.
+        """
+        visited = Visited.of(self.problem, self.target, self.lattice, archive)
+        groups: dict[int, list[tuple[float, int]]] = {}
+        for k in self.comparison.open.tolist():
+            best = visited.best(self.points[k]) if k in new else []
+            if len(best) > rank and (k, visited.theta[best[rank]].tobytes()) not in self.attempts:
+                behind = float(visited.excess(self.points[k])[best[rank]])
+                groups.setdefault(best[rank], []).append((behind, k))
+        return [(visited.theta[i], [k for _, k in sorted(of)]) for i, of in groups.items()]
+
+    def from_one(self, name: Key, rank: int, theta: Floats, of: Sequence[int]) -> list[Start]:
+        """Return the tasks that solve points from one model of an archive."""
+        return [
+            self._start(k, (*name, k + 1, "visited", rank + 1), _caught_up, theta)
+            for k in of
             if self._is_untried(k, theta)
         ]
 
@@ -345,15 +405,23 @@ class Visited:
 
     def starts(self, point: Solution) -> list[Floats]:
         """Return the parameters (p,) of the best models far from a point and from one another."""
-        excess = ((self.J - point.J) / self.normal).max(axis=1)
+        return [self.theta[i] for i in self.best(point)]
+
+    def best(self, point: Solution) -> list[int]:
+        """Return the indices of the best models far from a point and from one another."""
+        excess = self.excess(point)
         near = np.flatnonzero(excess < self.little)
         left = near[excess[near].argsort(kind="stable")]
         left = left[self._far(left, point.theta)]
-        out: list[Floats] = []
+        out: list[int] = []
         while left.size and len(out) < VISITED:
-            out.append(self.theta[left[0]])
-            left = left[self._far(left, out[-1])]
+            out.append(int(left[0]))
+            left = left[self._far(left, self.theta[out[-1]])]
         return out
+
+    def excess(self, point: Solution) -> Floats:
+        """Return how far each model lies behind a point, (models,), in units of the ranges."""
+        return np.asarray(((self.J - point.J) / self.normal).max(axis=1))
 
     def _far(self, indices: Ints, theta: Floats) -> Bools:
         """Return which of some models are far from parameters (p,)."""
@@ -384,6 +452,38 @@ def _from_visited(problem: Problem, target: Payoff, point: Solution, theta: Floa
     return replace(end, evaluations=end.evaluations + 1)
 
 
+def _caught_up(problem: Problem, target: Payoff, point: Solution, theta: Floats) -> Solution:
+    """Return the programme through a point of the front, solved from a visited model.
+
+    It is solved in parts, and no further when it ends behind the point, comes to it, or in one part
+    has not caught up with half of what it lay behind.
+    """
+    beta = target.place(point.J)
+    programme = programmes_of(problem, target).subproblem(beta)
+    end = solve(problem, programme, begin(problem.evaluate(theta)), _ROUGH)
+    evaluations, behind = 1 + end.evaluations, _behind(target, point, end)
+    if behind <= BEHIND and not _has_come_to(problem, point, end):
+        for _ in range(PARTS):
+            before = behind
+            end = solve(problem, programme, end, _PART)
+            evaluations, behind = evaluations + end.evaluations, _behind(target, point, end)
+            if end.status is not Status.EXHAUSTED or behind > max(before / 2, 0):
+                break
+    return replace(end, evaluations=evaluations, beta=point.beta)
+
+
+def _behind(target: Payoff, point: Solution, end: Solution) -> float:
+    """Return how far the end of a search lies behind a point, in units of the ranges."""
+    beta = target.place(point.J)
+    return float(target.excess(beta, end.J).max() - target.excess(beta, point.J).max())
+
+
+def _has_come_to(problem: Problem, point: Solution, end: Solution) -> bool:
+    """Return whether a search has ended at a point."""
+    away = np.abs((end.theta - point.theta) / (problem.upper - problem.lower)).max()
+    return end.converged and bool(away < ARRIVED)
+
+
 def _from_other(problem: Problem, target: Payoff, point: Solution, start: Solution) -> Solution:
     """Return the programme through a point of the front, solved from another point of it.
 
@@ -393,9 +493,7 @@ def _from_other(problem: Problem, target: Payoff, point: Solution, start: Soluti
     programme = programmes_of(problem, target).subproblem(beta)
     end = solve(problem, programme, start, _ROUGH)
     evaluations = end.evaluations
-    lead = target.excess(beta, point.J).max() - target.excess(beta, end.J).max()
-    away = np.abs((end.theta - point.theta) / (problem.upper - problem.lower)).max()
-    if lead >= -BEHIND and not (end.converged and away < ARRIVED):
+    if _behind(target, point, end) <= BEHIND and not _has_come_to(problem, point, end):
         for _ in range(FINISHES):
             end = solve(problem, programme, end)
             evaluations += end.evaluations
