@@ -25,6 +25,7 @@ from modefront.solvers.payoff import Payoff
 from modefront.solvers.problem import infeasible
 from modefront.solvers.sqp import Solution, Status, begin, solve
 from modefront.work.run import Run
+from modefront.work.task import Within
 
 CENTRES = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 STEP = 0.05
@@ -206,6 +207,18 @@ def along(z: float) -> list[Solution]:
 def searches(work: Run) -> list[tuple[int, int]]:
     """Return the point and the rank of the visited model of each search."""
     return [(key[4], key[6]) for key in work.costs]
+
+
+def test_points_of_two_objectives_are_solved_again_from_their_neighbours() -> None:
+    work = Run()
+    left, right = along(-1.0), along(1.0)
+    ends = from_points_beside(BASINS, TWO, LATTICE, [left[0], right[1], left[2]], work)
+    for end, better in zip(ends, right, strict=True):
+        assert end.J == pytest.approx(better.J, abs=1e-6)
+    assert len(work.costs) == 3, "from one point each"
+    counted = len(work.costs)
+    assert from_points_beside(BASINS, TWO, LATTICE, right, Within(work, turn=("again",))) == right
+    assert len(work.costs) == counted, "one smooth branch"
 
 
 def test_a_visited_model_that_gains_is_tried_at_all_points_that_it_is_best_for() -> None:
