@@ -99,8 +99,8 @@ left out, of two objectives. On 74 problems (`benchmarks/edges.py`), 7 of 464 se
 models for each point did, by up to 0.8 of the ranges, and 1 of 465 from the next two, by 5e-4."""
 
 PARTS = 10
-"""Parts of a search that goes on as long as it catches up with the point, at most: no longer than
-the two searches that finish others."""
+"""Parts of a search of two objectives, which goes on as long as it catches up with the point, at
+most: together no longer than the two searches that finish those of more."""
 
 _ROUGH = Options(step=1e-4, iterations=20)
 _PART = Options(iterations=20)
@@ -255,7 +255,7 @@ class _Competition:
     def from_one(self, name: Key, rank: int, theta: Floats, of: Sequence[int]) -> list[Start]:
         """Return the tasks that solve points from one model of an archive."""
         return [
-            self._start(k, (*name, k + 1, "visited", rank + 1), _caught_up, theta)
+            self._start(k, (*name, k + 1, "visited", rank + 1), _from_visited, theta)
             for k in of
             if self._is_untried(k, theta)
         ]
@@ -452,26 +452,6 @@ def _from_visited(problem: Problem, target: Payoff, point: Solution, theta: Floa
     return replace(end, evaluations=end.evaluations + 1)
 
 
-def _caught_up(problem: Problem, target: Payoff, point: Solution, theta: Floats) -> Solution:
-    """Return the programme through a point of the front, solved from a visited model.
-
-    It is solved in parts, and no further when it ends behind the point, comes to it, or in one part
-    has not caught up with half of what it lay behind.
-    """
-    beta = target.place(point.J)
-    programme = programmes_of(problem, target).subproblem(beta)
-    end = solve(problem, programme, begin(problem.evaluate(theta)), _ROUGH)
-    evaluations, behind = 1 + end.evaluations, _behind(target, point, end)
-    if behind <= BEHIND and not _has_come_to(problem, point, end):
-        for _ in range(PARTS):
-            before = behind
-            end = solve(problem, programme, end, _PART)
-            evaluations, behind = evaluations + end.evaluations, _behind(target, point, end)
-            if end.status is not Status.EXHAUSTED or behind > max(before / 2, 0):
-                break
-    return replace(end, evaluations=evaluations, beta=point.beta)
-
-
 def _behind(target: Payoff, point: Solution, end: Solution) -> float:
     """Return how far the end of a search lies behind a point, in units of the ranges."""
     beta = target.place(point.J)
@@ -487,16 +467,20 @@ def _has_come_to(problem: Problem, point: Solution, end: Solution) -> bool:
 def _from_other(problem: Problem, target: Payoff, point: Solution, start: Solution) -> Solution:
     """Return the programme through a point of the front, solved from another point of it.
 
-    It is not solved to the end where it ends behind the point, or comes to it.
+    It is not solved to the end where it ends behind the point, or comes to it; nor, of two
+    objectives, where one part has not caught up with half of what the one before lay behind.
     """
-    beta = target.place(point.J)
+    beta, two = target.place(point.J), point.J.size == 2
     programme = programmes_of(problem, target).subproblem(beta)
     end = solve(problem, programme, start, _ROUGH)
-    evaluations = end.evaluations
-    if _behind(target, point, end) <= BEHIND and not _has_come_to(problem, point, end):
-        for _ in range(FINISHES):
-            end = solve(problem, programme, end)
-            evaluations += end.evaluations
-            if end.converged or not target.is_better(beta, end.J, point.J):
+    evaluations, behind = end.evaluations, _behind(target, point, end)
+    if behind <= BEHIND and not _has_come_to(problem, point, end):
+        for options in [_PART] * PARTS if two else [Options()] * FINISHES:
+            before, end = behind, solve(problem, programme, end, options)
+            evaluations, behind = evaluations + end.evaluations, _behind(target, point, end)
+            ended = end.status is not Status.EXHAUSTED
+            if two and (ended or behind > max(before / 2, 0)):
+                break
+            if not two and (end.converged or not target.is_better(beta, end.J, point.J)):
                 break
     return replace(end, evaluations=evaluations, beta=point.beta)
