@@ -95,8 +95,9 @@ FINISHES = 2
 
 WORTH = 0.1
 """Share of the best visited models that have to lead to a better point, or the next best ones are
-left out, of two objectives. On 74 problems (`benchmarks/edges.py`), 7 of 464 searches from the best
-models for each point did, by up to 0.8 of the ranges, and 1 of 465 from the next two, by 5e-4."""
+left out, of two objectives; likewise of the nearest of other points. On 74 problems
+(`benchmarks/edges.py`), 7 of 464 searches from the best visited models for each point did, by up to
+0.8 of the ranges, and 1 of 465 from the next two, by 5e-4."""
 
 PARTS = 10
 """Parts of a search of two objectives, which goes on as long as it catches up with the point, at
@@ -128,10 +129,14 @@ def from_points_beside(
     gained = 0
     for turn in range(ROUNDS + 1):
         name: Key = ("front", "nbi", "branches", turn)
+        if turn and len(target.scale) == 2:
+            new = competition.won_by_rank(name, work)
+            if not new:
+                break
+            continue
         tasks = competition.from_visited(name, new, visited) if visited else []
         if turn:
-            count = SIDES if len(target.scale) == 2 else MANY if gained else NEAREST
-            tasks += competition.from_points(name, count)
+            tasks += competition.from_points(name, MANY if gained else NEAREST)
         new = competition.won(tasks, work)
         gained += len(new)
         if turn and not new and (not tasks or not gained):
@@ -268,6 +273,27 @@ class _Competition:
             for j in self.comparison.starts(k, count)
             if self._is_untried(k, self.points[j].theta)
         ]
+
+    def won_by_rank(self, name: Key, work: Executor) -> set[int]:
+        """Return the indices of points of two objectives in whose places better solutions are.
+
+        Each is solved from the first of the other points that come into question, and if enough
+        have gained by that, those that have not from the next one.
+        """
+        out: set[int] = set()
+        for rank in range(BRANCHES + LOWER + SIDES):
+            starts = [
+                self._start(k, (*name, rank + 1, k + 1, j + 1), _from_other, self.points[j])
+                for k in self.comparison.open.tolist()
+                if k not in out
+                for j in self.comparison.starts(k, SIDES)[rank : rank + 1]
+                if self._is_untried(k, self.points[j].theta)
+            ]
+            better = self.won(starts, work)
+            out |= better
+            if len(better) < WORTH * len(starts):
+                break
+        return out
 
     def won(self, starts: Sequence[Start], work: Executor) -> set[int]:
         """Return the indices of the points whose places better solutions have taken."""
