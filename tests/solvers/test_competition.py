@@ -267,3 +267,21 @@ def test_a_search_that_does_not_catch_up_is_given_up() -> None:
     assert whole.status is Status.EXHAUSTED
     assert (whole.J > point.J).all(), "the point is not reached in a hundred steps"
     assert work.total().eigenproblems < 0.7 * whole.evaluations
+
+
+def test_next_points_of_two_objectives_are_left_out_where_the_nearest_gain_nothing() -> None:
+    good = along(1.0)[1]
+    places = [good.theta, np.array([0.5, 0.9, 1.0]), np.array([1.2, 0.0, 1.0])]
+    shifts = [np.zeros(2), np.array([-1e-2, 2e-2]), np.array([-2e-2, 4e-2])]
+    points = [
+        replace(good, evaluation=replace(good.evaluation, theta=theta, J=good.J + shift))
+        for theta, shift in zip(places, shifts, strict=True)
+    ]
+    work = Run()
+    coarse = simplex(2, 20)
+    assert [len(Comparison.of(BASINS, TWO, coarse, points).starts(k, 1)) for k in range(3)] == [
+        2
+    ] * 3
+    ends = from_points_beside(BASINS, TWO, coarse, points, work)
+    assert all(end is point for end, point in zip(ends, points, strict=True))
+    assert [(key[4], key[5]) for key in work.costs] == [(1, 1), (1, 2), (1, 3)], "rank and point"
