@@ -15,6 +15,7 @@ from modefront.solvers.border import without_slack
 from modefront.solvers.competition import (
     Comparison,
     Visited,
+    from_neighbours,
     from_points_beside,
     from_visited,
     polished,
@@ -212,12 +213,12 @@ def searches(work: Run) -> list[tuple[int, int]]:
 def test_points_of_two_objectives_are_solved_again_from_their_neighbours() -> None:
     work = Run()
     left, right = along(-1.0), along(1.0)
-    ends = from_points_beside(BASINS, TWO, LATTICE, [left[0], right[1], left[2]], work)
+    ends = from_neighbours(BASINS, TWO, LATTICE, [left[0], right[1], left[2]], work)
     for end, better in zip(ends, right, strict=True):
         assert end.J == pytest.approx(better.J, abs=1e-6)
     assert len(work.costs) == 3, "from one point each"
     counted = len(work.costs)
-    assert from_points_beside(BASINS, TWO, LATTICE, right, Within(work, turn=("again",))) == right
+    assert from_neighbours(BASINS, TWO, LATTICE, right, Within(work, turn=("again",))) == right
     assert len(work.costs) == counted, "one smooth branch"
 
 
@@ -282,6 +283,6 @@ def test_next_points_of_two_objectives_are_left_out_where_the_nearest_gain_nothi
     assert [len(Comparison.of(BASINS, TWO, coarse, points).starts(k, 1)) for k in range(3)] == [
         2
     ] * 3
-    ends = from_points_beside(BASINS, TWO, coarse, points, work)
+    ends = from_neighbours(BASINS, TWO, coarse, points, work)
     assert all(end is point for end, point in zip(ends, points, strict=True))
     assert [(key[4], key[5]) for key in work.costs] == [(1, 1), (1, 2), (1, 3)], "rank and point"

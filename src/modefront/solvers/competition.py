@@ -15,8 +15,8 @@ up to the third order of their distance. Where that does not hold, the programme
 which is negative as soon as a model dominates the point, is solved from the other one
 (`modefront.solvers.attainment`). So it is from the models that some search has visited on its way
 and that lie little behind the point, far from it in the parameters: a basin in which no search has
-ended, and so no point of the front lies, shows in these only. Of two objectives, only these are
-tried, each at one point first.
+ended, and so no point of the front lies, shows in these only. Of two objectives, each of these is
+tried at one point first, and points compete with one another where the front was explored.
 
 ========  ========  ==========================================================
 symbol    shape     meaning
@@ -129,17 +129,30 @@ def from_points_beside(
     gained = 0
     for turn in range(ROUNDS + 1):
         name: Key = ("front", "nbi", "branches", turn)
-        if turn and len(target.scale) == 2:
-            new = competition.won_by_rank(name, work)
-            if not new:
-                break
-            continue
         tasks = competition.from_visited(name, new, visited) if visited else []
         if turn:
             tasks += competition.from_points(name, MANY if gained else NEAREST)
         new = competition.won(tasks, work)
         gained += len(new)
         if turn and not new and (not tasks or not gained):
+            break
+    return competition.points
+
+
+def from_neighbours(
+    problem: Problem,
+    target: Payoff,
+    lattice: Simplex,
+    points: Sequence[Solution],
+    work: Executor = IMMEDIATE,
+) -> list[Solution]:
+    """Return the points of two objectives, each solved again from those beside it.
+
+    The nearest of other branches comes first, and others follow only where enough points gain.
+    """
+    competition = _Competition(problem, target, lattice, list(points), set())
+    for turn in range(ROUNDS):
+        if not competition.won_by_rank(("front", "nbi", "neighbours", turn), work):
             break
     return competition.points
 

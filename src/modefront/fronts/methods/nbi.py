@@ -11,7 +11,12 @@ import numpy as np
 from modefront.fronts.methods.base import Along, Setting
 from modefront.solvers.basins import explore_between, resumed
 from modefront.solvers.border import without_slack
-from modefront.solvers.competition import from_points_beside, from_visited, polished
+from modefront.solvers.competition import (
+    from_neighbours,
+    from_points_beside,
+    from_visited,
+    polished,
+)
 from modefront.solvers.continuation import Simplex
 from modefront.solvers.dominance import nondominated
 from modefront.solvers.flat import same
@@ -85,7 +90,7 @@ class NormalBoundaryIntersection:
         elif not setting.resumed:
             along = from_visited(problem, target, lattice, along, setting.archive, setting.work)
             if len(along) > len(solved):
-                along = from_points_beside(problem, target, lattice, along, setting.work)
+                along = from_neighbours(problem, target, lattice, along, setting.work)
         elif beside:
             along = sorted(along, key=lambda point: -float(target.place(point.J)[0]))
         front = without_copies(lattice, solved, along, target)
