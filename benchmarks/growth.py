@@ -116,6 +116,8 @@ def draw(rows: list[dict[str, Any]], file: Path) -> None:
             ax.loglog(size, value / value[0], mark, label=label)
         ax.loglog(size, size / size[0], ":", color="grey", label="proportional")
         ax.set(xlabel=name, ylabel="time over that of the first")
+        ax.set_xticks(size, [f"{x:,}" for x in size])
+        ax.minorticks_off()
     axes.flat[0].legend()
     figure.savefig(file, metadata={"Date": None})
 
