@@ -232,8 +232,10 @@ def test_processes_of_a_pool_never_see_interrupts_of_the_terminal() -> None:
 def test_signals_interrupt_a_run_and_end_its_processes(name: str, tmp_path: Path) -> None:
     path = write_study(tmp_path, "")
     path.write_text(path.read_text().replace("points = 3", "points = 3000"))
-    heard = "import signal; signal.signal(signal.SIGINT, signal.default_int_handler)"
-    code = f"{heard}; from modefront.cli.main import main; main()"
+    # What has started the tests may ignore signals, such as nohup, and what it starts would too.
+    heard = "signal.signal(signal.SIGINT, signal.default_int_handler)"
+    heard += "; signal.signal(signal.SIGHUP, signal.SIG_DFL)"
+    code = f"import signal; {heard}; from modefront.cli.main import main; main()"
     folder = tmp_path / "results"
     arguments = ["run", path, "-o", folder, "--workers", "2"]
     with subprocess.Popen(
