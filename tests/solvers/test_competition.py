@@ -1,4 +1,4 @@
-"""Points of fronts compete with visited models; of three objectives, with other branches too."""
+"""Points of fronts compete with visited models, with other branches, and with their neighbours."""
 
 from __future__ import annotations
 

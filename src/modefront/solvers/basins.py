@@ -235,7 +235,7 @@ def explore_between(
         return list(points)
     between = _Between(problem, target, lattice, work)
     points = between.competed(points, _models_in(visited))
-    if search.limit == 0:
+    if search.is_none:
         return points
     known = [*points, *(solution for solved in minima for solution in solved)]
     many = max((_different(solved, target.scale) for solved in minima), default=0) >= MINIMA

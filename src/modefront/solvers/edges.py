@@ -32,7 +32,7 @@ def edge_options(search: Search) -> Options:
     These are edges of nearly the same problem, in a basis whose eigenvalues have errors themselves.
     Where an objective does not change in some direction, tighter ones would be met by chance only.
     """
-    return _TIGHT if search.limit else Options()
+    return Options() if search.is_none else _TIGHT
 
 
 @dataclass(frozen=True)

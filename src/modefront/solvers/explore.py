@@ -101,6 +101,11 @@ class Search:
         """Return the search that starts from known models only."""
         return cls(*NO_STARTS)
 
+    @property
+    def is_none(self) -> bool:
+        """Whether it starts from known models only."""
+        return self.limit == 0
+
 
 class LocalSearch(Protocol):
     """Local search from a start to the minimum below it."""
@@ -165,13 +170,13 @@ def explore(
 
     ``starts`` that are known to be good are solved from first, then the problem's own start, then
     others until the rule is met; nothing but known starts where the search allows no others.
-    Solutions that did not converge are among them where they are
-    better than all minima. Empty where the problem is defined at no start. The arguments are more
-    than six because each is independent of the others.
+    Solutions that did not converge are among them where they are better than all minima. Empty
+    where the problem is defined at no start. The arguments are more than six because each is
+    independent of the others.
     """
     run = _Exploration(problem, local, options or Options(), work)
     known: list[Start] = [*starts]
-    if search.limit or not starts:
+    if not (starts and search.is_none):
         known.append(problem.start)
     for k, start in enumerate(known):
         run.follow(start, known[k + 1 :])

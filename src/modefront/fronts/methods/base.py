@@ -58,7 +58,7 @@ class Setting:
     @property
     def resumed(self) -> bool:
         """Whether the front goes on from one that was explored, of nearly the same problem."""
-        return self.search.limit == 0 and len(self.before) > 0
+        return self.search.is_none and len(self.before) > 0
 
 
 @dataclass(frozen=True)
