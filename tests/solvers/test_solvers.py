@@ -1,7 +1,7 @@
 """Problems with known answers, for every solver."""
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import moocore
@@ -183,6 +183,32 @@ def test_searches_are_repeated_exactly_with_the_same_seed() -> None:
             result = explore(problem, Descent(weighted(np.ones(2))), Search(), rng=rng)
         runs.append([*(solution.theta.tolist() for solution in result), costs.eigenproblems])
     assert runs[0] == runs[1]
+
+
+def test_half_finished_searches_from_one_place_are_finished_twice_at_most() -> None:
+    @dataclass
+    class Detour:
+        """A search that lingers at (1, 1) and then goes to the minimum far away."""
+
+        finished: int = 0
+
+        def value(self, J: Floats) -> float:
+            return float(J[0])
+
+        def equal(self, J: Floats, other: Floats) -> bool:
+            return bool(J[0] == other[0])
+
+        def solve(self, problem: Problem, start: Solution, options: Options) -> Solution:
+            rough = options.step > 1e-6
+            self.finished += not rough
+            end = np.ones(2) + 1e-3 * start.theta if rough else np.zeros(2)
+            return replace(begin(problem.evaluate(end)), status=Status.CONVERGED)
+
+    local = Detour()
+    problem = box(circles, [-2.0, -2.0], [2.0, 2.0])
+    result = explore(problem, local, Search(starts=12), rng=np.random.default_rng(0))
+    assert [solution.theta.tolist() for solution in result] == [[0.0, 0.0]]
+    assert local.finished == 2
 
 
 # ---- edges -----------------------------------------------------------------------------------

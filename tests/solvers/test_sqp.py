@@ -262,3 +262,37 @@ def test_a_maximum_without_learned_second_derivatives() -> None:
     result = solve(problem, programme, begin(problem.evaluate(-np.ones(2))), Options(learn=False))
     assert result.converged
     assert result.theta == pytest.approx([0.5, 0.5], abs=1e-6), "the centre of the circle"
+
+
+@pytest.mark.parametrize("learn", [False, True])
+def test_a_search_rests_where_only_rounding_is_left(learn: bool) -> None:
+    """J = 1 + x**2, and rounding of a great model along y."""
+
+    def noisy(theta: Floats) -> Derivatives:
+        noise = 1e-11 * np.sin(1e9 * theta[::-1])
+        J = np.array([1.0 + theta[0] ** 2 + noise[0]])
+        return J, np.array([2 * theta * [1.0, 0.0] + noise]), np.array([np.diag([2.0, 1e-10])])
+
+    problem = box(noisy, [-1.0, -1.0], [2.0, 2.0], 1)
+    start = begin(problem.evaluate(np.array([0.7, 0.3])))
+    options = Options(1e-8, reduction=1e-24, learn=learn)
+    result = solve(problem, weighted(np.ones(1)), start, options)
+    assert result.status is Status.CONVERGED
+    assert abs(result.theta[0]) < 1e-8
+    assert result.evaluations < 25
+
+
+def test_a_search_does_not_rest_while_its_steps_get_shorter() -> None:
+    """Steps along y go a quarter of the way, and promise less than rounding below y = 1e-3."""
+
+    def slow(theta: Floats) -> Derivatives:
+        x, y = theta
+        J = np.array([1.0 + x**2 + y**4])
+        return J, np.array([[2 * x, 4 * y**3]]), np.array([np.diag([2.0, 16 * y**2])])
+
+    problem = box(slow, [-1.0, -1.0], [2.0, 2.0], 1)
+    start = begin(problem.evaluate(np.array([0.7, 0.9])))
+    options = Options(1e-5, reduction=1e-24, learn=False)
+    result = solve(problem, weighted(np.ones(1)), start, options)
+    assert result.status is Status.CONVERGED
+    assert abs(result.theta[1]) < 1.3e-4

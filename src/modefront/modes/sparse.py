@@ -44,7 +44,7 @@ from modefront.modes.lanczos import greatest
 from modefront.modes.result import ModeDerivatives, Modes
 from modefront.modes.spectrum import Shifted, Spectrum
 
-BLOCK = 4
+BLOCK = 8
 """Columns of a block: greatest multiplicity of an eigenvalue that is found at once."""
 
 ATTEMPTS = 4
@@ -102,7 +102,7 @@ def modes(
 def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
     """Return at least the ``count`` lowest modes, with the factors that found them."""
     K, M = pencil.K.at(theta), pencil.M.at(theta)
-    needed, block, least, lost = count + max(2, count // 2), BLOCK, 0.0, False
+    needed, block, least, lost = count + min(max(2, count // 2), 6), BLOCK, 0.0, False
     for attempt in range(ATTEMPTS):
         needed, block = min(needed, pencil.size), min(block, pencil.size)
         right = np.random.default_rng(attempt).standard_normal((pencil.size, block))

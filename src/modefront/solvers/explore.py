@@ -50,6 +50,9 @@ ESTIMATED, MANY = 15, 2
 NEAR = 2e-2
 """Distance of a half-finished search from a minimum below which it is on its way there."""
 
+PASSES = 2
+"""Half-finished searches within that distance of each other that are finished; others from there
+lead to the same minimum, however far away it is."""
 
 LIMIT = 60
 """Default limit of local searches, unless the least number requested is greater."""
@@ -219,6 +222,7 @@ class _Exploration:
     minima : distinct minima so far
     unfinished : ends of searches that did not converge
     arrived : ends of searches at any minimum, half-finished ones included
+    finished : half-finished searches that were finished
     count : starts so far
     """
 
@@ -229,6 +233,7 @@ class _Exploration:
     minima: list[Solution] = field(default_factory=list)
     unfinished: list[Solution] = field(default_factory=list)
     arrived: list[Solution] = field(default_factory=list)
+    finished: list[Solution] = field(default_factory=list)
     count: int = 0
 
     @property
@@ -269,6 +274,9 @@ class _Exploration:
         if not distinct(self.minima, rough, self.problem, NEAR):
             self.arrived.append(rough)
             return False
+        if sum(not distinct([x], rough, self.problem, NEAR) for x in self.finished) >= PASSES:
+            return False
+        self.finished.append(rough)
         arguments = (self.problem, self.local, rough, self.options)
         (end,) = self.work.run([Task(("end", self.count, number), _solved, arguments)], ahead)
         if not end.feasible or not np.isfinite(self.local.value(end.J)):

@@ -92,6 +92,10 @@ CORRECTIONS, FAILURES, BENT = 2, 2, 0.5
 """Corrections of a step at most; failures of corrections one after another, after which none is
 tried; actual over predicted reduction up to which a step is corrected."""
 
+REST, SHORTER = 6, 0.9
+"""Steps one after another that promise no more than rounding, none of them shorter than this share
+of the shortest one before, after which the objectives tell no more."""
+
 SLOW = 10
 """Iterations after which a solution counts as slow, and its steps are corrected: most end earlier,
 and a correction costs an evaluation."""
@@ -229,6 +233,9 @@ def solve(
             return Solution(evaluation, S, w, violation, status or Status.EXHAUSTED, count)
 
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
+        noise = local.noise(multipliers)
+        if progress.rests(far, predicted <= noise) and violation <= options.constraint:
+            return Solution(evaluation, S, w, violation, Status.CONVERGED, count)
         new = problem.evaluate(local.end(problem, s))
         merit = Merit(programme, multipliers, penalty)
         before = merit.at(evaluation)
@@ -251,7 +258,6 @@ def solve(
         rest = 0.5 * w @ (S @ change @ change) * (1 if trusted else -1)
         if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):
             trusted = not trusted
-        noise = local.noise(multipliers)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if options.learn:
             S = learned_from(S, evaluation, new, local.span)
@@ -268,6 +274,8 @@ class _Progress:
     start: float
     worst: float = np.inf
     proposal: float = np.inf
+    shortest: float = np.inf
+    idle: int = 0
 
     @property
     def farthest(self) -> float:
@@ -298,6 +306,18 @@ class _Progress:
         # Steps that were not held back were below the tolerance: rounding of J stops it here.
         near = self.proposal <= self.options.step and violation <= 10 * self.options.constraint
         return Status.CONVERGED if near else Status.STALLED
+
+    def rests(self, step: float, negligible: bool) -> bool:
+        """Return whether steps have come to rest where rounding decides on them.
+
+        ``negligible`` says that the next step promises no more than rounding.
+        """
+        if not negligible:
+            self.shortest, self.idle = np.inf, 0
+            return False
+        self.idle = 0 if step < SHORTER * self.shortest else self.idle + 1
+        self.shortest = min(self.shortest, step)
+        return self.idle >= REST
 
 
 def _next_radius(radius: float, step: float, ratio: float) -> float:
