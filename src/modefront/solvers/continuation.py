@@ -380,8 +380,14 @@ def _solve_again(
 def _from_before(
     problem: Problem, programmes: Programmes, beta: Floats, before: Solution
 ) -> Solution:
+    """Return a point of a front of nearly the same problem, solved again.
+
+    A point that did not converge is left to its neighbours: from its own place it would not again.
+    """
     start = replace(before, evaluation=problem.evaluate(before.theta))
-    return programmes.solve(problem, beta, start)
+    if start.feasible and not before.converged:
+        return replace(start, evaluations=1)
+    return programmes.solve_again(problem, beta, start)
 
 
 def _nearest(coordinates: Floats, total: int) -> LatticePoint:
