@@ -55,9 +55,10 @@ shares of 26, 4 and 1 take 0.33, 0.27 and 0.38 s."""
 LARGE = 20_000
 """Degrees of freedom above which a model is large."""
 
-AIM = 0.1
-"""Error, over the tolerance, below which models need no snapshot on the way; derivatives of modes,
-and with them the parameters, are less exact than eigenvalues."""
+AIM, LATER = 0.1, 0.5
+"""Error, over the tolerance, below which models need no snapshot after the first round: derivatives
+of modes, and with them the parameters, are less exact than eigenvalues. And after later ones, where
+a few models have moved, and a snapshot costs another round."""
 
 ELSEWHERE = 0.05
 """Distance over the ranges from all models of the round before, from which on the errors of a model
@@ -120,12 +121,15 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
             break
         here = Within(work, turn=("round", number))
         work.expect({"snapshot": 1, "certificate": 1})
-        before, front = front, search(work=here, known=front if taken.error <= POOR else None)
+        known = front if taken.error <= POOR else None
+        before, front = front, search(work=here, known=known)
         if taken.full:
             break
         candidates = _candidates(problem, front)
         if not taken.enough or _has_moved(problem, before, front):
-            taken = _take_some(model, "ahead", _farthest(model, candidates), candidates, here)
+            enough = (LATER if known else AIM) * model.tolerance
+            request = _farthest(model, candidates, enough)
+            taken = _take_some(model, "ahead", request, candidates, here)
             if not taken.enough or taken.added:
                 continue
         front = _with_errors(problem, model, front, here)
@@ -221,7 +225,7 @@ def _take_some(
         full = taken.columns >= model.capacity
         if not candidates or full or error > POOR or not taken.added:
             return _Taken(error, added, enough=False, full=full)
-        request = _farthest(model, candidates)
+        request = _farthest(model, candidates, request.enough or AIM * model.tolerance)
     return _Taken(error, added, enough=False, full=False)
 
 
@@ -264,10 +268,15 @@ def _candidates(problem: UpdatingProblem, front: Front) -> list[Solution]:
     return list({_key(solution): solution for solution in models}.values())
 
 
-def _farthest(model: ReducedModel, candidates: Sequence[Solution]) -> SnapshotRequest:
-    """Return the snapshot of the models that are the farthest from all others."""
+def _farthest(
+    model: ReducedModel, candidates: Sequence[Solution], enough: float
+) -> SnapshotRequest:
+    """Return the snapshot of the models that are the farthest from all others, unless it is enough.
+
+    It is where their eigenvalues have relative errors below ``enough``.
+    """
     ranked = sorted(candidates, key=lambda solution: model.distance(solution.theta), reverse=True)
-    return _snap(ranked[:MODELS], AIM * model.tolerance)
+    return _snap(ranked[:MODELS], enough)
 
 
 def _has_moved(problem: UpdatingProblem, before: Front | None, front: Front) -> bool:
