@@ -191,7 +191,7 @@ def begin(evaluation: Evaluation) -> Solution:
     return Solution(evaluation, np.zeros((n, p, p)), np.zeros(n), np.inf, status, 0)
 
 
-# 63 lines: the loop reads as the algorithm in the head of the module.
+# 67 lines: the loop reads as the algorithm in the head of the module.
 def solve(
     problem: Problem, programme: Scalarisation, start: Solution, options: Options | None = None
 ) -> Solution:
@@ -234,8 +234,10 @@ def solve(
 
         predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
         noise = local.noise(multipliers)
-        if progress.rests(far, predicted <= noise) and violation <= options.constraint:
-            return Solution(evaluation, S, w, violation, Status.CONVERGED, count)
+        here = Solution(evaluation, S, w, violation, Status.CONVERGED, count)
+        calm = progress.resting(here, far, predicted <= noise)
+        if calm and calm.violation <= options.constraint:
+            return replace(calm, learned=S, evaluations=count)
         new = problem.evaluate(local.end(problem, s))
         merit = Merit(programme, multipliers, penalty)
         before = merit.at(evaluation)
@@ -276,6 +278,7 @@ class _Progress:
     proposal: float = np.inf
     shortest: float = np.inf
     idle: int = 0
+    calm: Solution | None = None
 
     @property
     def farthest(self) -> float:
@@ -307,17 +310,19 @@ class _Progress:
         near = self.proposal <= self.options.step and violation <= 10 * self.options.constraint
         return Status.CONVERGED if near else Status.STALLED
 
-    def rests(self, step: float, negligible: bool) -> bool:
-        """Return whether steps have come to rest where rounding decides on them.
+    def resting(self, here: Solution, step: float, negligible: bool) -> Solution | None:
+        """Return the point from which the step was the shortest, where rounding decides on steps.
 
-        ``negligible`` says that the next step promises no more than rounding.
+        ``here`` is the point at hand, and ``negligible`` says that the next step promises no more
+        than rounding. None where steps have not come to rest.
         """
         if not negligible:
             self.shortest, self.idle = np.inf, 0
-            return False
+            return None
         self.idle = 0 if step < SHORTER * self.shortest else self.idle + 1
-        self.shortest = min(self.shortest, step)
-        return self.idle >= REST
+        if step < self.shortest:
+            self.shortest, self.calm = step, here
+        return self.calm if self.idle >= REST else None
 
 
 def _next_radius(radius: float, step: float, ratio: float) -> float:
