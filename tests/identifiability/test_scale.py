@@ -374,7 +374,7 @@ def test_without_matrices_changes_are_over_the_range() -> None:
     opaque = replace(problem, model=model)
     scale = scale_at(opaque, opaque.start)
     assert scale.unit == pytest.approx(problem.upper - problem.lower)
-    assert scale.scalings == ()
+    assert scale.scalings == []
     result = combinations(opaque, opaque.start, 1)
     text = free_in_words(result, problem.model.parameters, scale)
     assert text == ["k1, k2, k3 and k4 can be changed by equal amounts"]

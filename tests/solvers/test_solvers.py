@@ -360,6 +360,35 @@ def test_steps_that_are_expected_have_other_names_where_they_turn_out_to_be_othe
     assert {"from", "again-from"} <= {key[3] for key in functions}
 
 
+def test_a_point_that_did_not_converge_before_is_left_to_its_neighbours() -> None:
+    again: dict[Key, Solution] = {}
+
+    class Recording(Immediate):
+        def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
+            results = super().run(tasks, ahead)
+            for task, result in zip(tasks, results, strict=True):
+                if task.key[3] == "again" and isinstance(result, Solution):
+                    again[task.key] = result
+            return results
+
+    problem = box(curved, [-2, -2], [2, 2])
+    edges = edges_of(problem)
+    target = payoff(edges, sizes_of(problem))
+    assert target is not None
+    front = nbi(problem, edges, target, simplex(2, 4))
+    before = [
+        replace(point, status=Status.STALLED) if k == 2 else point for k, point in enumerate(front)
+    ]
+    points = nbi(problem, edges, target, simplex(2, 4), Recording(), before=before)
+    (stalled,) = (x for key, x in again.items() if key[2] == (2, 2))
+    assert (stalled.status, stalled.evaluations) == (Status.STALLED, 1)
+    assert np.array_equal(stalled.theta, front[2].theta)
+    assert stalled.beta is not None
+    assert stalled.beta.tolist() == [0.5, 0.5]
+    assert all(point.converged for point in points)
+    assert np.allclose([x.J for x in points], [x.J for x in front], rtol=0, atol=1e-9)
+
+
 def test_a_piece_of_the_front_between_the_edges_is_reached_from_its_own_minimum() -> None:
     problem = box(three_wells, [-1, -1.5], [2, 1.5])
     sizes = sizes_of(problem)

@@ -15,7 +15,7 @@ from modefront.solvers.merit import Merit, Multipliers, projected, surplus
 from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Residual
 from modefront.solvers.scalarisation import Scalarisation, achievement, level, weighted
 from modefront.solvers.secant import learned_from
-from modefront.solvers.sqp import Options, Status, begin, solve
+from modefront.solvers.sqp import Options, Solution, Status, begin, solve
 
 SEEDS = st.integers(0, 2**31)
 NONE = Multipliers(np.zeros(0), np.zeros(0))
@@ -264,6 +264,15 @@ def test_a_maximum_without_learned_second_derivatives() -> None:
     assert result.theta == pytest.approx([0.5, 0.5], abs=1e-6), "the centre of the circle"
 
 
+def least_of(
+    function: Callable[[Floats], Derivatives], start: list[float], options: Options
+) -> Solution:
+    """Return the minimum of a single objective of two parameters within -1 and 2."""
+    problem = box(function, [-1.0, -1.0], [2.0, 2.0], 1)
+    first = begin(problem.evaluate(np.array(start)))
+    return solve(problem, weighted(np.ones(1)), first, options)
+
+
 @pytest.mark.parametrize("learn", [False, True])
 def test_a_search_rests_where_only_rounding_is_left(learn: bool) -> None:
     """J = 1 + x**2, and rounding of a great model along y."""
@@ -273,10 +282,7 @@ def test_a_search_rests_where_only_rounding_is_left(learn: bool) -> None:
         J = np.array([1.0 + theta[0] ** 2 + noise[0]])
         return J, np.array([2 * theta * [1.0, 0.0] + noise]), np.array([np.diag([2.0, 1e-10])])
 
-    problem = box(noisy, [-1.0, -1.0], [2.0, 2.0], 1)
-    start = begin(problem.evaluate(np.array([0.7, 0.3])))
-    options = Options(1e-8, reduction=1e-24, learn=learn)
-    result = solve(problem, weighted(np.ones(1)), start, options)
+    result = least_of(noisy, [0.7, 0.3], Options(1e-8, reduction=1e-24, learn=learn))
     assert result.status is Status.CONVERGED
     assert abs(result.theta[0]) < 1e-8
     assert result.evaluations < 25
@@ -290,9 +296,6 @@ def test_a_search_does_not_rest_while_its_steps_get_shorter() -> None:
         J = np.array([1.0 + x**2 + y**4])
         return J, np.array([[2 * x, 4 * y**3]]), np.array([np.diag([2.0, 16 * y**2])])
 
-    problem = box(slow, [-1.0, -1.0], [2.0, 2.0], 1)
-    start = begin(problem.evaluate(np.array([0.7, 0.9])))
-    options = Options(1e-5, reduction=1e-24, learn=False)
-    result = solve(problem, weighted(np.ones(1)), start, options)
+    result = least_of(slow, [0.7, 0.9], Options(1e-5, reduction=1e-24, learn=False))
     assert result.status is Status.CONVERGED
     assert abs(result.theta[1]) < 1.3e-4

@@ -17,7 +17,7 @@ from interruptions import interrupt_after
 from texts import two_of_each
 
 import modefront as mf
-from modefront.analysis.certified import certified_front
+from modefront.analysis.certified import AIM, LATER, certified_front
 from modefront.cli.main import main
 from modefront.fem import grids
 from modefront.fronts.driver import pareto_front
@@ -289,14 +289,17 @@ def test_a_model_without_a_basis_says_so(
 
 
 class Recorded(Run):
-    """A run that remembers the names of its tasks."""
+    """A run that remembers the names of its tasks, and which errors its snapshots accept."""
 
     def __init__(self) -> None:
         super().__init__()
         self.names: list[str] = []
+        self.enough: dict[str, float] = {}
 
     def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
         self.names += [task.name for task in tasks]
+        snapshots = [task for task in tasks if task.stage == "snapshot"]
+        self.enough |= {task.name: task.arguments[1].enough for task in snapshots}
         return super().run(tasks, ahead)
 
 
@@ -321,6 +324,8 @@ def test_models_that_have_moved_get_a_snapshot_before_certificates(file: Path) -
     rounds = [name for name in run.names if name.startswith(("snapshot-ahead", "certificate"))]
     first = next(k for k, name in enumerate(rounds) if name.startswith("certificate"))
     assert "snapshot-ahead-1-round-2" in rounds[:first]
+    accepted = [run.enough[f"snapshot-ahead-1-round-{number}"] for number in (1, 2)]
+    assert accepted == [AIM * 1e-8, LATER * 1e-8]
     errors = [x.solution.evaluation.quantities["eigenvalue_error"].max() for x in front.points]
     assert max(errors) <= 1e-8
 

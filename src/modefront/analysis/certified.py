@@ -1,12 +1,12 @@
 r"""The work of a study on a reduced model, until every reported model holds in the full one.
 
 A round does all of the work in the basis at hand. Then snapshots are taken of those models that are
-the farthest from all others, as long as they lack more than a tenth of the tolerance, and the next
-round starts from what is known. Minima that may be the best ones are among them, and so are models
-that a later round has moved. Where nothing is lacking, every model that is reported gets its
-certificate, and where one is above the tolerance, a snapshot is taken there. Minima that cannot be
-the best ones, whatever their errors are, are exempt from the tolerance. A poor basis may
-mislead the search, which is repeated after a single snapshot then.
+the farthest from all others, as long as they lack more than a tenth of the tolerance (half of it
+after later rounds), and the next round starts from what is known. Minima that may be the best ones
+are among them, and so are models that a later round has moved. Where nothing is lacking, every
+model that is reported gets its certificate, and where one is above the tolerance, a snapshot is
+taken there. Minima that cannot be the best ones, whatever their errors are, are exempt from the
+tolerance. A poor basis may mislead the search, which is repeated after a single snapshot then.
 
 The tasks of every round have a turn of their own, and its snapshots are among them, so that an
 interrupted run goes on with the same digits.

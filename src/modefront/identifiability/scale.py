@@ -33,8 +33,8 @@ y         (p,)        change of theta that scales a matrix as a whole
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import cached_property
 from weakref import ref
 
 import numpy as np
@@ -94,13 +94,18 @@ class Scale:
     theta : (p,) parameters there
     unit : (p,) s
     positive : (p,) which parameters are above 0 in all of their range
-    scalings : changes that scale matrices as a whole
+    model : the matrices and their derivatives there; None of a model without matrices
     """
 
     theta: Floats
     unit: Floats
     positive: Bools
-    scalings: Sequence[Scaling] = ()
+    model: MatrixModel | None = None
+
+    @cached_property
+    def scalings(self) -> list[Scaling]:
+        """Changes that scale matrices as a whole, looked for when they are first asked for."""
+        return whole_scalings(self.model, self.theta, self.unit) if self.model else []
 
 
 def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
@@ -109,11 +114,16 @@ def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
         if of() is problem and np.array_equal(last.theta, theta):
             return last
     scale = _scale_at(problem, theta.copy())
-    _LAST[:] = [(ref(problem), scale)]
+    _LAST[:] = [(ref(problem, _forget), scale)]
     return scale
 
 
 _LAST: list[tuple[ref[UpdatingProblem], Scale]] = []
+
+
+def _forget(gone: ref[UpdatingProblem]) -> None:
+    """Drop the scale of a problem that is no more, and with it the model."""
+    _LAST[:] = [last for last in _LAST if last[0] is not gone]
 
 
 def _scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
@@ -123,7 +133,7 @@ def _scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:
         return Scale(theta, span, positive)
     per_K, per_M = _of_stiffness(model, theta, _shift(problem)), _of_mass(model.mass, theta)
     unit = 1 / np.maximum(np.maximum(per_K, per_M), 1 / span)
-    return Scale(theta, unit, positive, whole_scalings(model, theta, unit))
+    return Scale(theta, unit, positive, model)
 
 
 def _shift(problem: UpdatingProblem) -> float:

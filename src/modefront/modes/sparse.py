@@ -47,6 +47,11 @@ from modefront.modes.spectrum import Shifted, Spectrum
 BLOCK = 8
 """Columns of a block: greatest multiplicity of an eigenvalue that is found at once."""
 
+LEAST = 2
+"""Modes beyond those asked for: half of their number, but no fewer than this. The gap for sigma is
+sought among them. Thin shells of many elements, whose rounding is great, need them as well:
+subspace iteration does not purge a mode of unknown ones that are nearer to sigma than it is."""
+
 ATTEMPTS = 4
 """Runs, each with more modes and a larger block, before missing modes are an error."""
 
@@ -102,7 +107,7 @@ def modes(
 def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
     """Return at least the ``count`` lowest modes, with the factors that found them."""
     K, M = pencil.K.at(theta), pencil.M.at(theta)
-    needed, block, least, lost = count + min(max(2, count // 2), 6), BLOCK, 0.0, False
+    needed, block, least, lost = count + max(LEAST, count // 2), BLOCK, 0.0, False
     for attempt in range(ATTEMPTS):
         needed, block = min(needed, pencil.size), min(block, pencil.size)
         right = np.random.default_rng(attempt).standard_normal((pencil.size, block))

@@ -384,9 +384,9 @@ def _from_before(
 
     A point that did not converge is left to its neighbours: from its own place it would not again.
     """
-    start = replace(before, evaluation=problem.evaluate(before.theta))
+    start = replace(before, evaluation=problem.evaluate(before.theta), evaluations=1, beta=beta)
     if start.feasible and not before.converged:
-        return replace(start, evaluations=1)
+        return start
     return programmes.solve_again(problem, beta, start)
 
 

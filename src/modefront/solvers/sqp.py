@@ -23,7 +23,8 @@ Lagrangian (`modefront.solvers.merit`) which, unlike an exact penalty, does not 
 near the solution. Far from it, multipliers may be absurd: they are bounded, and a step that leaves
 the constraints by much more than the start did is shortened. One attempt is made to leave a
 stationary point with clearly negative curvature. A poor step of a slow solution gets a second-order
-correction (`modefront.solvers.correction`), and both steps are judged as one.
+correction (`modefront.solvers.correction`), and both steps are judged as one. Where the objectives
+are known no better than the steps promise, a solution ends before its tolerances are met.
 
 =========  =========  ==================================================================
 symbol     shape      meaning
@@ -175,7 +176,7 @@ class Solution:
 
     @property
     def converged(self) -> bool:
-        """Whether the tolerances were met, or none apply."""
+        """Whether the tolerances were met as far as rounding allows, or none apply."""
         return self.status in (Status.CONVERGED, Status.GIVEN)
 
 
@@ -270,7 +271,18 @@ def solve(
 
 @dataclass
 class _Progress:
-    """Progress of the steps, by which the solution ends; ``start`` is its first violation."""
+    """Progress of the steps, by which the solution ends.
+
+    Attributes
+    ----------
+    options : tolerances
+    start : first violation of the constraints
+    worst : greatest violation since patience was last counted
+    proposal : length of the last step that the trust region did not hold back
+    shortest : length of the shortest of the last steps, if all of these promise only rounding
+    calm : the point from which it led
+    idle : how many of these steps, one after another, were not clearly shorter than all before
+    """
 
     options: Options
     start: float

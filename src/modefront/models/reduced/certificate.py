@@ -162,11 +162,12 @@ class _ErrorEstimate:
 
 @dataclass(frozen=True, eq=False)
 class _Solutions:
-    """Solutions Z (N, m) for the residuals R (N, m) of some modes X (N, m)."""
+    """Solutions Z (N, m) for the residuals R (N, m) of modes X (N, m); ``parts`` are of a model."""
 
     X: Floats
     R: Floats
     Z: Floats
+    parts: list[slice]
 
 
 def estimates(
@@ -194,15 +195,18 @@ def estimates(
             break
         models = [(requests[k].theta, errors[k]) for k in pending]
         solved = _solutions(pencil, space, factor, models)
+        energies = [gram(solved.R[:, part], solved.Z[:, part]) for part in solved.parts]
+        if step == 1:
+            for k, part in zip(pending, solved.parts, strict=True):
+                of, X = requests[k], solved.X[:, part]
+                forms = gram(X, solved.R[:, part])
+                rounding[k] = _rounding(pencil.K.diagonal(of.theta), X, forms, of.lam)
         space = _with_solutions(pencil, space, factor, solved)
         seen = np.hstack([sensors @ block for block in space.blocks])
         unsettled = []
-        for k, request in zip(pending, solved, strict=True):
+        for k, energy in zip(pending, energies, strict=True):
             of = requests[k]
-            proof = _Proof(of, shift, errors[k].eigenvalue, gram(request.R, request.Z), step)
-            if step == 1:
-                forms = gram(request.X, request.R)
-                rounding[k] = _rounding(pencil.K.diagonal(of.theta), request.X, forms, of.lam)
+            proof = _Proof(of, shift, errors[k].eigenvalue, energy, step)
             try:
                 K, M = space.K.at(of.theta), space.M.at(of.theta)
                 errors[k] = _judged(K, M, basis.columns, of.lam, of.Y)
@@ -396,28 +400,25 @@ def _rounding(diagonal: Floats, X: Floats, forms: Floats, lam: Floats) -> tuple[
 
 def _solutions(
     pencil: Pencil, space: Basis, factor: Factor, models: Sequence[tuple[Floats, _ErrorEstimate]]
-) -> list[_Solutions]:
+) -> _Solutions:
     """Return the solutions for the residuals of some modes of each model."""
-    thetas = np.repeat(
-        [theta for theta, _ in models], [request.lam.size for _, request in models], axis=0
-    )
+    counts = [request.lam.size for _, request in models]
+    thetas = np.repeat([theta for theta, _ in models], counts, axis=0)
     lam = np.concatenate([request.lam for _, request in models])
     X = space.combine(np.hstack([request.Y for _, request in models]))
     R = residuals(pencil, thetas, lam, X)
-    Z = factor.below.factor.solve(R)
-    ends = np.cumsum([request.lam.size for _, request in models])[:-1]
-    parts = (np.split(A, ends, axis=1) for A in (X, R, Z))
-    return [_Solutions(*part) for part in zip(*parts, strict=True)]
+    parts = [slice(end - count, end) for count, end in zip(counts, np.cumsum(counts), strict=True)]
+    return _Solutions(X, R, factor.below.factor.solve(R), parts)
 
 
-def _with_solutions(
-    pencil: Pencil, space: Basis, factor: Factor, solved: Sequence[_Solutions]
-) -> Basis:
-    """Return the space with the solutions for some residuals."""
-    R, Z = (np.hstack([getattr(request, name) for request in solved]) for name in ("R", "Z"))
+def _with_solutions(pencil: Pencil, space: Basis, factor: Factor, solved: _Solutions) -> Basis:
+    """Return the space with the solutions, which are scaled where they are, as are residuals."""
+    R, Z = solved.R, solved.Z
     energy = np.maximum(np.einsum("nc,nc->c", R, Z), 0.0)
     unit = np.divide(1.0, np.sqrt(energy), out=np.zeros_like(energy), where=energy > 0)
-    return factor.extend(pencil, space, Z * unit, R * unit, np.sqrt(SHARE))
+    R *= unit
+    Z *= unit
+    return factor.extend(pencil, space, Z, R, np.sqrt(SHARE))
 
 
 def _judged(K: Floats, M: Floats, n: int, lam: Floats, Y: Floats) -> _ErrorEstimate:

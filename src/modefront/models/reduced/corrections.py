@@ -46,7 +46,7 @@ SLOWEST = 0.5
 ENTRIES = 2**19
 """Entries of the right-hand sides that are solved together, but for `FEWEST` columns."""
 
-FEWEST = 36
+FEWEST = 64
 """Right-hand sides that are solved together however large the model is, if there are as many."""
 
 STEPS = 30
