@@ -243,6 +243,26 @@ def test_two_factorisations_an_evaluation(costs: Costs) -> None:
         assert costs.factorisations == 2 * evaluation
 
 
+@pytest.mark.parametrize(("thickness", "count"), [(2e-3, 9), (2e-4, 18), (2e-4, 30)])
+def test_two_factorisations_of_a_thin_shell(thickness: float, count: int, costs: Costs) -> None:
+    """Rounding leaves much of unknown modes in the lowest ones, which lie far from sigma."""
+    X, cells = fem.grids.plate(3.0, 2.0, 18, 12)
+    X[:, 2] = 0.1 * X[:, 0] * X[:, 1]
+    sheet = fem.Shells("sheet", cells, fem.Material(210e9, 0.3, 7850.0), thickness)
+    sensor, support = (
+        fem.Sensor("corner", len(X) - 1, "z"),
+        fem.Support(np.flatnonzero(X[:, 0] == 0)),
+    )
+    pencil = mesh_model(fem.Structure(X, (sheet,), (support,), sensors=(sensor,)), ()).pencil
+    modes = sparse.lowest(pencil, np.zeros(0), count)
+    assert costs.factorisations == 2
+    assert modes.proved >= count
+    gram = modes.Phi.T @ (pencil.M.at(np.zeros(0)) @ modes.Phi)
+    assert np.abs(gram - np.eye(len(gram))).max() < 1e-12
+    more = sparse.lowest(pencil, np.zeros(0), 60)
+    assert (np.abs(modes.lam - more.lam[: modes.lam.size]) < 10 * modes.noise).all()
+
+
 def test_eigenvalues_repeated_more_often_than_a_block_is_wide() -> None:
     result = model(np.diag([1.0] * 9 + [2.0] * 30), np.eye(39)).modes(np.ones(2), 9)
     assert result.lam == pytest.approx(np.ones(9))

@@ -49,8 +49,7 @@ BLOCK = 8
 
 LEAST = 2
 """Modes beyond those asked for: half of their number, but no fewer than this. The gap for sigma is
-sought among them. Thin shells of many elements, whose rounding is great, need them as well:
-subspace iteration does not purge a mode of unknown ones that are nearer to sigma than it is."""
+sought among them, and the more there are, the faster subspace iteration is."""
 
 ATTEMPTS = 4
 """Runs, each with more modes and a larger block, before missing modes are an error."""
@@ -79,7 +78,7 @@ BEYOND = 1e3
 CONVERGED = 1e-8
 """Change of a mode in subspace iteration, after which the next one is exact to rounding."""
 
-REFINEMENTS = 5
+REFINEMENTS = 8
 """Subspace iterations, after which more modes are sought instead."""
 
 
@@ -297,10 +296,16 @@ def _regular(
 def _refined(
     above: Shifted, M: scipy.sparse.csr_array, lam: Floats, Phi: Floats, needed: int
 ) -> tuple[Floats, Floats, Floats] | None:
-    """Return eigenvalues, modes and M times the modes after subspace iteration with B.
+    r"""Return eigenvalues, modes and M times the modes after subspace iteration with B.
 
     Of the modes beyond the ``needed`` ones, those are left out that would take longer; None where
     the needed ones do not converge.
+
+    A step multiplies the part of an unknown mode u in a mode r by :math:`\rho =
+    (\lambda_r - \sigma) / (\lambda_u - \sigma)`. For the modes below :math:`\sigma` that is
+    negative, and about -1 or less for the lowest ones: with :math:`\rho \ge 2 t`, all steps but the
+    last one are shortened, so that it becomes :math:`(\rho - t) / (1 - t)`, which is between -1 and
+    1. The last one is whole, and leaves nothing of the null space of M.
     """
     MPhi = times(M, Phi)
     for _ in range(REFINEMENTS):
@@ -310,9 +315,14 @@ def _refined(
         error = np.sqrt(np.abs(np.einsum("nr,nr->r", Y - Phi, MY - MPhi)))
         B = gram(Y, MPhi) * distance
         distance, Z = scipy.linalg.eigh((B + B.T) / 2, gram(Y, MY))
-        lam, Phi, MPhi = above.sigma + distance, combine(Y, Z), combine(MY, Z)
+        lam, X, MX = above.sigma + distance, combine(Y, Z), combine(MY, Z)
         good = error < CONVERGED
         if good[:needed].all():
             keep = lam.size if good.all() else int(np.argmin(good))
-            return lam[:keep], Phi[:, :keep], MPhi[:, :keep]
+            return lam[:keep], X[:, :keep], MX[:, :keep]
+        t = np.minimum(distance / distance[-1], 0.0) / 2 if distance[-1] > 0 else 0.0 * distance
+        before, Mbefore, length = combine(Phi, Z), combine(MPhi, Z), t / (1 - t)
+        known = gram(MX, before)  # what the step took from unknown modes is what is left without it
+        Phi = X - length * (before - combine(X, known))
+        MPhi = MX - length * (Mbefore - combine(MX, known))
     return None
