@@ -360,7 +360,10 @@ def test_steps_that_are_expected_have_other_names_where_they_turn_out_to_be_othe
     assert {"from", "again-from"} <= {key[3] for key in functions}
 
 
-def test_a_point_that_did_not_converge_before_is_left_to_its_neighbours() -> None:
+@pytest.mark.parametrize("resumed", [True, False])
+def test_a_resumed_front_leaves_points_that_did_not_converge_to_their_neighbours(
+    resumed: bool,
+) -> None:
     again: dict[Key, Solution] = {}
 
     class Recording(Immediate):
@@ -379,12 +382,15 @@ def test_a_point_that_did_not_converge_before_is_left_to_its_neighbours() -> Non
     before = [
         replace(point, status=Status.STALLED) if k == 2 else point for k, point in enumerate(front)
     ]
-    points = nbi(problem, edges, target, simplex(2, 4), Recording(), before=before)
+    work = Recording()
+    points = nbi(problem, edges, target, simplex(2, 4), work, before=before, resumed=resumed)
     (stalled,) = (x for key, x in again.items() if key[2] == (2, 2))
-    assert (stalled.status, stalled.evaluations) == (Status.STALLED, 1)
-    assert np.array_equal(stalled.theta, front[2].theta)
+    assert stalled.status is (Status.STALLED if resumed else Status.CONVERGED)
+    assert np.allclose(stalled.theta, front[2].theta, rtol=0, atol=0 if resumed else 1e-6)
     assert stalled.beta is not None
     assert stalled.beta.tolist() == [0.5, 0.5]
+    if resumed:
+        assert stalled.evaluations == 1
     assert all(point.converged for point in points)
     assert np.allclose([x.J for x in points], [x.J for x in front], rtol=0, atol=1e-9)
 

@@ -9,7 +9,7 @@ gets the best of them everywhere, at the price of a few more programmes.
 from __future__ import annotations
 
 from collections import Counter, deque
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field, replace
 from itertools import combinations, islice
 from math import comb
@@ -157,10 +157,12 @@ def continuation(
     lattice: Simplex,
     work: Executor = IMMEDIATE,
     before: Sequence[Solution] = (),
+    resumed: bool = False,
 ) -> list[Solution]:
     """Return one solution a point of the lattice, in its order, then those beyond the simplex.
 
-    ``before`` are solutions of nearly the same problem, from which points are solved first.
+    ``before`` are solutions of nearly the same problem, from which points are solved first. Where
+    the front is ``resumed``, the edges are nearly the same as well.
 
     Solutions may be dominated, and those that did not converge say so in their status; beyond the
     simplex only those are returned that converged and are not there yet.
@@ -168,7 +170,7 @@ def continuation(
     run = _Continuation(problem, programmes, lattice, work, branches=len(edges))
     for i, edge in enumerate(edges):
         run.from_edge(i, edge)
-    run.from_before(before)
+    run.from_before(before, _resumed if resumed else _from_before)
     run.spread()
     return run.solutions()
 
@@ -239,7 +241,7 @@ class _Continuation:
         if point not in self.solved or self._better(point, solution, self.solved[point]):
             self._accept(point, solution, number)
 
-    def from_before(self, before: Sequence[Solution]) -> None:
+    def from_before(self, before: Sequence[Solution], solve: Callable[..., Solution]) -> None:
         """Solve points from their solutions of nearly the same problem."""
         tasks: dict[LatticePoint, Task[Solution]] = {}
         divisions = self.lattice.divisions
@@ -250,7 +252,7 @@ class _Continuation:
             if point not in self.solved:
                 key = ("front", self.programmes.label, point, "again")
                 arguments = (self.problem, self.programmes, self.beta(point), solution)
-                tasks.setdefault(point, Task(key, _from_before, arguments))
+                tasks.setdefault(point, Task(key, solve, arguments))
         for point, solution in zip(tasks, self.work.run(list(tasks.values())), strict=True):
             self._accept(point, solution, -1)
 
@@ -380,14 +382,23 @@ def _solve_again(
 def _from_before(
     problem: Problem, programmes: Programmes, beta: Floats, before: Solution
 ) -> Solution:
-    """Return a point of a front of nearly the same problem, solved again.
+    """Return a point from its solution before other edges were found."""
+    return programmes.solve(problem, beta, _evaluated_again(problem, before))
+
+
+def _resumed(problem: Problem, programmes: Programmes, beta: Floats, before: Solution) -> Solution:
+    """Return a point from its solution in another basis, by a single step.
 
     A point that did not converge is left to its neighbours: from its own place it would not again.
     """
-    start = replace(before, evaluation=problem.evaluate(before.theta), evaluations=1, beta=beta)
+    start = _evaluated_again(problem, before)
     if start.feasible and not before.converged:
-        return start
+        return replace(start, evaluations=1, beta=beta)
     return programmes.solve_again(problem, beta, start)
+
+
+def _evaluated_again(problem: Problem, before: Solution) -> Solution:
+    return replace(before, evaluation=problem.evaluate(before.theta))
 
 
 def _nearest(coordinates: Floats, total: int) -> LatticePoint:

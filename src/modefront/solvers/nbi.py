@@ -105,7 +105,7 @@ def programmes(
     return Attainment(target, np.array([corner.theta for corner in corners]), floor)
 
 
-# 8 arguments: the simplex, and what is known of the front from before.
+# 9 arguments: the simplex, and what is known of the front from before.
 def nbi(
     problem: Problem,
     edges: Sequence[Solution],
@@ -115,14 +115,16 @@ def nbi(
     minima: Sequence[Solution] = (),
     floor: Floats | None = None,
     before: Sequence[Solution] = (),
+    resumed: bool = False,
 ) -> list[Solution]:
     """Return one solution a point of the lattice, in its order, then those beyond the simplex.
 
     Other ``minima`` of single objectives are started from as well: each may lie on a part of the
     front of its own. Of two objectives these are minima between the edges only. Of three and more
     objectives, the lattice goes on beyond the simplex as long as no objective is below its
-    ``floor`` (n,). ``before`` are points of a front of nearly the same problem. Solutions may be
-    dominated, and those that did not converge say so in their status.
+    ``floor`` (n,). ``before`` are points of a front of nearly the same problem, which is
+    ``resumed`` where its edges are nearly the same as well. Solutions may be dominated, and those
+    that did not converge say so in their status.
     """
     solved = programmes(target, edges, floor)
     known = [
@@ -133,4 +135,4 @@ def nbi(
     others = [known[i] for i in np.flatnonzero(optimal) if i >= len(edges)]
     if len(edges) == 2:
         others = [solution for solution in others if target.place(solution.J).min() >= 0]
-    return continuation(problem, solved, [*edges, *others], lattice, work, before)
+    return continuation(problem, solved, [*edges, *others], lattice, work, before, resumed)

@@ -73,6 +73,7 @@ class NormalBoundaryIntersection:
             setting.work,
             () if setting.resumed else setting.corners,
             before=before,
+            resumed=setting.resumed,
         )
         along = explore_between(
             problem,
