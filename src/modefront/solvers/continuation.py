@@ -150,6 +150,7 @@ SAME = 1e-6
 """Distance of two points, over the ranges of the objectives, below which they are one."""
 
 
+# 7 arguments: the problem and its programmes, and what is known of the front from before.
 def continuation(
     problem: Problem,
     programmes: Programmes,
