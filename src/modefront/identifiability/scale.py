@@ -105,7 +105,9 @@ class Scale:
     @cached_property
     def scalings(self) -> list[Scaling]:
         """Changes that scale matrices as a whole, looked for when they are first asked for."""
-        return whole_scalings(self.model, self.theta, self.unit) if self.model else []
+        if self.model is None:
+            return []
+        return whole_scalings(self.model, self.theta, self.unit)
 
 
 def scale_at(problem: UpdatingProblem, theta: Floats) -> Scale:

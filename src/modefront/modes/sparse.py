@@ -322,7 +322,7 @@ def _refined(
             return lam[:keep], X[:, :keep], MX[:, :keep]
         t = np.minimum(distance / distance[-1], 0.0) / 2 if distance[-1] > 0 else 0.0 * distance
         before, Mbefore, length = combine(Phi, Z), combine(MPhi, Z), t / (1 - t)
-        known = gram(MX, before)  # what the step took from unknown modes is what is left without it
+        known = gram(MX, before)  # the rest of the modes before is what the step took from them
         Phi = X - length * (before - combine(X, known))
         MPhi = MX - length * (Mbefore - combine(MX, known))
     return None
