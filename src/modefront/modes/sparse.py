@@ -9,8 +9,9 @@ r"""Modes and their exact derivatives for large models, with sparse matrices.
    this proves that none is missing. It needs a positive semidefinite M.
    Where the basis has lost modes, as those far above the lowest are small beside rounding, all are
    solved for with dense matrices, or the iteration is begun again with a greater s.
-3. One step of subspace iteration with B makes the modes exact to rounding, purges the null space
-   of M from them, and its size shows that they have converged.
+3. One step of subspace iteration with B (some in thin shells, where rounding leaves more of unknown
+   modes) makes the modes exact to rounding, purges the null space of M from them, and its size
+   shows that they have converged.
 
 The factors of A and B then give the derivatives, see `modefront.modes.derivatives`. Nothing is
 carried from one theta to the next but the analysis of the pattern.
