@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 from concurrent.futures import CancelledError, Future, ThreadPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from dataclasses import dataclass, field
@@ -19,6 +19,8 @@ class Threads:
 
     The messages with the numbers ``broken`` are lost with all that are under way; from the one
     numbered ``gone`` on, there is no cluster any more. Every message ``forgets`` shared objects.
+    Where there is ``known``, each message meets a process that knows no other shared objects among
+    those of the message than the ones in these places, taken in turn.
     """
 
     count: int = 2
@@ -26,6 +28,7 @@ class Threads:
     broken: Sequence[int] = ()
     gone: int | None = None
     forgets: bool = False
+    known: Sequence[Collection[int]] = ()
     ready: bool = True
     sent: list[Message] = field(default_factory=list)
     restarts: int = 0
@@ -50,6 +53,12 @@ class Threads:
             raise BrokenProcessPool
         if self.forgets and not objects:
             transfer._OBJECTS.clear()
+        if self.known:
+            places = self.known[number % len(self.known)]
+            with transfer._LOCK:
+                for place, name in enumerate(message.names):
+                    if place not in places:
+                        transfer._OBJECTS.pop(name, None)
         return transfer.work(message, objects)
 
     def lost(self, error: Exception, /) -> Loss | None:

@@ -30,6 +30,7 @@ from jobs import (
     slow,
     squares,
     threads,
+    total_of_parts,
     totals,
 )
 from pools import Interrupting, Threads
@@ -153,6 +154,36 @@ def test_a_shared_object_is_sent_where_it_is_not_known(forgets: bool) -> None:
         assert max(len(message.content) for message in pool.sent) < 10**4
         big.numbers, big.version = 2 * big.numbers, 1
         assert work.run(totals(big, 1)) == [2e5 + k for k in range(6)]
+
+
+@given(st.lists(st.sets(st.integers(0, 2)), min_size=1, max_size=5))
+def test_another_process_may_take_what_one_has_lacked(known: list[set[int]]) -> None:
+    part = Big(np.ones(5))
+    middle = Big(np.ones(4), parts=[part])
+    big = Big(np.ones(3), parts=[middle])
+    pool = Threads(1)
+    with Workers(pool) as workers:
+        work = Run(backend=workers)
+        tasks = [
+            [Task(("sum", k), total_of_parts, (big,)) for k in (2 * n, 2 * n + 1)] for n in (0, 1)
+        ]
+        assert work.run(tasks[0]) == [12.0, 12.0]
+        sent, pool.known = len(pool.sent), known
+        assert work.run(tasks[1]) == [12.0, 12.0]
+    assert len(pool.sent) <= sent + 2 * 4, "each time, at least one object more comes with it"
+
+
+def test_what_was_sent_ahead_of_a_change_is_not_sent_again() -> None:
+    big = Big(np.ones(10))
+    pool = Threads(2, delays=(0, 40, 80), forgets=True)
+    with Workers(pool) as workers:
+        work = Run(backend=workers)
+        assert work.run(squares(1, 2), totals(big)) == [1, 4]
+        big.numbers, big.version = 2 * big.numbers, 1
+        assert work.run(totals(big, 1)) == [20.0 + k for k in range(6)]
+    ahead = pool.sent[2].names
+    assert len(ahead) == 1
+    assert sum(message.names == ahead for message in pool.sent) == 1
 
 
 def test_memory_bounds_how_many_tasks_run_at_a_time() -> None:

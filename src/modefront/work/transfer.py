@@ -1,7 +1,8 @@
 """Tasks as bytes for other processes, and large objects that they share sent once.
 
 An object of a class that is registered by `shared` is replaced by a name in the tasks that have it
-among their arguments. A process that does not know the name says so, and is sent the object.
+among their arguments. A process that does not know the name says so, and the tasks are sent again
+with the object. As another process may take them then, it is sent what any of them has lacked.
 """
 
 from __future__ import annotations
@@ -78,6 +79,14 @@ class Sender:
         memory = max((x.footprint for x in pickler.met.values()), default=0.0)
         memory += max((task.memory for task in tasks), default=0.0)
         return Message(stream.getvalue(), tuple(pickler.met), memory)
+
+    def knows(self, names: Sequence[str]) -> bool:
+        """Return whether all shared objects of these names are as they were when named."""
+        values = {name: (key, found()) for key, (name, found) in self._objects.items()}
+        found = [values[name] for name in names if name in values]
+        return len(found) == len(names) and all(
+            value is not None and value.version == version for (_, version), value in found
+        )
 
     def objects(self, names: Sequence[str]) -> dict[str, bytes]:
         """Return shared objects by their names, in this order."""
@@ -157,14 +166,17 @@ class Reply:
 
 
 def work(message: Message, objects: dict[str, bytes]) -> Reply:
-    """Compute the tasks of a message, which comes with shared objects or without."""
+    """Compute the tasks of a message, which comes with shared objects or without.
+
+    Shared objects come after their parts.
+    """
     with _LOCK:  # workers of a cluster may have several threads
+        lacking = tuple(x for x in message.names if x not in _OBJECTS and x not in objects)
+        if lacking:  # they may be parts of those that came
+            return Reply(lacking=lacking)
         for name, content in objects.items():
             if name not in _OBJECTS:
                 _OBJECTS[name] = _Unpickler(io.BytesIO(content)).load()
-        lacking = tuple(name for name in message.names if name not in _OBJECTS)
-        if lacking:
-            return Reply(lacking=lacking)
         for name in message.names:
             _OBJECTS.move_to_end(name)
         while len(_OBJECTS) > max(KNOWN, len(message.names)):

@@ -14,7 +14,7 @@ from collections import Counter, deque
 from collections.abc import Callable, Iterator, Sequence
 from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from math import ceil
 from pathlib import Path
 from pickle import PicklingError
@@ -48,10 +48,18 @@ MOST = 61
 
 @dataclass(frozen=True)
 class _Sent:
-    """Tasks that are being computed elsewhere."""
+    """Tasks that are being computed elsewhere.
+
+    Attributes
+    ----------
+    tasks : sent together
+    message : of these tasks
+    lacked : names of the shared objects that came with it, as some process did not know them
+    """
 
     tasks: Sequence[Task[Any]]
     message: Message
+    lacked: frozenset[str] = frozenset()
 
 
 @dataclass
@@ -227,12 +235,15 @@ class Workers:
         taken = sum(sent.message.memory for sent in self._flying.values())
         if self._flying and taken + message.memory > self.memory:
             return False
-        self._fly(tasks, message, {})
+        self._fly(_Sent(tasks, message))
         return True
 
-    def _fly(self, tasks: Sequence[Task[Any]], message: Message, objects: dict[str, bytes]) -> None:
+    def _fly(self, sent: _Sent) -> None:
+        """Send tasks with the shared objects that a process has lacked."""
+        message, names = sent.message, sent.message.names
+        objects = self._sender.objects([name for name in names if name in sent.lacked])
         try:
-            self._flying[self.pool.submit(message, objects)] = _Sent(tasks, message)
+            self._flying[self.pool.submit(message, objects)] = sent
         except Exception as error:
             loss = self.pool.lost(error)
             if loss is Loss.CLUSTER:
@@ -240,7 +251,7 @@ class Workers:
             if loss is not Loss.POOL:
                 raise
             self.pool.restart()
-            self._flying[self.pool.submit(message, objects)] = _Sent(tasks, message)
+            self._flying[self.pool.submit(message, objects)] = sent
 
     def _received(self, call: _Call, future: Future[Reply]) -> Iterator[tuple[int, Done]]:
         """Yield what has come back with one message."""
@@ -254,8 +265,10 @@ class Workers:
             return
         sent = self._flying.pop(future)
         if reply.lacking:
-            objects = self._sender.objects(reply.lacking)
-            self._fly(sent.tasks, sent.message, objects)
+            if self._sender.knows(sent.message.names):
+                self._fly(replace(sent, lacked=sent.lacked.union(reply.lacking)))
+            else:  # they were sent ahead, and what they share has changed since
+                self._send_again(call, sent.tasks)
             return
         for task, done in zip(sent.tasks, reply.done, strict=False):
             self._learn(task, done.seconds)
@@ -279,7 +292,11 @@ class Workers:
                 self._lost_one(call, failed, "its memory does not suffice")
             else:
                 call.errors[call.position.pop(failed.identity)] = error
-        call.pending.extend(call.position[x.identity] for x in others if call.wants(x))
+        self._send_again(call, others)
+
+    def _send_again(self, call: _Call, tasks: Sequence[Task[Any]]) -> None:
+        """Send those among some tasks again that are wanted."""
+        call.pending.extend(call.position[x.identity] for x in tasks if call.wants(x))
 
     def _lose(self, call: _Call, future: Future[Reply], loss: Loss) -> None:
         """Take note of a loss; the tasks that it concerns are done again, one at a time."""
