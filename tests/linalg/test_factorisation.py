@@ -64,6 +64,19 @@ def test_solutions_and_inertia(
     assert symbolic.factor(values(0.0)).negative == 0
 
 
+@pytest.mark.parametrize(("allowed", "expected"), [("1", 1), ("2", 2), ("99", 4)])
+def test_a_factor_takes_no_more_threads_than_the_environment_allows(
+    allowed: str, expected: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    line = scipy.sparse.diags_array([2.0, -1.0, -1.0], offsets=[0, 1, -1], shape=(10, 10))
+    plane = scipy.sparse.kronsum(line, line)
+    lower = scipy.sparse.tril(scipy.sparse.kronsum(plane, line)).tocsc()
+    pattern = LowerPattern(lower.indptr, lower.indices)
+    monkeypatch.setenv("RAYON_NUM_THREADS", allowed)
+    factor = rslab_ldl.analyse(pattern).factor(lower.data)
+    assert factor.ldl.diagnostics()["threads"] == expected
+
+
 @analyses
 def test_pivots_off_the_diagonal(analyse: Callable[[LowerPattern], Symbolic]) -> None:
     pattern = LowerPattern(np.array([0, 2, 3]), np.array([0, 1, 1]))

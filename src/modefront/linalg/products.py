@@ -39,7 +39,7 @@ WIDE = 2
 """Columns from which on that pays for a sparse matrix."""
 
 THREADS = "RAYON_NUM_THREADS"
-"""Variable of the environment that limits the threads, as it does those of rslab."""
+"""Variable of the environment that limits the threads of products, and of factors by rslab."""
 
 
 Sharing = Callable[[Callable[[int, int], None], int, int], None]
@@ -142,11 +142,11 @@ def times(A: scipy.sparse.csr_array, X: Floats) -> Floats:
 
 def _share(work: Callable[[int, int], None], count: int, multiplications: int) -> None:
     """Do some work on all of ``count`` pieces, from a first one to before a last one at a time."""
-    pool, threads = shared_pool()
-    if multiplications < SHARED or threads == 1 or count < threads:
+    pool, shares = shared_pool()
+    if multiplications < SHARED or shares == 1 or count < shares:
         work(0, count)
         return
-    ends = [count * k // threads for k in range(threads + 1)]
+    ends = [count * k // shares for k in range(shares + 1)]
     for done in [pool.submit(work, *part) for part in pairwise(ends)]:
         done.result()
 
@@ -156,14 +156,19 @@ def _alone(work: Callable[[int, int], None], count: int, _: int) -> None:
     work(0, count)
 
 
+def threads() -> int:
+    """Return the threads that the environment allows, else the processors of this process."""
+    given = os.environ.get(THREADS, "")
+    if given.isdecimal() and int(given) > 0:
+        return int(given)
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
 @cache
 def shared_pool() -> tuple[ThreadPoolExecutor, int]:
     """Return the threads that products are shared among, and their number."""
-    given = os.environ.get(THREADS, "")
-    if given.isdecimal() and int(given) > 0:
-        return ThreadPoolExecutor(int(given), "products"), int(given)
-    threads = len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count()
-    return ThreadPoolExecutor(threads, "products"), threads or 1
+    count = threads()
+    return ThreadPoolExecutor(count, "products"), count
 
 
 def _blocks(X: Floats, columns: int) -> tuple[int, int]:

@@ -10,6 +10,11 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.linalg.factorisation.base import LowerPattern, SingularMatrixError
+from modefront.linalg.products import threads
+
+MOST = 4
+"""Threads of a factor, and of solutions with it, at most. Without a number, rslab would take as
+many on a machine with two processors, whatever the environment says."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,8 +43,9 @@ class RslabSymbolic:
 
     def factor(self, values: Floats) -> RslabFactorisation:
         """Factor the matrix with these values, in the order of the pattern's entries."""
+        limit = "auto", min(MOST, threads())
         try:
-            return RslabFactorisation(self.symbolic.factor(values))
+            return RslabFactorisation(self.symbolic.factor(values, threads=limit))
         except RuntimeError as error:
             raise SingularMatrixError(str(error)) from error
 
