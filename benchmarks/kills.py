@@ -1,6 +1,7 @@
 """Runs that are killed, at random moments and after each write, go on to the same digits.
 
-    python benchmarks/kills.py [--moments 100] [--writes 1000] [--workers 1 2] [--studies chain ...]
+    python benchmarks/kills.py [--moments 100] [--writes 1000] [--processes 100] [--workers 1 2]
+                               [--studies chain ...]
 
 Six studies (a chain, a mesh, a reduced basis, three groups, predictions, an evolutionary front) are
 run once without interruption. Then runs of them, with and without workers, are killed (SIGKILL): at
@@ -12,6 +13,9 @@ continued; what is compared is
 - the files of the tasks that were done before: none is written again;
 - processes of the killed run after it: none;
 - unfinished files after the run that continues: none.
+
+At ``--processes`` random moments, one of the processes of a run with two or three of them is killed
+instead. Nobody continues that run: it has to end with the same digits on its own.
 
 Printed is a line a study with the numbers of kills, and every difference. The exit status is 1
 where there is one.
@@ -205,6 +209,16 @@ class Trials:
                 break
         self.finish(folder, self.workers[-1], written(folder), "after all writes")
 
+    def a_process(self, rng: np.random.Generator, number: int) -> None:
+        """Kill one of the processes of a run at a random moment; the run has to end well."""
+        folder, moment = self.study.with_name(f"process{number}"), rng.uniform(0, self.seconds)
+        process = self.start(folder, 2 + number % 2)
+        time.sleep(moment)
+        if computing := [pid for pid in running(process.pid) if is_spawned(pid)]:
+            os.kill(int(rng.choice(computing)), signal.SIGKILL)
+            self.kills += 1
+        self.end(process, folder, {}, f"a process killed after {moment:.2f} s")
+
     def kill(self, process: Forked) -> None:
         """Kill the process that was started, and wait for those that it has started."""
         process.kill()
@@ -218,7 +232,10 @@ class Trials:
 
     def finish(self, folder: Path, workers: int, before: dict[Path, int], name: str) -> None:
         """Continue a run to its end, and compare it."""
-        process = self.start(folder, workers)
+        self.end(self.start(folder, workers), folder, before, name)
+
+    def end(self, process: Forked, folder: Path, before: dict[Path, int], name: str) -> None:
+        """Wait for the end of a run, and compare it."""
         if status := process.wait():
             self.differences.append(f"{name}: status {status}, {process.messages.read_text()}")
             return
@@ -261,6 +278,13 @@ def running(group: int) -> Iterator[int]:
                 yield int(path.parent.name)
 
 
+def is_spawned(pid: int) -> bool:
+    """Return whether a process is one of those that compute tasks."""
+    with suppress(OSError):
+        return b"spawn_main" in Path(f"/proc/{pid}/cmdline").read_bytes()
+    return False
+
+
 def study(name: str, folder: Path) -> Path:
     """Write a study, and return its file."""
     example, edit = STUDIES[name]
@@ -275,6 +299,7 @@ def main() -> None:
     options = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     options.add_argument("--moments", type=int, default=100)
     options.add_argument("--writes", type=int, default=1000)
+    options.add_argument("--processes", type=int, default=100)
     options.add_argument("--workers", type=int, nargs="+", default=[1, 2])
     options.add_argument("--studies", nargs="+", choices=STUDIES, default=list(STUDIES))
     options.add_argument("--seed", type=int, default=0)
@@ -285,6 +310,8 @@ def main() -> None:
             trials = Trials(study(name, Path(folder) / name), given.workers)
             for number in range(i, given.moments, len(given.studies)):
                 trials.at_a_moment(rng, number // len(given.studies))
+            for number in range(i, given.processes, len(given.studies)):
+                trials.a_process(rng, number // len(given.studies))
             if given.writes:
                 trials.after_writes(given.writes)
         print(f"{name}: {trials.kills} kills", *trials.differences, sep="\n    ", flush=True)
