@@ -175,7 +175,7 @@ def test_another_process_may_take_what_one_has_lacked(known: list[set[int]]) -> 
 
 def test_what_was_sent_ahead_of_a_change_is_not_sent_again() -> None:
     big = Big(np.ones(10))
-    pool = Threads(2, delays=(0, 40, 80), forgets=True)
+    pool = Threads(2, delays=(0, 40, 400), forgets=True)
     with Workers(pool) as workers:
         work = Run(backend=workers)
         assert work.run(squares(1, 2), totals(big)) == [1, 4]
