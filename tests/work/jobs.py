@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from threadpoolctl import threadpool_info
 
 from modefront._typing import Floats
 from modefront.linalg.products import shared_pool
@@ -119,7 +120,8 @@ def deadly(marker: str, times: int, number: int) -> int:
 
 def threads(_: int) -> int:
     time.sleep(0.05)
-    return shared_pool()[1]
+    blas = [x["num_threads"] for x in threadpool_info() if x["user_api"] == "blas"]
+    return max(shared_pool()[1], *blas)
 
 
 def process_of(_: int) -> int:

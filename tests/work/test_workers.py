@@ -315,7 +315,9 @@ def test_long_parts_are_kept_until_their_task_is_done(
 
 @pytest.fixture(scope="module")
 def two() -> Iterator[Workers]:
+    before = dict(os.environ)
     with backend(2) as out:
+        assert dict(os.environ) == before, "only the processes are limited to one thread"
         assert isinstance(out, Workers)
         while not out.pool.ready:
             time.sleep(0.01)

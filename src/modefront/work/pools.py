@@ -32,6 +32,10 @@ from modefront.work.transfer import Message, Reply, work
 ANSWER, JOIN = 10.0, 60.0
 """Seconds in which a scheduler has to answer, and one of its workers to join."""
 
+ONE_THREAD = {"RAYON_NUM_THREADS": "1", "OPENBLAS_NUM_THREADS": "1"}
+"""Environment of a process with one thread: of rslab, `modefront.linalg.products` and the BLAS. A
+BLAS that is limited only after it has started its threads makes imports take half as long again."""
+
 OFTEN = 10.0
 """Seconds after which the workers of a cluster are counted again."""
 
@@ -69,13 +73,22 @@ class Pool(Protocol):
 
 
 class _Process(SpawnProcess):
-    """A process that is remembered, so that it can be ended."""
+    """A process with one thread that is remembered, so that it can be ended."""
 
     started: ClassVar[list[SpawnProcess]] = []
 
     def start(self) -> None:
-        """Start the process."""
-        super().start()
+        """Start the process, which takes the environment that it finds."""
+        before = {name: os.environ.get(name) for name in ONE_THREAD}
+        os.environ.update(ONE_THREAD)
+        try:
+            super().start()
+        finally:
+            for name, value in before.items():
+                if value is None:
+                    del os.environ[name]
+                else:
+                    os.environ[name] = value
         self.started.append(self)
 
 
@@ -155,7 +168,7 @@ def _prepare(warm: Sequence[str]) -> None:
 
 def _take_one_thread() -> None:
     """Limit the BLAS of this process, and what it first shares among threads later, to one."""
-    os.environ["RAYON_NUM_THREADS"] = "1"  # of rslab, and of `modefront.linalg.products`
+    os.environ.update(ONE_THREAD)
     threadpool_limits(1, user_api="blas")
 
 
