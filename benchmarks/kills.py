@@ -218,11 +218,16 @@ class Trials:
             os.kill(int(rng.choice(computing)), signal.SIGKILL)
             self.kills += 1
         self.end(process, folder, {}, f"a process killed after {moment:.2f} s")
+        self.wait_for_all(process)
 
     def kill(self, process: Forked) -> None:
         """Kill the process that was started, and wait for those that it has started."""
         process.kill()
         self.kills += 1
+        self.wait_for_all(process)
+
+    def wait_for_all(self, process: Forked) -> None:
+        """Wait for the processes that one has started, and end those that stay."""
         for _ in range(2000):
             if not list(running(process.pid)):
                 return

@@ -82,11 +82,12 @@ class Sender:
 
     def knows(self, names: Sequence[str]) -> bool:
         """Return whether all shared objects of these names are as they were when named."""
-        values = {name: (key, found()) for key, (name, found) in self._objects.items()}
-        found = [values[name] for name in names if name in values]
-        return len(found) == len(names) and all(
-            value is not None and value.version == version for (_, version), value in found
-        )
+        known = set()
+        for (_, version), (name, found) in self._objects.items():
+            value = found()
+            if value is not None and value.version == version:
+                known.add(name)
+        return known.issuperset(names)
 
     def objects(self, names: Sequence[str]) -> dict[str, bytes]:
         """Return shared objects by their names, in this order."""
