@@ -5,7 +5,8 @@ python3 tasks.py test    the tests
 python3 tasks.py lint    formatting, lint and types
 python3 tasks.py trials  inputs that are spoilt by chance and runs that are killed (hours)
 
-Needs Python 3.11 or newer and nothing else. Packages are the ones pinned in requirements.txt.
+Needs Python 3.11 or newer and nothing else. Packages are those pinned in requirements.txt for the
+demo, and in requirements-dev.txt, which adds to them, for all else.
 """
 
 from __future__ import annotations
@@ -19,7 +20,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
 ENVIRONMENT = ROOT / ".venv"
-REQUIREMENTS = ROOT / "requirements.txt"
+RUNTIME, DEVELOPMENT = "requirements.txt", "requirements-dev.txt"
 TASKS = {
     "demo": [["examples/three_story.py", "demo"]],
     "test": [["-m", "pytest", "-q", "-n", "auto", "--dist", "worksteal"]],
@@ -44,19 +45,23 @@ def run(*arguments: str) -> None:
         sys.exit(status)
 
 
-def set_up() -> None:
-    """Create or renew the environment if the pinned packages are not the installed ones."""
-    wanted = REQUIREMENTS.read_bytes() + (ROOT / "pyproject.toml").read_bytes()
+def set_up(requirements: str) -> None:
+    """Create the environment, renew it if pinned packages have changed, or add what it lacks."""
+    files = (RUNTIME, DEVELOPMENT, "pyproject.toml")
+    pinned = b"".join((ROOT / name).read_bytes() for name in files)
+    digest = hashlib.sha256(pinned + str(ROOT).encode()).hexdigest()
     stamp = ENVIRONMENT / "installed"
-    digest = hashlib.sha256(wanted + str(ROOT).encode()).hexdigest()
-    if stamp.is_file() and stamp.read_text() == digest:
+    found, *installed = stamp.read_text().split() if stamp.is_file() else [""]
+    if found == digest and requirements in installed:
         return
     print("setting up .venv (once; about a minute)", file=sys.stderr)
-    venv.create(ENVIRONMENT, with_pip=True, clear=True)
+    if found != digest:
+        venv.create(ENVIRONMENT, with_pip=True, clear=True)
     pip = ["-m", "pip", "install", "--quiet", "--disable-pip-version-check"]
-    run(*pip, "--require-hashes", "--only-binary=:all:", "-r", str(REQUIREMENTS))
-    run(*pip, "--no-deps", "--no-build-isolation", "--editable", str(ROOT))
-    stamp.write_text(digest)
+    run(*pip, "--require-hashes", "--only-binary=:all:", "-r", str(ROOT / requirements))
+    if found != digest:
+        run(*pip, "--no-deps", "--no-build-isolation", "--editable", str(ROOT))
+    stamp.write_text(" ".join([digest, RUNTIME, requirements]))
 
 
 def main() -> None:
@@ -65,7 +70,7 @@ def main() -> None:
         sys.exit(f"modefront needs Python 3.11 or newer; this is {sys.version.split()[0]}")
     if len(sys.argv) < 2 or sys.argv[1] not in TASKS:
         sys.exit(__doc__)
-    set_up()
+    set_up(RUNTIME if sys.argv[1] == "demo" else DEVELOPMENT)
     *first, last = TASKS[sys.argv[1]]
     for command in first:
         run(*command)

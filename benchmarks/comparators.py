@@ -17,15 +17,15 @@ import time
 
 import numpy as np
 import xarray as xr
-from front import problem_of
 
 import modefront as mf
+from front import problem_of
 from modefront._typing import Floats
+from modefront.front.dominance import nondominated
+from modefront.front.indicators import REFERENCE, hypervolume, igd_plus, largest_gap
 from modefront.results.selection import front_points
-from modefront.solvers.dominance import nondominated
-from modefront.solvers.indicators import REFERENCE, hypervolume, igd_plus, largest_gap
 
-FEW = mf.Search(limit=20, evolutions=0)
+FEW = mf.Search(doubt=0.5)
 """Longer chains have very many local minima; the fronts are compared, not the search for edges."""
 
 METHODS = ("nbi", "weights", "spea2", "nsga2")

@@ -127,10 +127,10 @@ def compare(case: Case, data: xr.Dataset, best_known: Reference, equation: Equat
     for i, name in enumerate(case.problem.objectives):
         if f"edge-{name}" in labels:
             k = labels.index(f"edge-{name}")
-            _edge(line, i, name, theta[k], J[k], known, equation)
+            compare_edge(line, i, name, theta[k], J[k], known, equation)
         else:
             line.edges[f"edge-{name} missing"] = np.inf
-    _weighted(line, labels, _least_regular(data, known), J, known)
+    compare_weighted(line, labels, least_regular(data, known), J, known)
     line.behind = behind(case, dict(zip(labels, J, strict=True)), best_known)
     polished: list[Known] = []
     points = np.flatnonzero((data["kind"].values == "front") & pareto).tolist()
@@ -179,7 +179,7 @@ def behind(case: Case, J: dict[str, Floats], best_known: Reference) -> dict[str,
     return {name: x for name, x in out.items() if x > WORSE}
 
 
-def _edge(
+def compare_edge(
     line: Line,
     i: int,
     name: str,
@@ -188,6 +188,7 @@ def _edge(
     known: Reference,
     equation: Equation,
 ) -> None:
+    """Add the excess of an edge to a line: of J_i, or of the others where that is as small."""
     label, least = f"edge-{name}", known.least(i)
     excess = (J[i] - least) / max(least, known.floor[i])
     if J[i] <= known.floor[i]:
@@ -207,7 +208,10 @@ def _edge(
     line.edges[label] = max(excess, second)
 
 
-def _weighted(line: Line, labels: list[str], along: float, J: Floats, known: Reference) -> None:
+def compare_weighted(
+    line: Line, labels: list[str], along: float, J: Floats, known: Reference
+) -> None:
+    """Add the excess of each weighted model to a line; ``along`` is that of `least_regular`."""
     w = np.ones(known.sizes.size)
     if "equal-weights" in labels:
         least, model = known.weighted(w)
@@ -237,7 +241,7 @@ def _weighted(line: Line, labels: list[str], along: float, J: Floats, known: Ref
         line.better.append(("optimal-weights missing", np.inf, regular[1]))
 
 
-def _least_regular(data: xr.Dataset, known: Reference) -> float:
+def least_regular(data: xr.Dataset, known: Reference) -> float:
     """Return the least sum a ln J of equal weights and of the front where no group fits exactly.
 
     A minimum of that sum above it is none worth the name.

@@ -81,7 +81,7 @@ def measured(over: str, size: int) -> dict[str, Any]:
     sizes = USUAL | {over: size}
     points = sizes.pop("points")
     built = problem(**sizes)
-    search = mf.Search(starts=6, limit=12, evolutions=0)
+    search = mf.Search(doubt=0.5)
     started = time.process_time()
     with counted() as costs:
         mf.solve(

@@ -35,15 +35,17 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg
 from scipy.optimize import linear_sum_assignment, lsq_linear, minimize
-from updating_problems import Affine, Case
+from updating_problems import Case
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.residuals.groups import ModeNumbers
-from modefront.solvers.edges import sample
 from modefront.work.task import seed_sequence
 
 SEED = 1
 """Seed of the runs of modefront."""
+
+SAMPLE = 16
+"""Random parameters that the typical sizes of the objectives are medians of."""
 
 EXACT = 1e-10
 """An objective below this share of its typical size is fitted exactly."""
@@ -77,6 +79,9 @@ EPSILON = 10.0 ** -np.arange(1, 11)
 STEP, BENT = 1e-4, 1e-9
 """Step of differences over the range of a parameter; curvature over the greatest one, up to which
 it is their error."""
+
+UNSEEN = 1e-6
+"""Motion of the sensors in a mode, over that in others, below which it is rounding."""
 
 SWEEP = 10.0 ** np.linspace(-4, 4, 9)
 """Ratios of two weights."""
@@ -119,11 +124,11 @@ class Equation:
 
     @cached_property
     def a(self) -> Floats:
-        """Counts of measured properties of each group."""
-        sensors = len(self.case.sensors)
-        return np.array(
-            [float(len(f) + sensors * len(s)) for f, s in self._groups],
-        )
+        """Counts of measured properties of each group, means over the data sets."""
+        measured = np.isfinite(self.case.problem.data.shape)
+        sets = measured.any(axis=2).sum(axis=0)
+        components = measured.sum(axis=(0, 2)) / np.maximum(sets, 1)
+        return np.array([float(len(f) + components[s].sum()) for f, s in self._groups])
 
     @cached_property
     def sizes(self) -> Floats:
@@ -133,7 +138,7 @@ class Equation:
         says what the best in the others is.
         """
         rng = np.random.default_rng(seed_sequence(SEED, "sample"))
-        thetas = [known_point.theta for known_point in sample(self.case.problem, rng=rng)]
+        thetas = self.lower + self.span * rng.uniform(size=(SAMPLE, self.span.size))
         J = np.array([self.J(theta) for theta in thetas])
         return np.maximum(np.median(J[np.isfinite(J).all(axis=1)], axis=0), np.finfo(float).tiny)
 
@@ -163,23 +168,40 @@ class Equation:
             self._last = key, self._evaluate(theta)
         return self._last[1]
 
+    def pairs(self, theta: Floats) -> tuple[int, ...]:
+        """Return the model mode of each measured one, from 0."""
+        return tuple(self._modes(theta)[2].tolist())
+
+    def _modes(self, theta: Floats) -> tuple[Floats, Floats, Ints]:
+        """Return all eigenvalues and modes, and which of them belong to the measured ones."""
+        case, data = self.case, self.case.problem.data
+        lam, Phi = scipy.linalg.eigh(case.stiffness.at(theta), case.mass.at(theta))
+        m, pairing = data.frequency.shape[1], case.problem.pairing
+        if pairing.method == "order":
+            return lam, Phi, np.arange(m)
+        few = min(lam.size, m + pairing.spare)
+        f = np.sqrt(np.maximum(lam[:few], 1e-300)) / (2 * np.pi)
+        ratio = f / np.nanmean(data.frequency, axis=0)[:, None]
+        outside = np.abs(np.log(ratio)) > np.log(pairing.window or np.inf)
+        return lam, Phi, _pairs(data.shape, case.sensors @ Phi[:, :few], outside)
+
     def _evaluate(self, theta: Floats) -> list[Part] | None:
         self.evaluations += 1
         case, data = self.case, self.case.problem.data
-        lam, Phi = scipy.linalg.eigh(case.stiffness.at(theta), case.mass.at(theta))
-        if lam[0] <= 0:
+        lam, Phi, index = self._modes(theta)
+        if lam[case.rigid] <= 0:
             return None
-        f, measured = np.sqrt(lam) / (2 * np.pi), data.frequency[0]
-        m, N = measured.size, lam.size
-        candidates = min(N, m + case.problem.pairing.spare)
-        index = _pairs(data.shape[0], case.sensors @ Phi[:, :candidates])
+        f = np.sqrt(np.maximum(lam, 0.0)) / (2 * np.pi)
+        slopes = case.stiffness.slopes(theta), case.mass.slopes(theta)
         frequency, shape = [], []
         for r, q in enumerate(index):
-            dlam, dphi = _derivatives(case.stiffness, case.mass, lam, Phi, int(q))
-            df = dlam / (8 * np.pi**2 * f[q])
-            frequency.append(Part(np.array([f[q] / measured[r] - 1]), df[None, :] / measured[r]))
-            psi = data.shape[0, r]
-            shape.append(_shape(psi, case.sensors @ Phi[:, q], case.sensors @ dphi))
+            dlam, dphi = _derivatives(*slopes, lam, Phi, int(q))
+            df = dlam / (8 * np.pi**2 * f[q]) if q >= case.rigid else np.zeros(dlam.size)
+            measured = data.frequency[np.isfinite(data.frequency[:, r]), r]
+            root = np.sqrt(measured.size)
+            part = Part((f[q] / measured - 1) / root, df / measured[:, None] / root)
+            frequency.append(part)
+            shape.append(_shapes(data.shape[:, r], case.sensors @ Phi[:, q], case.sensors @ dphi))
         out = []
         for frequencies, shapes in self._groups:
             chosen = [frequency[k] for k in frequencies] + [shape[k] for k in shapes]
@@ -189,10 +211,18 @@ class Equation:
         return out
 
 
-def _pairs(measured: Floats, phi: Floats) -> Ints:
-    """Return the model mode of each measured one (modes, sensors), by MAC."""
-    norm = np.outer((measured**2).sum(axis=1), (phi**2).sum(axis=0))
-    mac = (measured @ phi) ** 2 / np.maximum(norm, np.finfo(float).tiny)
+def _pairs(measured: Floats, phi: Floats, outside: Bools) -> Ints:
+    """Return the model mode of each measured one (sets, modes, sensors), by mean MAC.
+
+    Those ``outside`` the window of frequencies (measured modes, modes) are the last choice.
+    """
+    size = np.abs(phi).max(axis=0)
+    phi = np.where(size > UNSEEN * size.max(), phi, 0.0)
+    known = np.isfinite(measured)
+    psi = np.where(known, measured, 0.0)
+    norm = (psi**2).sum(axis=2)[:, :, None] * (known @ phi**2)
+    mac = ((psi @ phi) ** 2 / np.maximum(norm, np.finfo(float).tiny)).sum(axis=0)
+    mac = mac / known.any(axis=2).sum(axis=0)[:, None] - 1e3 * outside
     best: Ints = np.argmax(mac, axis=1)
     if np.unique(best).size == best.size:
         return best
@@ -200,18 +230,25 @@ def _pairs(measured: Floats, phi: Floats) -> Ints:
     return assigned
 
 
-def _derivatives(
-    stiffness: Affine, mass: Affine, lam: Floats, Phi: Floats, q: int
-) -> tuple[Floats, Floats]:
+def _derivatives(dK: Floats, dM: Floats, lam: Floats, Phi: Floats, q: int) -> tuple[Floats, Floats]:
     """Return dlam (parameters,) and dphi (N, parameters) of a mode."""
     phi = Phi[:, q]
-    K, M = stiffness.terms[1:] @ phi, mass.terms[1:] @ phi  # (parameters, N)
+    K, M = dK @ phi, dM @ phi  # (parameters, N)
     G = Phi.T @ (K - lam[q] * M).T  # (modes, parameters)
     apart = lam[q] - lam
     apart[q] = 1.0
     coefficient = G / apart[:, None]
     coefficient[q] = -0.5 * (M @ phi)
     return G[q], Phi @ coefficient
+
+
+def _shapes(psi: Floats, phi: Floats, dphi: Floats) -> Part:
+    """Return the residual of a shape (sets, sensors) in all data sets that have it."""
+    known = np.isfinite(psi)
+    sets = np.flatnonzero(known.any(axis=1))
+    parts = [_shape(psi[k, known[k]], phi[known[k]], dphi[known[k]]) for k in sets]
+    r, dr = (np.concatenate(x) for x in zip(*((x.r, x.dr) for x in parts), strict=True))
+    return Part(r / np.sqrt(sets.size), dr / np.sqrt(sets.size))
 
 
 def _shape(psi: Floats, phi: Floats, dphi: Floats) -> Part:
@@ -607,9 +644,16 @@ class _Collection:
         return out
 
 
-def reference(equation: Equation, starts: int = 4, seed: int = 0) -> Reference:
-    """Return all that is found of a problem from the nominal model and from random starts."""
+def reference(
+    equation: Equation, starts: int = 4, seed: int = 0, given: Sequence[Floats] = ()
+) -> Reference:
+    """Return all that is found of a problem from the nominal model and from random starts.
+
+    The models that are ``given`` are known from the beginning.
+    """
     result = _started(equation, starts, seed)
+    for theta in given:
+        result.add(theta, "given")
     n, c = equation.sizes.size, equation.sizes
     weights, equal = _weights(n) / c, np.ones(n)
     result.add(least_squares(equation, equal, result.best(equal, 1)[0]), "weighted")

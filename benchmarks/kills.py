@@ -48,7 +48,7 @@ import modefront.study.session
 from modefront.cli.main import main as modefront_main
 from modefront.study.examples import write_example
 
-FEW = "\n[search]\nstarts = 3\nlimit = 4\n"
+FEW = "\n[search]\ndoubt = 0.5\n"
 GROUPS = re.compile(r"(?s)\[\[group\]\].*?(?=\n\[pareto\])")
 THREE = """[[group]]
 name = "frequencies"

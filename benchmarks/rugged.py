@@ -30,13 +30,13 @@ from pymoo.core.problem import ElementwiseProblem
 from pymoo.optimize import minimize
 
 from modefront._typing import Floats
-from modefront.fronts.driver import pareto_front
-from modefront.fronts.front import Front
-from modefront.fronts.options import Pareto
-from modefront.fronts.point import Kind, of_kind
-from modefront.solvers.dominance import nondominated
-from modefront.solvers.indicators import REFERENCE, hypervolume
-from modefront.solvers.problem import Evaluation, ObjectiveDerivatives
+from modefront.front.dominance import nondominated
+from modefront.front.front import Front
+from modefront.front.indicators import REFERENCE, hypervolume
+from modefront.front.options import Pareto
+from modefront.front.pareto import pareto_front
+from modefront.front.point import Kind, of_kind
+from modefront.optim.problem import Evaluation, ObjectiveDerivatives
 from modefront.work.costs import Costs, counted, spend
 
 Derivatives = tuple[Floats, Floats, Floats]
@@ -66,7 +66,9 @@ class Case:
         """A first guess off the middle."""
         return self.lower + 0.37 * (self.upper - self.lower)
 
-    def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
         """Return the objectives, and their derivatives if wanted."""
         spend(Costs(eigenproblems=1))
         J, dJ, H = self.function(theta)

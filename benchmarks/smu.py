@@ -17,10 +17,10 @@ from modefront.analysis.certified import POOR
 from modefront.models.base import Model
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
+from modefront.optim.scalarisation import weighted
+from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.pairing.match import modes_needed
 from modefront.residuals.base import Scale
-from modefront.solvers.scalarisation import weighted
-from modefront.solvers.sqp import Options, Solution, begin, solve
 
 FOLDER = Path(__file__).resolve().parents[1].parent / "shared" / "data" / "smu"
 

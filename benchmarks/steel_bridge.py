@@ -1,6 +1,6 @@
 """The front of a measured steel bridge of 946 DOFs, 474 of them massless, with and without a basis.
 
-python benchmarks/steel_bridge.py [--points 20] [--searches 1]
+python benchmarks/steel_bridge.py [--points 20] [--doubt 0.5]
 
 17 parameters and 5 measured modes, of which the first two come in the other order in the nominal
 model; frequencies and shapes over their standard deviations. Prints for each point how far the
@@ -18,19 +18,19 @@ import xarray as xr
 from smu import Structure, frequencies_and_shapes, read
 
 import modefront as mf
+from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
-from modefront.solvers.explore import Search
 from modefront.uncertainty.options import Uncertainty
 
 
-def front(structure: Structure, points: int, searches: int, *, reduced: bool) -> xr.Dataset:
+def front(structure: Structure, points: int, doubt: float, *, reduced: bool) -> xr.Dataset:
     """Return the front, and print what it has cost."""
     problem = frequencies_and_shapes(structure, scale="std", reduced=reduced)
     began = time.process_time()
     data = mf.solve(
         problem,
         points=points,
-        search=Search(searches, searches, 0),
+        search=Search(doubt=doubt),
         identifiability=Identifiability(flat=0, models=0),
         uncertainty=Uncertainty(source="none"),
     ).dataset
@@ -48,11 +48,11 @@ def main() -> None:
     """Run the benchmark."""
     parser = argparse.ArgumentParser(description=(__doc__ or "").partition("\n")[0])
     parser.add_argument("--points", type=int, default=20)
-    parser.add_argument("--searches", type=int, default=1)
+    parser.add_argument("--doubt", type=float, default=0.5)
     given = parser.parse_args()
     structure = read("steel_bridge_exp")
     first, other = (
-        front(structure, given.points, given.searches, reduced=reduced) for reduced in (True, False)
+        front(structure, given.points, given.doubt, reduced=reduced) for reduced in (True, False)
     )
     span = structure.upper - structure.lower
     for i, label in enumerate(other["label"].values):

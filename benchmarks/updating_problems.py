@@ -26,6 +26,7 @@ import zlib
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Protocol
 
 import numpy as np
 import scipy.linalg
@@ -47,6 +48,20 @@ SHARES = (0.14, 0.17, 0.17, 0.14, 0.1, 0.1, 0.08, 0.05, 0.03, 0.02)
 """Heights of chains, and how often they come."""
 
 
+class Matrix(Protocol):
+    """A matrix that depends on parameters."""
+
+    @property
+    def terms(self) -> Floats:
+        """Dense terms (parameters + 1, N, N) that it is made of."""
+
+    def at(self, theta: Floats) -> Floats:
+        """Return the matrix at ``theta``, (N, N)."""
+
+    def slopes(self, theta: Floats) -> Floats:
+        """Return its derivatives at ``theta``, (parameters, N, N)."""
+
+
 @dataclass(frozen=True)
 class Affine:
     """Dense terms (parameters + 1, N, N) of an affine matrix; the first is the constant one."""
@@ -57,6 +72,10 @@ class Affine:
         """Return the matrix at ``theta``, (N, N)."""
         out: Floats = np.tensordot(np.append(1.0, theta), self.terms, axes=1)
         return out
+
+    def slopes(self, theta: Floats) -> Floats:
+        """Return the derivatives, (parameters, N, N), which do not depend on ``theta``."""
+        return self.terms[1:]
 
 
 @dataclass(frozen=True)
@@ -72,17 +91,19 @@ class Case:
     sensors : (sensors, N) weights of the degrees of freedom at each sensor
     true : parameters from which the measurements come
     exact : whether the measurements are without error
+    rigid : number of rigid-body modes
     """
 
     kind: str
     seed: int
     text: str
     problem: mf.UpdatingProblem
-    stiffness: Affine
-    mass: Affine
+    stiffness: Matrix
+    mass: Matrix
     sensors: Floats
     true: Floats
     exact: bool
+    rigid: int = 0
 
     @property
     def name(self) -> str:
@@ -219,7 +240,7 @@ def _frame(rng: np.random.Generator) -> _Structure:
     K, M = np.zeros((p + 1, N, N)), np.zeros((p + 1, N, N))
     for j, (first, second) in zip(owner, members, strict=True):
         horizontal = nodes[first, 1] == nodes[second, 1]
-        stiffness, mass = _beam(nodes[second] - nodes[first], *_section(rng, bool(horizontal)))
+        stiffness, mass = beam(nodes[second] - nodes[first], *_section(rng, bool(horizontal)))
         place = np.ix_(*2 * [np.append(3 * first + np.arange(3), 3 * second + np.arange(3))])
         K[j + 1][place] += stiffness
         M[0][place] += mass
@@ -241,7 +262,7 @@ def _section(rng: np.random.Generator, horizontal: bool) -> tuple[float, float, 
     return 2.1e11 * 1e-2, EI, (2500.0 if horizontal else 120.0) * rng.uniform(0.8, 1.2)
 
 
-def _beam(axis: Floats, EA: float, EI: float, m: float) -> tuple[Floats, Floats]:
+def beam(axis: Floats, EA: float, EI: float, m: float) -> tuple[Floats, Floats]:
     """Return stiffness and consistent mass (6, 6) of a beam in the plane, along ``axis`` (2,)."""
     L = float(np.hypot(*axis))
     c, s = axis / L

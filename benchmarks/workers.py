@@ -54,10 +54,10 @@ class Timed(Run):
 
     seconds: dict[str, float] = field(default_factory=dict)
 
-    def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
+    def run(self, tasks: Sequence[Task[R]], /) -> list[R]:
         """Return the results of the tasks."""
         started = time.perf_counter()
-        results = super().run(tasks, ahead)
+        results = super().run(tasks)
         if tasks:
             stage = tasks[0].stage
             passed = time.perf_counter() - started

@@ -41,7 +41,7 @@ def front(folder: Path) -> dict[str, Sequence[float]]:
     return {
         "greatest frequency error, %": error.max(axis=0).tolist(),
         "least MAC": nbi["mac"].min("point").values.tolist(),
-        "dominated points": (np.flatnonzero(~nbi["pareto"].values) + 1).tolist(),
+        "dominated points": (np.flatnonzero(nbi["dominated_among_front"].values) + 1).tolist(),
         "optimal weights lie next to point": [nearest(data, nbi) + 1],
     }
 

@@ -12,13 +12,13 @@ import pytest
 import modefront
 
 LAYERS = (
-    ("_lazy", "_typing", "_version", "rounding", "text"),
+    ("_lazy", "_typing", "_version", "outputs", "rounding", "text"),
     ("errors", "variables"),
-    ("inputs", "hdf5", "isolated"),
+    ("complete", "inputs", "hdf5", "isolated"),
     ("toml", "linalg", "response", "work"),
     ("options",),
-    ("data", "fem", "modes", "reliability", "solvers"),
-    ("fronts", "identification", "pairing"),
+    ("data", "fem", "modes", "optim", "reliability"),
+    ("front", "identification", "pairing"),
     ("models",),
     ("programs",),
     ("residuals",),

@@ -12,8 +12,7 @@ import numpy as np
 import pytest
 
 import modefront as mf
-from modefront.fronts.methods import evolutionary
-from modefront.solvers.explore import LIMIT
+from modefront.front import methods
 from modefront.study.examples import write_example
 from modefront.study.labels import labels_of
 from modefront.work.costs import counted
@@ -48,9 +47,13 @@ WRONG: list[tuple[str, dict[str, Any], str]] = [
         {"refined": 0.1, "method": "spea2"},
         "refined: expected two groups and method 'nbi', found 2 groups, method 'spea2'",
     ),
-    ("search", {"starts": 0}, "starts: expected a whole number from 1 to 1000000, found 0"),
-    ("search", {"starts": 3, "limit": 2}, "limit: expected at least starts, 3, found 2"),
-    ("search", {"spread": -1.0}, "spread: expected a share of the ranges above 0, found -1.0"),
+    (
+        "search",
+        {"evaluations": 0},
+        "evaluations: expected a whole number from 1 to 1000000000, found 0",
+    ),
+    ("search", {"tolerance": 0}, "tolerance: expected a share above 0 and below 1, found 0"),
+    ("search", {"doubt": 1.0}, "doubt: expected a share above 0 and below 1, found 1.0"),
     ("pairing", {"method": "MAC"}, "method: expected one of 'mac', 'order', found 'MAC'"),
     ("pairing", {"window": 1}, "window: expected a ratio of frequencies above 1, found 1"),
     ("pairing", {"spare": -1}, "spare: expected a whole number from 0 to 1000, found -1"),
@@ -138,7 +141,7 @@ def test_one_group_cannot_be_refined_nor_can_a_simplex_have_too_many_points(stud
 
 @pytest.mark.parametrize("method", ["spea2", "nsga2"])
 def test_a_method_whose_package_is_missing(method: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(evolutionary, "available", lambda: False)
+    monkeypatch.setattr(methods, "find_spec", lambda _: None)
     with pytest.raises(mf.InputError, match=f"method: expected the package pymoo for '{method}'"):
         mf.Pareto(method)
 
@@ -155,19 +158,21 @@ def test_numbers_of_numpy_are_numbers() -> None:
     assert repr(mf.Pareto(points=points)) == repr(mf.Pareto(points=7))
     assert repr(mf.Pareto(tolerance=np.float64(0.5))) == repr(mf.Pareto(tolerance=0.5))
     assert mf.Parameter("k", np.float64(1), bounds) == mf.Parameter("k", 1, (0.2, 5))
-    assert mf.Search(10 * points).limit == 70
+    assert mf.Search(10 * points).evaluations == 70
     fraction: Any = np.float64(7)
     with pytest.raises(mf.InputError, match="points: expected a whole number"):
         mf.Pareto(points=fraction)
 
 
-def test_a_search_lifts_its_usual_limit_and_may_start_nowhere() -> None:
-    assert mf.Search().limit == LIMIT
-    assert mf.Search(LIMIT + 20).limit == LIMIT + 20
-    none = mf.Search.none()
-    assert (none.starts, none.limit, none.evolutions) == (0, 0, 0)
-    with pytest.raises(mf.InputError, match="starts: expected a whole number from 1"):
-        mf.Search(starts=0, limit=5)
+def test_a_search_checks_itself() -> None:
+    assert mf.Search() == mf.Search(evaluations=20_000, tolerance=1e-3, doubt=0.05)
+    with pytest.raises(mf.InputError, match="evaluations: expected a whole number from 1"):
+        mf.Search(evaluations=0)
+    with pytest.raises(mf.InputError) as caught:
+        mf.Search(tolerance=0.0, doubt=1.0)
+    assert [fault.place for fault in caught.value.faults] == ["tolerance", "doubt"]
+    with pytest.raises(mf.InputError, match="programme: expected one of 'bounds', 'equations'"):
+        mf.Pareto(programme="equation")
 
 
 @pytest.mark.parametrize(
@@ -229,7 +234,7 @@ def test_labels_of_a_study_are_those_that_results_have(study: Path) -> None:
     for name in ("nbi", "nbi-", "nbi-x", "edge-others", "near-shapes", "sample", "second-1"):
         assert name not in labels
     weighted = [mf.Weighted("sample", {"frequencies": 3.0, "shapes": 1.0})]
-    quick: dict[str, Any] = {"points": 3, "search": mf.Search(1, 1, 0)}
+    quick: dict[str, Any] = {"points": 3, "search": mf.Search(doubt=0.5)}
     data = mf.solve(mf.load(study).problem, weighted=weighted, **quick).dataset
     assert set(data["label"].values.tolist()) - {"sample"} <= {
         *(name for name in data["label"].values.tolist() if name in labels)
@@ -239,7 +244,7 @@ def test_labels_of_a_study_are_those_that_results_have(study: Path) -> None:
 def test_a_study_made_in_python_is_that_of_a_file(study: Path, tmp_path: Path) -> None:
     study.write_text(
         study.read_text()
-        + "[pareto]\npoints = 3\n[search]\nstarts = 1\nlimit = 1\nevolutions = 0\n"
+        + "[pareto]\npoints = 3\n[search]\ndoubt = 0.5\n"
         + '[[weighted]]\nname = "sample"\nweights = { shapes = 1, frequencies = 3 }\n'
     )
     read = mf.load(study)
@@ -249,7 +254,7 @@ def test_a_study_made_in_python_is_that_of_a_file(study: Path, tmp_path: Path) -
         seed=1,
         pareto=mf.Pareto(points=3),
         weighted=(mf.Weighted("sample", {"frequencies": 3.0, "shapes": 1.0}),),
-        search=mf.Search(1, 1, 0),
+        search=mf.Search(doubt=0.5),
     )
     assert replace(made, name=read.name, origin=read.origin) == read
     of_file, of_python = read.run(tmp_path / "a"), made.run(tmp_path / "b")
@@ -277,7 +282,7 @@ def test_options_that_take_the_place_of_those_of_a_file_are_other_inputs(study: 
 
 def test_pareto_and_its_options_may_be_given_together(study: Path) -> None:
     problem = mf.load(study).problem
-    quick: dict[str, Any] = {"search": mf.Search(1, 1, 0), "seed": 2}
+    quick: dict[str, Any] = {"search": mf.Search(doubt=0.5), "seed": 2}
     group = mf.solve(problem, pareto=mf.Pareto("weights", 9), points=3, **quick).dataset
     other = mf.solve(problem, method="weights", points=3, **quick).dataset
     np.testing.assert_array_equal(group["theta"], other["theta"])

@@ -9,7 +9,7 @@ from types import ModuleType
 
 import pytest
 
-from modefront.fronts.point import Kind
+from modefront.front.point import Kind
 from modefront.results.schema import ATTRIBUTES, FORMAT, VARIABLES
 
 DOCS = Path(__file__).parents[1] / "docs"

@@ -18,8 +18,9 @@ if TYPE_CHECKING:
     from modefront.errors import InputError as InputError
     from modefront.errors import ModelError as ModelError
     from modefront.errors import UnfinishedError as UnfinishedError
-    from modefront.fronts.given import Weighted as Weighted
-    from modefront.fronts.options import Pareto as Pareto
+    from modefront.front.given import Weighted as Weighted
+    from modefront.front.options import Pareto as Pareto
+    from modefront.front.search import Search as Search
     from modefront.identifiability.combinations import combinations as combinations
     from modefront.identifiability.options import Identifiability as Identifiability
     from modefront.models.chain import chain as chain
@@ -42,7 +43,6 @@ if TYPE_CHECKING:
     from modefront.results.results import ReportedModel as ReportedModel
     from modefront.results.results import Results as Results
     from modefront.results.results import read_results as read_results
-    from modefront.solvers.explore import Search as Search
     from modefront.study.check import check as check
     from modefront.study.definition import Study as Study
     from modefront.study.file import load as load
@@ -58,20 +58,20 @@ _HOMES = {
     "ModelError": "errors",
     "Pairing": "pairing.match",
     "Parameter": "models.parameters",
-    "Pareto": "fronts.options",
+    "Pareto": "front.options",
     "Passage": "predictions",
     "PeakResponse": "predictions",
     "Prediction": "predictions",
     "Reduction": "models.reduced.options",
     "ReportedModel": "results.results",
     "Results": "results.results",
-    "Search": "solvers.explore",
+    "Search": "front.search",
     "SoilFilter": "predictions",
     "Study": "study.definition",
     "Uncertainty": "uncertainty.options",
     "UnfinishedError": "errors",
     "UpdatingProblem": "residuals.problem",
-    "Weighted": "fronts.given",
+    "Weighted": "front.given",
     "chain": "models.chain",
     "check": "study.check",
     "combinations": "identifiability.combinations",

@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 
 from modefront.errors import reason
+from modefront.outputs import output, write_text
 from modefront.text import one_line
 
 MOST_OUTPUT = 20_000
@@ -82,14 +83,14 @@ def isolated(
         folder = Path(name)
         called = [str(path.absolute()), *arguments]
         status = _SERVER.status([function, called, name, seconds, memory], seconds)
-        output = _beginning(folder / OUTPUT)
+        printed = _beginning(folder / OUTPUT)
         if status is None or status == -getattr(signal, "SIGALRM", 0):
             text = f"nothing within {seconds:.0f} s, after which reading was given up"
             raise IsolatedError(text)
         if status < 0 or status > CRASHED:
             raise IsolatedError(f"a file that ends its reader (signal {abs(status)})")
         if status:
-            raise IsolatedError(one_line(output, 400) or f"status {status} of the reader")
+            raise IsolatedError(one_line(printed, 400) or f"status {status} of the reader")
         try:
             with np.load(folder / ARRAYS, allow_pickle=False) as file:
                 arrays = {each: file[each] for each in file.files}
@@ -204,10 +205,10 @@ def serve() -> None:
 
 def _read(function: str, called: Sequence[str], folder: str, memory: int) -> int:
     """Read one file into a folder, and return the exit status; what is printed goes there."""
-    output = os.open(Path(folder) / OUTPUT, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
+    printed = os.open(Path(folder) / OUTPUT, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     answers = os.dup(1)
-    for stream in (1, 2):
-        os.dup2(output, stream)
+    for number in (1, 2):
+        os.dup2(printed, number)
     module, name = function.split(":")
     path, *arguments = called
     message = ""
@@ -216,17 +217,18 @@ def _read(function: str, called: Sequence[str], folder: str, memory: int) -> int
         read = getattr(importlib.import_module(module), name)
         arrays, texts = read(Path(path), *arguments)
         named: Mapping[str, Any] = arrays
-        np.savez(Path(folder) / ARRAYS, allow_pickle=False, **named)
-        (Path(folder) / TEXTS).write_text(json.dumps(texts), encoding="ascii")
+        with output(Path(folder) / ARRAYS) as stream:
+            np.savez(stream, allow_pickle=False, **named)
+        write_text(Path(folder) / TEXTS, json.dumps(texts))
     except MemoryError:
         message = f"a file that takes more than {memory / 1e9:.2g} GB to be read"
     except (Exception, SystemExit) as error:  # what readers raise is not documented
         message = one_line(reason(error), 400) or type(error).__name__
     sys.stdout.flush()
     if message:
-        os.ftruncate(output, 0)
-        os.lseek(output, 0, os.SEEK_SET)
-        os.write(output, message.encode("utf-8", "replace"))
+        os.ftruncate(printed, 0)
+        os.lseek(printed, 0, os.SEEK_SET)
+        os.write(printed, message.encode("utf-8", "replace"))
     os.dup2(answers, 1)
     return 1 if message else 0
 

@@ -9,9 +9,11 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+import numpy as np
 import pytest
 import xarray as xr
 from interruptions import interrupt_after
@@ -20,9 +22,12 @@ from texts import two_of_each
 import modefront
 from modefront.cli.main import main
 from modefront.errors import UnfinishedError
+from modefront.front.subproblems import Least
+from modefront.optim.problem import Problem
+from modefront.optim.sqp import Solution
 from modefront.results.files import FILE, read_dataset
-from modefront.solvers import edges
 from modefront.study import session
+from modefront.work import lock
 
 STUDY = (
     """
@@ -50,9 +55,7 @@ weights = { frequencies = 2.0, shapes = 1.0 }
 points = 3
 
 [search]
-starts = 1
-limit = 1
-evolutions = 0
+doubt = 0.5
 """
 )
 
@@ -120,7 +123,8 @@ def assert_same(first: xr.Dataset, other: xr.Dataset) -> None:
 
 
 def contents(folder: Path) -> list[bytes]:
-    return [path.read_bytes() for path in folder.rglob("*") if path.is_file()]
+    files = [path for path in folder.rglob("*") if path.is_file()]
+    return [path.read_bytes() for path in files if path.name != lock.FILE]
 
 
 def test_help_and_version(modefront_: Run) -> None:
@@ -233,14 +237,20 @@ def test_bounds_within_which_there_is_no_model_are_said_and_leave_no_results(
     assert not study.with_name("study-results").joinpath(FILE).exists()
 
 
-def test_all_starts_failing_are_said_and_leave_no_results(
+def test_where_no_start_leads_to_an_edge_the_best_known_models_are_its_place(
     modefront_: Run, study: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(edges, "explore", lambda *_, **__: [])
+    def failed(_: Least, __: Problem, start: Solution, *___: object) -> Solution:
+        return replace(start, evaluation=replace(start.evaluation, J=np.full(2, np.nan)))
+
+    monkeypatch.setattr(Least, "solve", failed)
+    monkeypatch.setattr(Least, "approach", failed)
     status, out, err = modefront_("run", study)
-    assert (status, out) == (1, "")
-    assert "modefront: no minimum of group 'frequencies' was found from any start" in err
-    assert not study.with_name("study-results").joinpath(FILE).exists()
+    results = read_dataset(study.with_name("study-results"))
+    J, edges = results["objective"].values, results["kind"].values == "edge"
+    assert (status, err.count("error")) == (0, 0)
+    assert out
+    assert np.diag(J[edges]) == pytest.approx(J.min(axis=0), rel=1e-3)
 
 
 @pytest.mark.parametrize("tasks", [0, 5])

@@ -137,3 +137,28 @@ def test_a_pair_that_was_hit_once_is_weighted_too(tmp_path: Path) -> None:
     data = data_set.assembled.data
     assert data.variance is not None
     assert weighting(data) == "residuals"
+
+
+@pytest.mark.parametrize("number", ["-1.23456E+100", " -1.23456+100"])
+def test_numbers_that_overflow_are_refused(tmp_path: Path, number: str) -> None:
+    path = tmp_path / "a.uff"
+    H = accelerances()[0, 0]
+    text = uff58(H, 1, 1)
+    path.write_text(text.replace(f"{H[3].real:13.5E}", number, 1))
+    with pytest.raises(InputError, match=r"finite numbers up to 1e\+100, found -1.23456e\+100"):
+        read_test(path)
+
+
+@pytest.mark.parametrize("ended", [True, False])
+def test_a_table_that_ends_within_its_last_number_is_refused(tmp_path: Path, ended: bool) -> None:
+    path = tmp_path / "a.csv"
+    rows = [f"{f:.9g},{np.sin(f):.9g},{np.cos(f):.9g}" for f in np.arange(1.0, 9.0)]
+    text = "\n".join(["frequency,a_re,a_im", *rows]) + "\n" * ended
+    path.write_text(text)
+    right = read_test_csv(path, "b")
+    for lost in range(1 + ended, 10):
+        path.write_text(text[:-lost])
+        with pytest.raises(InputError, match="last line: expected whole lines to the end"):
+            read_test_csv(path, "b")
+    path.write_text(text.rstrip("\n"))
+    np.testing.assert_array_equal(read_test_csv(path, "b").channels[0].H, right.channels[0].H)

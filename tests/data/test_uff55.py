@@ -1,5 +1,6 @@
 """Modes from universal files: files of pyuff are read, and faulty ones are refused in words."""
 
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -185,3 +186,46 @@ def test_sensors_of_a_mesh_are_found_by_coordinates_and_names(tmp_path: Path) ->
     assert modes.place("6RZ") is not None
     assert modes.place("floor1") is None
     assert modes.place("9X") is None
+
+
+def lines_of(*, count: int = 3) -> list[str]:
+    """Return the lines of a file with two modes at some nodes."""
+    out = []
+    for mode in (1, 2):
+        out += ["    -1", "    55", *["NONE"] * 5, "".join(f"{n:10d}" for n in (1, 2, 2, 8, 2, 3))]
+        out += ["".join(f"{n:10d}" for n in (2, 4, 1, mode))]
+        out += ["".join(f"{x:13.5E}" for x in (4.0 * mode, 1.0, 0.01, 0.0))]
+        for node in range(1, count + 1):
+            out += [f"{node:10d}", "".join(f"{x:13.5E}" for x in (0.5 * node, 0.0, 0.1 * mode))]
+        out += ["    -1"]
+    return out
+
+
+@pytest.mark.parametrize("count", [1, 3])
+@pytest.mark.parametrize(
+    ("change", "says"),
+    [
+        (lambda x: x[: len(x) // 2 - 2] + x[len(x) // 2 - 1 :], "3 numbers, as its header says"),
+        (lambda x: [*x[:12], x[11], *x[12:]], "line 12, dataset 55|dataset 55: expected"),
+        (lambda x: [y.replace("8         2         3", f"8{2:10d}{2:10d}") for y in x], "3 or 6"),
+        (lambda x: [y.replace("8         2         3", f"8{5:10d}{3:10d}") for y in x], "6 numb"),
+        (lambda x: [x[0], "   55x", *x[2:]], "no universal file"),
+        (lambda x: x[: len(x) // 2 - 1] + x[len(x) // 2 :], "a dataset: a line with -1 in columns"),
+        (lambda x: [*x[:-3], f"{9:10d}", *x[-2:]], "same nodes in the geometry and in all modes"),
+    ],
+)
+def test_what_the_header_declares_is_counted(
+    count: int, change: Callable[[list[str]], list[str]], says: str, tmp_path: Path
+) -> None:
+    path = tmp_path / "a.uff"
+    path.write_text("\n".join(lines_of(count=count)) + "\n")
+    assert read_uff55(path).shape[0, :, -1, 0].tolist() == [0.5 * count] * 2
+    path.write_text("\n".join(change(lines_of(count=count))) + "\n")
+    with pytest.raises(InputError, match=says):
+        read_uff55(path)
+
+
+def test_a_header_with_a_blank_more_is_that_of_the_same_dataset(tmp_path: Path) -> None:
+    text = "\n".join(lines_of()) + "\n"
+    (tmp_path / "a.uff").write_text(text.replace("\n    55\n", "\n     55\n"))
+    assert read_uff55(tmp_path / "a.uff").frequency.tolist() == [[4.0, 8.0]]

@@ -18,8 +18,9 @@ import scipy.io
 import scipy.sparse
 
 import modefront as mf
+from modefront.isolated import IsolatedError, isolated
 from modefront.models.files import matrix_size, read_matrix
-from modefront.models.formats import base
+from modefront.models.formats import base, matrix_market
 
 K = np.array([[4.0, -1.0, 0.0], [-1.0, 3.0, 0.5], [0.0, 0.5, 2.0]])
 SPARSE = scipy.sparse.csc_array(K)
@@ -268,5 +269,25 @@ def test_a_matrix_is_not_read_to_know_its_size(
 def test_a_reader_that_crashes_takes_no_process_with_it(tmp_path: Path) -> None:
     head = "%%MatrixMarket matrix array real symmetric\n%\n2 2\n5E3\n-2E3\n"
     (tmp_path / "A.mtx").write_text(head + "2E31e999")  # SciPy's reader reads beyond the end
-    with pytest.raises(mf.InputError, match="expected a readable matrix, found"):
+    with pytest.raises(IsolatedError):
+        isolated(matrix_market.READER, tmp_path / "A.mtx", 60, 10**9)
+    with pytest.raises(mf.InputError, match="expected whole lines to the end"):
         read_matrix(tmp_path / "A.mtx")
+
+
+def test_entries_that_are_listed_again_are_refused(tmp_path: Path) -> None:
+    head = "%%MatrixMarket matrix coordinate real general\n2 2 3\n"
+    (tmp_path / "A.mtx").write_text(head + "1 1 2.0\n2 2 1.0\n1 1 2.0\n")
+    with pytest.raises(mf.InputError, match=r"row 1, column 1: .* each entry once, found it again"):
+        read_matrix(tmp_path / "A.mtx")
+
+
+@pytest.mark.parametrize("pointer", [[0, 1, 2, 0], [0, 2, 1, 3], [1, 1, 2, 3], [0, 1, 3]])
+def test_pointers_that_lead_out_of_the_arrays_are_refused(
+    tmp_path: Path, pointer: list[int]
+) -> None:
+    arrays = {"indices": np.arange(3), "indptr": np.array(pointer), "data": np.ones(3)}
+    name, shape = np.array(b"csr"), np.array([3, 3])
+    np.savez(tmp_path / "A.npz", format=name, shape=shape, allow_pickle=False, **arrays)
+    with pytest.raises(mf.InputError, match="a readable matrix"):
+        read_matrix(tmp_path / "A.npz")

@@ -158,7 +158,7 @@ def test_a_study_of_a_function_finds_the_front_of_the_chain() -> None:
     function = mf.function_model(
         PARAMETERS, SENSORS, building, base={"x": [(i, 1.0) for i in range(3)]}
     )
-    few = mf.Search(limit=20, evolutions=0)
+    few = mf.Search(doubt=0.5)
     results = [
         mf.updating_problem(model, data, groups, parameters=PARAMETERS)
         for model in (CHAIN, function)

@@ -136,6 +136,27 @@ def test_same_as_dense(size: int, seed: int, massless: float, free: bool, sensor
     agree(*both(K, M, theta, 3, rng.standard_normal((sensors, size))))
 
 
+@given(st.integers(8, 40), st.integers(0, 10**6), st.sampled_from([0.0, 0.4]), st.booleans())
+def test_second_derivatives_are_those_of_all_modes(
+    size: int, seed: int, massless: float, free: bool
+) -> None:
+    K, M = network(size, seed, massless=massless, free=free)
+    rng = np.random.default_rng(seed)
+    theta, S = rng.uniform(0.7, 1.5, 5), rng.standard_normal((4, size))
+    w, v = rng.standard_normal((2, 3)), rng.standard_normal((2, 4, 3))
+    w[1], v[1, :, 0] = 0, 0
+    result = sparse.modes(pencil(K, M), scipy.sparse.csr_array(S), theta, 3, True)
+    expected = dense.modes(K.dense(), M.dense(), S, theta, 3, True)
+    lam = dense.decompose(K.dense().at(theta), M.dense().at(theta)).lam[:4]
+    gap = (np.diff(lam) / lam[1:]).min()
+    sign = np.sign(np.sum(result.phi * expected.phi, axis=0))
+    found, known = result.second_derivatives(w, v * sign), expected.second_derivatives(w, v)
+    assert (found is None) == (known is None)
+    if found is not None and known is not None:
+        tolerance = max(1e-8, 1e-12 / gap**2)
+        assert np.abs(found - known).max() <= tolerance * np.abs(known).max()
+
+
 @pytest.mark.parametrize("split", [1e-2, 1e-4, 0.0])
 def test_close_and_repeated_modes(split: float) -> None:
     K, M = network(20, 1, massless=0.3, free=False)

@@ -56,13 +56,13 @@ def test_derivatives_are_those_of_the_sum_over_all_modes() -> None:
     few = lowest_modes(K.at(theta), M.at(theta), COUNT)
     assert few is not None
     every = dense.decompose(K.at(theta), M.at(theta))
-    dlam, S, _ = dense.nelson(K, M, theta, every, COUNT)
+    dlam, S, *_ = dense.nelson(K, M, theta, every, COUNT)
     dphi = first_axis(sensors @ every.X, S[:, :COUNT])
     signs = np.sign((few.Phi[:, :COUNT] * every.Phi[:, :COUNT]).sum(axis=0))
-    dlam_few, dphi_few, coincident = tridiagonal.derivatives(K, M, sensors, theta, few, COUNT)
-    assert not coincident.any()
-    np.testing.assert_allclose(dlam_few, dlam[:COUNT], rtol=1e-9, atol=1e-12)
-    np.testing.assert_allclose(dphi_few * signs[:, None], dphi, rtol=1e-8, atol=1e-9)
+    result = tridiagonal.derivatives(K, M, sensors, theta, few, COUNT)
+    assert not result.coincident.any()
+    np.testing.assert_allclose(result.dlam, dlam[:COUNT], rtol=1e-9, atol=1e-12)
+    np.testing.assert_allclose(result.dphi * signs[:, None], dphi, rtol=1e-8, atol=1e-9)
 
 
 def test_coincident_modes_are_told_by_their_subspace() -> None:
@@ -78,11 +78,11 @@ def test_coincident_modes_are_told_by_their_subspace() -> None:
     assert few is not None
     np.testing.assert_allclose(few.lam[:COUNT:2], few.lam[1:COUNT:2], rtol=1e-10)
     assert np.abs(few.Phi.T @ few.Phi - np.eye(few.Phi.shape[1])).max() < 1e-10
-    dlam, _, coincident = tridiagonal.derivatives(K, M, np.eye(N)[[3, 140]], theta, few, COUNT)
-    assert coincident.all()
+    result = tridiagonal.derivatives(K, M, np.eye(N)[[3, 140]], theta, few, COUNT)
+    assert result.coincident.all()
     # The parameter of one chain moves one of two equal eigenvalues in proportion.
     expected = np.stack([np.zeros(3), few.lam[:COUNT:2]], axis=1).ravel()
-    np.testing.assert_allclose(dlam, np.stack([expected, expected], axis=1), atol=1e-12)
+    np.testing.assert_allclose(result.dlam, np.stack([expected, expected], axis=1), atol=1e-12)
 
 
 @pytest.mark.parametrize("case", ["small", "many", "free", "indefinite"])

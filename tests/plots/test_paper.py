@@ -13,7 +13,7 @@ from modefront.plots.paper import figures
 from modefront.results.results import Results
 from modefront.study.examples import write_example
 
-SEARCH = mf.Search(starts=3, limit=4, evolutions=0)
+SEARCH = mf.Search(doubt=0.5)
 
 
 @pytest.fixture(scope="module")

@@ -16,7 +16,7 @@ import modefront as mf
 from modefront.plots import PLOTS, Plots, pictures, write_figures
 from modefront.results.results import Results
 
-SEARCH = mf.Search(starts=2, limit=3, evolutions=0)
+SEARCH = mf.Search(doubt=0.5)
 OPEN = mf.Identifiability(models=0)
 FREQUENCIES, SHAPES = mf.Group("freq $x$", frequency="all"), mf.Group("shapes", shape="all")
 LOW, HIGH = mf.Group("low", shape=[1]), mf.Group("high", shape=[2])

@@ -293,8 +293,8 @@ def test_supports_of_abaqus_are_left_out(tmp_path: Path) -> None:
 
 def test_opensees(tmp_path: Path) -> None:
     write_opensees(tmp_path / "a", K, M, labels())
-    (tmp_path / "a_nodes.csv").write_text("12,0,0,0\n3,1,0\n7,1,1,0\n40,0,1,0\n5,2,0,1\n")
-    (tmp_path / "a_elements.csv").write_text("1,12,3\n2,12,3,7,40\n3,5,99\n")
+    (tmp_path / "a_nodes.csv").write_text("12,0,0,0\n3,1,0,0\n7,1,1,0\n40,0,1,0\n5,2,0,1\n")
+    (tmp_path / "a_elements.csv").write_text("1,12,3\n2,12,3,7,40\n")
     job = read("opensees", tmp_path / "a")
     assert_same(job)
     assert job.mesh is not None
@@ -351,3 +351,24 @@ def test_no_file_raises_anything_else(tmp_path: Path, program: str, content: byt
     for name in ("a", "a.full", "a.op4", "a.pch", "none/a", "folder.op4", "folder"):
         with pytest.raises(InputError):
             read(program, tmp_path / name)
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ("GRID,7,,2.,0.,1.", "GRID,7,,nan", "line 4: expected an entry GRID .* coordinates nan"),
+        ("GRID,7,,2.,0.,1.", "GRID,3,,2.,0.,1.", "line 4: .* node 3 again"),
+        ("GRID,7,,2.,0.,1.\n", "", "expected all nodes of its elements, found no node 7"),
+        ("CTETRA,1,1,12,3,7,40", "CTETRA,1,1,12,3,7", "line 7: .* 3 nodes of 4"),
+        ("ENDDATA\n", "", "expected a line ENDDATA at the end"),
+    ],
+)
+def test_decks_of_nastran_that_are_not_whole(tmp_path: Path, old: str, new: str, says: str) -> None:
+    write_dmig(tmp_path / "a.pch", {"KAAX": K, "MAAX": M}, labels())
+    grids = "".join(f"GRID,{n},,{k}.,0.,1.\n" for k, n in enumerate((12, 3, 7, 40, 5)))
+    deck = f"BEGIN BULK\n{grids}CTETRA,1,1,12,3,7,40\nENDDATA\n"
+    (tmp_path / "a.bdf").write_text(deck)
+    assert read("nastran", tmp_path / "a.pch").mesh is not None
+    (tmp_path / "a.bdf").write_text(deck.replace(old, new))
+    with pytest.raises(InputError, match=says):
+        read("nastran", tmp_path / "a.pch")

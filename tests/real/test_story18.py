@@ -77,7 +77,7 @@ def test_the_check_says_so_in_words(frame: mf.UpdatingProblem) -> None:
 
 
 def test_the_results_say_so_too(frame: mf.UpdatingProblem) -> None:
-    search = mf.Search(starts=1, limit=1, evolutions=0)
+    search = mf.Search(doubt=0.5)
     data = mf.solve(
         first_two(frame), points=2, search=search, identifiability=mf.Identifiability(models=10)
     ).dataset

@@ -17,10 +17,10 @@ from modefront.diagnosis.diagnose import diagnose
 from modefront.diagnosis.opposed import OpposedSensor
 from modefront.diagnosis.words import in_words
 from modefront.linalg.affine import SparseAffine
+from modefront.optim.scalarisation import weighted
+from modefront.optim.sqp import begin
+from modefront.optim.sqp import solve as descend
 from modefront.results.remarks import remarks
-from modefront.solvers.scalarisation import weighted
-from modefront.solvers.sqp import begin
-from modefront.solvers.sqp import solve as descend
 from modefront.study.check import check
 from modefront.study.file import load
 from modefront.study.session import run
@@ -125,9 +125,7 @@ scale = "std"
 [pareto]
 points = 3
 [search]
-starts = 1
-limit = 1
-evolutions = 0
+doubt = 0.5
 [identifiability]
 flat = 0
 models = 0

@@ -35,9 +35,7 @@ def chain() -> xr.Dataset:
     peak = mf.PeakResponse(
         name="hammer", force="floor3", response=["floor1"], damping=0.02, band=(1.0, 30.0)
     )
-    result = mf.solve(
-        problem, points=8, seed=1, search=mf.Search(starts=2, limit=4), predictions=[peak]
-    )
+    result = mf.solve(problem, points=8, seed=1, search=mf.Search(doubt=0.5), predictions=[peak])
     return result.dataset.assign_attrs(study="three storeys", inputs="0123abcd")
 
 
@@ -59,7 +57,7 @@ def three_groups() -> xr.Dataset:
     ]
     bounds = dict.fromkeys(("k1", "k2"), (0.5, 2.0))
     problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(bounds, 1.0))
-    search = mf.Search(starts=1, limit=1, evolutions=0)
+    search = mf.Search(doubt=0.5)
     return mf.solve(problem, method="weights", points=3, search=search).dataset
 
 
@@ -97,7 +95,7 @@ def mesh() -> xr.Dataset:
     groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     bounds = dict.fromkeys(("El", "Er"), (0.5, 2.0))
     problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(bounds, 1.0))
-    search = mf.Search(starts=1, limit=1, evolutions=0)
+    search = mf.Search(doubt=0.5)
     return mf.solve(problem, points=4, search=search).dataset
 
 

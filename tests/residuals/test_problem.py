@@ -11,6 +11,8 @@ from hypothesis import strategies as st
 from modefront._typing import Floats
 from modefront.data.modal import ModalData, modal_data
 from modefront.models.chain import chain
+from modefront.models.function import function_model
+from modefront.models.parameters import Parameter
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.work.costs import Costs
@@ -74,6 +76,29 @@ def test_objectives_and_gradients_agree_with_50_digit_arithmetic(values: list[fl
             slope = np.array([float((a - b) / (2 * h)) for a, b in pair])
             scale = np.abs(result.dJ).max(axis=1)
             assert (np.abs(result.dJ[:, i] - slope) <= 1e-8 * scale).all()
+
+
+@pytest.mark.parametrize("theta", [[1.1, 0.9, 1.2, 1.0], [0.7, 1.6, 1.3, 0.6]])
+def test_second_derivatives_agree_with_50_digit_arithmetic(theta: list[float]) -> None:
+    problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
+    result = problem.evaluate(np.array(theta), second=True)
+    assert result.derivatives is not None
+    assert result.derivatives.exact
+    with mp.workdps(50):
+        h = mp.mpf(10) ** -12
+
+        def J(i: int, k: int, a: int, b: int) -> list[mp.mpf]:
+            moved = [mp.mpf(x) for x in theta]
+            moved[i] += a * h
+            moved[k] += b * h
+            return precise_objectives(moved)
+
+        for i in range(4):
+            for k in range(4):
+                corners = (J(i, k, 1, 1), J(i, k, -1, -1), J(i, k, 1, -1), J(i, k, -1, 1))
+                for n, (a, b, c, d) in enumerate(zip(*corners, strict=True)):
+                    error = abs(result.H[n, i, k] - float((a + b - c - d) / (4 * h**2)))
+                    assert error <= 1e-8 * np.abs(result.H[n]).max()
 
 
 def test_counts_are_of_what_was_measured() -> None:
@@ -170,7 +195,29 @@ def test_each_evaluation_is_counted_once(costs: Costs) -> None:
     problem = problem_of(modal_data(FREQUENCY, SHAPE, FLOORS))
     for derivatives in (True, False):
         problem.evaluate(problem.start, derivatives=derivatives)
-    assert replace(costs, full_time=0.0) == Costs(eigenproblems=2)
+    problem.evaluate(problem.start, second=True)
+    assert replace(costs, full_time=0.0) == Costs(eigenproblems=3)
+
+
+def test_models_without_second_derivatives_keep_those_of_gauss_newton() -> None:
+    data = modal_data(FREQUENCY, SHAPE, FLOORS)
+    known = problem_of(data)
+
+    def function(theta: Floats) -> tuple[Floats, Floats]:
+        k1, k2, k3 = 84763.8 * theta[:3] ** 2
+        K = np.array([[k1 + k2, -k2, 0], [-k2, k2 + k3, -k3], [0, -k3, k3]])
+        return K, np.diag([22.6, 22.6, 17.176])
+
+    parameters = [Parameter(name, nominal=1.0, bounds=(0.2, 5.0)) for name in NAMES[:3]]
+    model = function_model(parameters, dict(zip(FLOORS, range(3), strict=True)), function)
+    problem = updating_problem(model, data, known.groups, parameters=parameters)
+    plain, result = (problem.evaluate(problem.start, second=second) for second in (False, True))
+    assert result.derivatives is not None
+    assert not result.derivatives.exact
+    np.testing.assert_array_equal(result.H, plain.H)
+    infeasible = known.evaluate(np.array([1.0, -5.0, 1.0, 1.0]), second=True)
+    assert infeasible.derivatives is None
+    assert known.evaluate(known.start, derivatives=False, second=True).derivatives is None
 
 
 def test_an_evaluation_without_derivatives_has_none() -> None:

@@ -25,7 +25,7 @@ def whole() -> xr.Dataset:
     groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
     bounds = dict.fromkeys(NAMES, (0.5, 2.0))
     problem = mf.updating_problem(model, data, groups, bounds, dict.fromkeys(NAMES, 1.0))
-    return mf.solve(problem, points=3, search=mf.Search(starts=1, limit=1, evolutions=0)).dataset
+    return mf.solve(problem, points=3, search=mf.Search(doubt=0.5)).dataset
 
 
 def refused(data: xr.Dataset, folder: Path, *says: str) -> None:

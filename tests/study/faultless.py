@@ -48,6 +48,7 @@ weights = { frequencies = 1.0, shapes = 2.0 }
 
 [pareto]
 method = "nbi"
+programme = "bounds"
 points = 5
 population = 20
 evaluations = 2000
@@ -58,9 +59,9 @@ window = 3.0
 spare = 0
 
 [search]
-starts = 3
-limit = 9
-evolutions = 1
+evaluations = 5000
+tolerance = 0.01
+doubt = 0.4
 
 [identifiability]
 flat = 0.01

@@ -160,6 +160,13 @@ KEYS = [
         False,
         '"nib" "" 1 true nan ["nbi"] {}',
     ),
+    Key(
+        'programme = "bounds"',
+        "[pareto] programme",
+        "one of 'bounds', 'equations'",
+        False,
+        '"equation" "" 1 true nan []',
+    ),
     Key("points = 5", "[pareto] points", "a whole number from 2", False, NO_WHOLE + " 0 1"),
     Key("population = 20", "[pareto] population", "a whole number from 4", False, NO_WHOLE + " 3"),
     Key(
@@ -184,9 +191,15 @@ KEYS = [
         NO_NUMBER + " 1.0 0.0 -2.0",
     ),
     Key("spare = 0", "[pairing] spare", "a whole number from 0 to 1000", False, NO_WHOLE),
-    Key("starts = 3", "[search] starts", "a whole number from 1", False, NO_WHOLE + " 0"),
-    Key("limit = 9", "[search] limit", "a whole number from 1", False, NO_WHOLE + " 0"),
-    Key("evolutions = 1", "[search] evolutions", "a whole number from 0", False, NO_WHOLE),
+    Key(
+        "evaluations = 5000",
+        "[search] evaluations",
+        "a whole number from 1",
+        False,
+        NO_WHOLE + " 0",
+    ),
+    Key("tolerance = 0.01", "[search] tolerance", "a share above 0", False, NO_NUMBER + " 0 1.0"),
+    Key("doubt = 0.4", "[search] doubt", "a share above 0", False, NO_NUMBER + " 0 1.0"),
     Key(
         "flat = 0.01",
         "[identifiability] flat",

@@ -6,12 +6,12 @@ import pytest
 from faultless import DATA, PREDICTIONS, STUDY
 from refusals import Check, edited
 
-from modefront.fronts.methods import evolutionary
+from modefront.front import methods
 
 CONTRADICTIONS = [
     ("points = 5", "points = 10001", "points: expected a whole number from 2 to 10000, found 1000"),
     ("spare = 0", "spare = 1001", "spare: expected a whole number from 0 to 1000, found 1001"),
-    ("limit = 9", "limit = 2", "[search] limit: expected at least starts, 3, found 2"),
+    ("evaluations = 2000", "evaluations = 19", "evaluations: expected at least the population, 20"),
     (
         'source = "sets"',
         'source = "none"',
@@ -33,7 +33,7 @@ def test_contradictions_of_options(
 def test_a_method_whose_package_is_missing(
     folder: Path, refused: Check, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    monkeypatch.setattr(evolutionary, "available", lambda: False)
+    monkeypatch.setattr(methods, "find_spec", lambda _: None)
     for method in ("spea2", "nsga2"):
         study = folder / "wrong.toml"
         study.write_text(edited(STUDY, ('method = "nbi"', f'method = "{method}"')))

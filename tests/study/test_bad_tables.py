@@ -97,7 +97,7 @@ def test_everything_that_is_wrong_is_said_at_once_before_a_run_and_by_check(
         ("shapes = 2.0", "shapes = -2.0"),
         ("points = 5", "points = 1"),
         ("window = 3.0", "window = 0.5"),
-        ("starts = 3", "stars = 3"),
+        ("doubt = 0.4", "doubts = 0.4"),
     ]
     study.write_text(edited(STUDY, *edits))
     (folder / "modes.csv").write_text(
@@ -115,7 +115,7 @@ def test_everything_that_is_wrong_is_said_at_once_before_a_run_and_by_check(
         "wrong.toml: [[weighted]] 1 ('mine') weights shapes: ",
         "wrong.toml: [pareto] points: ",
         "wrong.toml: [pairing] window: ",
-        "wrong.toml: [search]: expected a known key, found 'stars'",
+        "wrong.toml: [search]: expected a known key, found 'doubts'",
     )
     command("run", study)
     text = capsys.readouterr().err
@@ -130,9 +130,6 @@ def test_names_may_hold_what_a_path_or_a_terminal_gives_a_meaning(
     study = folder / "names.toml"
     text = STUDY.replace('"k1"', '"../k/1 [red]"').replace('"k2"', '"%s"')
     text = text.replace('"frequencies"', '"a/b [bold]"').replace("{ frequencies", '{ "a/b [bold]"')
-    text = text.replace(
-        "starts = 3\nlimit = 9\nevolutions = 1", "starts = 1\nlimit = 1\nevolutions = 0"
-    )
     text = text.replace('"mine"', '"../[/]"').replace('"two masses"', '"[/] ${x}"')
     text = text.replace('"low"', '"[/low]"').replace("low = ", '"[/low]" = ')
     study.write_text(text.replace('"peak"', '"../[/peak] $_"'))

@@ -2,12 +2,17 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 
+from modefront.data.modal import modal_data
+from modefront.diagnosis.comparison import COMPARED, compare, of_few_sets
 from modefront.errors import InputError
+from modefront.models.chain import chain
 from modefront.residuals.groups import Group
+from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.study.check import check
 from modefront.study.definition import Study
 from modefront.study.derivatives import cause_of, compared, derivative_error
@@ -73,3 +78,44 @@ def test_derivatives_that_are_wrong_are_told_by_parameter_and_mode(study: Study)
     assert f"for {study.problem.model.parameters[k]}, mostly by measured mode" in text
     low = replace(agreement, theta=-study.problem.start)
     assert "a small change leads to no model" in cause_of(study.problem, low)
+
+
+def test_derivatives_are_proved_for_many_residuals_near_a_minimum() -> None:
+    n, count = 2000, 12
+    k = ("k1", "k2")
+    springs = [k[i * 2 // n] for i in range(n)]
+    model = chain(k, [1.0] * n, [1e6] * n, stiffness_parameters=springs)
+    rng = np.random.default_rng(3)
+    modes = model.modes(np.array([1.001, 0.999]), count, derivatives=False)
+    shape = modes.phi.T * (1 + 0.01 * rng.standard_normal(modes.phi.T.shape))
+    data = modal_data(modes.frequency, shape, model.sensors)
+    groups = [Group("frequencies", frequency="all"), Group("shapes", shape="all")]
+    bounds = dict.fromkeys(k, (0.2, 5.0))
+    problem = updating_problem(model, data, groups, bounds, dict.fromkeys(k, 1.0))
+    assert derivative_error(problem) < 1e-6
+
+
+def test_of_many_data_sets_some_are_searched_for_mistakes(study: Study) -> None:
+    problem = study.problem
+    data = problem.data
+    few, many = COMPARED, 5 * COMPARED + 1
+    assert of_few_sets(compare(with_sets(problem, few))).data.sets == tuple(map(str, range(few)))
+    lonely = with_sets(problem, many)
+    lonely.data.frequency[:, 2] = np.nan
+    lonely.data.shape[:, 2] = np.nan
+    lonely.data.frequency[7, 2] = data.frequency[0, 2]
+    lonely.data.shape[7, 2] = data.shape[0, 2]
+    chosen = of_few_sets(compare(lonely)).data
+    assert len(chosen.sets) == COMPARED + 1
+    assert {"0", "7", str(many - 1)} <= set(chosen.sets)
+    warnings = check(replace(study, problem=with_sets(problem, many))).warnings
+    assert f"{many} data sets are many: mistakes are sought in {COMPARED} of them" in warnings[-1]
+
+
+def with_sets(problem: UpdatingProblem, count: int) -> UpdatingProblem:
+    """Return the problem with the same data again and again."""
+    data = problem.data
+    parts = ("frequency", "damping", "shape", "frequency_std", "shape_std")
+    again: dict[str, Any] = {name: np.concatenate([getattr(data, name)] * count) for name in parts}
+    sets = tuple(map(str, range(count)))
+    return replace(problem, data=replace(data, sets=sets, **again))

@@ -9,14 +9,14 @@ import pytest
 import scipy.io
 import scipy.sparse
 
-from modefront.fronts.given import Weighted
-from modefront.fronts.options import Pareto
+from modefront.front.given import Weighted
+from modefront.front.options import Pareto
+from modefront.front.search import Search
 from modefront.models.base import Model
 from modefront.models.chain import chain
 from modefront.models.files import read_matrix
 from modefront.pairing.match import Pairing
 from modefront.residuals.groups import Group
-from modefront.solvers.explore import LIMIT, Search
 from modefront.study.definition import Study
 from modefront.study.file import load
 from modefront.study.kinds.base import ModelKind
@@ -93,7 +93,7 @@ def study(tmp_path: Path) -> Callable[[str], Study]:
 def test_what_is_not_said_has_defaults(study: Callable[[str], Study]) -> None:
     read = study(HEAD + CHAIN)
     assert (read.name, read.seed) == ("two masses", 0)
-    assert read.pareto == Pareto("nbi", None, 0.0)
+    assert read.pareto == Pareto("nbi", None, "bounds", 0.0)
     assert read.weighted == ()
     assert read.search == Search()
     assert read.problem.pairing == Pairing()
@@ -124,6 +124,7 @@ def test_the_rest(study: Callable[[str], Study]) -> None:
 
         [pareto]
         points = 7
+        programme = "equations"
 
         [pairing]
         method = "order"
@@ -131,20 +132,15 @@ def test_the_rest(study: Callable[[str], Study]) -> None:
         spare = 4
 
         [search]
-        starts = 5
-        limit = 50
-        evolutions = 0
+        evaluations = 500
+        tolerance = 0.01
+        doubt = 0.5
         """
     )
     assert read.weighted == (Weighted("by hand", {"second": 2.0, "frequencies": 0.5}),)
-    assert read.pareto.points == 7
+    assert read.pareto == Pareto(points=7, programme="equations")
     assert read.problem.pairing == Pairing("order", 2.0, 4)
-    assert read.search == Search(5, 50, 0)
-
-
-def test_more_starts_than_the_usual_limit_raise_it(study: Callable[[str], Study]) -> None:
-    many = LIMIT + 1
-    assert study(f"{HEAD}{CHAIN}[search]\nstarts = {many}").search.limit == many
+    assert read.search == Search(500, 0.01, 0.5)
 
 
 def test_matrices_in_every_format_make_the_model_of_the_chain(

@@ -15,7 +15,7 @@ from modefront.results.remarks import remarks
 
 NAMES = ("k1", "k2", "k3")
 MODEL = mf.chain(NAMES, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=NAMES)
-SEARCH = mf.Search(starts=3, limit=10, evolutions=0)
+SEARCH = mf.Search(doubt=0.5)
 
 
 def problem_of(*, sets: int = 1, std: float = 0.0, seed: int = 0) -> mf.UpdatingProblem:
@@ -225,9 +225,7 @@ stiffness_parameters = ["k1", "k2"]
 points = 3
 
 [search]
-starts = 1
-limit = 1
-evolutions = 0
+doubt = 0.5
 
 [identifiability]
 models = 5

@@ -47,7 +47,7 @@ def solved(
     return mf.solve(
         problem,
         points=2,
-        search=mf.Search(starts=1, limit=1, evolutions=0),
+        search=mf.Search(doubt=0.5),
         uncertainty=mf.Uncertainty("none", draws=draws),
         predictions=predictions,
     ).dataset

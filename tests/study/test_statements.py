@@ -12,7 +12,7 @@ from modefront.cli.main import cli
 from modefront.results.remarks import MOST, digest, remarks
 from modefront.study.file import load
 
-SEARCH = mf.Search(starts=2, limit=6, evolutions=0)
+SEARCH = mf.Search(doubt=0.5)
 GROUPS = (mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all"))
 
 

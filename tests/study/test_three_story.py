@@ -51,7 +51,7 @@ def problem_of(
 
 @cache
 def results(model: str) -> xr.Dataset:
-    return mf.solve(problem_of(model), points=20, seed=1).dataset
+    return mf.solve(problem_of(model), points=20, programme="equations", seed=1).dataset
 
 
 def nbi(data: xr.Dataset) -> xr.Dataset:
@@ -100,7 +100,8 @@ def test_the_gap_of_M0_ends_at_the_second_minimum_of_the_frequencies() -> None:
     assert end[0] == pytest.approx(start[0], rel=1e-6)
     assert end[1] > start[1]
     minima = data["minimum_objective"].values[data["minimum_of"].values == "frequencies"]
-    assert len(minima) == 3
+    assert len(minima) >= 2
+    assert np.abs(minima / start - 1).max(axis=1).min() < 1e-4
     # Point 8 is dominated by no other point, but by the start of the second piece.
     assert data["piece"].values[:20].tolist() == [1] * 5 + [0] * 3 + [2] * 12
 
@@ -116,11 +117,12 @@ def test_the_optimal_weights_of_M0_are_regular_and_confirmed() -> None:
     assert iterated == pytest.approx(data["theta"].values[position], abs=1e-5)
 
 
-def test_the_front_costs_few_eigenproblems() -> None:
-    for model, front, total in (("M0", 79, 840), ("M1", 74, 590)):
+def test_a_search_costs_less_where_more_doubt_is_allowed() -> None:
+    for model in ("M0", "M1"):
         data = results(model)
-        assert data.attrs["nbi_evaluations"] == pytest.approx(front, rel=0.05)
-        assert data.attrs["model_evaluations"] == pytest.approx(total, rel=0.05)
+        assert data.attrs["nbi_evaluations"] < data.attrs["model_evaluations"] < 5000
+        quick = mf.solve(problem_of(model), points=20, seed=1, search=mf.Search(doubt=0.5)).dataset
+        assert quick.attrs["model_evaluations"] < data.attrs["model_evaluations"]
 
 
 @pytest.mark.slow
@@ -139,7 +141,7 @@ def test_global_optima_do_not_depend_on_the_seed(model: str) -> None:
 
 
 def test_the_same_seed_gives_the_same_digits() -> None:
-    again = mf.solve(problem_of("M0"), points=20, seed=1).dataset
+    again = mf.solve(problem_of("M0"), points=20, programme="equations", seed=1).dataset
     assert again.identical(results("M0"))
 
 
@@ -160,19 +162,28 @@ def compare(result: xr.Dataset, expected: xr.Dataset, order: list[int] | None = 
 
 @pytest.mark.parametrize("model", ["M0", "M1"])
 def test_the_order_of_the_parameters_does_not_matter(model: str) -> None:
-    other = mf.solve(problem_of(model, names=("k3", "k1", "k2")), points=20, seed=2).dataset
+    other = mf.solve(
+        problem_of(model, names=("k3", "k1", "k2")), points=20, programme="equations", seed=2
+    ).dataset
     compare(other, results(model), [2, 0, 1])
 
 
 @pytest.mark.parametrize("model", ["M0", "M1"])
 def test_units_do_not_matter(model: str) -> None:
     # Tonnes and kilonewtons a metre: the frequencies stay.
-    other = mf.solve(problem_of(model, stiffness=1e-3, mass=1e-3), points=20, seed=3).dataset
+    other = mf.solve(
+        problem_of(model, stiffness=1e-3, mass=1e-3), points=20, programme="equations", seed=3
+    ).dataset
     compare(other, results(model))
 
 
 def test_sign_and_scale_of_measured_shapes_do_not_matter() -> None:
-    other = mf.solve(problem_of("M0", shape_scales=(-1.0, 250.0, -3e-4)), points=20, seed=4).dataset
+    other = mf.solve(
+        problem_of("M0", shape_scales=(-1.0, 250.0, -3e-4)),
+        points=20,
+        programme="equations",
+        seed=4,
+    ).dataset
     compare(other, results("M0"))
 
 
@@ -182,14 +193,14 @@ def test_scaling_the_model_scales_the_parameters() -> None:
     wider = mf.UpdatingProblem(
         problem.model, problem.data, GROUPS, problem.lower / 2, problem.upper / 2, problem.start / 2
     )
-    result = mf.solve(wider, points=20, seed=5).dataset
+    result = mf.solve(wider, points=20, programme="equations", seed=5).dataset
     expected = nbi(results("M0"))["theta"].values
     assert 2 * nbi(result)["theta"].values == pytest.approx(expected, abs=2e-5)
     heavier = problem_of("M0", mass=2.0)
     wider = mf.UpdatingProblem(
         heavier.model, heavier.data, GROUPS, 2 * problem.lower, 2 * problem.upper, 2 * problem.start
     )
-    result = mf.solve(wider, points=20, seed=6).dataset
+    result = mf.solve(wider, points=20, programme="equations", seed=6).dataset
     assert nbi(result)["theta"].values / 2 == pytest.approx(expected, abs=2e-5)
 
 
@@ -206,7 +217,7 @@ def test_matrices_give_the_same_front_as_the_chain() -> None:
     problem = mf.updating_problem(
         model, data, GROUPS, dict.fromkeys(NAMES, (0.2, 5.0)), dict.fromkeys(NAMES, 1.0)
     )
-    compare(mf.solve(problem, points=20, seed=1).dataset, results("M0"))
+    compare(mf.solve(problem, points=20, programme="equations", seed=1).dataset, results("M0"))
 
 
 def test_single_modes_as_groups() -> None:
@@ -228,7 +239,7 @@ def test_perfect_data_are_a_front_of_one_point() -> None:
     modes = base.model.modes(np.array([1.2, 0.9, 1.1]), 3)
     data = mf.modal_data(modes.frequency, modes.phi.T, FLOORS)
     problem = mf.UpdatingProblem(base.model, data, GROUPS, base.lower, base.upper, base.start)
-    result = mf.solve(problem, points=20, seed=1).dataset
+    result = mf.solve(problem, points=20, programme="equations", seed=1).dataset
     assert result.attrs["front_is_a_point"]
     assert "front" not in result["kind"].values
     edge = result["theta"].values[result["label"].values.tolist().index("edge-frequencies")]

@@ -46,9 +46,7 @@ points = 3
 method = "order"
 
 [search]
-starts = 1
-limit = 1
-evolutions = 0
+doubt = 0.5
 """
 )
 

@@ -61,9 +61,7 @@ shape = "all"
 points = 2
 
 [search]
-starts = 1
-limit = 1
-evolutions = 0
+doubt = 0.5
 """
 
 SENSORS = "sensors = { low = 0, top = [[0, 0.5], [1, 0.5]] }"
@@ -347,8 +345,8 @@ class Job:
 
 def _opensees(path: Path, K: np.ndarray, M: np.ndarray) -> None:
     write_opensees(path, K, M, labels())
-    Path(f"{path}_nodes.csv").write_text("12,0,0,0\n3,1,0\n7,1,1,0\n40,0,1,0\n5,2,0,1\n")
-    Path(f"{path}_elements.csv").write_text("1,12,3\n2,12,3,7,40\n3,5,99\n")
+    Path(f"{path}_nodes.csv").write_text("12,0,0,0\n3,1,0,0\n7,1,1,0\n40,0,1,0\n5,2,0,1\n")
+    Path(f"{path}_elements.csv").write_text("1,12,3\n2,12,3,7,40\n")
 
 
 def _calculix(path: Path, K: np.ndarray, M: np.ndarray) -> None:

@@ -1,6 +1,7 @@
 """Trials: inputs that are spoilt by chance, results that are damaged, runs that are disturbed.
 
-    python tests/trials/trials.py --inputs 10000 --kills 100 --faults 100 --seed 1
+    python tests/trials/trials.py --inputs 10000 --kills 100 --faults 100 --seed 1 \
+        --interleavings 10000
 
 prints how each of them ended, and what did not end as it should, with its seed.
 """
@@ -213,6 +214,21 @@ def failing(folder: Path, study: str, faults: int, seed: int) -> Outcome:
     return outcome
 
 
+def interleaved(count: int, seed: int) -> Outcome:
+    """Have runs in one folder take turns at every call, on drives with and without locks."""
+    import hypothesis
+    from test_interleavings import Interleavings, WithoutLocks, play
+
+    outcome = Outcome()
+    for kind in (Interleavings, WithoutLocks):
+        try:
+            play(hypothesis.seed(seed)(kind), count, derandomize=False)
+            outcome.ends["at most one run at a time"] += count
+        except AssertionError as error:
+            outcome.wrong.append(f"{kind.__name__}, seed {seed}: {error}")
+    return outcome
+
+
 def _messages(err: bytes) -> str:
     """Return what a run has printed on standard error but for its progress."""
     lines = err.decode().split("\n")
@@ -264,6 +280,14 @@ def _is_number(value: h5py.Dataset) -> bool:
     return value.dtype.kind in "fiub"
 
 
+def rows_of_every_format(examples: int) -> int:
+    """Spoil so many rows of files of every format; return 1 where a reader has not noticed one."""
+    environment = {**os.environ, "MODEFRONT_EXAMPLES": str(examples)}
+    command = [sys.executable, "-m", "pytest", "-q", str(HERE / "test_rows.py")]
+    done = subprocess.run(command, env=environment, cwd=HERE.parents[1], check=False)
+    return min(done.returncode, 1)
+
+
 def report(title: str, outcome: Outcome) -> Iterator[str]:
     """Yield what came out, in lines."""
     yield title
@@ -280,13 +304,17 @@ def main() -> None:
     parser.add_argument("--every", type=int, default=1, help="each of so many damages of results")
     parser.add_argument("--kills", type=int, default=100)
     parser.add_argument("--faults", type=int, default=100)
+    parser.add_argument("--interleavings", type=int, default=10_000)
+    parser.add_argument("--rows", type=int, default=5000, help="spoilt rows of each format")
     parser.add_argument("--seed", type=int, default=1)
     chosen = parser.parse_args()
     os.environ.setdefault("OMP_NUM_THREADS", "1")
-    sys.path += [str(HERE.parent / name) for name in ("study", "programs", "identification")]
+    sys.path += [
+        str(HERE.parent / name) for name in ("study", "programs", "identification", "work")
+    ]
     from sources import READING, RUNS, right_files
 
-    wrong = 0
+    wrong = rows_of_every_format(chosen.rows) if chosen.rows else 0
     with tempfile.TemporaryDirectory(prefix="trials-") as name:
         folder = Path(name)
         cases = right_files(folder)
@@ -298,6 +326,8 @@ def main() -> None:
 
         if chosen.inputs:
             show(f"{chosen.inputs} inputs", fuzz(folder, cases, chosen.inputs, chosen.seed))
+        if count := chosen.interleavings:
+            show(f"2 x {count} interleavings", interleaved(count, chosen.seed))
         if chosen.every:
             show("damaged results", damaged(folder, READING, chosen.every, chosen.seed))
         for study in RUNS:

@@ -19,8 +19,8 @@ def options(problem: mf.UpdatingProblem) -> None:
     mf.Pareto(points="20")  # rejected
     mf.Pareto(points=2.5)  # rejected
     mf.Pareto(point=20)  # rejected
-    mf.Search(starts="many")  # rejected
-    mf.Search(spread=None)  # rejected
+    mf.Search(evaluations="many")  # rejected
+    mf.Search(doubt=None)  # rejected
     mf.Pairing(method="order", window=1.5)
     mf.Pairing(method="MAC")  # rejected
     mf.Pairing(window="wide")  # rejected

@@ -6,29 +6,22 @@ import numpy as np
 import pytest
 import scipy.integrate
 import scipy.stats
-from problems import Derivatives, Known, box
+from exact import Residuals, Squares, squares
 
 from modefront._typing import Floats
-from modefront.solvers.curvature import SecondOrder, second_order
-from modefront.solvers.scalarisation import LogSum
-from modefront.solvers.sqp import Options, begin, solve
+from modefront.analysis.curvature import with_second_order
+from modefront.optim.problem import Evaluation
+from modefront.optim.scalarisation import LogSum
+from modefront.optim.sqp import Options, begin, solve
 from modefront.uncertainty.laplace import Posterior, laplace
-from modefront.uncertainty.prediction import linear, sampled
+from modefront.uncertainty.prediction import draw, linear
 
 TIGHT = Options(step=1e-11, reduction=0.0, iterations=200)
 
 
-def squares(parts: list[tuple[Floats, Floats]]) -> Derivatives:
-    return (
-        np.array([r @ r for r, _ in parts]),
-        np.array([2 * r @ dr for r, dr in parts]),
-        np.array([2 * dr.T @ dr for _, dr in parts]),
-    )
-
-
-def found_at(problem: Known, a: Floats) -> tuple[SecondOrder, Posterior]:
+def found_at(problem: Squares, a: Floats) -> tuple[Evaluation, Posterior]:
     evaluation = solve(problem, LogSum(a), begin(problem.evaluate(problem.start)), TIGHT).evaluation
-    point = second_order(problem, evaluation)
+    point = with_second_order(problem, evaluation)
     assert point is not None
     posterior = laplace(problem, point, a)
     assert posterior is not None
@@ -43,50 +36,41 @@ def regression(rng: np.random.Generator, rows: int) -> tuple[Floats, Floats]:
 def test_one_group_of_linear_residuals_has_students_covariance() -> None:
     """With s unknown, theta has Student's t; Laplace has its peak: s = J / a, C = s (A^T A)^-1."""
     A, y = regression(np.random.default_rng(0), 40)
-    problem = box(lambda theta: squares([(A @ theta - y, A)]), [-5, -5], [5, 5], 1)
+    problem = squares(lambda theta: [(A @ theta - y, A)], [-5, -5], [5, 5], 1)
     point, posterior = found_at(problem, np.array([40.0]))
-    expected = point.evaluation.J[0] / 40 * np.linalg.inv(A.T @ A)
+    expected = point.J[0] / 40 * np.linalg.inv(A.T @ A)
     assert posterior.covariance == pytest.approx(expected, rel=1e-6)
     # The t distribution with a - 2 degrees of freedom has the greater variance J / (a - 4).
-    t = point.evaluation.J[0] / (40 - 4) * np.linalg.inv(A.T @ A)
+    t = point.J[0] / (40 - 4) * np.linalg.inv(A.T @ A)
     assert posterior.covariance == pytest.approx(t, rel=0.11)
 
 
-def two_groups(theta: Floats) -> Derivatives:
+def two_groups(theta: Floats) -> Residuals:
     x, y = theta
     rng = np.random.default_rng(4)
     e, f = 0.1 * rng.normal(size=(2, 60))
     r1 = x - 1 + e
     r2 = y**2 / 2 + x / 2 - 1.2 + f
     unit, zero = np.ones(60), np.zeros(60)
-    return squares(
-        [(r1, np.column_stack([unit, zero])), (r2, np.column_stack([unit / 2, y * unit]))]
-    )
+    return [(r1, np.column_stack([unit, zero])), (r2, np.column_stack([unit / 2, y * unit]))]
 
 
 def test_two_groups_against_integration_over_parameters_and_variances() -> None:
     """The variances are integrated numerically too: the marginal is not taken on trust."""
     a = np.array([60.0, 60.0])
-    problem = box(two_groups, [0.5, 0.5], [1.5, 2.0], 2)
+    problem = squares(two_groups, [0.5, 0.5], [1.5, 2.0], 2)
     point, posterior = found_at(problem, a)
     std = np.sqrt(np.diag(posterior.covariance))
-    grid = [
-        np.linspace(m - 6 * s, m + 6 * s, 81)
-        for m, s in zip(point.evaluation.theta, std, strict=True)
-    ]
+    grid = [np.linspace(m - 6 * s, m + 6 * s, 81) for m, s in zip(point.theta, std, strict=True)]
     ln_s = np.linspace(-2.0, 2.5, 181)
 
     def density(theta: Floats) -> float:
-        J = two_groups(theta)[0]
+        J = [r @ r for r, _ in two_groups(theta)]
         total = 1.0
         for i in range(2):
-            s = np.exp(ln_s) * point.evaluation.J[i] / a[i]
+            s = np.exp(ln_s) * point.J[i] / a[i]
             # p(D | theta, s) p(s) ds with p(s) = 1 / s, as an integral over ln s
-            ln_p = (
-                -a[i]
-                / 2
-                * (np.log(s) + J[i] / (a[i] * s) - np.log(point.evaluation.J[i] / a[i]) - 1)
-            )
+            ln_p = -a[i] / 2 * (np.log(s) + J[i] / (a[i] * s) - np.log(point.J[i] / a[i]) - 1)
             total *= scipy.integrate.simpson(np.exp(ln_p), x=ln_s)
         return total
 
@@ -96,55 +80,53 @@ def test_two_groups_against_integration_over_parameters_and_variances() -> None:
     mean = np.array([(p * x).sum(), (p * y).sum()])
     d = np.stack([x - mean[0], y - mean[1]])
     covariance = np.einsum("xy,ixy,jxy->ij", p, d, d)
-    assert mean == pytest.approx(point.evaluation.theta, abs=0.05 * std.max())
+    assert mean == pytest.approx(point.theta, abs=0.05 * std.max())
     assert posterior.covariance == pytest.approx(covariance, rel=0.06)
     # ... and of a prediction, by its gradient and by a sample.
-    slope = np.array([[point.evaluation.theta[1], point.evaluation.theta[0]]])
+    slope = np.array([[point.theta[1], point.theta[0]]])
     product = linear(posterior.covariance, slope)[0, 0]
     exact = (p * (x * y) ** 2).sum() - (p * x * y).sum() ** 2
     assert product == pytest.approx(exact, rel=0.08)
-    drawn = sampled(
-        point.evaluation.theta, posterior.covariance, np.prod, np.random.default_rng(0), count=4000
-    )
+    drawn = draw(point.theta, posterior.axes, np.random.default_rng(0), 4000).prod(axis=1)
     assert drawn.var() == pytest.approx(product, rel=0.08)
 
 
 def test_what_residuals_do_not_change_keeps_its_prior_and_is_named() -> None:
     A, y = regression(np.random.default_rng(0), 40)
     B = np.column_stack([A[:, 0], 2 * A[:, 0]])
-    problem = box(lambda theta: squares([(B @ theta - y, B)]), [-50, -50], [50, 50], 1)
+    problem = squares(lambda theta: [(B @ theta - y, B)], [-50, -50], [50, 50], 1)
     point, posterior = found_at(problem, np.array([40.0]))
     (direction,) = posterior.free.T
     assert abs(direction / np.linalg.norm(direction) @ [2, -1]) == pytest.approx(np.sqrt(5))
     variance = np.array([1.0, 2.0]) @ posterior.covariance @ [1.0, 2.0]
-    assert variance == pytest.approx(point.evaluation.J[0] / 40 / (A[:, 0] @ A[:, 0]), rel=1e-6)
+    assert variance == pytest.approx(point.J[0] / 40 / (A[:, 0] @ A[:, 0]), rel=1e-6)
 
 
 def test_a_parameter_pressed_against_a_bound_is_given() -> None:
     A, y = regression(np.random.default_rng(0), 40)
-    problem = box(lambda theta: squares([(A @ theta - y, A)]), [-5, -5], [0.9, 5], 1)
+    problem = squares(lambda theta: [(A @ theta - y, A)], [-5, -5], [0.9, 5], 1)
     point, posterior = found_at(problem, np.array([40.0]))
     assert posterior.held.tolist() == [True, False]
     assert posterior.covariance[0].tolist() == [0, 0]
     assert posterior.covariance[1, 1] == pytest.approx(
-        point.evaluation.J[0] / 40 / (A[:, 1] @ A[:, 1]), rel=1e-6
+        point.J[0] / 40 / (A[:, 1] @ A[:, 1]), rel=1e-6
     )
 
 
-def exact_fit(theta: Floats) -> Derivatives:
-    return squares([(theta - 1, np.eye(2))])
+def exact_fit(theta: Floats) -> Residuals:
+    return [(theta - 1, np.eye(2))]
 
 
-def hill(theta: Floats) -> Derivatives:
-    return squares([(1 - (theta - 1) ** 2, -2 * np.diag(theta - 1))])
+def hill(theta: Floats) -> Residuals:
+    return [(1 - (theta - 1) ** 2, -2 * (theta - 1) * np.eye(2))]
 
 
 @pytest.mark.parametrize("function", [exact_fit, hill])
 def test_there_is_no_posterior_without_a_regular_minimum(
-    function: Callable[[Floats], Derivatives],
+    function: Callable[[Floats], Residuals],
 ) -> None:
-    problem = box(function, [-2, -2], [2, 2], 1)
-    point = second_order(problem, problem.evaluate(np.ones(2)))
+    problem = squares(function, [-2, -2], [2, 2], 1)
+    point = with_second_order(problem, problem.evaluate(np.ones(2)))
     assert point is not None
     assert laplace(problem, point, np.array([2.0])) is None
 
@@ -152,7 +134,7 @@ def test_there_is_no_posterior_without_a_regular_minimum(
 def test_a_truncated_sample_stays_within_the_bounds() -> None:
     lower, upper = np.array([-0.5, -9.0]), np.array([0.5, 9.0])
     rng = np.random.default_rng(0)
-    drawn = sampled(np.zeros(2), np.eye(2), lambda x: x, rng, 500, (lower, upper))
+    drawn = draw(np.zeros(2), np.eye(2), rng, 500, (lower, upper))
     assert drawn.shape == (500, 2)
     assert (drawn >= lower).all()
     assert (drawn <= upper).all()

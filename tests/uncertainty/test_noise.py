@@ -7,8 +7,8 @@ import pytest
 
 import modefront as mf
 from modefront.data.modal import ModalData
+from modefront.optim.problem import Evaluation
 from modefront.residuals.base import Scale
-from modefront.solvers.problem import Evaluation
 from modefront.uncertainty.noise import Source, available, noise, noise_floor
 
 NAMES = ("k1", "k2", "k3")
@@ -54,7 +54,7 @@ def test_standard_deviations_are_carried_by_exact_derivatives(scale: Scale) -> N
     if scale == "std":
         data.shape_std[0, 0, 1] = 0.02  # a zero would be replaced by what others have
     problem, step = problem_of(data, scale), 1e-4
-    result = noise(problem, THETA, "std")
+    result = noise(problem, *problem.modes(THETA), "std")
 
     def moved(k: int, r: int, s: int, by: float) -> Evaluation:
         f, phi = data.frequency.copy(), data.shape.copy()
@@ -79,7 +79,7 @@ def test_data_sets_scatter_as_the_mean_of_their_objectives() -> None:
     data = measured(5)
     data.frequency[0, 2], data.shape[-1, 1, 2] = 20.0, 0.1
     problem = problem_of(data, "measured")
-    result = noise(problem, THETA, "sets")
+    result = noise(problem, *problem.modes(THETA), "sets")
     single = []
     for k in range(5):
         changed = replace(
@@ -103,7 +103,7 @@ def test_a_mode_measured_once_counts_as_exact() -> None:
     data = measured(2)
     assert np.isfinite(data.frequency[:, 2]).sum() == 1
     alone = replace(problem_of(data, "measured"), groups=(mf.Group("third", frequency=[3]),))
-    assert not noise(alone, THETA, "sets").J.any()
+    assert not noise(alone, *alone.modes(THETA), "sets").J.any()
 
 
 def drawn(rng: np.random.Generator, sets: int) -> ModalData:

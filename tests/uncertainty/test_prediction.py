@@ -13,7 +13,6 @@ from modefront.uncertainty.prediction import (
     draw,
     linear,
     lognormal_std,
-    sampled,
     summary,
 )
 
@@ -98,10 +97,10 @@ def test_a_longer_sample_begins_with_a_shorter_one() -> None:
 def test_bounds_that_leave_hardly_anything_end_with_a_statement() -> None:
     tight = np.zeros(2), np.full(2, 1e-3)
     with pytest.raises(TruncationError, match=r"\d of 100000 draws are within the bounds"):
-        sampled(np.zeros(2), np.eye(2), lambda x: x, np.random.default_rng(0), 20, tight)
+        draw(np.zeros(2), np.eye(2), np.random.default_rng(0), 20, tight)
     # One in a thousand is no reason to give up.
     some = np.zeros(2), np.array([0.1, 0.063])
-    result = sampled(np.zeros(2), np.eye(2), lambda x: x, np.random.default_rng(0), 200, some)
+    result = draw(np.zeros(2), np.eye(2), np.random.default_rng(0), 200, some)
     assert len(result) == 200
 
 

@@ -4,17 +4,17 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
+from exact import Residuals, Squares, squares
 from hypothesis import given
 from hypothesis import strategies as st
-from problems import Derivatives, Known, box
 
 from modefront._typing import Floats
-from modefront.solvers.attainment import Attainment, active_bounds
-from modefront.solvers.curvature import SecondOrder, second_order
-from modefront.solvers.nbi import programmes as programmes_of
-from modefront.solvers.payoff import spanned
-from modefront.solvers.scalarisation import LogSum, Scalarisation, constrained, weighted
-from modefront.solvers.sqp import Options, Solution, begin, solve
+from modefront.analysis.curvature import with_second_order
+from modefront.front.simplex import spanned
+from modefront.front.subproblems import Point, active_bounds
+from modefront.optim.problem import Evaluation
+from modefront.optim.scalarisation import LogSum, Scalarisation, constrained, weighted
+from modefront.optim.sqp import Options, Solution, begin, solve
 from modefront.uncertainty.conditions import (
     between,
     boundary,
@@ -43,15 +43,13 @@ class Bent:
         u = self.B @ theta
         return self.A @ theta + self.bend * u**2, self.A + 2 * self.bend * u[..., None] * self.B
 
-    def __call__(self, theta: Floats) -> Derivatives:
+    def __call__(self, theta: Floats) -> Residuals:
         g, dg = self.model(theta)
-        r = g - self.y
-        H = 2 * np.einsum("irp,irq->ipq", dg, dg)
-        return (r**2).sum(axis=1), 2 * np.einsum("ir,irp->ip", r, dg), H
+        return list(zip(g - self.y, dg, strict=True))
 
-    def problem(self, lower: float = -5.0, upper: float = 5.0) -> Known:
+    def problem(self, lower: float = -5.0, upper: float = 5.0) -> Squares:
         n, _, p = self.A.shape
-        return box(self, [lower] * p, [upper] * p, n)
+        return squares(self, [lower] * p, [upper] * p, n)
 
     def noise(self, theta: Floats) -> Noise:
         g, dg = self.model(theta)
@@ -75,13 +73,13 @@ def bent(seed: int, p: int = 3, n: int = 2, rows: int = 5, bend: float = 0.1) ->
     return Bent(A, B, rng.normal(size=(n, rows)), rng.uniform(0.1, 1, (n, rows)), bend)
 
 
-def minimum(problem: Known, programme: Scalarisation, theta: Floats) -> Solution:
+def minimum(problem: Squares, programme: Scalarisation, theta: Floats) -> Solution:
     result = solve(problem, programme, begin(problem.evaluate(theta)), TIGHT)
     return solve(problem, programme, begin(result.evaluation), TIGHT)
 
 
-def point_of(problem: Known, result: Solution) -> SecondOrder:
-    point = second_order(problem, result.evaluation)
+def point_of(problem: Squares, result: Solution) -> Evaluation:
+    point = with_second_order(problem, result.evaluation)
     assert point is not None
     return point
 
@@ -130,7 +128,7 @@ def test_a_level_that_moves_with_the_data() -> None:
     case, by, tolerance = bent(5), 1e-3, 0.3
     first = minimum(case.problem(), weighted(np.array([1.0, 0.0])), np.zeros(3))
 
-    def cut(problem: Known) -> Solution:
+    def cut(problem: Squares) -> Solution:
         best = minimum(problem, weighted(np.array([1.0, 0.0])), first.theta)
         value = (1 + tolerance) * best.J[0]
         programme = constrained(np.array([0.0, 1.0]), np.array([[1.0, 0.0]]), np.array([value]))
@@ -163,23 +161,24 @@ def test_points_of_the_front_follow_their_edges(
     case, by = bent(16, n=n, bend=0.05), 1e-3
     place, on = np.array(beta), np.array(active, dtype=bool)
 
-    def solved(problem: Known) -> tuple[list[Solution], Solution]:
-        edges = [minimum(problem, weighted(w), np.zeros(3)) for w in np.eye(n)]
-        worst = [edges[2], edges[2], edges[1]] if ranges else []
+    worst: list[Solution] = []
+
+    def edges_of(problem: Squares) -> list[Solution]:
+        return [minimum(problem, weighted(w), np.zeros(3)) for w in np.eye(n)]
+
+    def solved(problem: Squares) -> tuple[list[Solution], Solution]:
+        edges = edges_of(problem)
         target = spanned(edges, worst, np.ones(n))
         assert target is not None
-        programmes = programmes_of(target, edges)
-        result = programmes.solve(problem, place, edges[0])
-        if isinstance(programmes, Attainment):
-            assert result.converged
-            shares = result.weights * target.scale * programmes.r
-            assert (active_bounds(shares) == on).all()
-            exact: Scalarisation = programmes.subproblem(place)
-        else:
-            exact = target.subproblem(place)
-        return edges, minimum(problem, exact, result.theta)
+        point = Point(place, (), target)
+        result = point.solve(problem, edges[0])
+        assert result.converged
+        assert (active_bounds(result.weights * target.unit) == on).all()
+        return edges, minimum(problem, point.programme, result.theta)
 
     problem = case.problem()
+    if ranges:
+        worst = [edges_of(problem)[k] for k in (2, 2, 1)]
     edges, computed = solved(problem)
     columns = []
     for i, edge in enumerate(edges):
@@ -189,8 +188,7 @@ def test_points_of_the_front_follow_their_edges(
     noise, point = case.noise(computed.theta), point_of(problem, computed)
     target = between(E, dE)
     if ranges:
-        worst = [2, 2, 1]
-        target = over_ranges(E, dE, E[range(3), worst], dE[:, range(3), worst])
+        target = over_ranges(E, dE, E[range(3), [2, 2, 1]])
     w, conditions = boundary(point, computed.weights, target, place, noise)
     result = scatter(problem, point, w, conditions, noise)
     ahead, behind = (

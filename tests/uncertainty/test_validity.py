@@ -9,22 +9,21 @@ import pytest
 from problems import Derivatives, Known, box, many_minima
 
 from modefront._typing import Floats
-from modefront.analysis.neighbours import with_neighbours
-from modefront.fronts.front import Front
-from modefront.fronts.point import Kind, Point
-from modefront.solvers.attainment import Attainment
-from modefront.solvers.curvature import SecondOrder, second_order
-from modefront.solvers.edges import Edge
-from modefront.solvers.nbi import programmes
-from modefront.solvers.payoff import spanned
-from modefront.solvers.scalarisation import weighted
-from modefront.solvers.sqp import Status, begin, solve
+from modefront.analysis.curvature import with_second_order
+from modefront.front.front import Edge, Front
+from modefront.front.point import Kind, Point
+from modefront.front.simplex import spanned
+from modefront.front.subproblems import Point as LatticePoint
+from modefront.optim.problem import Evaluation
+from modefront.optim.scalarisation import weighted
+from modefront.optim.sqp import Status, begin, solve
 from modefront.uncertainty.conditions import (
     between,
     boundary,
     given_weights,
     optimal_weights,
 )
+from modefront.uncertainty.linear import with_neighbours
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.points import Role, SolvedPoint
 from modefront.uncertainty.scatter import Scatter, scatter
@@ -33,8 +32,8 @@ from modefront.uncertainty.validity import LinearisationWarning
 CORNERS = np.array([[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]])
 
 
-def point_at(problem: Known, theta: list[float]) -> SecondOrder:
-    point = second_order(problem, problem.evaluate(np.array(theta)))
+def point_at(problem: Known, theta: list[float]) -> Evaluation:
+    point = with_second_order(problem, problem.evaluate(np.array(theta)))
     assert point is not None
     return point
 
@@ -78,9 +77,7 @@ def test_optimal_weights_hold_a_model_between_close_minima_only(
     problem = box(bowls, [-2.0], [2.0])
     point, a = point_at(problem, [0.0]), np.ones(2)
     noise = Noise(np.array([[0.01, 0.0]]), np.array([[[0.01], [0.0]]]))
-    result = scatter(
-        problem, point, a / point.evaluation.J, optimal_weights(point, a, noise), noise
-    )
+    result = scatter(problem, point, a / point.J, optimal_weights(point, a, noise), noise)
     assert result.warnings == doubts
 
 
@@ -107,9 +104,7 @@ def of_corners(beta: Floats, std: float) -> Scatter:
         dE.append(scatter(problem, point, w, given_weights(chosen), chosen).J)
     target = spanned(edges, (), np.ones(3))
     assert target is not None
-    of = programmes(target, edges)
-    assert isinstance(of, Attainment)
-    result = of.solve(problem, beta, edges[0])
+    result = LatticePoint(beta, (), target).solve(problem, edges[0])
     assert result.converged
     E = np.array([edge.J for edge in edges]).T
     point, chosen = point_at(problem, result.theta.tolist()), noise(result.theta)

@@ -16,7 +16,7 @@ from threadpoolctl import threadpool_info
 from modefront._typing import Floats
 from modefront.linalg.products import shared_pool
 from modefront.work.costs import Costs, spend
-from modefront.work.task import Executor, Task
+from modefront.work.task import Task
 from modefront.work.transfer import shared
 
 
@@ -31,33 +31,6 @@ def squares(*numbers: int) -> list[Task[int]]:
 
 def normal(k: int, *, rng: np.random.Generator) -> Floats:
     return k + rng.normal(size=3)
-
-
-def chain(number: int, *, work: Executor) -> list[int]:
-    """Return squares that follow from each other, with those that may come next named."""
-    out = []
-    for k in range(3):
-        tasks = [Task(("link", i), square, (number + i,)) for i in range(k, k + 3)]
-        out += work.run(tasks[:1], tasks[1:])
-    return out
-
-
-def fragile(error: Exception, *, work: Executor) -> int:
-    """Raise the error of a part."""
-    return work.run([*squares(1), Task(("fails",), failing, (error,))])[0]
-
-
-def broken_off(*, work: Executor) -> int:
-    """Raise an error between two parts."""
-    raise ZeroDivisionError(work.run(squares(2, 3)))
-
-
-def one_part(*, work: Executor) -> int:
-    return work.run([Task(("nap",), nap, (1,))])[0]
-
-
-def negative(x: int) -> int:
-    return -x * x
 
 
 @shared
@@ -91,20 +64,6 @@ def failing(error: Exception) -> int:
 def nap(k: int) -> int:
     time.sleep(0.02)
     return k
-
-
-def slow(calls: str, *, work: Executor) -> int:
-    (part,) = work.run([Task(("part",), long_part)])
-    with Path(calls).open("a") as stream:
-        stream.write("x")
-    if Path(calls).read_text() == "x":
-        raise ZeroDivisionError
-    return part
-
-
-def long_part() -> int:
-    spend(Costs(eigenproblems=3))
-    return 7
 
 
 def deadly(marker: str, times: int, number: int) -> int:

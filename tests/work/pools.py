@@ -72,12 +72,3 @@ class Threads:
     def close(self) -> None:
         self.closed = True
         self.executor.shutdown()
-
-
-class Interrupting(Threads):
-    """A pool in which the third message is interrupted, as by Ctrl-C while it is sent."""
-
-    def submit(self, message: Message, objects: dict[str, bytes], /) -> Future[Reply]:
-        if len(self.sent) == 2:
-            raise KeyboardInterrupt
-        return super().submit(message, objects)

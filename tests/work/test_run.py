@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from problems import Known, box, circles
 
 from modefront._typing import Floats
-from modefront.solvers.archive import Archive, Archiving
-from modefront.solvers.problem import Problem
+from modefront.front.archive import Archive, Outcome, Recorded, recorded
+from modefront.optim.problem import Problem
 from modefront.work.costs import Costs, counted, spend, total, uncounted
 from modefront.work.progress import Progress, State
 from modefront.work.run import Run
@@ -147,7 +147,7 @@ class Noting:
     tasks: list[Task[Any]] = field(default_factory=list)
     stages: list[Mapping[str, int]] = field(default_factory=list)
 
-    def run(self, tasks: Sequence[Task[R]], _: Sequence[Task[Any]] = (), /) -> list[R]:
+    def run(self, tasks: Sequence[Task[R]], /) -> list[R]:
         self.tasks += tasks
         return [task() for task in tasks]
 
@@ -155,22 +155,17 @@ class Noting:
         self.stages.append(stages)
 
 
-def test_tasks_of_a_part_and_of_a_turn_are_named_so() -> None:
+def test_tasks_of_a_turn_are_named_so() -> None:
     noting = Noting()
-    part = Within(noting, part=("identifiable",))
-    again = Within(part, turn=("again", 1))
+    again = Within(noting, turn=("again", 1))
     again.run([Task(("square", (1, 2)), square, (3,), turn=("round", 2))])
     (task,) = noting.tasks
-    assert (task.key, task.turn) == (
-        ("identifiable", "square", (1, 2)),
-        ("round", 2, "again", 1),
-    )
-    assert task.stage == "identifiable"
-    assert task.name == "identifiable-square-1_2-round-2-again-1"
+    assert (task.key, task.turn) == (("square", (1, 2)), ("round", 2, "again", 1))
+    assert task.stage == "square"
+    assert task.name == "square-1_2-round-2-again-1"
     assert task() == 9
-    for work in (again, Within(noting, turn=("again", 1))):
-        work.expect({"square": 2, "other": 3})
-    assert noting.stages == [{"identifiable": 5}, {"square": 2, "other": 3}]
+    again.expect({"square": 2, "other": 3})
+    assert noting.stages == [{"square": 2, "other": 3}]
 
 
 # ---- archives ----------------------------------------------------------------------------------
@@ -180,17 +175,25 @@ def visited(problem: Problem, thetas: Sequence[Floats]) -> float:
     return sum(float(problem.evaluate(theta).J.sum()) for theta in thetas)
 
 
-def tasks_on(problem: Known, seed: int) -> list[Task[float]]:
+def tasks_on(problem: Known, seed: int) -> list[Task[Outcome]]:
     rng = np.random.default_rng(seed)
     thetas = rng.uniform(-1, 2, size=(6, 5, 2))
-    return [Task(("visit", k), visited, (problem, some)) for k, some in enumerate(thetas)]
+    return [Task(("visit", k), recorded, (visited, problem, x)) for k, x in enumerate(thetas)]
+
+
+def archived(outcomes: Sequence[Outcome]) -> Archive:
+    archive = Archive(2, 2)
+    for outcome in outcomes:
+        for theta, J in zip(outcome.theta, outcome.J, strict=True):
+            archive.add(theta, J)
+    return archive
 
 
 @dataclass
 class Backwards:
     """An executor that computes the last task first, as one of many processes may."""
 
-    def run(self, tasks: Sequence[Task[R]], _: Sequence[Task[Any]] = (), /) -> list[R]:
+    def run(self, tasks: Sequence[Task[R]], /) -> list[R]:
         return [task() for task in tasks[::-1]][::-1]
 
     def expect(self, stages: Mapping[str, int]) -> None:
@@ -201,32 +204,26 @@ class Backwards:
 def test_the_archive_is_that_of_one_evaluation_after_another(seed: int) -> None:
     problem = box(circles, [-1, -1], [2, 2])
     tasks = tasks_on(problem, seed)
-    straight = Archive(problem)
-    sums = [visited(straight, task.arguments[1]) for task in tasks]
+    straight = Recorded(problem)
+    sums = [visited(straight, task.arguments[2]) for task in tasks]
     for work in (IMMEDIATE, Run(), Backwards(), Within(Run(), turn=("again", 1))):
-        archive = Archive(problem)
-        assert Archiving(work, archive).run(tasks) == sums
-        assert archive.theta.tolist() == straight.theta.tolist(), "in the order of the tasks"
-        assert archive.J.tolist() == straight.J.tolist()
+        outcomes = work.run(tasks)
+        assert [x.result for x in outcomes] == sums
+        assert sum(x.evaluations for x in outcomes) == straight.evaluations == 30
+        archive = archived(outcomes)
+        assert archive.theta.tolist() == straight.archive.theta.tolist(), "in the order of tasks"
+        assert archive.J.tolist() == straight.archive.J.tolist()
 
 
 def test_kept_tasks_bring_the_models_that_they_had_evaluated(tmp_path: Path) -> None:
     problem = box(circles, [-1, -1], [2, 2])
     archives = []
     for _ in range(2):
-        archive = Archive(problem)
-        archives.append(archive)
         with counted() as costs:
-            Archiving(Run(Store(tmp_path)), archive).run(tasks_on(problem, 0))
+            archives.append(archived(Run(Store(tmp_path)).run(tasks_on(problem, 0))))
     assert costs.eigenproblems == 0
     assert archives[0].J.tolist() == archives[1].J.tolist()
     assert archives[0].theta.tolist() == archives[1].theta.tolist()
-
-
-def test_an_archiving_executor_passes_the_extent_on() -> None:
-    noting = Noting()
-    Archiving(noting, Archive(box(circles, [-1, -1], [2, 2]))).expect({"front": 3})
-    assert noting.stages == [{"front": 3}]
 
 
 # ---- progress ----------------------------------------------------------------------------------

@@ -12,8 +12,8 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from modefront.solvers.problem import Evaluation, ObjectiveDerivatives
-from modefront.solvers.sqp import Solution, Status, begin
+from modefront.optim.problem import Evaluation, ObjectiveDerivatives
+from modefront.optim.sqp import Solution, Status, begin
 from modefront.work.costs import Costs
 from modefront.work.store import LONGEST, Store
 from modefront.work.task import Key, Task
@@ -142,24 +142,31 @@ def test_a_file_cut_off_anywhere_counts_as_none(whole: tuple[Store, Path, bytes]
         assert store.read(task("one")) is None
 
 
-@pytest.mark.parametrize("value", [0, 1, 2, 8, 9, 173, 255])
-def test_a_file_with_any_wrong_byte_of_its_directory_counts_as_none(
+@pytest.mark.parametrize("value", [0, 1, 2, 8, 9, 12, 14, 173, 255])
+def test_a_file_with_any_wrong_byte_counts_as_none(
     value: int, whole: tuple[Store, Path, bytes]
 ) -> None:
-    """Bytes that ask for a password or another compression, among others."""
+    """Bytes that ask for a password or for other compressions, and headers that do not parse."""
     store, path, content = whole
     first = content.index(b"PK\x01\x02")
-    for position in range(first, first + 46):
-        damaged = bytearray(content)
-        damaged[position] = value
-        path.write_bytes(damaged)
-        kept = store.read(task("one"))
-        assert kept is None or kept[0][0].J.tobytes() == solution().J.tobytes()
+    heads = content.index(b"descr"), content.index(b"shape")
+    for position in {
+        *range(0, len(content), 13),
+        *range(first, first + 46),
+        *(head + k for head in heads for k in range(20)),
+    }:
+        if content[position] != value:
+            damaged = bytearray(content)
+            damaged[position] = value
+            path.write_bytes(damaged)
+            assert store.read(task("one")) is None
+    path.write_bytes(content)
+    assert store.read(task("one")) is not None
 
 
 @settings(max_examples=100)
 @given(data=st.data())
-def test_a_file_with_wrong_bytes_counts_as_none_or_is_the_same(
+def test_a_file_with_wrong_bytes_counts_as_none(
     whole: tuple[Store, Path, bytes], data: st.DataObject
 ) -> None:
     store, path, content = whole
@@ -167,10 +174,7 @@ def test_a_file_with_wrong_bytes_counts_as_none_or_is_the_same(
     for _ in range(data.draw(st.integers(1, 3))):
         damaged[data.draw(st.integers(0, len(content) - 1))] = data.draw(st.integers(0, 255))
     path.write_bytes(damaged)
-    kept = store.read(task("one"))
-    if kept is not None:
-        assert kept[1] == COSTS
-        assert kept[0][0].J.tobytes() == solution().J.tobytes()
+    assert (store.read(task("one")) is None) == (bytes(damaged) != content)
 
 
 @pytest.mark.parametrize(
@@ -179,22 +183,16 @@ def test_a_file_with_wrong_bytes_counts_as_none_or_is_the_same(
         {},
         [],
         1,
-        {"key": "one"},
-        {"key": "one", "costs": {}},
-        {"key": "one", "costs": [], "result": 1},
-        {"key": "one", "costs": {"other": 1}, "result": 1},
-        {"key": "one", "costs": {}, "result": {"record": "Gone", "fields": {}}},
-        {"key": "one", "costs": {}, "result": {"record": "Solution", "fields": {"old": 1}}},
-        {"key": "one", "costs": {}, "result": {"array": "0"}},
+        {"costs": {}},
+        {"costs": {"other": 1}, "result": 1},
+        {"costs": {}, "result": {"record": "Gone", "fields": {}}},
+        {"costs": {}, "result": 1},
     ],
 )
 def test_a_file_of_other_content_counts_as_none(content: Any, tmp_path: Path) -> None:
     store = Store(tmp_path)
     store.write(task("one"), 1, COSTS)
     (path,) = tmp_path.iterdir()
-    if isinstance(content, dict) and "key" in content:
-        with np.load(path) as file:
-            content["key"] = json.loads(file["head"].tobytes())["key"]
     head = np.frombuffer(json.dumps(content).encode(), np.uint8)
     np.savez(path, head=head)
     assert store.read(task("one")) is None
@@ -222,7 +220,7 @@ def test_a_write_that_is_interrupted_leaves_no_file(
     def interrupted(_: int) -> None:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr("modefront.work.store.os.fsync", interrupted)
+    monkeypatch.setattr("modefront.outputs.os.fsync", interrupted)
     with pytest.raises(KeyboardInterrupt):
         Store(tmp_path).write(Task(("x",), len), 1, Costs())
     assert not list(tmp_path.iterdir())

@@ -89,9 +89,7 @@ sensors = { s20 = 20, s60 = 60, s110 = 110, s170 = 170 }
 points = 4
 
 [search]
-starts = 3
-limit = 4
-evolutions = 0
+doubt = 0.5
 """
     for name in names:
         text += f'\n[[parameter]]\nname = "{name}"\nnominal = 1.0\nbounds = [0.5, 2.0]\n'
@@ -312,7 +310,7 @@ def test_a_run_whose_output_nobody_reads_is_done_and_says_so_once(tmp_path: Path
 
 def test_a_second_run_with_workers_leaves_the_folder_to_the_first(tmp_path: Path) -> None:
     path, folder = write_study(tmp_path, ""), tmp_path / "results"
-    folder.mkdir()
+    (folder / "tasks").mkdir(parents=True)
     with locked(folder), pytest.raises(InputError, match="no other run in it"):
         mf.run(mf.load(path), folder, workers=2)
     assert not list(folder.rglob("*.npz"))

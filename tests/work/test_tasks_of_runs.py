@@ -90,11 +90,9 @@ def test_every_task_of_a_run_gives_the_same_record_after_pickle(
         whole = mf.run(of(tmp_path), tmp_path / "whole")
     run = Run.run
 
-    def through_pickle(
-        work: Run, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /
-    ) -> list[R]:
+    def through_pickle(work: Run, tasks: Sequence[Task[R]], /) -> list[R]:
         copies = [pickle.loads(pickle.dumps(task)) for task in tasks]
-        return [pickle.loads(pickle.dumps(result)) for result in run(work, copies, ahead)]
+        return [pickle.loads(pickle.dumps(result)) for result in run(work, copies)]
 
     monkeypatch.setattr(Run, "run", through_pickle)
     other = kept(monkeypatch)
@@ -103,7 +101,7 @@ def test_every_task_of_a_run_gives_the_same_record_after_pickle(
     assert other == here
     xr.testing.assert_identical(again.dataset, whole.dataset)
     stages = {name.split("-")[0] for name in here}
-    assert {"edge", "weights", "front", "optimal", "nominal"} <= stages
+    assert {"edges", "front", "optimal", "nominal"} <= stages
     if of is everything:
         assert {"near", "bootstrap", "second", "predict", "manifold"} <= stages
 

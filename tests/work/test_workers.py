@@ -5,7 +5,6 @@ from __future__ import annotations
 import os
 import subprocess
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from pathlib import Path
@@ -17,42 +16,36 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from jobs import (
     Big,
-    broken_off,
-    chain,
     deadly,
     failing,
-    fragile,
     nap,
-    negative,
     normal,
-    one_part,
     process_of,
-    slow,
     squares,
     threads,
     total_of_parts,
     totals,
 )
-from pools import Interrupting, Threads
+from pools import Threads
 from problems import box, circles
 
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
-from modefront.solvers.archive import Archive, Archiving
-from modefront.solvers.continuation import simplex
-from modefront.solvers.explore import Descent, Search, explore
-from modefront.solvers.nbi import nbi
-from modefront.solvers.payoff import payoff
-from modefront.solvers.problem import Problem
-from modefront.solvers.scalarisation import weighted
-from modefront.solvers.sqp import Solution
+from modefront.front.front import Front
+from modefront.front.options import Pareto
+from modefront.front.pareto import pareto_front
+from modefront.front.search import Search
 from modefront.work.backend import InTurn
 from modefront.work.costs import counted
 from modefront.work.run import Run
 from modefront.work.store import Store
-from modefront.work.task import Executor, Task, Within, seed_sequence
+from modefront.work.task import Executor, Task, seed_sequence
 from modefront.work.workers import QUEUED, Workers, backend
 
 orders = st.lists(st.integers(0, 3), min_size=1, max_size=5)
+
+
+def is_kept(store: Store, task: Task[Any]) -> bool:
+    return store.read(task) is not None
 
 
 # ---- results do not depend on who computes them ------------------------------------------------
@@ -65,67 +58,38 @@ def test_results_costs_and_random_numbers_are_those_of_one_after_another(
 ) -> None:
     tasks: list[Task[Any]] = [*squares(*numbers)]
     tasks += [Task(("normal", k), normal, (k,), seed_sequence(1, k)) for k in range(3)]
-    tasks += [Task(("chain", k), chain, (k,), has_parts=True) for k in range(2)]
     alone = Run()
     expected = alone.run(tasks)
     with Workers(Threads(count, delays)) as workers:
         work = Run(backend=workers)
         with counted() as spent:
-            results = work.run(tasks, squares(100, 101))
+            results = work.run(tasks)
     for first, other in zip(results, expected, strict=True):
         np.testing.assert_array_equal(first, other)
     assert set(work.costs) == set(alone.costs)
     assert work.total().eigenproblems == alone.total().eigenproblems == spent.eigenproblems
 
 
-def searched(problem: Problem, work: Executor) -> list[Solution]:
-    """Return minima of a search and a front between the first two of them."""
-    tasks = [
-        Task(
-            ("search", i),
-            explore,
-            (problem, Descent(weighted(w)), Search(starts=6, limit=8, evolutions=0)),
-            seed_sequence(0, i),
-            has_parts=True,
-        )
-        for i, w in enumerate(np.eye(2))
-    ]
-    minima = [found[0] for found in work.run(tasks)]
-    target = payoff(minima, np.ones(2), minima)
-    assert target is not None
-    return [*minima, *nbi(problem, minima, target, simplex(2, 6), work)]
+def searched(work: Executor) -> Front:
+    """Return a front with its edges and weighted models."""
+    problem = box(circles, [-1, -1], [2, 2])
+    return pareto_front(problem, np.ones(2), Pareto(points=6), search=Search(doubt=0.3), work=work)
 
 
 @settings(max_examples=8)
 @given(orders, st.integers(2, 3))
-def test_searches_and_fronts_are_those_of_one_after_another(delays: list[int], count: int) -> None:
-    problem = box(circles, [-1, -1], [2, 2])
-    archives = Archive(problem), Archive(problem)
-    expected = searched(problem, Archiving(Run(), archives[0]))
+def test_fronts_are_those_of_one_after_another(delays: list[int], count: int) -> None:
+    alone = Run()
+    expected = searched(alone)
     with Workers(Threads(count, delays)) as workers:
-        again = searched(problem, Archiving(Run(backend=workers), archives[1]))
-    assert [x.theta.tolist() for x in again] == [x.theta.tolist() for x in expected]
-    assert [x.evaluations for x in again] == [x.evaluations for x in expected]
-    assert archives[1].theta.tolist() == archives[0].theta.tolist()
-
-
-def test_what_was_computed_ahead_is_taken_where_it_is_asked_for_and_else_forgotten() -> None:
-    pool = Threads(2)
-    with Workers(pool) as workers:
-        work = Within(Run(backend=workers), turn=("turn", 1))
-        assert work.run(squares(1, 2), squares(3, 4)) == [1, 4]
-        sent = len(pool.sent)
-        assert work.run(squares(3), squares(4)) == [9]
-        assert len(pool.sent) <= sent + 1
-        assert work.run([Task(("square", 4), negative, (5,))]) == [-25], "another function"
-        assert not workers._flying
-
-
-def test_what_is_still_computed_ahead_with_another_function_is_not_waited_for() -> None:
-    with Workers(Threads(2)) as workers:
         work = Run(backend=workers)
-        assert work.run(squares(1, 2), [Task(("step",), nap, (0.2,))]) == [1, 4]
-        assert work.run([Task(("step",), negative, (5,))], squares(3)) == [-25]
+        again = searched(work)
+    assert [x.label for x in again.points] == [x.label for x in expected.points]
+    for one, other in zip(again.points, expected.points, strict=True):
+        assert one.solution.theta.tolist() == other.solution.theta.tolist()
+        assert one.solution.evaluations == other.solution.evaluations
+    assert again.known.tolist() == expected.known.tolist()
+    assert set(work.costs) == set(alone.costs)
 
 
 def test_short_tasks_are_sent_together_and_long_ones_alone() -> None:
@@ -173,19 +137,6 @@ def test_another_process_may_take_what_one_has_lacked(known: list[set[int]]) -> 
     assert len(pool.sent) <= sent + 2 * 4, "each time, at least one object more comes with it"
 
 
-def test_what_was_sent_ahead_of_a_change_is_not_sent_again() -> None:
-    big = Big(np.ones(10))
-    pool = Threads(2, delays=(0, 40, 400), forgets=True)
-    with Workers(pool) as workers:
-        work = Run(backend=workers)
-        assert work.run(squares(1, 2), totals(big)) == [1, 4]
-        big.numbers, big.version = 2 * big.numbers, 1
-        assert work.run(totals(big, 1)) == [20.0 + k for k in range(6)]
-    ahead = pool.sent[2].names
-    assert len(ahead) == 1
-    assert sum(message.names == ahead for message in pool.sent) == 1
-
-
 def test_memory_bounds_how_many_tasks_run_at_a_time() -> None:
     big = Big(np.ones(3), footprint=4e9)
     pool = Threads(3, delays=(3,))
@@ -219,7 +170,7 @@ def test_the_error_of_a_task_is_raised_and_all_others_are_kept(tmp_path: Path) -
         Run(store, backend=workers).run(tasks)
     assert caught.value.faults == (fault, fault), "the first one in the order of the tasks"
     assert str(caught.value) == f"{fault}\n{fault}"
-    assert all(store.has(task) for task in squares(1, 2, 3, 4))
+    assert all(is_kept(store, task) for task in squares(1, 2, 3, 4))
 
 
 @settings(max_examples=20)
@@ -238,7 +189,7 @@ def test_a_task_that_is_lost_twice_is_named_and_all_others_are_kept(tmp_path: Pa
     text = "task 'nap-0' could not be done: the process that computed it ended, twice"
     with Workers(pool) as workers, pytest.raises(UnfinishedError, match=text):
         Run(store, backend=workers).run(tasks)
-    assert [store.has(task) for task in tasks] == [False, True, True, True]
+    assert [is_kept(store, task) for task in tasks] == [False, True, True, True]
 
 
 def test_a_task_whose_memory_does_not_suffice_is_tried_alone_and_then_named() -> None:
@@ -256,58 +207,11 @@ def test_without_a_cluster_the_run_ends_with_what_it_has(tmp_path: Path) -> None
         pytest.raises(UnfinishedError, match="the Dask scheduler is gone"),
     ):
         Run(store, backend=workers).run(tasks)
-    kept = sum(store.has(task) for task in tasks)
+    kept = sum(is_kept(store, task) for task in tasks)
     assert 0 < kept < 8
     again = Run(store)
     assert again.run(tasks) == list(range(8))
     assert again.progress.state.done == 8
-
-
-def test_where_a_part_fails_the_other_tasks_with_parts_are_done_and_kept(tmp_path: Path) -> None:
-    tasks: list[Task[Any]] = [
-        Task(("chain", 1), chain, (1,), has_parts=True),
-        Task(("fragile",), fragile, (ModelError("no modes"),), has_parts=True),
-        Task(("broken",), broken_off, has_parts=True),
-        Task(("chain", 2), chain, (2,), has_parts=True),
-    ]
-    store, threads = Store(tmp_path), threading.active_count()
-    pool = Threads(2, (2, 0))
-    with Workers(pool) as workers, pytest.raises(ModelError, match="no modes"):
-        Run(store, backend=workers).run(tasks)
-    assert [store.has(task) for task in tasks] == [True, False, False, True]
-    assert threading.active_count() == threads, "none waits for parts that will not come"
-
-
-def test_an_interrupt_ends_all_tasks_with_parts() -> None:
-    tasks = [Task(("chain", k), chain, (k,), has_parts=True) for k in range(3)]
-    threads = threading.active_count()
-    with Workers(Interrupting(2)) as workers, pytest.raises(KeyboardInterrupt):
-        Run(backend=workers).run(tasks)
-    assert threading.active_count() == threads
-
-
-def test_parts_of_several_tasks_are_computed_at_the_same_time() -> None:
-    pool = Threads(2, (5,))
-    with Workers(pool) as workers:
-        tasks = [Task(("one", k), one_part, has_parts=True) for k in range(2)]
-        Run(backend=workers).run(tasks)
-    assert pool.most == 2
-
-
-def test_long_parts_are_kept_until_their_task_is_done(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
-    monkeypatch.setattr("modefront.work.run.KEPT", 0.0)
-    store = Store(tmp_path)
-    task = Task(("slow",), slow, (str(tmp_path / "calls"),), has_parts=True)
-    with pytest.raises(ZeroDivisionError):
-        Run(store).run([task])
-    assert len(list(tmp_path.glob("*.npz"))) == 1, "the part that took long"
-    again = Run(store)
-    assert again.run([task]) == [7]
-    assert (tmp_path / "calls").read_text() == "xx"
-    assert [path.name[:4] for path in tmp_path.glob("*.npz")] == ["slow"]
-    assert again.total().eigenproblems == 3, "the part counts as it did"
 
 
 # ---- processes ---------------------------------------------------------------------------------
@@ -346,7 +250,7 @@ def test_a_killed_process_is_replaced_and_its_tasks_are_done_again(
     store = Store(tmp_path)
     with pytest.raises(UnfinishedError, match="task 'deadly-2-turn-2' could not be done"):
         Run(store, backend=two).run(tasks)
-    assert [store.has(task) for task in tasks] == [k != 2 for k in range(6)]
+    assert [is_kept(store, task) for task in tasks] == [k != 2 for k in range(6)]
 
 
 def test_processes_import_only_what_most_tasks_need() -> None:
@@ -381,7 +285,7 @@ if __name__ == "__main__":
         while not work.pool.ready:
             time.sleep(0.01)
         tasks = [Task(("process", k), process_of, (k,)) for k in range(10**4)]
-        for _, done in work.compute(tasks, (), lambda _: None):
+        for _, done in work.compute(tasks, lambda _: None):
             print(done.result, flush=True)
 """
 

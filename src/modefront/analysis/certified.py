@@ -22,17 +22,16 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
-from modefront.fronts.front import Front
-from modefront.fronts.point import Point
+from modefront.front.front import Edge, Front
+from modefront.front.point import Point
 from modefront.models.reduced.certificate import FOUND, Certificate
 from modefront.models.reduced.certifier import Certifier
 from modefront.models.reduced.model import ReducedModel, SnapshotRequest
+from modefront.optim.lexicographic import EXACT
+from modefront.optim.scalarisation import LogSum
+from modefront.optim.sqp import Solution
 from modefront.pairing.match import match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
-from modefront.solvers.edges import Edge
-from modefront.solvers.lexicographic import EXACT
-from modefront.solvers.scalarisation import LogSum
-from modefront.solvers.sqp import Solution
 from modefront.work.codec import record
 from modefront.work.task import Executor, Task, Within
 
@@ -73,7 +72,7 @@ ERRORS = ("eigenvalue_error", "shape_error")
 
 
 class Search(Protocol):
-    """The search for a front, see `modefront.fronts.driver.pareto_front`."""
+    """The search for a front, see `modefront.front.pareto.pareto_front`."""
 
     def __call__(self, *, work: Executor, known: Front | None) -> Front:
         """Return the front."""

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import numpy as np
 
-from modefront.fronts.front import Front
-from modefront.fronts.point import Kind, of_kind
-from modefront.solvers.dominance import nondominated
-from modefront.solvers.indicators import REFERENCE, hypervolume, igd_plus, largest_gap
-from modefront.solvers.refine import branches_of
+from modefront.front.dominance import nondominated
+from modefront.front.front import Front
+from modefront.front.gaps import branches_of
+from modefront.front.indicators import REFERENCE, hypervolume, igd_plus, largest_gap
+from modefront.front.point import Kind, of_kind
 
 
 def coverage(front: Front) -> dict[str, float]:

@@ -3,37 +3,33 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, field, replace
-from typing import Any
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.analysis.neighbours import with_neighbours
-from modefront.errors import ModelError
-from modefront.fronts.front import Front
-from modefront.fronts.methods import METHODS
-from modefront.fronts.options import Pareto
-from modefront.fronts.point import Kind, Point, label, of_kind
+from modefront.analysis.curvature import with_second_order
+from modefront.analysis.flat import Identifiable, identifiable_part, same
+from modefront.analysis.manifold import Manifold, equivalent_models
+from modefront.front.front import Front
+from modefront.front.methods import METHODS
+from modefront.front.options import Pareto
+from modefront.front.point import Kind, Point, label, of_kind
+from modefront.front.simplex import Payoff, default_points
 from modefront.identifiability.combinations import without_effect
 from modefront.identifiability.options import Identifiability
 from modefront.identifiability.scale import scale_at
+from modefront.optim.lexicographic import EXACT, TIE
+from modefront.optim.problem import Evaluation
+from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
+from modefront.optim.sqp import Solution, begin, solve
 from modefront.residuals.problem import UpdatingProblem
-from modefront.solvers.continuation import default_points
-from modefront.solvers.curvature import second_order
-from modefront.solvers.flat import Identifiable, identifiable_part, same
-from modefront.solvers.lexicographic import EXACT, TIE
-from modefront.solvers.manifold import Manifold, equivalent_models
-from modefront.solvers.payoff import Payoff
-from modefront.solvers.problem import Evaluation
-from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
-from modefront.solvers.sqp import Solution, begin, solve
 from modefront.uncertainty.bootstrap import redraw
 from modefront.uncertainty.laplace import Posterior, laplace
-from modefront.uncertainty.linear import DEPENDENT, Local, front_scatter
+from modefront.uncertainty.linear import Local, front_scatter, with_neighbours
 from modefront.uncertainty.noise import Noise, Source, noise
 from modefront.uncertainty.options import Uncertainty
-from modefront.uncertainty.points import Role, SolvedPoint, solve_again
+from modefront.uncertainty.points import Role, SolvedPoint, edge_weights, solve_again
 from modefront.uncertainty.scatter import Scatter
 from modefront.work.task import Executor, Task, seed_sequence
 
@@ -88,30 +84,27 @@ def analyse_front(
     problem: UpdatingProblem, front: Front, options: AnalysisOptions, work: Executor
 ) -> FrontAnalysis:
     """Return the analysis of a front."""
-    a, uncertainty = problem.properties, options.uncertainty
-    source = uncertainty.of(problem.data)
-    work.expect(_extent(front, options, source))
+    a, source = problem.properties, options.uncertainty.of(problem.data)
+    sizes = front.scale if source is not None else None
+    work.expect(_extent(front, options, sizes))
     part = _identifiable_part(problem, front, options, work)
     points = _points(problem, front, part)
-    solved = _solved_points(problem, front, points, part, options)
-    derivatives = _Derivatives(problem, source, work, {})
-    if source is not None and front.scale is not None:
-        derivatives.expect(solved)
-    manifolds = _manifolds(problem, front, options.identifiability, work, derivatives.ahead)
+    manifolds = _manifolds(problem, front, options.identifiability, work)
+    reference = front.reference
+    solved = [SolvedPoint(reference.label, reference.solution, Role("optimal"))]
+    if sizes is not None:
+        solved = _solved_points(problem, front, points, part, options)
+    known = _locals(problem, solved, sizes, source, work)
+    posterior = None
+    if reference.kind in (Kind.OPTIMAL, Kind.BOUNDED) and reference.label in known:
+        floor = 0.0 if front.floor is None else front.floor
+        posterior = laplace(problem, known[reference.label].evaluation, a, floor)
     scatter: Mapping[str, Scatter] = {}
     replicates: list[Mapping[str, Solution]] = []
-    if source is not None and front.scale is not None:
-        alone = front_scatter(problem, solved, a, front.scale, derivatives)
-        scatter = with_neighbours(front, solved, alone, a, front.scale)
-    posterior = None
-    reference = front.reference
-    if reference.kind in (Kind.OPTIMAL, Kind.BOUNDED):
-        at_reference = SolvedPoint(reference.label, reference.solution, Role("optimal"))
-        (local,) = derivatives([(at_reference, None)])
-        floor = 0.0 if front.floor is None else front.floor
-        posterior = laplace(problem, local[0], a, floor) if local else None
-    if source is not None and front.scale is not None:
-        replicates = _replicates(problem, solved, front.scale, source, options, work)
+    if source is not None and sizes is not None:
+        alone = front_scatter(problem, solved, known, a, sizes)
+        scatter = with_neighbours(front, solved, alone, a, sizes)
+        replicates = _replicates(problem, solved, sizes, source, options, work)
     return FrontAnalysis(
         points,
         part,
@@ -119,19 +112,17 @@ def analyse_front(
         manifolds,
         source,
         scatter,
-        {name: local[0].slopes for name, local in derivatives.known.items() if local},
+        {name: local.slopes for name, local in known.items()},
         posterior,
         replicates,
     )
 
 
-def _extent(front: Front, options: AnalysisOptions, source: Source | None) -> dict[str, int]:
+def _extent(front: Front, options: AnalysisOptions, sizes: Floats | None) -> dict[str, int]:
     """Return the expected number of tasks of each stage."""
-    points = len(front.points) if source is not None and front.scale is not None else 1
-    manifolds = len(front.edges) + 1 if options.identifiability.models else 0
     return {
-        "manifold": manifolds,
-        "second-derivatives": points,
+        "manifold": len(front.edges) + 1 if options.identifiability.models else 0,
+        "second-derivatives": 1 if sizes is None else len(front.points),
         "bootstrap": options.uncertainty.bootstrap,
     }
 
@@ -166,15 +157,11 @@ def _points(problem: UpdatingProblem, front: Front, part: Identifiable | None) -
 
 
 def _manifolds(
-    problem: UpdatingProblem,
-    front: Front,
-    options: Identifiability,
-    work: Executor,
-    ahead: Sequence[Task[Any]],
+    problem: UpdatingProblem, front: Front, options: Identifiability, work: Executor
 ) -> list[tuple[str, Sequence[Manifold]]]:
     """Return the manifolds of equivalent models of each group and of the optimal weights.
 
-    One follows after another; tasks ``ahead`` are asked for when all of them are known.
+    One follows after another.
     """
     out: list[tuple[str, Sequence[Manifold]]] = []
     if options.models == 0:
@@ -182,7 +169,7 @@ def _manifolds(
     for i, (name, programme, minima) in enumerate(_equivalent_minima(problem, front)):
         before = [manifold for _, manifold in followed(out)]
         arguments = (problem, programme, minima, options, before)
-        (manifolds,) = work.run([Task(("manifold", i + 1, name), _equivalent, arguments)], ahead)
+        (manifolds,) = work.run([Task(("manifold", i + 1, name), _equivalent, arguments)])
         out.append((name, manifolds))
     return out
 
@@ -241,7 +228,7 @@ def _solved_points(
     """Return the points with what each of them solves, as far as that is a programme.
 
     Points of weights follow from their weights, points of normal-boundary intersection from their
-    edges, or from the models up to which the ranges of the objectives reach.
+    edges.
     """
     names = problem.objectives
     tolerance, flat = options.pareto.tolerance, options.identifiability.flat
@@ -249,17 +236,8 @@ def _solved_points(
     cuts = {point.name: point for point in of_kind(extra, Kind.IDENTIFIABLE_EDGE)}
     whole = tuple(edges[name].label for name in names)
     ends = tuple(cuts.get(name, edges[name]).label for name in names)
-    cut = list(zip(ends, part.ends, strict=True)) if part else []
-    minima = [
-        SolvedPoint(f"minimum-{k + 1}-{name}", x, Role("minimum", objective=i))
-        for i, (name, edge) in enumerate(zip(names, front.edges, strict=True))
-        for k, x in enumerate(edge.minima)
-    ]
-    known = [(point.label, point.solution) for point in edges.values()]
-    known += [(point.label, point.solution) for point in minima]
-    worst = _labels_of(front.target, known)
-    reach = _labels_of(part.target if part else None, cut)
-    out = [point for point in minima if worst and point.label in worst]
+    solutions = [edges[name].solution for name in names]
+    out: list[SolvedPoint] = []
     for i, (name, edge) in enumerate(zip(names, front.edges, strict=True)):
         solution, text = edges[name].solution, edges[name].label
         if tolerance > 0 and not same(solution, edge.best):
@@ -277,11 +255,11 @@ def _solved_points(
             case Kind.GIVEN | Kind.EQUAL | Kind.BOUNDED:
                 role = Role("weights")
             case Kind.FRONT if along == "boundary":
-                role = _between(point.solution, whole, worst, known)
+                role = _between(point.solution, whole, solutions, front.target)
             case Kind.FRONT if along == "weights":
                 role = Role("weights")
-            case Kind.IDENTIFIABLE:
-                role = _between(point.solution, ends, reach, cut)
+            case Kind.IDENTIFIABLE if part:
+                role = _between(point.solution, ends, part.ends, part.target)
             case Kind.IDENTIFIABLE_EDGE:
                 role = Role("level", objective=names.index(point.name), tolerance=flat)
         if role:
@@ -290,81 +268,53 @@ def _solved_points(
 
 
 def _between(
-    solution: Solution,
-    ends: tuple[str, ...],
-    worst: tuple[str, ...] | None,
-    known: Sequence[tuple[str, Solution]],
-) -> Role | None:
-    """Return the role of a point of NBI between labelled ends, or of one of these ends.
-
-    None where the ranges of its simplex follow from no programme.
-    """
-    labels = [text for text, end in known if text in ends and same(solution, end)]
-    if labels:
-        return Role("end", (labels[0],))
-    return None if worst is None else Role("boundary", ends, worst)
+    solution: Solution, labels: tuple[str, ...], ends: Sequence[Solution], target: Payoff | None
+) -> Role:
+    """Return the role of a point of NBI between labelled ends, or of one of these ends."""
+    for text, end in zip(labels, ends, strict=True):
+        if same(solution, end):
+            return Role("end", (text,))
+    return Role("boundary", labels, target.worst if target else ())
 
 
-def _labels_of(
-    target: Payoff | None, known: Sequence[tuple[str, Solution]]
-) -> tuple[str, ...] | None:
-    """Return the labels of the models up to which ranges reach that a simplex is made of.
-
-    None where one of them is a corner (`modefront.solvers.payoff.corners`), which solves nothing
-    that data determine.
-    """
-    worst = target.worst if target else ()
-    labels = [next((text for text, x in known if same(x, end)), "") for end in worst]
-    return tuple(labels) if all(labels) else None
-
-
-@dataclass(frozen=True)
-class _Derivatives:
-    """Second derivatives and noise at points, each computed once."""
-
-    problem: UpdatingProblem
-    source: Source | None
-    work: Executor
-    known: dict[str, Local | None]
-    ahead: list[Task[Local | None]] = field(default_factory=list)
-
-    def expect(self, points: Sequence[SolvedPoint]) -> None:
-        """Note the points that are asked for last, as far as they need no weights."""
-        chosen = [point for point in points if point.role.kind in DEPENDENT[-1]]
-        self.ahead.extend(self._task(point, None) for point in chosen)
-
-    def __call__(self, points: Sequence[tuple[SolvedPoint, Floats | None]]) -> list[Local | None]:
-        """Return derivatives and noise of each point, solved with weights (n,) where given."""
-        new = [(point, w) for point, w in points if point.label not in self.known]
-        tasks = [self._task(point, w) for point, w in new]
-        chosen = {task.key for task in tasks}
-        ahead = [task for task in self.ahead if task.key not in chosen]
-        for (point, _), local in zip(new, self.work.run(tasks, ahead), strict=True):
-            self.known[point.label] = local
-        return [self.known[point.label] for point, _ in points]
-
-    def _task(self, point: SolvedPoint, w: Floats | None) -> Task[Local | None]:
-        key = ("second-derivatives", point.label)
-        return Task(key, _differentiate, (self.problem, point.solution, w, self.source))
+def _locals(
+    problem: UpdatingProblem,
+    points: Sequence[SolvedPoint],
+    sizes: Floats | None,
+    source: Source | None,
+    work: Executor,
+) -> dict[str, Local]:
+    """Return what the scatter of points follows from, by label, where it is defined."""
+    tasks = []
+    for point in points:
+        w = None
+        if sizes is not None and point.role.kind == "edge":
+            w = edge_weights(point.role.objective, sizes)
+        if point.role.kind != "end":
+            arguments = (problem, point.solution.evaluation, w, source)
+            tasks.append(Task(("second-derivatives", point.label), _local, arguments))
+    found = zip(tasks, work.run(tasks), strict=True)
+    return {str(task.key[1]): local for task, local in found if local is not None}
 
 
-def _differentiate(
-    problem: UpdatingProblem, start: Solution, w: Floats | None, source: Source | None
+def _local(
+    problem: UpdatingProblem, evaluation: Evaluation, w: Floats | None, source: Source | None
 ) -> Local | None:
-    """Return second derivatives and noise at a point; None where the model is not defined."""
-    evaluation = start.evaluation
+    """Return what the scatter follows from at a point, or at the minimum of w^T J next to it.
+
+    None where the model is not defined.
+    """
     if w is not None:
         evaluation = solve(problem, weighted(w), begin(evaluation)).evaluation
-    point = second_order(problem, evaluation)
+    point = with_second_order(problem, evaluation)
     if point is None:
         return None
     n, p = evaluation.dJ.shape
-    if source is None:
-        return point, Noise(np.zeros((0, n)), np.zeros((0, n, p)))
-    try:
-        return point, noise(problem, evaluation.theta, source)
-    except ModelError:
-        return None
+    modes, pairs = problem.modes(evaluation.theta)
+    errors = Noise(np.zeros((0, n)), np.zeros((0, n, p)))
+    if source is not None:
+        errors = noise(problem, modes, pairs, source)
+    return Local(point, errors, problem.slopes_at(modes, pairs))
 
 
 def _replicates(

@@ -16,6 +16,7 @@ from modefront.data.uff import write_uff55
 from modefront.errors import Fault, InputError, UnfinishedError
 from modefront.identification.identify import LEAST_LINES, Identification, identify
 from modefront.identification.sets import CombinedModes, combine, modal_data_of
+from modefront.outputs import write_text
 
 POOR_FIT = 0.5
 """Residual of a function over its norm from which on it is pointed out."""
@@ -173,9 +174,8 @@ def _write(
 ) -> list[Path]:
     """Write modal data, and beside it all else that was identified; return the paths."""
     report = output.with_name(output.stem + "-identification.json")
-    _write_text(
-        report, json.dumps(as_report(test, modes.sets, identified), indent=1, allow_nan=False)
-    )
+    text = json.dumps(as_report(test, modes.sets, identified), indent=1, allow_nan=False)
+    write_text(report, text + "\n")
     if output.suffix.lower() == ".uff":
         listed = [
             [
@@ -197,12 +197,6 @@ def _write(
 def _complex_at(phi: Any, identification: Identification, sensors: Sequence[str]) -> Any:
     where = dict(zip(identification.data.responses, phi, strict=True))
     return np.array([where.get(name, 0j) for name in sensors])
-
-
-def _write_text(path: Path, text: str) -> None:
-    temporary = path.with_name(path.name + ".part")
-    temporary.write_text(text + "\n", encoding="utf-8")
-    temporary.replace(path)
 
 
 def _pairs(values: Any) -> list[list[float | None]]:

@@ -11,6 +11,7 @@ import numpy as np
 from modefront.errors import Fault, InputError, reason
 from modefront.identification.identify import Identification
 from modefront.identification.shapes import auto_mac
+from modefront.outputs import output
 from modefront.plots.style import COLOURS, STYLE, plain
 from modefront.text import file_name
 
@@ -52,7 +53,8 @@ def write_figures(
                     draw(figure, identification)
                     stem = file_name(f"{name[:SHORT]}-{kind}", [each.stem for each in written])
                     path = folder / f"{stem}.svg"
-                    figure.savefig(path, metadata={"Date": None})
+                    with output(path) as stream:
+                        figure.savefig(stream, format="svg", metadata={"Date": None})
                 written.append(path)
     except OSError as error:
         expected = "a folder that can be written to"

@@ -15,7 +15,7 @@ import xarray as xr
 
 from modefront._typing import Floats, Ints
 from modefront.cli.layout import BLANK, KEY, Line, Screen
-from modefront.fronts.point import Kind
+from modefront.front.point import Kind
 
 FEWEST = 3
 """Parameters and modes that a table keeps, however long it is."""

@@ -12,10 +12,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.data.channels import Channel
+from modefront.data.channels import EXPECTED, Channel
 from modefront.data.impact import ImpactResponses, Windows, impact_responses
 from modefront.data.responses import ForceNoise
 from modefront.errors import Fault, InputError
+from modefront.rounding import LARGEST
 
 TIME, FORCE = "time", "force"
 """Columns of a CSV file with the records of a blow."""
@@ -137,6 +138,8 @@ def _check_time(blows: Sequence[Blow]) -> None:
         elif len(blow.time) != len(first) or abs(np.ptp(blow.time) / np.ptp(first) - 1) > EVEN:
             expected = f"records of {_extent(first)}, as in {blows[0].file}"
             faults.append(Fault(blow.file, blow.place, expected, _extent(blow.time)))
+        elif not all((np.abs(x) <= LARGEST).all() for x in (blow.force, *blow.responses.values())):
+            faults.append(Fault(blow.file, blow.place, EXPECTED, "others"))
     if faults:
         raise InputError(faults[:5])
 

@@ -15,6 +15,10 @@ import numpy as np
 from modefront._typing import Bools, Complexes, Floats
 from modefront.data.responses import ORDERS, FrequencyResponses, frequency_responses
 from modefront.errors import Fault, InputError
+from modefront.rounding import LARGEST
+
+EXPECTED = f"finite numbers up to {LARGEST:g}"
+"""What values of functions and records are."""
 
 SAME_LINES = 1e-6
 """Relative difference within which two lines of a frequency axis are the same."""
@@ -157,11 +161,11 @@ def _quantity(channels: Sequence[Channel], declared: str) -> str:
 def _check_values(channels: Sequence[Channel]) -> None:
     faults = []
     for channel in channels:
-        bad = np.flatnonzero(np.isinf(channel.H) | np.isnan(channel.H))
+        bad = np.flatnonzero(~(np.abs(channel.H) <= LARGEST))
         if len(bad):
             found = f"{channel.H[bad[0]].real:g} at {channel.frequency[bad[0]]:g} Hz"
             found += f" and {len(bad) - 1} more" * (len(bad) > 1)
-            faults.append(Fault(channel.file, channel.place, "finite numbers", found))
+            faults.append(Fault(channel.file, channel.place, EXPECTED, found))
     if all(not np.any(channel.H) for channel in channels) and not faults:
         expected = "functions that are not zero everywhere"
         faults.append(Fault(channels[0].file, channels[0].place, expected, "only zeros"))

@@ -26,9 +26,11 @@ from typing import TextIO
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.complete import ended_column
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, InputError, reason, suggestion
 from modefront.inputs import MOST_DATA, available_memory, file_size, refuse_holes
+from modefront.outputs import write_table
 from modefront.rounding import LARGEST as LARGEST_NUMBER
 from modefront.text import NAME, clean
 
@@ -129,7 +131,9 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
         if faults:
             raise InputError(faults)
         parts: list[_Rows] = []
+        last: list[str] = []
         while lines := list(islice(rows, TOGETHER)):
+            last += [fields[-1] for _, fields in lines]
             part = _together(header, lines, sensors)
             if part is None or faults:
                 part, row_faults = _one_by_one(header, lines, sensors)
@@ -143,6 +147,7 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
     faults += [] if len(faults) > MOST_FAULTS else list(islice(repeated, MOST_FAULTS))
     if faults:
         raise InputError(faults)
+    ended_column(path, last)
     return _assemble(path, header, parts, tuple(sensors))
 
 
@@ -164,12 +169,7 @@ def write_csv(
             if np.isfinite(values).any():
                 texts = ["" if math.isnan(value) else f"{value:.{digits}g}" for value in values]
                 rows.append([name, str(mode), *texts])
-    temporary = path.with_name(path.name + ".part")
-    with temporary.open("w", newline="", encoding="utf-8") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(header)
-        writer.writerows(rows)
-    temporary.replace(path)
+    write_table(path, [header, *rows])
 
 
 def _fault(file: str, line: int, column: str | None, expected: str, found: str) -> Fault:

@@ -14,11 +14,13 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.complete import ended_column
 from modefront.data.blows import TIME, Contents, blow_of_columns
 from modefront.data.channels import Channel
 from modefront.data.csv import NUMBER
 from modefront.errors import Fault, InputError, reason, suggestion
 from modefront.inputs import MOST_DATA, available_memory, file_size, refuse_holes
+from modefront.rounding import LARGEST
 
 FREQUENCY, REAL, IMAGINARY, COHERENCE = "frequency", "_re", "_im", "_coherence"
 
@@ -27,9 +29,6 @@ MOST_FAULTS = 5
 
 TOGETHER = 10_000
 """Rows that are read at once, where not all can be."""
-
-LARGEST = 2 * 10**9
-"""Bytes of a file, at most."""
 
 
 def read_test_csv(path: Path, reference: str) -> Contents:
@@ -101,6 +100,7 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
         raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
     if not numbered:
         raise InputError(Fault(file, "line 2", "a row for each line of frequency", "the end"))
+    ended_column(path, (row.rpartition(",")[2] for _, row in numbered))
     faults: list[Fault] = []
     if (read := _together([row for _, row in numbered], len(header))) is not None:
         return header, read
@@ -133,11 +133,11 @@ def _one_by_one(
             continue
         for k, field in enumerate(fields):
             text = field.strip()
-            if NUMBER.fullmatch(text) and np.isfinite(float(text)):
+            if NUMBER.fullmatch(text) and abs(float(text)) <= LARGEST:
                 values[position, k] = float(text)
             else:
                 place = f"line {number}, column {header[k]!r}"
-                faults.append(Fault(file, place, "a finite number", repr(text)))
+                faults.append(Fault(file, place, f"a finite number up to {LARGEST:g}", repr(text)))
         if len(faults) >= MOST_FAULTS:
             break
     return values, faults
@@ -149,4 +149,8 @@ def _together(rows: Sequence[str], columns: int) -> Floats | None:
         values = np.loadtxt(rows, delimiter=",", comments=None, ndmin=2)
     except ValueError:
         return None
-    return values if values.shape == (len(rows), columns) and np.isfinite(values).all() else None
+    return (
+        values
+        if values.shape == (len(rows), columns) and (np.abs(values) <= LARGEST).all()
+        else None
+    )

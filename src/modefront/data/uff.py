@@ -1,10 +1,7 @@
 """Universal files: functions or records of blows from dataset 58, modes into dataset 55.
 
-Modes are read in `modefront.data.uff55`.
-
-The text of the file is checked first: files without datasets or cut off are refused, and exponents
-written with D are mended here, since `pyuff`, which decodes the datasets, returns nothing
-or fails without a place. `pyuff` is an extra, imported where it is used.
+Modes are read in `modefront.data.uff55`. A dataset stands between two lines with -1; what it
+declares is compared with what it holds. `pyuff`, an extra, writes dataset 55.
 
 Format: Structural Dynamics Research Laboratory, University of Cincinnati, *Universal File
 Formats*, datasets 55, 58 and 58b.
@@ -13,20 +10,22 @@ Formats*, datasets 55, 58 and 58b.
 from __future__ import annotations
 
 import re
-import tempfile
-import warnings
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 from pathlib import Path
 from types import ModuleType
 from typing import Any
 
 import numpy as np
 
+from modefront._typing import Complexes, Floats
+from modefront.complete import counted
 from modefront.data.blows import Blow, Contents
 from modefront.data.channels import Channel
 from modefront.errors import Fault, InputError, reason
 from modefront.inputs import MOST_DATA, read_text_bytes
+from modefront.outputs import output_by_name
 
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
@@ -40,28 +39,61 @@ QUANTITIES = {8: "receptance", 11: "mobility", 12: "accelerance"}
 AXES = {1: "X", 2: "Y", 3: "Z", 4: "RX", 5: "RY", 6: "RZ"}
 """Directions by their numbers in universal files."""
 
-DELIMITER = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
+OPENING = re.compile(
+    rb"(?:\xef\xbb\xbf)?\s*^[ ]{4}-1[ \t]*\r?\n[ ]*([0-9]{1,5})(b?)(?!\S)([^\n]*)(?:\n|\Z)",
+    re.MULTILINE,
+)
+CLOSING = re.compile(rb"^[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
 END_OF_BINARY = re.compile(rb"\r?\n?[ ]{4}-1[ \t]*\r?$", re.MULTILINE)
-EXPONENT = re.compile(rb"(?<=[0-9.])[Dd](?=[+-]?[0-9])")
 
-HEADERS = {55: 9, 58: 13}
-"""Lines before the numbers of a dataset, that of its beginning included."""
+KNOWN = (15, 55, 58, 2411, 2420)
+"""Datasets that are read, whose numbers may have blanks before them as no other line has."""
 
-RECORD_7 = 8
-"""Line of dataset 58 with the kind and the number of values, first abscissa and increment."""
+BLANK = b" \t\r\n\0\x1a"
+"""Bytes that may stand behind the last dataset."""
+
+BARE = re.compile(r"(?<=[0-9.])([+-][0-9]{3})(?![0-9.])")
+"""An exponent of three digits, as Fortran writes it."""
+
+NEXT = re.compile(r"(?<=[0-9.])(?=[+-][0-9]*\.)")
+"""Beginning of a number that follows on another one without a blank."""
+
+NUMERIC = b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"
+"""Bytes of numbers, of nan and infinity among them, and of what separates them."""
+
+HEADER, RECORD_7 = 11, 6
+"""Lines of dataset 58 before its numbers; the one with their kind and number, from 0."""
+
+FIELDS_6 = (0, 5, 15, 20, 30, 41, 51, 55, 66, 76, 80)
+"""Columns of the fields of record 6 of dataset 58."""
+
+KINDS = {2: "f4", 4: "f8", 5: "c8", 6: "c16"}
+"""Types of values in dataset 58, as NumPy knows them."""
 
 WHAT = "a universal file with frequency response functions or records of blows (dataset 58)"
 
 
 @dataclass(frozen=True)
 class Block:
-    """One dataset of a universal file: its number, the line where it begins, its bytes."""
+    """One dataset of a universal file: its number, the line where it begins, its bytes.
+
+    Attributes
+    ----------
+    number, line : its number, and the line where it begins
+    start, end : bytes behind its number, and before the line that ends it
+    binary : the words behind the number of a binary dataset; None for one of text
+    """
 
     number: int
     line: int
     start: int
     end: int
-    binary: bool
+    binary: list[str] | None
+
+    @property
+    def place(self) -> str:
+        """Place in the file, for messages."""
+        return f"line {self.line}, dataset {self.number}"
 
 
 def read_uff(path: Path) -> Contents:
@@ -77,7 +109,7 @@ def read_uff(path: Path) -> Contents:
         numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in datasets))
         raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
     decoded = [(block, _function(content, block, file)) for block in functions]
-    kinds = {int(values["func_type"]) for _, values in decoded}
+    kinds = {values.kind for _, values in decoded}
     if FRF in kinds:
         return Contents(channels=tuple(_channels(decoded, file)))
     blows = _blows(decoded, file) if TIME in kinds else []
@@ -93,13 +125,24 @@ def read_uff(path: Path) -> Contents:
     return Contents(blows=tuple(blows))
 
 
-def _channels(decoded: Sequence[tuple[Block, Mapping[str, Any]]], file: str) -> list[Channel]:
+@dataclass(frozen=True, eq=False)
+class _Function:
+    """A dataset 58: its type, what it is of, its degrees of freedom, abscissae and values."""
+
+    kind: int
+    ordinate: int
+    response: tuple[str, int]
+    reference: tuple[str, int]
+    x: Floats
+    data: Floats | Complexes
+
+
+def _channels(decoded: Sequence[tuple[Block, _Function]], file: str) -> list[Channel]:
     channels, coherences = [], {}
     for block, values in decoded:
-        kind = int(values["func_type"])
-        if kind == FRF:
+        if values.kind == FRF:
             channels.append(_channel(values, block, file))
-        elif kind == COHERENCE:
+        elif values.kind == COHERENCE:
             coherence = _channel(values, block, file)
             coherences[coherence.reference, coherence.response] = np.abs(coherence.H)
     return [
@@ -108,35 +151,33 @@ def _channels(decoded: Sequence[tuple[Block, Mapping[str, Any]]], file: str) -> 
     ]
 
 
-def _blows(decoded: Sequence[tuple[Block, Mapping[str, Any]]], file: str) -> list[Blow]:
+def _blows(decoded: Sequence[tuple[Block, _Function]], file: str) -> list[Blow]:
     """Return the blows of records in time.
 
     A blow ends where one of its channels comes again, or another force.
     """
-    groups: list[dict[str, tuple[Block, Mapping[str, Any]]]] = [{}]
+    groups: list[dict[str, tuple[Block, _Function]]] = [{}]
     for block, values in decoded:
-        if int(values["func_type"]) != TIME:
+        if values.kind != TIME:
             continue
-        is_force = int(values["ordinate_spec_data_type"]) in FORCES
-        key = "" if is_force else _degree_of_freedom(values["rsp_node"], values["rsp_dir"])[0]
+        key = "" if values.ordinate in FORCES else values.response[0]
         if key in groups[-1]:
             groups.append({})
         groups[-1][key] = block, values
     return [_blow(group, file) for group in groups if "" in group and len(group) > 1]
 
 
-def _blow(group: Mapping[str, tuple[Block, Mapping[str, Any]]], file: str) -> Blow:
+def _blow(group: Mapping[str, tuple[Block, _Function]], file: str) -> Blow:
     block, force = group[""]
     records, quantities = {}, set()
     for name, (of_record, values) in group.items():
-        sign = _degree_of_freedom(values["rsp_node"], values["rsp_dir"])[1]
-        records[name] = sign * np.asarray(values["data"], float)
-        if len(records[name]) != len(force["data"]):
+        records[name] = values.response[1] * np.asarray(values.data, float)
+        if len(records[name]) != len(force.data):
             place = f"line {of_record.line}, dataset 58"
-            expected = f"{len(force['data'])} samples, as the force of line {block.line}"
+            expected = f"{len(force.data)} samples, as the force of line {block.line}"
             raise InputError(Fault(file, place, expected, str(len(records[name]))))
         if name:
-            quantities.add(QUANTITIES.get(int(values["ordinate_spec_data_type"]), ""))
+            quantities.add(QUANTITIES.get(values.ordinate, ""))
     if len(quantities) > 1:
         found = ", ".join(sorted(quantity or "others" for quantity in quantities))
         expected = "responses of one quantity"
@@ -144,8 +185,8 @@ def _blow(group: Mapping[str, tuple[Block, Mapping[str, Any]]], file: str) -> Bl
     return Blow(
         file,
         f"line {block.line}, dataset 58",
-        _degree_of_freedom(force["rsp_node"], force["rsp_dir"])[0],
-        np.asarray(force["x"], float),
+        force.response[0],
+        force.x,
         records.pop(""),
         records,
         quantities.pop(),
@@ -154,27 +195,34 @@ def _blow(group: Mapping[str, tuple[Block, Mapping[str, Any]]], file: str) -> Bl
 
 def blocks(content: bytes, file: str) -> list[Block]:
     """Return the datasets of a universal file; raises InputError for other files and torn ones."""
-    out = []
-    after, line, counted = 0, 1, 0
-    while opening := DELIMITER.search(content, after):
-        header = re.compile(rb"\r?\n[ ]*([0-9]{1,5})(b?)([^\n]*)").match(content, opening.end())
-        line += content.count(b"\n", counted, opening.start())
-        counted = opening.start()
-        if not header:
-            break
-        number, binary = int(header[1]), bool(header[2])
+    out: list[Block] = []
+    after, line, seen = 0, 1, 0
+    while opening := OPENING.match(content, after):
+        line += content.count(b"\n", seen, opening.start(1)) - 1
+        seen = content.rfind(b"\n", 0, opening.start(1))
+        number, binary = int(opening[1]), bool(opening[2])
+        if number not in KNOWN and opening.end(1) - content.rfind(b"\n", 0, opening.start(1)) != 7:
+            expected = "the number of a dataset, which ends in column 6"
+            found = repr(opening[0].splitlines()[-1].decode("latin-1"))
+            raise InputError(Fault(file, f"line {line + 1}", expected, found))
         if binary:
-            closing = _end_of_binary(content, header[3], header.end())
+            closing = _end_of_binary(content, opening[3], opening.end())
         else:
-            closing = DELIMITER.search(content, header.end())
+            closing = CLOSING.search(content, opening.end())
         if not closing:
             expected = f"the end of dataset {number}, a line with -1"
             raise InputError(Fault(file, f"line {line}", expected, "the end of the file"))
-        out.append(Block(number, line, opening.start(), closing.end(), binary))
+        words = opening[3].decode("latin-1").split()
+        out.append(Block(number, line, opening.end(), closing.start(), words if binary else None))
         after = closing.end()
     if not out:
         expected = "datasets between lines with -1 in columns 5 and 6"
         raise InputError(Fault(file, "file", expected, "none: this is no universal file"))
+    if rest := content[after:].strip(BLANK):
+        line = content.count(b"\n", 0, content.find(rest, after)) + 1
+        expected = "a dataset: a line with -1 in columns 5 and 6, then one with its number"
+        found = rest[:40].partition(b"\n")[0].decode("latin-1").strip()
+        raise InputError(Fault(file, f"line {line}", expected, repr(found)))
     return out
 
 
@@ -185,14 +233,17 @@ def _end_of_binary(content: bytes, header: bytes, start: int) -> re.Match[bytes]
     it is that of the values that record 7 announces.
     """
     numbers = header.split()
-    lines = int(numbers[2]) if len(numbers) > 3 else 11
-    for number in range(lines + 1):
-        if number == RECORD_7 - 1:
+    try:
+        lines = int(numbers[2]) if len(numbers) > 3 else HEADER
+        sizes = [int(numbers[3])] if len(numbers) > 3 else []
+    except ValueError:
+        return None
+    for number in range(lines):
+        if number == RECORD_7:
             record = content[start : content.find(b"\n", start)].split()[:3]
         start = content.find(b"\n", start) + 1
         if not start:
             return None
-    sizes = [int(numbers[3])] if len(numbers) > 3 else []
     for size in [*sizes, *_sizes(record)]:
         if closing := END_OF_BINARY.match(content, start + size):
             return closing
@@ -221,61 +272,92 @@ def _pyuff(file: str) -> ModuleType:
     return module
 
 
-def decode(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
-    """Return one dataset as pyuff reads it; raises InputError where it cannot."""
-    pyuff = _pyuff(file)
-    text = content[block.start : block.end] + b"\n"
-    if not block.binary:
-        text = with_exponents_of_c(text, block.number)
-    place = f"line {block.line}, dataset {block.number}"
-    with tempfile.TemporaryDirectory() as folder:
-        copy = Path(folder) / "one.uff"
-        copy.write_bytes(text)
-        try:
-            with warnings.catch_warnings():
-                warnings.simplefilter("ignore")
-                values: Mapping[str, Any] = pyuff.UFF(str(copy)).read_sets(0)
-        except Exception as error:  # pyuff raises bare Exceptions
-            expected = f"a dataset {block.number}"
-            raise InputError(Fault(file, place, expected, reason(error))) from None
-    return values
+def text_lines(content: bytes, block: Block) -> list[str]:
+    """Return the lines of a dataset behind the one with its number."""
+    return content[block.start : block.end].decode("utf-8", "replace").splitlines()
 
 
-def with_exponents_of_c(text: bytes, number: int) -> bytes:
-    """Return a dataset with the exponents of its numbers written with E, its names unchanged."""
-    lines = HEADERS.get(number, 2)
-    *head, body = text.split(b"\n", lines)
-    if number == 58 and len(head) > RECORD_7:
-        head[RECORD_7] = EXPONENT.sub(b"E", head[RECORD_7])
-    return b"\n".join([*head, EXPONENT.sub(b"E", body)]).replace(b"\r\n", b"\n")
+def reals(text: str) -> list[float]:
+    """Return numbers as Fortran writes them; raises ValueError for anything else.
+
+    >>> reals(" 1.5D+00-2.50000E+00 1.00000-100")
+    [1.5, -2.5, 1e-100]
+    """
+    plain = BARE.sub(r"E\1", NEXT.sub(" ", text.replace("D", "E").replace("d", "e")))
+    return [float(word) for word in plain.split()]
 
 
-def _function(content: bytes, block: Block, file: str) -> Mapping[str, Any]:
+def _function(content: bytes, block: Block, file: str) -> _Function:
     """Return a dataset 58 that holds as many values as its header says."""
-    values, place = decode(content, block, file), f"line {block.line}, dataset 58"
+    *lines, body = content[block.start : block.end].split(b"\n", HEADER)
+    head = [line.decode("utf-8", "replace") for line in lines]
     try:
-        count, data = int(values["num_pts"]), np.asarray(values["data"])
-    except (KeyError, TypeError, ValueError) as error:
-        raise InputError(Fault(file, place, "a dataset 58", reason(error))) from None
-    if len(data) != count or len(np.atleast_1d(values["x"])) != count:
-        raise InputError(Fault(file, place, f"{count} values, as its header says", str(len(data))))
-    return values
+        six = [head[5][a:b].strip() for a, b in pairwise(FIELDS_6)]
+        form, count, even = (int(head[RECORD_7][k : k + 10]) for k in (0, 10, 20))
+        first, step = (reals(head[RECORD_7][k : k + 13])[0] for k in (30, 43))
+        if even not in (0, 1):
+            raise ValueError(f"abscissae of the kind {even}")
+        x, data = _values(file, block, body, (form, count, even))
+        return _Function(
+            int(six[0]),
+            int(head[8][:10]),
+            _degree_of_freedom(six[5], six[6]),
+            _degree_of_freedom(six[8], six[9]),
+            np.asarray(first + np.arange(count) * step) if even else x,
+            data,
+        )
+    except (ValueError, IndexError, KeyError, OverflowError) as error:
+        if isinstance(error, InputError):
+            raise
+        raise InputError(Fault(file, block.place, "a dataset 58", reason(error))) from None
 
 
-def _channel(values: Mapping[str, Any], block: Block, file: str) -> Channel:
-    response, sign = _degree_of_freedom(values["rsp_node"], values["rsp_dir"])
-    reference, other = _degree_of_freedom(values["ref_node"], values["ref_dir"])
-    quantity = QUANTITIES.get(int(values["ordinate_spec_data_type"]), "")
-    place = f"line {block.line}, dataset 58 of {reference} to {response}"
-    H = sign * other * np.asarray(values["data"], complex)
-    x = np.asarray(values["x"], float)
-    return Channel(file, place, reference, response, x, H, quantity)
+def _values(
+    file: str, block: Block, body: bytes, record: tuple[int, int, int]
+) -> tuple[Floats, Floats | Complexes]:
+    """Return abscissae, none where these are even, and values, of the form, number and spacing."""
+    form, count, even = record
+    is_complex = form in (5, 6)
+    if block.binary is not None:
+        order = "<" if block.binary[:1] == ["1"] else ">"
+        y, x = order + KINDS[form], order + ("f4" if form in (2, 5) else "f8")
+        kinds = [np.dtype([("x", each), ("y", y)][even:]) for each in (x, order + "f4")]
+        kind = next((each for each in kinds if len(body) == count * each.itemsize), kinds[0])
+        counted(file, block.place, "bytes of values", count * kind.itemsize, len(body))
+        table = np.frombuffer(body, kind)
+        of_x = np.zeros(0) if even else table["x"].astype(float)
+        return of_x, table["y"].astype(complex if is_complex else float)
+    if other := body.translate(None, NUMERIC):
+        raise ValueError(f"the byte {other[:1]!r} among the values")
+    try:
+        numbers = np.array(body.split(), dtype=float)
+    except ValueError:
+        numbers = np.array(reals(body.decode("ascii")))
+    columns = (1 - even) + (2 if is_complex else 1)
+    counted(file, block.place, "values", count, numbers.size / columns)
+    points = [line.count(b".") for line in body.rstrip().split(b"\n")]
+    if sum(points) == numbers.size and max(points[1:], default=0) > min(points[:-1], default=0):
+        raise ValueError("a line with fewer values than one behind it")
+    rows = numbers.reshape(-1, columns).T
+    of_y = rows[1 - even :]
+    return rows[0], of_y[0] + 1j * of_y[1] if is_complex else of_y[0]
 
 
-def _degree_of_freedom(node: object, direction: object) -> tuple[str, int]:
+def _channel(values: _Function, block: Block, file: str) -> Channel:
+    (response, sign), (reference, other) = values.response, values.reference
+    place = f"{block.place} of {reference} to {response}"
+    H = sign * other * np.asarray(values.data, complex)
+    return Channel(
+        file, place, reference, response, values.x, H, QUANTITIES.get(values.ordinate, "")
+    )
+
+
+def _degree_of_freedom(node: str, direction: str) -> tuple[str, int]:
     """Return the name of a degree of freedom, such as ``1Z``, and the sign of its direction."""
-    number = int(float(str(direction or 0)))
-    return f"{int(float(str(node)))}{AXES.get(abs(number), '')}", -1 if number < 0 else 1
+    if bool(node) != bool(direction):
+        raise ValueError(f"a node {node!r} with the direction {direction!r}")
+    number = int(direction or 0)
+    return f"{int(node or 0)}{AXES.get(abs(number), '')}", -1 if number < 0 else 1
 
 
 def write_uff55(
@@ -323,8 +405,8 @@ def write_uff55(
                     modal_b=0j,
                 )
             )
-    path.unlink(missing_ok=True)
-    pyuff.UFF(str(path)).write_sets(written, "add")
+    with output_by_name(path) as copy:
+        pyuff.UFF(str(copy)).write_sets(written, "add")
 
 
 def _place(name: str, index: int) -> tuple[int, int]:

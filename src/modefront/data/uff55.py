@@ -16,18 +16,20 @@ number are those of a further data set; ``set NAME`` in the first line of a data
 from __future__ import annotations
 
 import re
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TypeVar
 
 import numpy as np
 
 from modefront._typing import Complexes, Floats, Ints
+from modefront.complete import counted, once
 from modefront.data.modal import ModalData
-from modefront.data.uff import AXES, Block, blocks, decode
-from modefront.errors import Fault, InputError
+from modefront.data.uff import AXES, Block, blocks, reals, text_lines
+from modefront.errors import Fault, InputError, reason
 from modefront.inputs import MOST_DATA, read_text_bytes
+from modefront.rounding import LARGEST
 
 SUFFIXES = (".uff", ".unv", ".uf")
 """Ends of names of universal files."""
@@ -45,6 +47,15 @@ WHAT = "a universal file with modes (dataset 55)"
 
 NORMAL, COMPLEX = 2, (3, 7)
 """Analysis types of normal and of complex modes."""
+
+REAL, COMPONENTS = {2: 1, 5: 2}, (3, 6)
+"""Numbers of a value by the type of data, and values a node: three translations, or all six."""
+
+PER_LINE = 6
+"""Values in a line."""
+
+HEAD = 8
+"""Lines of dataset 55 before those of its nodes."""
 
 ALONG = 1e-6
 """Component of a unit vector, below which it is the rounding of the axes in a file."""
@@ -149,10 +160,40 @@ def read_uff55(path: Path) -> NodalModes:
     if not shapes:
         numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in sections))
         raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
-    rows = [_mode(decode(content, block, file), block, file) for block in shapes]
-    geometry = [decode(content, block, file) for block in sections if block.number in GEOMETRY]
-    systems = [decode(content, block, file) for block in sections if block.number == SYSTEMS]
-    return _assembled(file, rows, _positions(geometry), _axes(geometry, systems))
+
+    def each(read: Callable[[str, Block, list[str]], T], *numbers: int) -> list[T]:
+        chosen = (block for block in sections if block.number in numbers)
+        return [_read(read, file, block, content) for block in chosen]
+
+    points = [point for part in each(_nodes, *GEOMETRY) for point in part]
+    once(file, "nodes", "each node", (node for node, _, _ in points))
+    systems = dict(pair for part in each(_systems, SYSTEMS) for pair in part)
+    return _assembled(file, each(_mode, 55), points, systems)
+
+
+T = TypeVar("T")
+
+
+def _read(read: Callable[[str, Block, list[str]], T], file: str, block: Block, content: bytes) -> T:
+    """Return what a dataset holds; raises InputError where it is not as its kind is."""
+    lines = text_lines(content, block)
+    while lines and not lines[-1].strip():
+        lines.pop()
+    try:
+        return read(file, block, lines)
+    except InputError:
+        raise
+    except (ValueError, IndexError, OverflowError) as error:
+        expected = f"a dataset {block.number}"
+        raise InputError(Fault(file, block.place, expected, reason(error))) from None
+
+
+def _integers(line: str, count: int) -> list[int]:
+    """Return the whole numbers of a line; raises ValueError where it has others, or not so many."""
+    numbers = [int(word) for word in line.split()]
+    if len(numbers) != count:
+        raise ValueError(f"{len(numbers)} numbers in {line.strip()!r} instead of {count}")
+    return numbers
 
 
 @dataclass(frozen=True, eq=False)
@@ -168,36 +209,56 @@ class _Mode:
     place: str
 
 
-def _mode(values: Mapping[str, Any], block: Block, file: str) -> _Mode:
-    place = f"line {block.line}, dataset 55"
-    kind = int(values["analysis_type"])
+def _mode(file: str, block: Block, lines: list[str]) -> _Mode:
+    """Return the mode of a dataset 55, whose values are as many a node as its header says."""
+    place = block.place
+    _, kind, _, _, data, size = _integers(lines[5], 6)
+    integers, real, _, number = (int(word) for word in lines[6].split()[:4])
+    counted(file, place, "whole numbers in record 7", integers, len(lines[6].split()) - 2)
+    parameters = reals(lines[7])
+    counted(file, place, "numbers in record 8", real, len(parameters))
     if kind == NORMAL:
-        frequency, damping = float(values["freq"]), float(values.get("modal_damp_vis") or 0)
+        frequency, damping = parameters[0], sum(parameters[2:3])
     elif kind in COMPLEX:
-        eigenvalue = complex(values["eig"])
+        eigenvalue = complex(*parameters[:2])
         frequency = abs(eigenvalue) / (2 * np.pi)
         damping = -eigenvalue.real / abs(eigenvalue) if eigenvalue else 0.0
     else:
         expected = "normal modes (analysis type 2) or complex ones (3 or 7)"
         raise InputError(Fault(file, place, expected, f"type {kind}"))
-    nodes = np.asarray(values["node_nums"], dtype=np.int64)
-    parts = [np.asarray(values[f"r{i}"]) for i in range(1, 7) if f"r{i}" in values]
+    if size not in COMPONENTS or data not in REAL:
+        expected = "3 or 6 values a node, of the type 2 (real) or 5 (complex)"
+        raise InputError(Fault(file, place, expected, f"{size} values of the type {data}"))
+    nodes, parts = _values(file, block, lines[HEAD:], size * REAL[data])
+    phi = parts[:, 0::2] + 1j * parts[:, 1::2] if REAL[data] == 2 else parts.astype(complex)
     shape = np.zeros((nodes.size, 6))
-    shape[:, : len(parts)] = real_shape(np.stack(parts, axis=1).astype(complex))
+    shape[:, :size] = real_shape(phi)
     wrong = [
         (not frequency > 0, "a frequency above 0 Hz", f"{frequency:g}"),
         (not 0 <= damping < 1, "a damping ratio from 0 to below 1", f"{damping:g}"),
-        (not np.isfinite(shape).all(), "finite components", "others"),
+        (not (np.abs(shape) <= LARGEST).all(), f"components up to {LARGEST:g}", "others"),
         (not shape.any(), "a mode shape that is not zero at all nodes", "only zeros"),
     ]
     faults = [Fault(file, place, expected, text) for is_wrong, expected, text in wrong if is_wrong]
     if faults:
         raise InputError(faults)
-    lines = (str(values.get(f"id{i}", "")) for i in range(1, 6))
-    named = [m for m in (re.match(r"\s*set (\S.*?)\s*$", line) for line in lines) if m]
+    named = [m for m in (re.match(r"\s*set (\S.*?)\s*$", line) for line in lines[:5]) if m]
     name = named[0][1] if named else ""
-    number = int(values.get("mode_n") or 0)
     return _Mode(name, number, frequency, damping, nodes, shape, place)
+
+
+def _values(file: str, block: Block, lines: list[str], size: int) -> tuple[Ints, Floats]:
+    """Return nodes, and ``size`` numbers of each: a line with its number, then those of values."""
+    nodes: list[int] = []
+    values: list[list[float]] = []
+    step = 1 + -(-size // PER_LINE)
+    for k in range(0, len(lines), step):
+        nodes += _integers(lines[k], 1)
+        values.append(reals(" ".join(lines[k + 1 : k + step])))
+        place = f"line {block.line + 2 + HEAD + k}, dataset 55, node {nodes[-1]}"
+        counted(file, place, "numbers", size, len(values[-1]))
+    once(file, block.place, "each node", nodes)
+    return np.array(nodes, dtype=np.int64), np.array(values).reshape(-1, size)
 
 
 def real_shape(phi: Complexes) -> Floats:
@@ -210,36 +271,45 @@ def real_shape(phi: Complexes) -> Floats:
     return np.asarray((phi * turn).real)
 
 
-def _positions(geometry: Sequence[Mapping[str, Any]]) -> dict[int, Floats]:
-    """Return the coordinates (3,) of nodes by their numbers."""
-    out: dict[int, Floats] = {}
-    for values in geometry:
-        points = np.stack([np.asarray(values[axis], float) for axis in "xyz"], axis=1)
-        out.update(zip(np.asarray(values["node_nums"]).astype(int).tolist(), points, strict=True))
+Point = tuple[int, int, Floats]
+"""A node: its number, its displacement system, and its coordinates (3,)."""
+
+
+def _nodes(file: str, block: Block, lines: list[str]) -> list[Point]:
+    """Return the nodes of a dataset 15, a line each, or 2411, two lines each."""
+    step = 1 if block.number == 15 else 2
+    if not lines or len(lines) % step:
+        raise ValueError(f"{len(lines)} lines of nodes, {step} each")
+    out = []
+    for k in range(0, len(lines), step):
+        words = lines[k].split()
+        node, _, system, _ = _integers(" ".join(words[:4]), 4)
+        point = reals(" ".join([*words[4:], *lines[k + 1 : k + step]]))
+        counted(file, f"{block.place}, node {node}", "coordinates", 3, len(point))
+        out.append((node, system, np.array(point)))
     return out
 
 
-def _axes(
-    geometry: Sequence[Mapping[str, Any]], systems: Sequence[Mapping[str, Any]]
-) -> dict[int, Floats]:
+def _systems(file: str, block: Block, lines: list[str]) -> list[tuple[int, tuple[int, Floats]]]:
+    """Return the systems of a dataset 2420, six lines each behind two: number, type and axes."""
+    if len(lines) % 6 != 2:
+        raise ValueError(f"{len(lines)} lines: two, and six a system")
+    out = []
+    for k in range(2, len(lines), 6):
+        label, kind, _ = _integers(lines[k], 3)
+        rows = [reals(line) for line in lines[k + 2 : k + 6]]
+        out.append((label, (kind, np.array(rows).reshape(4, 3))))
+    once(file, block.place, "each system", (label for label, _ in out))
+    return out
+
+
+def _axes(points: Sequence[Point], systems: Mapping[int, tuple[int, Floats]]) -> dict[int, Floats]:
     """Return the axes (3, 3) of nodes with a displacement system; NaN where it is not known.
 
     Where no dataset 2420 says what the systems are, they are those of the file.
     """
-    known = {
-        int(label): (int(kind), np.asarray(matrix, float))
-        for values in systems
-        for label, kind, matrix in zip(
-            *(values[key] for key in ("CS_sys_labels", "CS_types", "CS_matrices")), strict=True
-        )
-    }
-    out: dict[int, Floats] = {}
-    for values in geometry if known else ():
-        for node, label in zip(values["node_nums"], values["disp_cs"], strict=True):
-            if int(label) != 0:
-                point = _positions([values])[int(node)]
-                out[int(node)] = _axes_at(point, known.get(int(label)))
-    return out
+    chosen = [(node, label, point) for node, label, point in points if systems and label != 0]
+    return {node: _axes_at(point, systems.get(label)) for node, label, point in chosen}
 
 
 def _axes_at(point: Floats, system: tuple[int, Floats] | None) -> Floats:
@@ -260,8 +330,8 @@ def _axes_at(point: Floats, system: tuple[int, Floats] | None) -> Floats:
 def _assembled(
     file: str,
     rows: Sequence[_Mode],
-    positions: Mapping[int, Floats],
-    axes: Mapping[int, Floats],
+    points: Sequence[Point],
+    systems: Mapping[int, tuple[int, Floats]],
 ) -> NodalModes:
     """Return all modes as arrays; modes of the same number are those of a further data set."""
     placed: dict[tuple[str, int], _Mode] = {}
@@ -273,6 +343,7 @@ def _assembled(
             expected = "each mode of a data set once"
             raise InputError(Fault(file, row.place, expected, f"mode {number} of {row.set} again"))
         placed[free[0], number] = row
+        _check_nodes(file, row, next(x for (name, _), x in placed.items() if name == free[0]).nodes)
     sets = tuple(dict.fromkeys(name for name, _ in placed))
     modes = tuple(sorted({number for _, number in placed}))
     nodes = np.unique(np.concatenate([row.nodes for row in rows]))
@@ -286,6 +357,19 @@ def _assembled(
         shape[k, r, np.searchsorted(nodes, row.nodes)] = row.shape
     for values in shape:
         values[:, ~(np.nan_to_num(values) != 0).any(axis=0)] = np.nan
+    positions, axes = {node: point for node, _, point in points}, _axes(points, systems)
+    if positions:
+        for row in rows:
+            _check_nodes(file, row, np.intersect1d(row.nodes, list(positions)))
     places = np.array([positions.get(int(node), np.full(3, np.nan)) for node in nodes])
     of_nodes = np.array([axes.get(int(node), np.eye(3)) for node in nodes])
     return NodalModes(file, sets, modes, nodes, places, of_nodes, frequency, damping, shape)
+
+
+def _check_nodes(file: str, row: _Mode, nodes: Ints) -> None:
+    """Raise InputError where a mode has other nodes than these, those of the file or its set."""
+    odd = np.setxor1d(row.nodes, nodes)
+    if odd.size:
+        expected = "the same nodes in the geometry and in all modes of a data set"
+        found = f"node {odd[0]} in one of them, and not in another"
+        raise InputError(Fault(file, row.place, expected, found))

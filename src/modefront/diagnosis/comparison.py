@@ -22,6 +22,9 @@ from modefront.residuals.problem import UpdatingProblem
 MORE = 12
 """Model modes that are looked at beyond those among which measured modes are paired."""
 
+COMPARED = 60
+"""Data sets in which mistakes are sought, at most: each is compared with every other one."""
+
 
 @dataclass(frozen=True, eq=False)
 class Comparison:
@@ -107,6 +110,26 @@ def with_data(comparison: Comparison, data: ModalData) -> Comparison:
         problem=replace(problem, data=data),
         pairs=match(problem.pairing, data, frequency, phi),
     )
+
+
+def of_few_sets(comparison: Comparison) -> Comparison:
+    """Return the comparison with so many data sets, chosen evenly, that all of them are compared.
+
+    A mode that none of these has is of the first data set that has it.
+    """
+    data = comparison.data
+    if len(data.sets) <= COMPARED:
+        return comparison
+    even = np.linspace(0, len(data.sets) - 1, COMPARED).astype(np.intp)
+    first = [
+        seen.argmax(axis=0)
+        for seen in (np.isfinite(data.frequency), np.isfinite(data.shape).any(axis=2))
+    ]
+    chosen = np.unique(np.concatenate([even, *first]))
+    parts = ("frequency", "damping", "shape", "frequency_std", "shape_std")
+    few = {name: getattr(data, name)[chosen] for name in parts}
+    sets = tuple(data.sets[k] for k in chosen.tolist())
+    return with_data(comparison, replace(data, sets=sets, **few))
 
 
 def _modes(

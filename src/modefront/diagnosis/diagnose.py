@@ -7,7 +7,7 @@ from functools import partial
 
 import numpy as np
 
-from modefront.diagnosis.comparison import Comparison, with_data
+from modefront.diagnosis.comparison import Comparison, of_few_sets, with_data
 from modefront.diagnosis.damping import DampingInPercent, damping_findings
 from modefront.diagnosis.explain import WrongPlaces, explained, finding_of, pairs_of
 from modefront.diagnosis.measured import measured
@@ -52,8 +52,9 @@ def diagnose(comparison: Comparison) -> list[Finding]:
     """Return the mistakes of a model or its data, causes before their consequences.
 
     What one finding explains is put right before the next ones are looked for, so that each is
-    said once.
+    said once. Of many data sets, some are looked at; see `of_few_sets`.
     """
+    comparison = of_few_sets(comparison)
     data = comparison.data
     of_model = comparison.frequency[comparison.pairs.index]
     factors, data = factor_findings(data, partial(distance, comparison))

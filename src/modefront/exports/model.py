@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -18,6 +17,7 @@ from modefront.exports.motion import NodeMotion, node_motion
 from modefront.exports.uff import write_uff
 from modefront.models.dofs import DofTable, write_dofs
 from modefront.models.geometry import Cells
+from modefront.outputs import output, write_table, write_text
 from modefront.programs.changes import Change
 from modefront.programs.mesh import ProgramMesh
 from modefront.results.results import ReportedModel
@@ -61,7 +61,7 @@ def write_model(model: ReportedModel, origin: Origin, folder: Path, modes: int) 
             missing.append("modes.vtu: meshio is not installed: pip install modefront[mesh]")
         else:
             _write_vtu(folder / "modes.vtu", origin.mesh, motion, shapes.frequency)
-    (folder / "deck.txt").write_text(_snippet(model, origin.changes), encoding="utf-8")
+    write_text(folder / "deck.txt", _snippet(model, origin.changes))
     return missing
 
 
@@ -77,21 +77,20 @@ def _write_vtu(path: Path, mesh: ProgramMesh, motion: NodeMotion, frequencies: F
 
 def _parameters(model: ReportedModel, folder: Path) -> None:
     values = {name: float(value) for name, value in model.theta.items()}
-    with (folder / "parameters.csv").open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(("parameter", "value"))
-        writer.writerows((name, repr(value)) for name, value in values.items())
+    rows = [(name, repr(value)) for name, value in values.items()]
+    write_table(folder / "parameters.csv", [("parameter", "value"), *rows])
     content = {"label": model.label, "kind": model.kind, "parameters": values}
     text = json.dumps(content, indent=2, ensure_ascii=False)
-    (folder / "parameters.json").write_text(text + "\n", encoding="utf-8")
+    write_text(folder / "parameters.json", text + "\n")
 
 
 def _matrices(model: ReportedModel, folder: Path) -> None:
     for name, A in (("K", model.stiffness), ("M", model.mass)):
         matrix = scipy.sparse.coo_array(A)
         matrix.eliminate_zeros()
-        scipy.sparse.save_npz(folder / f"{name}.npz", matrix.tocsr())
-        with (folder / f"{name}.mtx").open("wb") as stream:
+        with output(folder / f"{name}.npz") as stream:
+            scipy.sparse.save_npz(stream, matrix.tocsr())
+        with output(folder / f"{name}.mtx") as stream:
             scipy.io.mmwrite(stream, matrix, symmetry="symmetric", precision=17)
 
 

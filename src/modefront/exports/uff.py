@@ -15,6 +15,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.exports.motion import NodeMotion
+from modefront.outputs import output
 from modefront.programs.mesh import ProgramMesh
 
 ELEMENTS = {"line": 11, "triangle": 91, "quad": 94, "tetra": 111, "wedge": 112, "hexahedron": 115}
@@ -25,12 +26,11 @@ def write_uff(
     path: Path, mesh: ProgramMesh | None, motion: NodeMotion, frequencies: Floats
 ) -> None:
     """Write nodes, elements and real, mass-normalised modes in Hz."""
-    with path.open("w", encoding="ascii", newline="\n") as stream:
-        if mesh is not None:
-            stream.writelines(_dataset(2411, _nodes(mesh)))
-            stream.writelines(_dataset(2412, _elements(mesh)))
-        for k, frequency in enumerate(frequencies.tolist()):
-            stream.writelines(_dataset(55, _mode(motion, k, frequency)))
+    datasets = [] if mesh is None else [(2411, _nodes(mesh)), (2412, _elements(mesh))]
+    datasets += [(55, _mode(motion, k, f)) for k, f in enumerate(frequencies.tolist())]
+    with output(path) as stream:
+        for number, lines in datasets:
+            stream.writelines(line.encode() for line in _dataset(number, lines))
 
 
 def _dataset(number: int, lines: Iterable[str]) -> Iterator[str]:

@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import contextlib
 import io
-from collections.abc import Iterator
+import warnings
+from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
+from unittest import mock
 
 import h5py
 import meshio
@@ -16,6 +18,9 @@ from modefront._typing import Ints
 from modefront.fem.errors import FemError
 from modefront.hdf5 import check_tree
 from modefront.inputs import is_hdf5
+
+CORNERS = dict(enumerate((2, 3, 4, 4, 8, 6, 5, 3, 6, 9, 10, 27), start=1)) | {15: 1, 16: 8}
+"""Nodes of elements by their type in Gmsh's format 2."""
 
 
 def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
@@ -29,10 +34,20 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
     output = io.StringIO()
     try:
         # meshio prints what is wrong and then ends the process.
-        with contextlib.redirect_stderr(output), contextlib.redirect_stdout(output):
+        with (
+            contextlib.redirect_stderr(output),
+            contextlib.redirect_stdout(output),
+            warnings.catch_warnings(),
+            mock.patch.object(np, "fromfile", _from_file),
+        ):
+            warnings.simplefilter("error", DeprecationWarning)  # NumPy's, of a text that is cut
+            if path.suffix.lower() == ".msh":
+                _check_sections(path)
             raw = meshio.read(path)
     except (Exception, SystemExit) as error:
         raise FemError(" ".join(f"{output.getvalue()} {error}".split())) from error
+    if not len(raw.points) or not any(len(block.data) for block in raw.cells):
+        raise FemError("expected nodes and cells, found none of one or the other")
     blocks: dict[tuple[str, str], list[Ints]] = {}
     for name, kind, cells in _named_cells(raw):
         blocks.setdefault((str(name), kind), []).append(cells)
@@ -42,6 +57,74 @@ def read_with_meshio(path: Path) -> tuple[dict[str, Any], dict[str, Any]]:
         arrays[f"set {k}"] = nodes
     arrays["points"] = np.asarray(raw.points, dtype=float)
     return arrays, {"blocks": list(blocks), "sets": list(sets)}
+
+
+FROM_FILE = np.fromfile
+"""NumPy's function, which returns fewer numbers than are asked for where a file ends."""
+
+
+def _from_file(file: Any, dtype: Any = float, count: int = -1, *others: Any, **named: Any) -> Any:
+    """Return numbers of a file as NumPy does; raises ValueError where it ends before the last."""
+    out = FROM_FILE(file, dtype, count, *others, **named)
+    if 0 <= count != out.size:
+        raise ValueError(f"{count} numbers announced, {out.size} there")
+    return out
+
+
+def _check_sections(path: Path) -> None:
+    """Raise ValueError where sections of Gmsh's text have no end, or not what they announce."""
+    lines = [line.strip() for line in path.read_bytes().split(b"\n")]
+    if lines[1:] and lines[1].split()[1:2] == [b"1"]:  # binary
+        return
+    begin: int | None = None
+    for k, line in enumerate(lines):
+        if begin is None and line:
+            if not line.startswith(b"$") or line.startswith(b"$End"):
+                raise ValueError(f"line {k + 1}: {line!r} in place of the beginning of a section")
+            begin = k
+        elif begin is not None and line.startswith(b"$"):
+            section = lines[begin]
+            check = CHECKS.get((lines[1][:1], section))
+            if line != b"$End" + section[1:] or (check and not check(lines[begin + 1 : k])):
+                raise ValueError(f"line {begin + 1}: {section!r}, other lines than said, or no end")
+            begin = None
+    if begin is not None:
+        raise ValueError(f"line {begin + 1}: a section that has no end")
+
+
+def _is_list(lines: list[bytes]) -> bool:
+    """Return whether there are as many lines as the first one says."""
+    return int(lines[0]) == len(lines) - 1
+
+
+def _are_elements(lines: list[bytes]) -> bool:
+    """Return whether they are so many, each with its tags and as many nodes as its type has."""
+    rows = [[int(word) for word in line.split()] for line in lines[1:]]
+    sizes = [CORNERS.get(row[1], len(row) - 3 - row[2]) for row in rows]
+    return _is_list(lines) and all(
+        len(row) == 3 + row[2] + size for row, size in zip(rows, sizes, strict=True)
+    )
+
+
+def _are_blocks(lines: list[bytes], each: int) -> bool:
+    """Return whether there are as many blocks and entries, of some lines each, as is said."""
+    blocks, total = (int(word) for word in lines[0].split()[:2])
+    position, found = 1, 0
+    for _ in range(blocks):
+        _, _, _, count = (int(word) for word in lines[position].split())
+        position, found = position + 1 + each * count, found + count
+    return position == len(lines) and found == total
+
+
+CHECKS: Mapping[tuple[bytes, bytes], Callable[[list[bytes]], bool]] = {
+    (b"2", b"$PhysicalNames"): _is_list,
+    (b"2", b"$Nodes"): _is_list,
+    (b"2", b"$Elements"): _are_elements,
+    (b"4", b"$PhysicalNames"): _is_list,
+    (b"4", b"$Nodes"): lambda lines: _are_blocks(lines, 2),
+    (b"4", b"$Elements"): lambda lines: _are_blocks(lines, 1),
+}
+"""What is announced in sections of Gmsh's text, by the first digit of the format."""
 
 
 def _node_sets(raw: Any) -> dict[str, Ints]:

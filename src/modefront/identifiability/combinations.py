@@ -23,8 +23,8 @@ import numpy as np
 
 from modefront._typing import Bools, Floats
 from modefront.identifiability.scale import Scale, scale_at
+from modefront.optim.problem import Evaluation
 from modefront.residuals.problem import UpdatingProblem
-from modefront.solvers.problem import Evaluation
 
 WEAK = 1e-2
 """Singular value over the greatest one, below which a combination is weakly determined."""
@@ -107,7 +107,8 @@ def combinations_at(
 
 def gram(evaluation: Evaluation, weights: Floats, scale: Scale, group: int | None = None) -> Floats:
     """Return G^T G, shape (parameters, parameters), of one group alone or of all with weights."""
-    H = evaluation.H[group] if group is not None else np.tensordot(weights, evaluation.H, axes=1)
+    every = evaluation.gauss_newton
+    H = every[group] if group is not None else np.tensordot(weights, every, axes=1)
     return np.asarray(H / 2 * np.outer(scale.unit, scale.unit))
 
 
@@ -130,7 +131,7 @@ def without_effect(problem: UpdatingProblem, evaluation: Evaluation, scale: Scal
 
 def _changed(problem: UpdatingProblem, evaluation: Evaluation, scale: Scale) -> Bools:
     """Return which groups change with which parameters, by more than rounding, (groups, p)."""
-    length = np.sqrt(np.einsum("ijj->ij", evaluation.H) / 2) * scale.unit
+    length = np.sqrt(np.einsum("ijj->ij", evaluation.gauss_newton) / 2) * scale.unit
     return np.asarray(length > ROUNDING * sizes(problem)[:, None])
 
 

@@ -71,6 +71,36 @@ class Monomials:
         """Whether any coefficient depends on a parameter."""
         return bool(self.exponents.any())
 
+    @property
+    def curved(self) -> bool:
+        """Whether any coefficient has second derivatives."""
+        return bool(self._second[0].size)
+
+    @cached_property
+    def _second(self) -> tuple[Ints, Ints, Ints, Floats, Floats]:
+        """Second derivatives that are not zero, as factors times products of powers.
+
+        Returns terms, parameters i and j, factors (all of the same shape) and exponents (.., p).
+        """
+        e = self.exponents
+        used = e != 0
+        j, i, k = np.nonzero(used[:, :, None] & used[:, None])
+        factor = e[j, i] * np.where(i == k, e[j, i] - 1, e[j, k])
+        j, i, k, factor = (x[factor != 0] for x in (j, i, k, factor))
+        lowered, row = e[j], np.arange(j.size)
+        lowered[row, i] -= 1
+        lowered[row, k] -= 1
+        return j, i, k, factor, lowered
+
+    def second_derivatives(self, theta: Floats, forms: Floats) -> Floats:
+        """Return sum_j f_j d2 c_j / dtheta_i dtheta_k for each row f of forms (n, terms)."""
+        theta = theta if self.origin is None else theta - self.origin
+        j, i, k, factor, lowered = self._second
+        out = np.zeros((len(forms), theta.size, theta.size))
+        values = forms[:, j] * (factor * np.prod(theta**lowered, axis=1))
+        np.add.at(out.transpose(1, 2, 0), (i, k), values.T)
+        return out
+
     @cached_property
     def _constant(self) -> Floats:
         return np.asarray(1.0 - self.exponents.any(axis=1))
@@ -139,6 +169,16 @@ class DenseAffine:
             return np.zeros((*vectors.shape, self.coefficients.exponents.shape[1]))
         products = self.terms @ vectors
         return first_axis(self.coefficients.jacobian(theta).T, products).transpose(1, 2, 0)
+
+    def second_derivatives(self, theta: Floats, left: Floats, right: Floats) -> Floats:
+        """Return sum_m left_m^T (d2A / dtheta_i dtheta_k) right_m for each row of left, (n, p, p).
+
+        ``left`` has the shape (n, N, m) and ``right`` (N, m).
+        """
+        if not self.coefficients.curved:
+            return np.zeros((len(left), theta.size, theta.size))
+        products = (self.terms @ right).reshape(len(self.terms), -1)
+        return self.coefficients.second_derivatives(theta, left.reshape(len(left), -1) @ products.T)
 
     def sparse(self) -> SparseAffine:
         """Return the same matrix with sparse terms."""
@@ -242,6 +282,20 @@ class SparseAffine:
             values.append(some.T.ravel())
         entries = np.concatenate(rows), np.concatenate(columns)
         return scipy.sparse.csr_array((np.concatenate(values), entries), shape=(m * p, self.size))
+
+    def second_derivatives(self, theta: Floats, left: Floats, right: Floats) -> Floats:
+        """Return sum_m left_m^T (d2A / dtheta_i dtheta_k) right_m for each row of left, (n, p, p).
+
+        ``left`` has the shape (n, N, m) and ``right`` (N, m).
+        """
+        if not self.coefficients.curved:
+            return np.zeros((len(left), theta.size, theta.size))
+        stack, dof, starts = self._stack
+        products, forms = times(stack, right), np.zeros((len(left), starts.size - 1))
+        for j, part in enumerate(_parts(starts)):
+            for rows in _blocks(part, FEW):
+                forms[:, j] += np.einsum("krm,rm->k", left[:, dof[rows]], products[rows])
+        return self.coefficients.second_derivatives(theta, forms)
 
     def _derivative_parts(
         self, theta: Floats, vectors: Floats

@@ -12,9 +12,11 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
+from modefront.complete import ended_column
 from modefront.errors import Fault, InputError, reason
 from modefront.fem.dofs import DIRECTIONS
 from modefront.inputs import file_size
+from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
 
 COLUMNS = ("node", "direction", "weight")
@@ -159,10 +161,8 @@ def write_dofs(path: Path, dofs: DofTable) -> None:
     """Write a table of degrees of freedom as CSV: one row a degree of freedom, in their order."""
     directions = [name_of(n) for n in dofs.direction.tolist()]
     rows = zip(dofs.node.tolist(), directions, dofs.weight.tolist(), strict=True)
-    with path.open("w", encoding="utf-8", newline="") as stream:
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(COLUMNS)
-        writer.writerows((node, name, f"{weight:.17g}") for node, name, weight in rows)
+    written = [(node, name, f"{weight:.17g}") for node, name, weight in rows]
+    write_table(path, [COLUMNS, *written])
 
 
 def read_dofs(path: Path) -> DofTable:
@@ -179,6 +179,7 @@ def read_dofs(path: Path) -> DofTable:
     names = tuple(name.strip() for name in header)
     if names not in (COLUMNS, COLUMNS[:2]):
         raise _wrong(path, "header", "node,direction or node,direction,weight", ",".join(names))
+    ended_column(path, (row[-1] for row in rows if row))
     node, direction = np.zeros(len(rows), np.intp), np.zeros(len(rows), np.intp)
     weight = np.ones(len(rows))
     numbers = {name: number_of(name) for name in DIRECTIONS} | {str(k): k for k in range(-1, 1000)}

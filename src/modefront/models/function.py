@@ -13,7 +13,7 @@ from.
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -90,7 +90,11 @@ class FunctionModel:
 
     def modes(self, theta: Floats, count: int, *, derivatives: bool = True) -> Modes:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
-        return self.at(theta, derivatives=derivatives).modes(theta, count, derivatives=derivatives)
+        modes = self.at(theta, derivatives=derivatives).modes(theta, count, derivatives=derivatives)
+        if modes.derivatives is None:
+            return modes
+        # The second derivatives of the affine model are not those of the function.
+        return replace(modes, derivatives=replace(modes.derivatives, second=None))
 
     def transfer(self, theta: Floats, count: int, load_case: LoadCase) -> Transfer:
         """Return the model in a load case; see `modefront.models.base.Model`."""

@@ -33,11 +33,12 @@ from functools import cached_property
 import numpy as np
 import scipy.linalg
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, first_axis
 from modefront.modes import tridiagonal
 from modefront.modes.result import ModeDerivatives, Modes
+from modefront.modes.second_derivatives import SecondDerivatives, Solved
 from modefront.modes.tridiagonal import COINCIDENT, FINITE, PRECISE, LowestModes, lowest_modes
 
 CLOSE = 1e-2
@@ -73,18 +74,22 @@ def modes(
         at_sensors = few.lam[:count], sensors @ few.Phi[:, :count]
         if not derivatives:
             return Modes(*at_sensors)
-        slopes = tridiagonal.derivatives(K, M, sensors, theta, few, count)
-        return Modes(*at_sensors, ModeDerivatives(*slopes))
+        return Modes(*at_sensors, tridiagonal.derivatives(K, M, sensors, theta, few, count))
     decomposition = decompose(Kt, Mt, count)
-    lam = decomposition.lam
+    lam, X = decomposition.lam, decomposition.X
     if lam.size < count:
         raise ModelError(f"{count} modes asked for, but only {lam.size} have a finite frequency")
     phi = sensors @ decomposition.Phi[:, :count]
     if not derivatives:
         return Modes(lam[:count], phi)
-    dlam, S, coincident = nelson(K, M, theta, decomposition, count)
-    dphi = first_axis(sensors @ decomposition.X, S[:, :count])
-    return Modes(lam[:count], phi, ModeDerivatives(dlam[:count], dphi, coincident[:count]))
+    dlam, S, coincident, energy = nelson(K, M, theta, decomposition, count)
+    seen = sensors @ X
+    solver = _AllModes(decomposition, seen, S, energy)
+    second = SecondDerivatives(K, M, theta, lam[:count], phi, dlam[:count], solver)
+    slopes = ModeDerivatives(
+        dlam[:count], first_axis(seen, S[:, :count]), coincident[:count], second
+    )
+    return Modes(lam[:count], phi, slopes)
 
 
 @dataclass(frozen=True)
@@ -110,6 +115,35 @@ class Decomposition:
         finite = self.lam.size
         out: Floats = self.X[:, :finite] / np.sqrt(self.mu[:finite])
         return out
+
+
+@dataclass(frozen=True, eq=False)
+class _AllModes:
+    r"""All modes, for second derivatives; see `modefront.modes.second_derivatives.Solver`.
+
+    Attributes
+    ----------
+    decomposition : all solutions x
+    seen : (sensors, N) the x at the sensors
+    S : (N, modes, p) derivatives of the modes in terms of the x
+    energy : (N, modes) :math:`x_j^T (K - \lambda_r M) x_j`; infinite where modes coincide
+    """
+
+    decomposition: Decomposition
+    seen: Floats
+    S: Floats
+    energy: Floats
+
+    @property
+    def together(self) -> int:
+        """All modes at once."""
+        return self.energy.shape[1]
+
+    def solve(self, r: Ints, b: Floats, owner: Ints) -> Solved:
+        """Return modes r with adjoints."""
+        X = self.decomposition.X
+        Z = X @ ((self.seen.T @ b) / self.energy[:, r[owner]])
+        return Solved(self.decomposition.Phi[:, r], first_axis(X, self.S[:, r]), Z)
 
 
 def lowest(K: Floats, M: Floats, count: int) -> LowestModes | Decomposition:
@@ -207,10 +241,11 @@ def _inverse_eigensolve(K: Floats, M: Floats) -> tuple[Floats, Floats]:
 
 def nelson(
     K: DenseAffine, M: DenseAffine, theta: Floats, decomposition: Decomposition, count: int
-) -> tuple[Floats, Floats, Bools]:
-    """Return dlam (count, p), S with dPhi = X S, and which modes coincide with another one.
+) -> tuple[Floats, Floats, Bools, Floats]:
+    """Return dlam (count, p), S with dPhi = X S, which modes coincide, and the denominators.
 
-    X (N, N) are the eigenvectors, S is (N, count, p). Some modes more than asked for may come.
+    X (N, N) are the eigenvectors, S is (N, count, p), and a denominator (N, count) is infinite
+    where modes coincide. Some modes more than asked for may come.
     """
     lam, Phi = decomposition.lam, decomposition.Phi
     magnitude = np.abs(lam) + SHIFT * lam[-1]
@@ -243,4 +278,4 @@ def nelson(
     S /= -denominator[:, :, None]
     if M.varies:
         S[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi, dM_phi) / np.sqrt(decomposition.mu[r, None])
-    return dlam, S, coincident
+    return dlam, S, coincident, denominator

@@ -40,6 +40,7 @@ doi:10.1515/9781400833887.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import TypeAlias
 
 import numpy as np
@@ -49,6 +50,7 @@ from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
 from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, gram, times
+from modefront.modes.second_derivatives import Solved
 from modefront.modes.spectrum import Shifted, Spectrum
 from modefront.rounding import TINY
 
@@ -91,9 +93,7 @@ def at_sensors(
     ``tolerance`` is the residual of the part of dphi outside the known modes over that of zero.
     Raises ModelError where the iteration fails.
     """
-    lam, noise = spectrum.lam, spectrum.noise + np.finfo(float).eps * np.abs(spectrum.lam)
-    distance = np.abs(lam[:, None] - lam)
-    same = distance * COINCIDENT <= np.maximum(noise, noise[:, None])
+    lam, same = spectrum.lam, _same(spectrum)
     c, p = count, theta.size
     while c < spectrum.proved and same[c, :c].any():
         c += 1
@@ -115,6 +115,53 @@ def at_sensors(
     force = force[: count * p].tocsr()
     dphi -= outside(sensors, force, spectrum, count, tolerance)
     return dlam[:count], dphi, coincident[:count]
+
+
+def _same(spectrum: Spectrum) -> Bools:
+    """Return which modes coincide, each one with itself, shape (modes, modes)."""
+    lam, noise = spectrum.lam, spectrum.noise + np.finfo(float).eps * np.abs(spectrum.lam)
+    distance = np.abs(lam[:, None] - lam)
+    return np.asarray(distance * COINCIDENT <= np.maximum(noise, noise[:, None]))
+
+
+@dataclass(frozen=True, eq=False)
+class Everywhere:
+    """Derivatives at all DOFs, mode by mode; see `modefront.modes.second_derivatives.Solver`.
+
+    Attributes
+    ----------
+    pencil, sensors, theta, spectrum, count : the arguments of `at_sensors`
+    """
+
+    pencil: Pencil
+    sensors: Sensors
+    theta: Floats
+    spectrum: Spectrum
+    count: int
+
+    @property
+    def together(self) -> int:
+        """One mode at once, to bound the memory."""
+        return 1
+
+    def solve(self, r: Ints, b: Floats, owner: Ints) -> Solved:
+        """Return one mode with adjoints; raises ModelError where the iteration fails."""
+        del owner  # of one mode
+        spectrum, k, p = self.spectrum, int(r[0]), self.theta.size
+        phi = spectrum.Phi[:, r]
+        dM_phi = self.pencil.M.derivatives_times(self.theta, phi)[:, 0]
+        force = self.pencil.K.derivatives_times(self.theta, phi)[:, 0] - spectrum.lam[k] * dM_phi
+        right = np.hstack([force, self.sensors.T @ b])
+        gap = np.where(_same(spectrum)[:, k], np.inf, spectrum.lam - spectrum.lam[k])
+        out = combine(spectrum.Phi, gram(spectrum.Phi, right) / gap[:, None])
+        nearest, _ = _nearest(spectrum, self.count, TOLERANCE)
+        shifted, everywhere = spectrum.factors[nearest[k]], scipy.sparse.eye_array(len(phi)).tocsr()
+        tau = np.array([[shifted.sigma - spectrum.lam[k]]])
+        for some in _chunks(right.T):
+            columns = np.ascontiguousarray(right[:, some])
+            out[:, some] += _forms(shifted, spectrum, columns, tau, everywhere, TOLERANCE)[:, 0]
+        dphi = -out[:, :p] - 0.5 * phi * gram(phi, dM_phi)
+        return Solved(phi, dphi[:, None], out[:, p:])
 
 
 def outside(

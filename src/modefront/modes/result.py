@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Bools, Floats
+from modefront.modes.second_derivatives import SecondDerivatives
 
 
 @dataclass(frozen=True)
@@ -22,11 +23,13 @@ class ModeDerivatives:
         part that leaves their common subspace, which is the well-defined one
     coincident : (modes,) true where a mode is so close to another one that derivatives of the
         single mode are not defined to eight digits, and only those of the subspace are
+    second : the second derivatives, computed when requested; None where they are not known
     """
 
     dlam: Floats
     dphi: Floats
     coincident: Bools
+    second: SecondDerivatives | None = None
 
 
 @dataclass(frozen=True)
@@ -60,6 +63,18 @@ class Modes:
         none = np.zeros(self.lam.size, dtype=np.bool_)
         return none if self.derivatives is None else self.derivatives.coincident
 
+    def second_derivatives(self, w: Floats, v: Floats) -> Floats | None:
+        """Return the Hessians of sum_r w_r lam_r + v_r^T phi_r for several w and v, (n, p, p).
+
+        ``w`` has the shape (n, modes) and ``v`` (n, sensors, modes). None where second derivatives
+        are not known, or a mode with weights coincides with another one. Raises ValueError where
+        derivatives were not requested, and ModelError where an iteration for them fails.
+        """
+        r, second = np.flatnonzero(w.any(axis=0) | v.any(axis=(0, 1))), self._requested.second
+        if second is None or self.coincident[r].any():
+            return None
+        return second.of_sums(r, w[:, r], v[:, :, r])
+
     @property
     def _requested(self) -> ModeDerivatives:
         if self.derivatives is None:
@@ -78,7 +93,11 @@ class Modes:
 
         Raises ValueError where derivatives were not requested.
         """
-        omega = np.sqrt(np.maximum(self.lam, 0.0))
-        scale = np.divide(1, 4 * np.pi * omega, out=np.zeros(omega.shape), where=omega > 0)
-        out: Floats = self.dlam * scale[:, None]
+        out: Floats = self.dlam * self.frequency_by_lam[:, None]
         return out
+
+    @cached_property
+    def frequency_by_lam(self) -> Floats:
+        """Derivatives of the frequencies by their eigenvalues, (modes,); 0 for rigid-body modes."""
+        omega = np.sqrt(np.maximum(self.lam, 0.0))
+        return np.divide(1, 4 * np.pi * omega, out=np.zeros(omega.shape), where=omega > 0)

@@ -43,6 +43,7 @@ from modefront.modes import dense
 from modefront.modes import derivatives as exact
 from modefront.modes.lanczos import greatest
 from modefront.modes.result import ModeDerivatives, Modes
+from modefront.modes.second_derivatives import SecondDerivatives
 from modefront.modes.spectrum import Shifted, Spectrum
 
 BLOCK = 8
@@ -100,8 +101,10 @@ def modes(
     phi = sensors @ spectrum.Phi[:, :count]
     if not derivatives:
         return Modes(spectrum.lam[:count], phi)
-    slopes = exact.at_sensors(pencil, sensors, theta, spectrum, count)
-    return Modes(spectrum.lam[:count], phi, ModeDerivatives(*slopes))
+    dlam, dphi, coincident = exact.at_sensors(pencil, sensors, theta, spectrum, count)
+    lam, solver = spectrum.lam[:count], exact.Everywhere(pencil, sensors, theta, spectrum, count)
+    second = SecondDerivatives(pencil.K, pencil.M, theta, lam, phi, dlam, solver)
+    return Modes(lam, phi, ModeDerivatives(dlam, dphi, coincident, second))
 
 
 def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:

@@ -20,12 +20,15 @@ Source: LAPACK Users' Guide, 1999, sections 2.4.4 and 2.4.5 (dsygst, dsytrd, dst
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 import scipy.linalg
 
-from modefront._typing import Bools, Floats
-from modefront.linalg.affine import DenseAffine
+from modefront._typing import Floats, Ints
+from modefront.linalg.affine import DenseAffine, first_axis
+from modefront.modes.result import ModeDerivatives
+from modefront.modes.second_derivatives import SecondDerivatives, Solved
 
 MANY = 100
 """Degrees of freedom from which on this is faster than all modes, if few are wanted."""
@@ -69,14 +72,12 @@ class LowestModes:
     Attributes
     ----------
     lam : (modes,) all finite eigenvalues, ascending
-    Phi : (N, k) mass-normalised modes that are known
-    S : (N, k) their eigenvectors of T
+    S : (N, k) eigenvectors of T of the modes that are known
     L, Q, tau : the factor of K, and Q as LAPACK stores its reflectors
     diagonal, beside : (N,) and (N - 1,) of T
     """
 
     lam: Floats
-    Phi: Floats
     S: Floats
     L: Floats
     Q: Floats
@@ -84,11 +85,22 @@ class LowestModes:
     diagonal: Floats
     beside: Floats
 
+    @cached_property
+    def Phi(self) -> Floats:
+        """Mass-normalised modes that are known, shape (N, k)."""
+        return self.transformed_back(self.S) * np.sqrt(self.lam[: self.S.shape[1]])
+
     def transformed(self, vectors: Floats) -> Floats:
         """Return Q^T L^-1 times some vectors (N, m)."""
         out = _lapack.dtrtrs(self.L, vectors, lower=1)[0]
         out[1:] = _turned(self.Q, self.tau, "T", out[1:])
         return out
+
+    def transformed_back(self, vectors: Floats) -> Floats:
+        """Return L^-T Q times some vectors (N, m)."""
+        out = vectors.copy()
+        out[1:] = _turned(self.Q, self.tau, "N", vectors[1:])
+        return np.asarray(_lapack.dtrtrs(self.L, out, lower=1, trans=1)[0])
 
     def times(self, vectors: Floats) -> Floats:
         """Return T times some vectors (N, m)."""
@@ -143,16 +155,52 @@ def lowest_modes(K: Floats, M: Floats, count: int) -> LowestModes | None:
     if failed:
         return None
     S, Q = S[:, ::-1], np.asfortranarray(C[1:, :-1])
-    Y = S.copy()
-    Y[1:] = _turned(Q, tau, "N", S[1:])
-    Phi = _lapack.dtrtrs(L, Y, lower=1, trans=1)[0] * np.sqrt(lam[:known])
-    return LowestModes(lam, Phi, S, L, Q, tau, diagonal, beside)
+    return LowestModes(lam, S, L, Q, tau, diagonal, beside)
+
+
+@dataclass(frozen=True, eq=False)
+class _FewModes:
+    r"""Derivatives of the lowest modes; see `modefront.modes.second_derivatives.Solver`.
+
+    Attributes
+    ----------
+    modes : the modes
+    phi : (sensors, k) those that are known at the sensors
+    seen : (N, sensors) the sensors, transformed
+    gap : (k, modes) :math:`\lambda_r - \lambda_j`; infinite where modes coincide
+    inside : (k, modes, p) derivatives in terms of the known modes
+    beyond : (N, modes, p) the rest of them, transformed
+    """
+
+    modes: LowestModes
+    phi: Floats
+    seen: Floats
+    gap: Floats
+    inside: Floats
+    beyond: Floats
+
+    @property
+    def together(self) -> int:
+        """All modes at once."""
+        return self.gap.shape[1]
+
+    def solve(self, r: Ints, b: Floats, owner: Ints) -> Solved:
+        """Return modes r with adjoints."""
+        Phi, shape = self.modes.Phi, self.beyond[:, r].shape
+        outside = self.modes.beyond((self.seen @ b)[:, :, None], self.modes.lam[r[owner]])
+        rest = np.hstack([self.beyond[:, r].reshape(len(Phi), -1), outside[:, :, 0]])
+        dPhi, Z = np.split(self.modes.transformed_back(rest), [shape[1] * shape[2]], axis=1)
+        return Solved(
+            Phi[:, r],
+            first_axis(Phi, self.inside[:, r]) - dPhi.reshape(shape),
+            Z - Phi @ ((self.phi.T @ b) / self.gap[:, r[owner]]),
+        )
 
 
 def derivatives(
     K: DenseAffine, M: DenseAffine, sensors: Floats, theta: Floats, modes: LowestModes, count: int
-) -> tuple[Floats, Floats, Bools]:
-    """Return dlam (count, p), dphi (sensors, count, p) and which modes coincide with another one.
+) -> ModeDerivatives:
+    """Return the derivatives of the ``count`` lowest modes.
 
     The arguments are those of `modefront.modes.dense.modes`, and the modes.
     """
@@ -181,9 +229,12 @@ def derivatives(
         inside[r, r] = -0.5 * np.einsum("nr,nri->ri", Phi[:, r], dM_phi[:, r])
     both = np.hstack([force[:, r].reshape(len(Phi), -1), sensors.T])
     right, seen = np.split(modes.transformed(both), [count * p], axis=1)
-    beyond = modes.beyond(right.reshape(len(Phi), count, p), lam[r]).reshape(len(Phi), -1)
-    dphi = (sensors @ Phi) @ inside.reshape(known, -1) - seen.T @ beyond
-    return dlam[:count], dphi.reshape(-1, count, p), coincident[:count]
+    beyond = modes.beyond(right.reshape(len(Phi), count, p), lam[r])
+    phi, dlam = sensors @ Phi, dlam[:count]
+    dphi = phi @ inside.reshape(known, -1) - seen.T @ beyond.reshape(len(Phi), -1)
+    solver = _FewModes(modes, phi, seen, gap, inside, beyond)
+    second = SecondDerivatives(K, M, theta, lam[:count], phi[:, :count], dlam, solver)
+    return ModeDerivatives(dlam, dphi.reshape(-1, count, p), coincident[:count], second)
 
 
 def _turned(Q: Floats, tau: Floats, trans: str, vectors: Floats) -> Floats:

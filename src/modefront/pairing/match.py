@@ -112,3 +112,20 @@ def mean_mac(data: ModalData, phi: Floats) -> Floats:
     norm = known.squares * (known.measured @ phi**2)
     values = np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)
     return np.asarray(values.sum(axis=0) / known.sets)
+
+
+def mac_slopes(data: ModalData, pairs: Pairs, phi: Floats, dphi: Floats) -> Floats:
+    """Return the derivatives (measured modes, p) of the mean MAC of pairs.
+
+    ``phi`` (sensors, modes) are the model's modes and ``dphi`` (sensors, modes, p) their
+    derivatives.
+    """
+    known = data.measured_shapes
+    phi, dphi = phi[:, pairs.index], dphi[:, pairs.index]
+    c = np.einsum("krs,sr->kr", known.shape, phi)[:, :, None]
+    b = np.einsum("krs,sr->kr", known.measured, phi**2)[:, :, None]
+    dc = np.einsum("krs,srp->krp", known.shape, dphi)
+    half = np.einsum("krs,sr,srp->krp", known.measured, phi, dphi)  # of the derivative of b
+    norm = known.squares * b**2
+    out = np.divide(2 * c * (b * dc - c * half), norm, out=np.zeros(dc.shape), where=norm > 0)
+    return np.asarray(out.sum(axis=0) / known.sets)

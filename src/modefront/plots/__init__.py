@@ -15,6 +15,7 @@ from typing import TYPE_CHECKING, Any
 import xarray as xr
 
 from modefront.errors import Fault, InputError, reason
+from modefront.outputs import output
 from modefront.plots.style import STYLE
 from modefront.text import file_name
 
@@ -168,9 +169,8 @@ def write_pictures(
         with _drawing():
             for name, figure in named:
                 path = folder / f"{file_name(name, [each.stem for each in written])}.{form}"
-                temporary = path.with_name(f"{path.name}.tmp")
-                figure.savefig(temporary, format=form, metadata=metadata, dpi=150)
-                temporary.replace(path)
+                with output(path) as stream:
+                    figure.savefig(stream, format=form, metadata=metadata, dpi=150)
                 written.append(path)
     except OSError as error:
         expected = "a folder that can be written to"

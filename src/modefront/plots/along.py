@@ -17,7 +17,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from modefront._typing import Floats
-from modefront.fronts.point import Kind
+from modefront.front.point import Kind
 from modefront.plots.canvas import Picture
 from modefront.plots.models import front_of, is_path, reference_of
 from modefront.plots.style import COLOURS, plain, short

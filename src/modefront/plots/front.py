@@ -9,7 +9,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from modefront._typing import Bools, Floats
-from modefront.fronts.methods import METHODS
+from modefront.front.methods import METHODS
 from modefront.plots.canvas import Picture, picture
 from modefront.plots.models import branches, is_path, series, shown
 from modefront.plots.parallel import key, parallel

@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Ints
-from modefront.fronts.point import REFERENCES, WEIGHTED, Kind
+from modefront.front.point import REFERENCES, WEIGHTED, Kind
 from modefront.plots.style import COLOURS
 
 

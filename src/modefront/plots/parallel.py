@@ -10,7 +10,7 @@ from matplotlib import colormaps
 from matplotlib.axes import Axes
 
 from modefront._typing import Floats
-from modefront.fronts.point import Kind
+from modefront.front.point import Kind
 from modefront.plots.models import reference_of, shown
 from modefront.plots.style import COLOURS, MAP, short
 

@@ -29,6 +29,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
+from modefront.complete import counted
 from modefront.models.dofs import DofTable, read_dofs
 from modefront.programs.base import (
     DOUBLE,
@@ -122,11 +123,11 @@ def _from_full(path: Path) -> Job:
     dofs = DofTable(node, np.abs(identifiers).astype(np.intp), np.ones(size))
     free = np.flatnonzero(identifiers > 0)
     terms = words.long(header, 34, 22)
-    stiffness = _rows(words, words.long(header, 19, 20), words.long(header, 9, 10))
+    stiffness = _rows(words, words.long(header, 19, 20), words.long(header, 9, 10), size)
     if terms == 0:
         raise wrong(path, "a mass matrix (ANTYPE,MODAL)", "none")
     position = words.long(header, 27, 28)
-    mass = _diagonal(words, position, size) if header[10] else _rows(words, position, terms)
+    mass = _diagonal(words, position, size) if header[10] else _rows(words, position, terms, size)
     K, M = (kept(upper(path, size, each, dofs), free) for each in (stiffness, mass))
     dofs = DofTable(dofs.node[free], dofs.direction[free], dofs.weight[free])
     notes = [f"{size - free.size} degrees of freedom that are held are left out"]
@@ -135,8 +136,8 @@ def _from_full(path: Path) -> Job:
     return Job(str(path), K, M, dofs, DOUBLE, notes=tuple(notes[size == free.size :]))
 
 
-def _rows(words: _Words, position: int, terms: int) -> Entries:
-    """Return the entries of a matrix, ``terms`` in all, from its records of rows."""
+def _rows(words: _Words, position: int, terms: int, size: int) -> Entries:
+    """Return the entries of a matrix, ``terms`` in all, from its records of ``size`` rows."""
     columns: list[np.ndarray] = []
     values: list[np.ndarray] = []
     count = 0
@@ -148,9 +149,14 @@ def _rows(words: _Words, position: int, terms: int) -> Entries:
         columns.append(index)
         values.append(value)
         count += index.size
+    counted(words.path, "records of rows", "terms of a matrix", terms, count)
+    counted(words.path, "records of rows", "rows", size, len(columns))
     length = np.array([index.size for index in columns])
     column = np.concatenate(columns) - 1
-    row = np.repeat(column[np.cumsum(length) - 1], length)
+    diagonal = column[np.cumsum(length) - 1]
+    if (diagonal != np.arange(size)).any():
+        raise wrong(words.path, "rows in their order, each to its diagonal", "others")
+    row = np.repeat(diagonal, length)
     return Entries(row, column, np.concatenate(values).view("<f8"))
 
 

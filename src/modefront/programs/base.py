@@ -10,6 +10,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.complete import first_repeated
 from modefront.errors import Fault, InputError, reason
 from modefront.inputs import file_size
 from modefront.models.dofs import DofTable
@@ -111,8 +112,8 @@ class Entries:
 def upper(path: Path, size: int, entries: Entries, dofs: DofTable) -> scipy.sparse.csr_array:
     """Return the upper triangle of a symmetric matrix of which one triangle or both are listed.
 
-    Entries of the same place add up. Raises InputError where an index is beyond the size, a value
-    is no number, or both triangles are listed and differ.
+    Raises InputError where an index is beyond the size, a value is no number, an entry is listed
+    again, or both triangles are listed and differ.
     """
     row, column, value = entries.row, entries.column, entries.value
     if row.size and (min(row.min(), column.min()) < 0 or max(row.max(), column.max()) >= size):
@@ -123,6 +124,9 @@ def upper(path: Path, size: int, entries: Entries, dofs: DofTable) -> scipy.spar
         k = int(np.argmin(good))
         place = f"{dofs.label(int(row[k]))} and {dofs.label(int(column[k]))}"
         raise wrong(path, "finite numbers", f"{value[k]:g} at {place}")
+    if (again := first_repeated(row, column, size)) is not None:
+        place = f"{dofs.label(int(row[again]))} and {dofs.label(int(column[again]))}"
+        raise wrong(path, "each entry once", f"the one at {place} again")
     below = row > column
     if below.any() and (row < column).any():
         return _symmetric(path, size, entries, below, dofs)

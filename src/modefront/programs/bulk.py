@@ -10,14 +10,17 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
 
 import numpy as np
 from scipy.linalg import null_space
 
 from modefront._typing import Floats
+from modefront.errors import reason
+from modefront.programs.base import wrong
 from modefront.programs.dmig import real
-from modefront.programs.mesh import ProgramMesh, mesh_of
+from modefront.programs.mesh import ProgramMesh, mesh_of, refuse_unknown_nodes
 
 _ELEMENTS = {  # nodes begin at this field, as many of them are corners, of this kind
     "CQUAD4": (3, 4, "quad"),
@@ -91,7 +94,7 @@ class Bulk:
         return [dof for dof in every if dof not in gone and (kept is None or dof in kept)]
 
 
-# 15 fields: one for each kind of entry of a deck.
+# 16 fields: one for each kind of entry of a deck.
 @dataclass
 class _Content:
     """Entries collected while a deck is read."""
@@ -99,6 +102,7 @@ class _Content:
     nodes: dict[int, Floats] = field(default_factory=dict)
     scalar: set[int] = field(default_factory=set)
     cells: dict[str, list[list[int]]] = field(default_factory=dict)
+    elements: dict[int, list[int]] = field(default_factory=dict)
     stiff: dict[int, Floats] = field(default_factory=dict)
     held: set[Dof] = field(default_factory=set)
     supports: dict[int, set[Dof]] = field(default_factory=dict)
@@ -114,9 +118,10 @@ class _Content:
 
 
 def read_bulk(path: Path) -> Bulk:
-    """Return the model of a deck; entries that cannot be understood are left out.
+    """Return the model of a deck.
 
-    Raises OSError where it cannot be read.
+    Raises OSError where it cannot be read, and InputError for entries of nodes, elements and
+    supports that cannot be understood.
     """
     if not path.is_file():
         raise FileNotFoundError(f"no file {path.name}")
@@ -124,15 +129,24 @@ def read_bulk(path: Path) -> Bulk:
     control, bulk = _parted(text)
     content = _Content()
     default = ["", "", "", ""]
-    cards = list(_cards(bulk))
-    for card in cards:
+    if bulk != text and not re.search(r"^\s*ENDDATA", bulk, re.MULTILINE | re.IGNORECASE):
+        raise wrong(path, "a line ENDDATA at the end", "none: is the file cut off?")
+    first = text.count("\n", 0, len(text) - len(bulk)) + 1
+    cards = list(_cards(bulk, first))
+    for _, card in cards:
         if card[0] == "GRDSET":
             default = [_at(card, 2), _at(card, 6), _at(card, 7), _at(card, 8)]
-    for card in cards:
+    for line, card in cards:
         try:
             _take(content, card, default)
-        except (ValueError, IndexError):
-            continue
+        except (ValueError, IndexError) as error:
+            expected = f"an entry {card[0]} with all of its fields"
+            raise wrong(path, expected, reason(error), f"line {line}") from None
+    if not any(card[0] == "INCLUDE" for _, card in cards):
+        if not content.nodes and not content.scalar:
+            raise wrong(path, "entries GRID of nodes", "none")
+        known = content.nodes.keys() | content.scalar
+        refuse_unknown_nodes(path, known, chain.from_iterable(content.elements.values()))
     chosen = {key: _chosen(control, key) for key in ("SPC", "MPC")}
     return Bulk(
         mesh_of(content.nodes, content.cells),
@@ -158,24 +172,28 @@ def _chosen(control: str, key: str) -> int | None:
     return int(match[1]) if match else None
 
 
-def _cards(text: str) -> Iterator[list[str]]:
-    """Yield the fields of every entry, those of lines that continue it behind them."""
+def _cards(text: str, first: int) -> Iterator[tuple[int, list[str]]]:
+    """Yield line and fields of every entry, those of lines that continue it behind them.
+
+    The text begins in the line ``first``.
+    """
     card: list[str] = []
-    for raw in text.splitlines():
+    begins = first
+    for number, raw in enumerate(text.splitlines(), start=first):
         line = raw.partition("$")[0].rstrip()
         if not line.strip():
             continue
-        if line.upper().startswith("ENDDATA"):
+        if line.lstrip().upper().startswith("ENDDATA"):
             break
         name, fields = _fields(line)
         if name in ("", "+", "*") or name[0] in "+*":
             card += fields
             continue
         if card:
-            yield card
-        card = [name.rstrip("*").upper(), *fields]
+            yield begins, card
+        begins, card = number, [name.rstrip("*").upper(), *fields]
     if card:
-        yield card
+        yield begins, card
 
 
 def _fields(line: str) -> tuple[str, list[str]]:
@@ -220,6 +238,8 @@ def _listed(fields: Iterable[str]) -> list[int]:
 def _take(content: _Content, card: list[str], default: list[str]) -> None:
     """Take one entry."""
     name = card[0]
+    if name.startswith("="):
+        raise ValueError("a replication, which is not read: write its entries out")
     if name == "GRID":
         _grid(content, card, default)
     elif name == "SPOINT":
@@ -245,11 +265,15 @@ def _take(content: _Content, card: list[str], default: list[str]) -> None:
 
 def _grid(content: _Content, card: list[str], default: list[str]) -> None:
     number = int(card[1])
+    if number in content.nodes:
+        raise ValueError(f"node {number} again")
     held = _at(card, 8) or default[2]
     content.held.update((number, c) for c in _components(held))
     if _whole(_at(card, 7) or default[1]):
         content.turned.add(number)
     point = [real(x) if x else 0.0 for x in (_at(card, 3), _at(card, 4), _at(card, 5))]
+    if not np.isfinite(point).all():
+        raise ValueError(f"coordinates {', '.join(card[3:6])}")
     system = _whole(_at(card, 2) or default[0])
     content.nodes[number] = np.array(point if system == 0 else [np.nan] * 3)
 
@@ -259,6 +283,11 @@ def _element(content: _Content, card: list[str]) -> None:
     first, corners, kind = _ELEMENTS[name]
     count = _SOLID_NODES.get(name, corners + _SHELL_EXTRA.get(name, 0))
     nodes = [n for n in map(_whole, card[first : first + count]) if n]
+    if int(card[1]) in content.elements:
+        raise ValueError(f"element {card[1]} again")
+    content.elements[int(card[1])] = nodes
+    if len(nodes) < corners and name != "CBUSH":  # one end of it may be the ground
+        raise ValueError(f"{len(nodes)} nodes of {corners}")
     if len(nodes) >= corners:
         content.cells.setdefault(kind, []).append(nodes[:corners])
     content.links.append(tuple(nodes))
@@ -359,8 +388,9 @@ def _singular(content: _Content) -> set[Dof]:
             _stiffen(content, n, np.eye(3), np.eye(3) - np.outer(normal, normal))
     for nodes in content.rods:
         ends = [content.nodes.get(n) for n in nodes]
-        if ends[0] is not None and ends[1] is not None:
-            axis = ends[1] - ends[0]
+        known = [x for x in ends if x is not None and np.isfinite(x).all()]
+        if len(known) == 2:
+            axis = known[1] - known[0]
             axis = axis / (np.linalg.norm(axis) or 1.0)
             for n in nodes:
                 _stiffen(content, n, np.outer(axis, axis), np.outer(axis, axis))

@@ -73,11 +73,14 @@ def _refuse_cut_off(files: dict[str, Path], entries: dict[str, Entries], size: i
         if last != size:
             expected = f"entries up to row {size}, as '{files['.dof'].name}' has"
             raise wrong(files[suffix], expected, f"entries up to row {last}; is it cut off?")
-    counts = {suffix: matrix.row.size for suffix, matrix in entries.items()}
-    if counts[".sti"] != counts[".mas"]:
-        shorter = min(counts, key=lambda suffix: counts[suffix])
-        expected = f"{max(counts.values())} entries, as in the other matrix"
-        raise wrong(files[shorter], expected, f"{counts[shorter]}; is it cut off?")
+    first, second = entries.values()
+    pairs = (first.row, second.row), (first.column, second.column)
+    if not all(np.array_equal(a, b) for a, b in pairs):
+        expected = f"entries at the places of '{files['.sti'].name}', one after the other"
+        found = (
+            f"{second.row.size} in place of {first.row.size}, or others; is one of them cut off?"
+        )
+        raise wrong(files[".mas"], expected, found)
 
 
 def _deck(path: Path, notes: list[str]) -> Deck | None:

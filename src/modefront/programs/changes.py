@@ -13,6 +13,7 @@ from pathlib import Path
 
 from modefront.errors import Fault, InputError, reason
 from modefront.inputs import file_size
+from modefront.outputs import write_text
 
 NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
 """A number in a deck."""
@@ -146,7 +147,7 @@ def _value(text: str) -> float:
 def write_changes(path: Path, changes: Sequence[Change]) -> None:
     """Write changes as JSON."""
     text = json.dumps([asdict(each) for each in changes], indent=1, ensure_ascii=False)
-    path.write_text(text + "\n", encoding="utf-8")
+    write_text(path, text + "\n")
 
 
 def read_changes(path: Path) -> list[Change]:

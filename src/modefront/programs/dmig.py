@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats, Ints
+from modefront.complete import ended
 from modefront.errors import reason
 from modefront.programs.base import wrong
 from modefront.programs.text import fixed_width
@@ -49,8 +50,7 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
     Raises InputError for a file without any, with complex numbers, or cut off.
     """
     data = np.fromfile(path, dtype=np.uint8)
-    if data.size and data[-1] != ord("\n"):
-        raise wrong(path, "whole lines to the end", "a file that is cut off")
+    ended(path)
     end = np.flatnonzero(data == ord("\n"))
     start = np.append(0, end[:-1] + 1)
     end = end - ((end > start) & (data[np.maximum(end - 1, 0)] == ord("\r")))
@@ -64,6 +64,7 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
     entries = np.flatnonzero(is_entry & (np.cumsum(is_column) > 0))
     owner = np.cumsum(is_column)[entries] - 1
     names = [_cut(data, start[k] + 8, end[k]).decode("latin-1").strip() for k in columns.tolist()]
+    _check_headers(path, data, (start, end), (columns, entries), names)
     labels = _whole(path, _fields(data, start, end, columns, (1, 2)))
     rows = _whole(path, _fields(data, start, end, entries, (0, 1)))
     texts = _fields(data, start, end, entries, (2,))
@@ -80,6 +81,33 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
         )
         for name, k in numbers.items()
     }
+
+
+def _check_headers(
+    path: Path,
+    data: np.ndarray,
+    extent: tuple[Ints, Ints],
+    lines: tuple[Ints, Ints],
+    names: list[str],
+) -> None:
+    """Refuse columns of another name than the header before them, and entries without a column."""
+    is_header = _begins(data, *extent, b"DMIG ")
+    headers, before = np.flatnonzero(is_header), np.cumsum(is_header)
+    if not headers.size:
+        return
+    columns, entries = lines
+    of_headers = [
+        "",
+        *(data[extent[0][k] + 8 :][:8].tobytes().decode("latin-1").strip() for k in headers),
+    ]
+    for k, name in zip(columns.tolist(), names, strict=True):
+        if (found := of_headers[before[k]]) != name:
+            raise wrong(
+                path, f"a header 'DMIG {name}' before its columns", repr(found), f"line {k + 1}"
+            )
+    alone = entries[before[entries] != before[columns[np.searchsorted(columns, entries) - 1]]]
+    if alone.size:
+        raise wrong(path, "a column ('DMIG*') before its entries", "none", f"line {alone[0] + 1}")
 
 
 def _begins(data: np.ndarray, start: Ints, end: Ints, text: bytes) -> np.ndarray:

@@ -19,6 +19,7 @@ from modefront.fem.dofs import DIRECTIONS
 from modefront.models.dofs import number_of, write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.terms import exponents_of, form_of
+from modefront.outputs import output, write_text
 from modefront.programs.base import Job, JobOptions, Program, whole
 from modefront.programs.changes import Change, changes, other_factor, write_changes
 from modefront.programs.condense import condensed
@@ -280,7 +281,7 @@ def write_study(imported: Imported, program: str, directory: Path) -> list[Path]
             if imported.changes:
                 write_changes(folder / "changes.json", imported.changes)
             text = _study(imported, program, names)
-            (folder / "study.toml").write_text(text, encoding="utf-8")
+            write_text(folder / "study.toml", text)
             files = sorted(folder.iterdir(), key=lambda file: file.name == "study.toml")
             return [Path(shutil.move(file, directory / file.name)) for file in files]
     except OSError as error:
@@ -297,7 +298,8 @@ def _write_matrices(terms: Terms, folder: Path) -> dict[Quantity, dict[str, str]
             number, file = 1, f"{stem}.npz"
             while file in files.values():
                 number, file = number + 1, f"{stem}-{number}.npz"
-            scipy.sparse.save_npz(folder / file, whole(A), compressed=False)
+            with output(folder / file) as stream:
+                scipy.sparse.save_npz(stream, whole(A), compressed=False)
             files[name] = file
     return out
 

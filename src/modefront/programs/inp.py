@@ -10,7 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.programs.mesh import CORNERS, ProgramMesh, mesh_of
+from modefront.complete import ended
+from modefront.errors import reason
+from modefront.programs.base import wrong
+from modefront.programs.mesh import CORNERS, ProgramMesh, mesh_of, refuse_unknown_nodes
 
 DEEPEST = 20
 """Decks that include each other, one in the other, at most."""
@@ -31,6 +34,13 @@ _EXPANDED = re.compile(r"S[3468]|M3D|CPS|CPE|CAX|B[23][123]|PIPE|T[23]D")
 
 _MIDDLE = re.compile(r"B[23]2|T[23]D3|PIPE[23]2")
 """Lines with a node in the middle, which is listed between their ends."""
+
+
+_COUNTED = re.compile(r"(?:D?C3D|SC|S|M3D|CPS|CPE|CAX)(?!27)([0-9]+)")
+"""Elements whose names say how many nodes they have."""
+
+_MORE = ("INCLUDE", "NGEN", "NFILL", "NCOPY", "NMAP")
+"""Keywords that make nodes, or may have them in another file."""
 
 
 @dataclass
@@ -69,31 +79,37 @@ class _Content:
     others: set[int] = field(default_factory=set)
     bodies: list[str] = field(default_factory=list)
     references: list[str] = field(default_factory=list)
+    elements: set[int] = field(default_factory=set)
     parts: bool = False
 
 
 def read_deck(path: Path) -> Deck:
-    """Return the model of a deck; lines that cannot be understood are left out.
+    """Return the model of a deck.
 
-    Raises OSError where it cannot be read.
+    Raises OSError where it cannot be read, and InputError for lines of nodes, elements and
+    supports that cannot be understood.
     """
     content = _Content()
     if not path.is_file():
         raise FileNotFoundError(f"no file {path.name}")
+    ended(path)
+    more = False
     for keyword, options, rows in _blocks(path):
-        if keyword == "NODE":
-            _nodes(content, options, rows)
-        elif keyword == "ELEMENT":
-            _elements(content, options, rows)
-        elif keyword == "NSET" and options.get("NSET"):
-            _add_set(content, options, rows)
-        elif keyword == "BOUNDARY":
-            _boundary(content, rows)
+        if take := _TAKEN.get(keyword):
+            try:
+                take(content, options, rows)
+            except ValueError as error:
+                expected = f"lines of *{keyword} with all of their numbers"
+                raise wrong(path, expected, reason(error), f"*{keyword}") from None
         elif keyword in ("RIGID BODY", "COUPLING"):
             content.bodies.append(options.get("NSET", ""))
             content.references += [options.get(name, "") for name in ("REF NODE", "ROT NODE")]
         elif keyword in ("PART", "INSTANCE"):
             content.parts = True
+        elif keyword in _MORE:
+            more = True
+    if not content.parts and not more:
+        refuse_unknown_nodes(path, content.nodes, content.expanded | content.others)
 
     def nodes_of(names: Iterable[str]) -> Iterator[int]:
         for name in names:
@@ -133,6 +149,8 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], l
                 continue
             if keyword:
                 yield keyword, options, rows
+            elif rows and rows[0][0].isdigit():
+                raise wrong(path, "a keyword before lines of numbers", ", ".join(rows[0]))
             keyword, options, rows = *_keyword(text), []
             if keyword == "INCLUDE" and options.get("INPUT") and depth < DEEPEST:
                 other = path.parent / options["INPUT"]
@@ -153,34 +171,34 @@ def _keyword(text: str) -> tuple[str, dict[str, str]]:
 
 def _nodes(content: _Content, options: dict[str, str], rows: list[list[str]]) -> None:
     for row in rows:
-        try:
-            number = int(row[0])
-            point = [float(x) if x else 0.0 for x in row[1:4]]
-        except ValueError:
-            continue
+        number = int(row[0])
+        point = [float(x) if x else 0.0 for x in row[1:4]]
+        if not np.isfinite(point).all():
+            raise ValueError(f"{', '.join(row)!r}")
         content.nodes[number] = np.array(point + [0.0] * (3 - len(point)))
         if "NSET" in options:
             content.sets.setdefault(options["NSET"].upper(), []).append(number)
 
 
 def _elements(content: _Content, options: dict[str, str], rows: list[list[str]]) -> None:
-    name = options.get("TYPE", "").upper()
+    if not (name := options.get("TYPE", "").upper()):
+        raise ValueError("no TYPE of the elements")
     cell = next((cell for pattern, cell in _TYPES if re.match(pattern, name)), None)
+    count = int(match[1]) if (match := _COUNTED.match(name)) else 0
     numbers: list[int] = []
     joined: list[list[int]] = []
     for row in rows:  # elements of many nodes go on in the next line after a comma at the end
-        goes_on = bool(row) and row[-1] == ""
-        try:
-            numbers += [int(x) for x in row if x]
-        except ValueError:
+        numbers += [int(x) for x in row if x]
+        if row[-1] != "" or len(numbers) > count > 0:  # what is beyond is not read
+            joined.append(numbers[: count + 1] if count else numbers)
             numbers = []
-            continue
-        if not goes_on:
-            joined.append(numbers[1:])
-            numbers = []
+    joined += [numbers] if numbers else []
     target = content.expanded if _EXPANDED.match(name) else content.others
-    for nodes in joined:
-        target.update(nodes)
+    for number, *nodes in joined:
+        if (count and len(nodes) != count) or (number in content.elements and not content.parts):
+            raise ValueError(f"{len(nodes)} nodes of element {number}, or that element again")
+        content.elements.add(number)
+        target.update(n for n in nodes if n)  # ends of networks are 0
         if _MIDDLE.match(name) and len(nodes) == 3:
             nodes = [nodes[0], nodes[2]]
         if cell and len(nodes) >= CORNERS[cell]:
@@ -188,6 +206,8 @@ def _elements(content: _Content, options: dict[str, str], rows: list[list[str]])
 
 
 def _add_set(content: _Content, options: dict[str, str], rows: list[list[str]]) -> None:
+    if not options.get("NSET") or not rows:
+        raise ValueError("no name NSET of the set, or no nodes in it")
     chosen = content.sets.setdefault(options["NSET"].upper(), [])
     for row in rows:
         items = [x for x in row if x]
@@ -196,14 +216,16 @@ def _add_set(content: _Content, options: dict[str, str], rows: list[list[str]]) 
             chosen += range(first, last + 1, max(step, 1))
             continue
         for item in items:
+            if not (item.isdigit() or item[0].isalpha() or item[0] in '_"'):
+                raise ValueError(f"{item!r} in place of a node or the name of a set")
             chosen += [int(item)] if item.isdigit() else content.sets.get(item.upper(), [])
 
 
-def _boundary(content: _Content, rows: list[list[str]]) -> None:
+def _boundary(content: _Content, _: dict[str, str], rows: list[list[str]]) -> None:
     named = {"ENCASTRE": (1, 6), "PINNED": (1, 3)}
     for row in rows:
-        if len(row) < 2:
-            continue
+        if len(row) < 2 or not (row[1].isdigit() or row[1][:1].isalpha()):
+            raise ValueError(f"{', '.join(row)!r}")
         if row[1].upper() in named:
             content.held.append((row[0], *named[row[1].upper()]))
             continue
@@ -211,3 +233,7 @@ def _boundary(content: _Content, rows: list[list[str]]) -> None:
         value = row[3] if len(row) > 3 else ""
         if row[1].isdigit() and last.isdigit() and not value.strip("0.+-eE "):
             content.held.append((row[0], int(row[1]), min(int(last), 6)))
+
+
+_TAKEN = {"NODE": _nodes, "ELEMENT": _elements, "NSET": _add_set, "BOUNDARY": _boundary}
+"""What takes the lines of a keyword."""

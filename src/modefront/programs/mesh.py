@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Collection, Iterable, Mapping
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -12,6 +12,7 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.errors import Fault, InputError, reason
 from modefront.inputs import file_size
+from modefront.outputs import output
 
 CORNERS: Mapping[str, int] = {
     "vertex": 1,
@@ -55,11 +56,20 @@ def mesh_of(nodes: Mapping[int, Floats], elements: Mapping[str, list[list[int]]]
     return ProgramMesh(number, coordinates, cells)
 
 
+def refuse_unknown_nodes(path: Path, known: Collection[int], nodes: Iterable[int]) -> None:
+    """Raise InputError where an element has a node that is not in its file."""
+    missing = next((node for node in nodes if node not in known), None)
+    if missing is not None:
+        expected = "all nodes of its elements"
+        raise InputError(Fault(str(path), "nodes", expected, f"no node {missing}"))
+
+
 def write_mesh(path: Path, mesh: ProgramMesh) -> None:
     """Write a mesh as arrays of NumPy."""
     arrays: dict[str, Any] = {f"cells_{kind}": table for kind, table in mesh.cells.items()}
     arrays |= {"number": mesh.number, "coordinates": mesh.coordinates}
-    np.savez(path, **arrays)
+    with output(path) as stream:
+        np.savez(stream, **arrays)
 
 
 def read_mesh(path: Path) -> ProgramMesh:

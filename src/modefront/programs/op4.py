@@ -15,13 +15,15 @@ fields of 8 characters and values in the format that the first line names, such 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
+from modefront.complete import counted
 from modefront.errors import reason
 from modefront.programs.base import Entries, wrong
 from modefront.programs.text import fixed_width
@@ -127,6 +129,14 @@ def _precision(path: Path, name: str, kind: int, rows: int) -> float:
     return PRECISIONS[kind]
 
 
+def _check_order(path: Path, name: str, listed: Sequence[int], columns: int) -> None:
+    """Raise InputError where numbers of columns do not ascend to the one beyond the last."""
+    for before, column in pairwise(listed):
+        if not before < column <= columns + 1:
+            expected = f"columns of '{name}' once, from 1 to {columns + 1}"
+            raise wrong(path, expected, f"{column} behind {before}")
+
+
 class _Columns:
     """Columns of a matrix of a binary file, gathered one after the other."""
 
@@ -135,7 +145,7 @@ class _Columns:
         size = 8 if layout.word == 8 or kind == 2 else 4
         self._real = f"{layout.order}f{size}"
         self._per_value = size // layout.word or 1
-        self._word, self._big = layout.word, big
+        self._word, self._big, self._last = layout.word, big, 0
         self._column: list[int] = []
         self._first: list[int] = []
         self._length: list[int] = []
@@ -146,10 +156,13 @@ class _Columns:
         words = record[: 3 * self._word].view(self._integer).tolist()
         if len(words) < 3:
             raise wrong(path, "columns of a matrix", f"a record of {record.size} bytes in '{name}'")
-        column, row, _ = words
+        column, row, count = words
+        _check_order(path, name, [self._last, column], columns)
+        self._last = column
         if column > columns:
             return False
         body = record[3 * self._word :]
+        counted(path, f"column {column} of '{name}'", "words", count, body.size / self._word)
         if row > 0:
             values = body.view(self._real)
             self._take(column, row, values.size)
@@ -247,6 +260,8 @@ def _text(path: Path, data: np.ndarray) -> Iterator[tuple[str, Op4Matrix]]:
         head = _Head.of(path, lines.line(position))
         is_data = _hold_values(lines, position + 1)
         stop = _end_of(path, lines, position + 1, is_data, head)
+        if not is_data[stop + 1 : stop + 2].any():
+            raise wrong(path, f"a value behind the last column of '{head.name}'", "none")
         yield head.name, _matrix(path, lines, (position + 1, stop), is_data, head)
         position = stop + 2  # the column beyond the last, and its value
 
@@ -324,17 +339,24 @@ def _matrix(
     headers = np.flatnonzero(~chosen)
     column = np.zeros(headers.size, np.int32)
     row = np.zeros(headers.size, np.int32)
+    words = np.zeros(headers.size, np.int64)
+    place = np.zeros(headers.size, np.intp)
+    is_string = np.zeros(headers.size, bool)
+    listed, of_strings = [0], [0]
     current = 0
     try:
         for n, k in enumerate((headers + first).tolist()):
             text = lines.line(k).rstrip()
             if len(text) > 16:
                 current, row[n] = int(text[:8]), int(text[8:16])
+                words[n] = int(text[16:]) if row[n] else 0
+                of_strings.append(0 if row[n] else int(text[16:]))
+                listed.append(current)
             elif head.big:
-                row[n] = int(text[8:])
+                words[n], row[n] = int(text[:8]) - 1, int(text[8:])
             else:
-                row[n] = int(text) % STRING
-            column[n] = current
+                words[n], row[n] = int(text) // STRING - 1, int(text) % STRING
+            column[n], place[n], is_string[n] = current, len(listed) - 1, len(text) <= 16
     except (ValueError, OverflowError):
         raise wrong(path, f"headers of columns in '{head.name}'", repr(text[:40])) from None
     belongs = np.cumsum(~chosen)[chosen] - 1
@@ -344,6 +366,13 @@ def _matrix(
     per_line = (lines.end[positions] - lines.start[positions] + head.width - 1) // head.width
     values = _values(path, lines, positions, per_line, head.width)
     length = np.bincount(belongs, weights=per_line, minlength=headers.size).astype(np.intp)
+    _check_order(path, head.name, listed, head.columns)
+    strings = np.bincount(place, np.where(is_string, words, 0), len(listed))
+    of_headers = (2 if head.big else 1) * np.bincount(place, is_string, len(listed))
+    whole = any((strings + k * of_headers == of_strings).all() for k in (0, 1))
+    if not whole or all((words != size * length).any() for size in (1, 2)):
+        expected = f"as many values in every column of '{head.name}' as its headers say"
+        raise wrong(path, expected, f"{int(length.sum())} values in {int(words.sum())} words")
     rows = _runs(row.astype(np.intp) - 1, length)
     columns = np.repeat(column - 1, length)
     return Op4Matrix(head.rows, head.columns, head.precision, _without_zeros(rows, columns, values))

@@ -9,10 +9,12 @@ from __future__ import annotations
 
 import csv
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy.sparse
 
+from modefront.complete import ended, once
 from modefront.errors import InputError, reason
 from modefront.models.dofs import read_dofs
 from modefront.models.formats.scipy_npz import SCIPY_NPZ
@@ -26,7 +28,7 @@ from modefront.programs.base import (
     upper,
     wrong,
 )
-from modefront.programs.mesh import ProgramMesh, mesh_of
+from modefront.programs.mesh import ProgramMesh, mesh_of, refuse_unknown_nodes
 from modefront.programs.text import matrix_market
 
 ADVICE = "the snippet in docs/import.md writes it"
@@ -62,34 +64,44 @@ def _matrix(path: Path) -> scipy.sparse.coo_array:
         raise wrong(path, "a sparse matrix of SciPy", reason(error)) from None
     if matrix.dtype.kind not in "biuf":
         raise wrong(path, "real numbers", str(matrix.dtype))
-    return scipy.sparse.coo_array(matrix).astype(float)
+    out = scipy.sparse.coo_array(matrix).astype(float)
+    out.sum_duplicates()  # what a sum of elements is kept as
+    return out
 
 
 def _mesh(path: Path) -> ProgramMesh | None:
     nodes = path.with_name(path.name + "_nodes.csv")
     if not nodes.is_file():
         return None
-    points = {}
+    elements = path.with_name(path.name + "_elements.csv")
     try:
-        for row in _rows(nodes):
-            points[int(row[0])] = np.array([float(x) for x in row[1:]] + [0.0] * (4 - len(row)))
+        points = {
+            n: np.array(point + [0.0] * (3 - len(point))) for n, *point in _rows(nodes, float)
+        }
         cells: dict[str, list[list[int]]] = {}
-        elements = path.with_name(path.name + "_elements.csv")
-        for row in _rows(elements) if elements.is_file() else ():
-            kind = CELLS.get(len(row) - 1)
-            if kind:
-                cells.setdefault(kind, []).append([int(x) for x in row[1:]])
-    except (ValueError, IndexError) as error:
-        raise wrong(
-            nodes, "rows node,x,y,z (and element,node,… of elements)", reason(error)
-        ) from None
+        rows = _rows(elements, int) if elements.is_file() else []
+    except ValueError as error:
+        expected = "rows node,x,y,z (and element,node,… of elements)"
+        raise wrong(nodes, expected, reason(error)) from None
+    refuse_unknown_nodes(elements, points, (n for row in rows for n in row[1:]))
+    for row in rows:
+        if kind := CELLS.get(len(row) - 1):
+            cells.setdefault(kind, []).append(row[1:])
     return mesh_of(points, cells)
 
 
-def _rows(path: Path) -> list[list[str]]:
+def _rows(path: Path, number: type) -> list[list[Any]]:
+    """Return rows of whole numbers, each once, and others, without a header."""
+    ended(path)
     with path.open(encoding="utf-8-sig", newline="") as stream:
         rows = [[x.strip() for x in row if x.strip()] for row in csv.reader(stream)]
-    return [row for row in rows if row and row[0].lstrip("-").isdigit()]
+    rows = [row for row in rows if row]
+    begin = 0 if rows and rows[0][0].lstrip("-").isdigit() else 1
+    out = [[int(row[0]), *map(number, row[1:])] for row in rows[begin:]]
+    once(path, "rows", "each node or element", (row[0] for row in out))
+    if number is float and (len({len(row) for row in out}) > 1 or not np.isfinite(out).all()):
+        raise ValueError("rows of different lengths, or numbers that are not finite")
+    return out
 
 
 OPENSEES = Program("opensees", read)

@@ -12,6 +12,7 @@ import scipy.io
 import scipy.sparse
 
 from modefront._typing import Floats
+from modefront.complete import ended
 from modefront.errors import InputError, reason
 from modefront.inputs import available_memory
 from modefront.isolated import IsolatedError, isolated, seconds_for
@@ -48,16 +49,14 @@ def coordinates(path: Path, size: int, *, skip: int = 0) -> Entries:
     ``skip`` bytes at its beginning are left out. SciPy's reader of Matrix Market files reads
     it, as that is what such lines are. Raises InputError where a line is none, or is cut off.
     """
-    count, end = 0, b"\n"
+    ended(path)
+    count = 0
     with path.open("rb") as file:
         file.seek(skip)
         while block := file.read(BLOCK):
             if other := block.translate(None, NUMERIC):  # at some bytes the reader crashes
                 raise wrong(path, "numbers", f"the byte {other[:1]!r}")
             count += block.count(b"\n")
-            end = block[-1:]
-        if end != b"\n":
-            raise wrong(path, "whole lines to the end", "a file that is cut off")
     given = [str(size), str(count), str(skip)]
     seconds = seconds_for(path.stat().st_size)
     try:
@@ -87,6 +86,7 @@ def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.
     """
     import pandas as pd  # xarray needs it, so that it is there
 
+    ended(path)
     types = {k: np.int32 if kind == "i" else np.float64 for k, kind in enumerate(kinds)}
     try:
         table = pd.read_csv(

@@ -9,15 +9,14 @@ from __future__ import annotations
 import base64
 import hashlib
 import html
-import os
 from collections.abc import Sequence
-from contextlib import suppress
 from importlib.resources import files
 from pathlib import Path
 
 import xarray as xr
 
 from modefront.errors import Fault, InputError, reason
+from modefront.outputs import write_text
 from modefront.report.payload import payload
 
 PAGE = """\
@@ -62,16 +61,9 @@ def write_page(results: Sequence[tuple[str, xr.Dataset]], path: Path) -> None:
     Raises InputError where the file cannot be written.
     """
     text = page(results)
-    temporary = path.with_name(f"{path.name}.tmp")
     try:
-        with temporary.open("w", encoding="utf-8", newline="\n") as stream:
-            stream.write(text)
-            stream.flush()
-            os.fsync(stream.fileno())
-        temporary.replace(path)
+        write_text(path, text, lasting=True)
     except OSError as error:
-        with suppress(OSError):
-            temporary.unlink(missing_ok=True)
         expected = "a file that can be written"
         raise InputError(Fault(str(path), "-o", expected, reason(error))) from None
 

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 import xarray as xr
 
-from modefront.fronts.methods import METHODS
+from modefront.front.methods import METHODS
 from modefront.predictions import KINDS
 from modefront.results.remarks import cautions, failures, misfit, single
 from modefront.results.selection import front_points

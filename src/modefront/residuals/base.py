@@ -64,6 +64,25 @@ class ModeErrors:
     shape: Floats
 
 
+@dataclass(frozen=True)
+class Curvature:
+    r"""What the modes give to the second derivatives of :math:`J = \|r\|^2` beyond Gauss-Newton's.
+
+    It is the sum of ``own`` and of the second derivatives of :math:`\sum_r w_r \lambda_r + v_r^T
+    \varphi_r` with w and v constant, the derivatives of J with respect to the modes.
+
+    Attributes
+    ----------
+    w : (modes,) dJ / dlam
+    v : (sensors, modes) dJ / dphi
+    own : (p, p) :math:`2 \sum_k r_k \nabla^2 r_k` with second derivatives of the modes left out
+    """
+
+    w: Floats
+    v: Floats
+    own: Floats
+
+
 class Member(Protocol):
     """A member of a group: residuals of a measured property, one data set after the other."""
 
@@ -107,6 +126,9 @@ class Stack(Protocol):
     def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
         """Return the residuals and their derivatives, shape (rows, p)."""
 
+    def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
+        """Return the residuals, their derivatives and what is needed of second derivatives."""
+
 
 class ResidualKind(Protocol):
     """A kind of residual, such as that of natural frequencies."""
@@ -148,6 +170,14 @@ def value_numbers(data: ModalData, k: int, r: int) -> Ints:
 def known_std(std: Floats) -> Floats:
     """Return standard deviations with 0 where none is known."""
     return np.where(std > 0, std, 0.0)
+
+
+def together(parts: Sequence[Curvature]) -> Curvature:
+    """Return the sum of what several residuals give."""
+    if len(parts) == 1:
+        return parts[0]
+    w, v, own = ([getattr(part, name) for part in parts] for name in ("w", "v", "own"))
+    return Curvature(np.sum(w, axis=0), np.sum(v, axis=0), np.sum(own, axis=0))
 
 
 def joined(parts: Sequence[Floats]) -> Floats:

@@ -28,6 +28,7 @@ from modefront.modes.result import Modes
 from modefront.pairing.match import Pairs
 from modefront.residuals.base import (
     NEGLIGIBLE,
+    Curvature,
     Member,
     ModeErrors,
     Scale,
@@ -123,6 +124,13 @@ class FrequencyStack:
         """Return the residuals and their derivatives, shape (rows, p)."""
         dr = self.weight[:, None] * modes.dfrequency[pairs.index[self.mode]]
         return self.r(modes, pairs), dr
+
+    def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
+        """Return these and what is needed of second derivatives; d2f/dlam2 is -f' f' / f."""
+        (r, dr), f, df = self.with_slopes(modes, pairs), modes.frequency, modes.dfrequency
+        slope = np.bincount(pairs.index[self.mode], 2 * self.weight * r, f.size)
+        own = df.T @ (-np.divide(slope, f, out=np.zeros(f.size), where=f > 0)[:, None] * df)
+        return r, dr, Curvature(slope * modes.frequency_by_lam, np.zeros(modes.phi.shape), own)
 
 
 class FrequencyKind:

@@ -2,7 +2,8 @@ r"""The updating problem: objectives that are sums of squares of the residuals o
 
 The kinds of residuals are in `modefront.residuals.base` and the files beside it. An objective
 stacks those of its group's members into one vector r, :math:`J = \|r\|^2`, with the exact
-derivative :math:`2 r^T \partial r` and Gauss-Newton's :math:`2\, \partial r^T \partial r`. Its
+derivative :math:`2 r^T \partial r` and Gauss-Newton's :math:`2\, \partial r^T \partial r`, or all
+of its second derivatives, :math:`2\, \partial r^T \partial r + 2 \sum_k r_k \nabla^2 r_k`. Its
 count :math:`a_i` of measured properties is the sum of theirs.
 """
 
@@ -21,10 +22,10 @@ from modefront.models.base import Model
 from modefront.models.parameters import Parameter, in_order, parameters_of
 from modefront.models.reduced.options import Reduction
 from modefront.modes.result import Modes
-from modefront.pairing.match import Pairing, Pairs, match, mean_mac, modes_needed
-from modefront.residuals.base import Member, ModeErrors, Stack, joined
+from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
+from modefront.pairing.match import Pairing, Pairs, mac_slopes, match, mean_mac, modes_needed
+from modefront.residuals.base import Member, ModeErrors, Stack, joined, together
 from modefront.residuals.groups import Group
-from modefront.solvers.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
 from modefront.work.transfer import Shared, is_shared, shared
 
 
@@ -33,7 +34,7 @@ from modefront.work.transfer import Shared, is_shared, shared
 class UpdatingProblem:
     """Objectives of a model, measured data and groups; `updating_problem` makes it.
 
-    What the solvers see of it is `modefront.solvers.problem.Problem`. Raises ValueError for a group
+    What the solvers see of it is `modefront.optim.problem.Problem`. Raises ValueError for a group
     whose members the data lack.
 
     Attributes
@@ -92,21 +93,31 @@ class UpdatingProblem:
         """Counts a_i of the measured properties of each group, shape (groups,)."""
         return np.array([sum(member.count for member in row) for row in self.members])
 
-    def evaluate(self, theta: Floats, *, derivatives: bool = True) -> Evaluation:
-        """Return the objectives at ``theta``, with frequencies, MAC values and pairs kept."""
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
+        """Return the objectives at ``theta``, with frequencies, MAC values and pairs kept.
+
+        ``second`` requests exact second derivatives besides the first ones.
+        """
         try:
             modes, pairs = self.modes(theta, derivatives=derivatives)
         except ModelError:
             return infeasible(theta, len(self.groups))
         residuals: tuple[Residual, ...] = ()
-        slopes = None
+        slopes = rest = None
         if derivatives:
-            residuals = self.residuals_at(modes, pairs)
+            if second:
+                residuals, rest = self._with_curvature(modes, pairs)
+            else:
+                residuals = self.residuals_at(modes, pairs)
+            H = np.array([2 * residual.dr.T @ residual.dr for residual in residuals])
             slopes = ObjectiveDerivatives(
                 np.array([2 * residual.r @ residual.dr for residual in residuals]),
-                np.array([2 * residual.dr.T @ residual.dr for residual in residuals]),
+                H if rest is None else H + rest,
+                rest is not None,
             )
-        vectors = [x.r for x in residuals] if residuals else self._vectors(modes, pairs)
+        vectors = [x.r for x in residuals] if residuals else self.vectors(modes, pairs)
         J = np.array([r @ r for r in vectors])
         quantities = {
             "frequency": modes.frequency[pairs.index],
@@ -145,7 +156,30 @@ class UpdatingProblem:
             out.append(Residual(joined([r for r, _ in parts]), joined([dr for _, dr in parts])))
         return tuple(out)
 
-    def _vectors(self, modes: Modes, pairs: Pairs) -> list[Floats]:
+    def slopes_at(self, modes: Modes, pairs: Pairs) -> dict[str, Floats]:
+        """Return the derivatives (measured modes, p) of paired frequencies and MAC values."""
+        return {
+            "frequency": modes.dfrequency[pairs.index],
+            "mac": mac_slopes(self.data, pairs, modes.phi, modes.dphi),
+        }
+
+    def _with_curvature(
+        self, modes: Modes, pairs: Pairs
+    ) -> tuple[tuple[Residual, ...], Floats | None]:
+        """Return these, and second derivatives of J beyond Gauss-Newton's where they are known."""
+        residuals, curvatures = [], []
+        for row in self._stacks:
+            r, dr, parts = zip(*(x.with_curvature(modes, pairs) for x in row), strict=True)
+            residuals.append(Residual(joined(r), joined(dr)))
+            curvatures.append(together(parts))
+        w, v, own = (np.array([getattr(x, name) for x in curvatures]) for name in ("w", "v", "own"))
+        try:
+            of_modes = modes.second_derivatives(w, v)
+        except ModelError:  # an iteration fails that first derivatives do not need
+            of_modes = None
+        return tuple(residuals), None if of_modes is None else own + of_modes
+
+    def vectors(self, modes: Modes, pairs: Pairs) -> list[Floats]:
         """Return the residual vector of each group without derivatives."""
         return [joined([stack.r(modes, pairs) for stack in row]) for row in self._stacks]
 

@@ -28,7 +28,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import groupby
+from itertools import pairwise
 
 import numpy as np
 
@@ -38,12 +38,14 @@ from modefront.modes.result import Modes
 from modefront.pairing.match import Pairs
 from modefront.residuals.base import (
     NEGLIGIBLE,
+    Curvature,
     Member,
     ModeErrors,
     Scale,
     Sensitivity,
     joined,
     known_std,
+    together,
     value_numbers,
 )
 
@@ -67,6 +69,25 @@ class MeasuredShape:
 
 
 @dataclass(frozen=True, eq=False)
+class _Components:
+    """The measured components of a mode, those of a data set together.
+
+    Attributes
+    ----------
+    sets, sensors, weight, psi : (components,) data set, sensor, and what `MeasuredShape` has
+    sizes : (shapes,) number of components of each data set that has the shape
+    parts : (shapes,) where these are
+    """
+
+    sets: Ints
+    sizes: Ints
+    parts: list[slice]
+    sensors: Ints
+    weight: Floats
+    psi: Floats
+
+
+@dataclass(frozen=True, eq=False)
 class ShapeResiduals:
     """Residuals of the shape of the measured mode at position ``mode`` of the data."""
 
@@ -80,44 +101,55 @@ class ShapeResiduals:
         return np.isfinite(self.data.shape[:, self.mode])
 
     @cached_property
+    def components(self) -> _Components:
+        """All components, those of one data set after those of the other."""
+        rows, sensors = np.nonzero(self._measured)
+        sizes = np.unique(rows, return_counts=True)[1]
+        parts = [slice(*each) for each in pairwise([0, *np.cumsum(sizes).tolist()])]
+        values = self.data.shape[rows, self.mode, sensors]
+        if self.scale == "measured":
+            squares = np.array([values[part] @ values[part] for part in parts])
+            weight = np.repeat(np.sqrt(sizes / squares), sizes)
+        else:
+            std = self.data.shape_std[rows, self.mode, sensors]
+            weight = 1 / joined([without_negligible(std[part]) for part in parts] or [std])
+        weight = weight / np.sqrt(sizes.size)
+        return _Components(rows, sizes, parts, sensors, weight, weight * values)
+
+    @cached_property
     def shapes(self) -> list[MeasuredShape]:
         """The shape in each data set that has it."""
-        sets = np.flatnonzero(self._measured.any(axis=1))
-        out = []
-        for k in sets.tolist():
-            sensors = np.flatnonzero(self._measured[k])
-            values = self.data.shape[k, self.mode, sensors]
-            if self.scale == "measured":
-                weight = np.full(values.size, np.sqrt(values.size / (values @ values)))
-            else:
-                weight = 1 / without_negligible(self.data.shape_std[k, self.mode, sensors])
-            weight = weight / np.sqrt(sets.size)
-            out.append(MeasuredShape(k, sensors, weight, weight * values))
-        return out
+        x = self.components
+        return [
+            MeasuredShape(int(x.sets[part.start]), x.sensors[part], x.weight[part], x.psi[part])
+            for part in x.parts
+        ]
+
+    @cached_property
+    def _square(self) -> float:
+        psi = self.components.psi
+        return float(sum(psi[part] @ psi[part] for part in self.components.parts))
 
     @property
     def count(self) -> float:
         """Mean number of components over the data sets that have the shape."""
-        return float(self.sets.size / max(len(self.shapes), 1))
+        return float(self.sets.size / max(self.components.sizes.size, 1))
 
-    @cached_property
+    @property
     def sets(self) -> Ints:
         """Data set of each component."""
-        sizes = [part.sensors.size for part in self.shapes]
-        return np.repeat([part.k for part in self.shapes], sizes)
+        return self.components.sets
 
     @property
     def remark(self) -> str:
         """Reason why any model fits the shape, empty where models can miss it."""
-        if max(part.sensors.size for part in self.shapes) > 1:
+        if self.components.sizes.max() > 1:
             return ""
         return "a shape that is measured at a single sensor fits any model"
 
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
-        return float(
-            errors.shape[self.mode] ** 2 * sum(part.psi @ part.psi for part in self.shapes)
-        )
+        return float(errors.shape[self.mode] ** 2 * self._square)
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield the change of J by one standard deviation of each measured component."""
@@ -193,6 +225,11 @@ class ShapeStack:
         parts = [block.with_slopes(modes, pairs) for block in self.blocks]
         return joined([r for r, _ in parts]), joined([dr for _, dr in parts])
 
+    def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
+        """Return these and what is needed of second derivatives."""
+        r, dr, parts = zip(*(x.with_curvature(modes, pairs) for x in self.blocks), strict=True)
+        return joined(r), joined(dr), together(parts)
+
 
 @dataclass(frozen=True, eq=False)
 class ShapeBlock:
@@ -216,12 +253,24 @@ class ShapeBlock:
 
     def with_slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats]:
         """Return the residuals and their derivatives, (rows, p), which are 0 of a shape that is."""
+        r, dr, *_ = self._slopes(modes, pairs)
+        return r.ravel(), dr
+
+    def with_curvature(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Curvature]:
+        """Return these and what is needed of second derivatives, from chi^T r = 0."""
+        r, dr, beta, dchi, dbeta = self._slopes(modes, pairs)
+        v, own = np.zeros(modes.phi.shape), 2 * _times(r, dchi).T @ dbeta
+        np.add.at(v, (self.sensors, pairs.index[self.mode]), 2 * beta * self.weight * r)
+        return r.ravel(), dr, Curvature(np.zeros(modes.lam.size), v, own + own.T)
+
+    def _slopes(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Floats, Floats, Floats]:
+        """Return r (shapes, components), dr (rows, p), beta (shapes, 1), and dchi and dbeta."""
         chi, b, beta = self._scaled(modes, pairs)
         dchi = self.weight[:, :, None] * modes.dphi[self.sensors, pairs.index[self.mode]]
         slope = _times(self.psi, dchi) - 2 * beta * _times(chi, dchi)
         dbeta = np.divide(slope, b, out=np.zeros(slope.shape), where=b > 0)
         dr = chi[:, :, None] * dbeta[:, None] + beta[:, :, None] * dchi
-        return (beta * chi - self.psi).ravel(), dr.reshape(-1, dr.shape[2])
+        return beta * chi - self.psi, dr.reshape(-1, dr.shape[2]), beta, dchi, dbeta
 
     def _scaled(self, modes: Modes, pairs: Pairs) -> tuple[Floats, Floats, Floats]:
         """Return chi (shapes, components), its squared length b and beta, (shapes, 1)."""
@@ -263,16 +312,24 @@ class ShapeKind:
 
     def stack(self, data: ModalData, modes: Sequence[int], scale: Scale) -> ShapeStack:
         """Return the residuals of the shapes of some modes."""
-        parts = [(r, part) for r in modes for part in ShapeResiduals(data, r, scale).shapes]
-        blocks = []
-        for _, alike in groupby(parts, lambda each: each[1].sensors.size):
-            numbers, shapes = zip(*alike, strict=True)
-            sensors, weight, psi = (
-                np.array([getattr(shape, name) for shape in shapes])
-                for name in ("sensors", "weight", "psi")
+        parts = [ShapeResiduals(data, r, scale).components for r in modes]
+        sizes = np.concatenate([part.sizes for part in parts])
+        numbers = np.repeat(modes, [part.sizes.size for part in parts])[:, None]
+        columns = [
+            np.concatenate([getattr(part, name) for part in parts])
+            for name in ("sensors", "weight", "psi")
+        ]
+        ends = np.append(0, np.cumsum(sizes))
+        changes = np.flatnonzero(np.diff(sizes)) + 1
+        return ShapeStack(
+            tuple(
+                ShapeBlock(
+                    numbers[first:last],
+                    *(x[ends[first] : ends[last]].reshape(last - first, -1) for x in columns),
+                )
+                for first, last in pairwise([0, *changes.tolist(), sizes.size])
             )
-            blocks.append(ShapeBlock(np.array(numbers)[:, None], sensors, weight, psi))
-        return ShapeStack(tuple(blocks))
+        )
 
 
 def without_negligible(std: Floats) -> Floats:

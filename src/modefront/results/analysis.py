@@ -9,9 +9,9 @@ import numpy as np
 
 from modefront._typing import Bools, Floats
 from modefront.analysis.front import FrontAnalysis
-from modefront.fronts.front import Front
-from modefront.fronts.methods import METHODS
-from modefront.fronts.point import Kind, Point, of_kind
+from modefront.front.front import Front
+from modefront.front.methods import METHODS
+from modefront.front.point import Kind, Point, of_kind
 from modefront.identifiability.collinearity import cosines, index
 from modefront.identifiability.combinations import (
     Combination,
@@ -21,9 +21,9 @@ from modefront.identifiability.combinations import (
     without_effect,
 )
 from modefront.identifiability.scale import Scale, scale_at
+from modefront.optim.sqp import Solution
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import TINY
-from modefront.solvers.sqp import Solution
 from modefront.uncertainty.prediction import linear
 
 Values = dict[str, object]

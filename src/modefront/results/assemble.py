@@ -11,16 +11,16 @@ import xarray as xr
 from modefront._typing import Bools, Floats
 from modefront.analysis.certified import certificate_values
 from modefront.analysis.front import FrontAnalysis
-from modefront.fronts.front import Front
-from modefront.fronts.methods import METHODS
-from modefront.fronts.point import WEIGHTED, Kind, label
+from modefront.front.dominance import nondominated, undominated
+from modefront.front.front import Front
+from modefront.front.gaps import branch_numbers
+from modefront.front.methods import METHODS
+from modefront.front.point import WEIGHTED, Kind, label
+from modefront.optim.sqp import Solution
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values, analysis_values, determinations
 from modefront.results.findings import findings
 from modefront.results.schema import FORMAT, derived, described
-from modefront.solvers.dominance import nondominated, undominated
-from modefront.solvers.gaps import branch_numbers
-from modefront.solvers.sqp import Solution
 
 ITERATED = "iterated-weights"
 """Name of the fixed point of the iteration of the weights, among the minima."""

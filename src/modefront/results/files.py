@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,6 +12,10 @@ import xarray as xr
 from modefront.errors import Fault, InputError, reason
 from modefront.inputs import available_memory, file_size
 from modefront.isolated import isolated
+from modefront.outputs import output
+from modefront.results.checksum import NAME as CHECKSUM
+from modefront.results.checksum import checksum
+from modefront.results.remarks import CHANGED
 from modefront.results.schema import FORMAT, VARIABLES, faults, missing
 from modefront.results.soundness import unsound
 from modefront.text import NAME, clean
@@ -26,19 +29,17 @@ SECONDS = 120.0
 
 
 def write(data: xr.Dataset, path: Path) -> None:
-    """Write a dataset whole or not at all."""
-    temporary = path.with_name(path.name + ".tmp")
-    data.to_netcdf(temporary, engine="h5netcdf")
-    with temporary.open("rb") as stream:
-        os.fsync(stream.fileno())
-    temporary.replace(path)
+    """Write a dataset with its checksum, whole or not at all."""
+    with output(path, lasting=True) as stream:
+        data.assign_attrs({CHECKSUM: checksum(data)}).to_netcdf(stream, engine="h5netcdf")
 
 
 def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
     """Return the results in a folder.
 
-    A ``whole`` file has all variables that belong together. Raises InputError where there are none,
-    where they are not those of modefront, and where they are of another format.
+    A ``whole`` file has all variables that belong together. An attribute `CHANGED` says where the
+    checksum does not fit. Raises InputError where there are no results, where they are not those of
+    modefront, and where they are of another format.
     """
     path = folder / FILE
     file_size(path, "results of a finished run")
@@ -57,6 +58,10 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
     wrong = [Fault(str(path), *parts) for parts in found]
     if wrong:
         raise InputError(wrong)
+    kept = data.attrs.pop(CHECKSUM, "")
+    if kept != checksum(data):
+        has = "values that do not fit its" if kept else "no"
+        data.attrs[CHANGED] = f"{FILE} has {has} checksum: it is not as a run has written it"
     return _plain(data)
 
 

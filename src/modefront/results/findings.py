@@ -9,8 +9,9 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.analysis.front import FrontAnalysis, followed
-from modefront.fronts.front import Front
-from modefront.fronts.point import Kind, label, of_kind
+from modefront.analysis.manifold import Extent, Manifold
+from modefront.front.front import Front
+from modefront.front.point import Kind, label, of_kind
 from modefront.identifiability.words import (
     PARTS,
     alike_in_words,
@@ -20,10 +21,9 @@ from modefront.identifiability.words import (
     no_effect_in_words,
     summary,
 )
+from modefront.optim.problem import AT_BOUND
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Determination
-from modefront.solvers.manifold import Extent, Manifold
-from modefront.solvers.tangents import AT_BOUND
 from modefront.uncertainty.validity import LinearisationWarning
 
 

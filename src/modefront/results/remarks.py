@@ -11,10 +11,13 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Floats
-from modefront.fronts.point import Kind
+from modefront.front.point import Kind
+from modefront.optim.problem import AT_BOUND
 from modefront.results.selection import front_points, not_converged, uncertified
 from modefront.rounding import ACCUMULATED
-from modefront.solvers.tangents import AT_BOUND
+
+CHANGED = "changed"
+"""Attribute of results that were read: how they are not as a run has written them."""
 
 MOST = 10
 """Findings that are printed, at most, unless all are asked for."""
@@ -27,7 +30,7 @@ FEW = 2
 
 NEGATIVE = 1e-6
 """Size of a negative weight, the sum of all being 1, that solutions do not leave by rounding: ten
-times the tolerance of a step (`modefront.solvers.sqp.Options`)."""
+times the tolerance of a step (`modefront.optim.sqp.Options`)."""
 
 ARRIVED = 1e-5
 """Distance of two optimally weighted models, over the ranges, below which they are the same: a
@@ -52,6 +55,7 @@ def digest(findings: Sequence[str], where: str, most: int | None = MOST) -> list
 def remarks(data: xr.Dataset) -> list[str]:
     """Return all remarks on the results."""
     return [
+        *_changed(data),
         *misfit(data),
         *single(data),
         *_exact(data),
@@ -88,11 +92,18 @@ def headlines(data: xr.Dataset) -> list[str]:
 
 
 def failures(data: xr.Dataset) -> list[str]:
-    """Return which models did not converge, are not accurate, or have no test of convergence."""
+    """Return which models did not converge, are not accurate, or have no test of convergence.
+
+    Before them, that the results were changed.
+    """
     failed = uncertified(data)
     above = np.isin(data["label"].values, failed)
     inaccurate = [f"modes are less accurate than asked for at {places(data, above)}"]
-    return [*_failed(data), *(inaccurate if failed.size else []), *_sampled(data)]
+    return [*_changed(data), *_failed(data), *(inaccurate if failed.size else []), *_sampled(data)]
+
+
+def _changed(data: xr.Dataset) -> list[str]:
+    return [str(data.attrs[CHANGED])] if CHANGED in data.attrs else []
 
 
 def cautions(data: xr.Dataset) -> list[str]:

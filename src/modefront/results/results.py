@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from pathlib import Path
@@ -14,12 +15,13 @@ import xarray as xr
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
-from modefront.fronts.point import Kind
+from modefront.front.point import Kind
 from modefront.models.local import matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
+from modefront.results.remarks import CHANGED
 from modefront.results.selection import front_points
 from modefront.results.shapes import PairedShapes, paired_shapes
 from modefront.results.vtu import write_vtu
@@ -287,5 +289,10 @@ def read_results(folder: Path | str, problem: UpdatingProblem | None = None) -> 
     InputError
         Where there are no results, where they are not those of modefront or are damaged, and where
         they are of another format.
+
+    Warns (UserWarning) where the values do not fit their checksum.
     """
-    return Results(read_dataset(Path(folder)), problem)
+    data = read_dataset(Path(folder))
+    if CHANGED in data.attrs:
+        warnings.warn(f"{folder}: {data.attrs[CHANGED]}", stacklevel=2)
+    return Results(data, problem)

@@ -15,8 +15,8 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Ints
+from modefront.optim.problem import AT_BOUND
 from modefront.predictions import KINDS
-from modefront.solvers.tangents import AT_BOUND
 from modefront.variables import Values, Variable
 
 FORMAT = 2
@@ -587,6 +587,12 @@ ATTRIBUTES: Mapping[str, Attribute] = {
         Attribute("version", "version of modefront", "text", required=True),
         Attribute("study", "name of the study", "text"),
         Attribute("inputs", "hash of the study file and of all files that it names", "text"),
+        Attribute(
+            "checksum",
+            "BLAKE2b hash of all variables and attributes, in hexadecimal digits",
+            "text",
+            since=2,
+        ),
         Attribute("remark", "why a requested option is not in use", "text"),
         Attribute("seed", "seed of all random numbers", required=True),
         Attribute("method", "method by which the front was found", "text", required=True),

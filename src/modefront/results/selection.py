@@ -6,7 +6,7 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Ints
-from modefront.fronts.point import Kind
+from modefront.front.point import Kind
 
 
 def front_points(data: xr.Dataset) -> Ints:

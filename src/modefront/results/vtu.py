@@ -16,6 +16,7 @@ import numpy as np
 from modefront._typing import Floats, Ints
 from modefront.errors import Fault, InputError, ModelError, reason
 from modefront.models.geometry import Cells, Geometry
+from modefront.outputs import output_by_name
 from modefront.results.shapes import PairedShapes
 
 
@@ -58,14 +59,15 @@ def write_grid(
         point_data=dict(point_data),
         cell_data={"group": [np.full(len(x.nodes), groups.index(x.group)) for x in cells]},
     )
-    temporary = path.with_name(f"{path.name}.tmp")
     try:
         # meshio prints warnings of its own.
-        with contextlib.redirect_stdout(io.StringIO()), contextlib.redirect_stderr(io.StringIO()):
-            meshio.write(temporary, mesh, file_format="vtu")
-        temporary.replace(path)
+        with (
+            contextlib.redirect_stdout(io.StringIO()),
+            contextlib.redirect_stderr(io.StringIO()),
+            output_by_name(path) as copy,
+        ):
+            meshio.write(copy, mesh, file_format="vtu")
     except OSError as error:
-        temporary.unlink(missing_ok=True)
         expected = "a file that can be written"
         raise InputError(Fault(str(path), "file", expected, reason(error))) from None
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from modefront.diagnosis.comparison import Comparison, compare
+from modefront.diagnosis.comparison import COMPARED, Comparison, compare
 from modefront.diagnosis.damping import DampingInPercent
 from modefront.diagnosis.diagnose import diagnose
 from modefront.diagnosis.groups import UnusedGroup
@@ -40,8 +40,8 @@ from modefront.identifiability.words import (
 from modefront.inputs import available_memory
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
+from modefront.optim.problem import Evaluation
 from modefront.residuals.problem import UpdatingProblem
-from modefront.solvers.problem import Evaluation
 from modefront.study.definition import Study
 from modefront.study.derivatives import AGREEMENT, cause_of, compared
 
@@ -64,8 +64,8 @@ class Findings:
 
     Attributes
     ----------
-    derivative_error : greatest difference of exact derivatives of the objectives from central
-        differences near the nominal parameters, over the greatest derivative of the objective;
+    derivative_error : greatest difference of exact derivatives of the residuals of a group from
+        central differences near the nominal parameters, over the greatest of their derivatives;
         NaN where the model is not defined around them
     derivative_cause : which parameter and mode they differ for, and why; empty where they agree
     determined : which combinations of parameters each group and all of them determine
@@ -165,14 +165,20 @@ def refuse_too_many(problem: UpdatingProblem, file: str) -> None:
 
 
 def _many(problem: UpdatingProblem) -> list[str]:
-    """Warn of so many parameters that a run takes long."""
-    p = len(problem.model.parameters)
+    """Warn of so many parameters that a run takes long, and data sets that are not looked at."""
+    p, sets = len(problem.model.parameters), len(problem.data.sets)
+    out = []
+    if sets > COMPARED:
+        out.append(
+            f"{sets} data sets are many: mistakes are sought in {COMPARED} of them, chosen evenly"
+        )
     if p <= MANY:
-        return []
+        return out
     return [
+        *out,
         f"{p} parameters are many: a run takes some {memory_of(problem) / 1e9:.2g} GB and long, as "
         "every step solves for all of them; let one parameter scale several parts, or keep those "
-        "at their nominal values that the data do not determine"
+        "at their nominal values that the data do not determine",
     ]
 
 

@@ -11,14 +11,14 @@ from typing import TYPE_CHECKING, Annotated
 from modefront.diagnosis.groups import UnusedGroup
 from modefront.diagnosis.places import DataDirection
 from modefront.errors import Fault, InputError, refuse
-from modefront.fronts.given import Weighted, label_faults
-from modefront.fronts.options import Pareto
+from modefront.front.given import Weighted, label_faults
+from modefront.front.options import Pareto
+from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
 from modefront.models.parameters import Parameter, parameters_of
 from modefront.options import check_fields, each_once, text, whole
 from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
-from modefront.solvers.explore import Search
 from modefront.study.labels import labels_of
 from modefront.uncertainty.options import Uncertainty
 

@@ -1,13 +1,15 @@
-r"""Derivatives of the objectives against finite differences, with the likely cause of differences.
+r"""Derivatives of the residuals against finite differences, with the likely cause of differences.
 
 Central differences along directions d with two steps are extrapolated,
 
 .. math:: \frac{4\,\Delta(h/2) - \Delta(h)}{3}, \qquad
-    \Delta(h) = \frac{J(\theta + h d) - J(\theta - h d)}{2 h} .
+    \Delta(h) = \frac{r(\theta + h d) - r(\theta - h d)}{2 h} .
 
-A direction is one parameter; of many parameters, several are changed together. A step changes the
-residuals by a given small amount: steps that follow narrow bounds would drown in rounding, and
-those that follow wide ones see no tangent.
+A direction is one parameter; of many parameters, several are changed together. The residuals are
+compared, and not the objectives, whose derivatives cancel near a minimum; modes keep their pairs. A
+step changes the residuals by a given small amount, root mean square: steps that follow narrow
+bounds, or the length of many residuals together, would drown in rounding, and those that follow
+wide ones see no tangent.
 """
 
 from __future__ import annotations
@@ -18,14 +20,15 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
+from modefront.pairing.match import Pairs
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import TINY
 
 AGREEMENT = 1e-5
 """Greatest relative error of derivatives that finite differences explain."""
 
-STEP = 4e-3
-"""Change of the residuals, in their own units, that a finite difference makes."""
+STEP = 2e-3
+"""Change of a residual in its own unit, root mean square, that a finite difference makes."""
 
 SHARE = 0.02
 """Share of a parameter, or of its range where it is zero, that a step takes at most."""
@@ -52,10 +55,10 @@ class Agreement:
 
     Attributes
     ----------
-    error : greatest difference over the greatest derivative of the objective; NaN where the model
-        is not defined around the point
+    error : greatest difference over the greatest derivative of the residuals of a group; NaN where
+        the model is not defined around the point
     theta : the point
-    objective : number of the objective with this difference
+    objective : number of the group with this difference
     step : (p,) change of the parameters for a difference, in the direction with this difference
     """
 
@@ -66,12 +69,13 @@ class Agreement:
 
 
 def compared(problem: UpdatingProblem) -> Agreement:
-    """Return the agreement of the derivatives of the objectives near the nominal parameters.
+    """Return the agreement of the derivatives of the residuals near the nominal parameters.
 
     Where bounds leave no room for a step, it leaves them.
     """
     span = problem.upper - problem.lower
-    size = np.sqrt(np.einsum("ijj->j", problem.evaluate(problem.start).H) / 2)
+    squares = np.einsum("ijj->ij", problem.evaluate(problem.start).H) / 2
+    size = np.sqrt((squares / problem.properties[:, None]).max(axis=0))
     most = SHARE / STEP * np.where(problem.start != 0, np.abs(problem.start), span)
     unit = np.minimum(np.divide(1.0, size, out=span.copy(), where=size > 0), most)
     room = np.minimum(STEP * unit, span / 2)
@@ -80,16 +84,22 @@ def compared(problem: UpdatingProblem) -> Agreement:
     directions = _directions(unit)
     if not evaluation.feasible:
         return Agreement(float("nan"), theta, 0, STEP * directions[0])
-    exact = evaluation.dJ @ directions.T
-    estimate = np.array([_slope(problem, theta, d) for d in directions]).T
-    scale = np.abs(exact).max(axis=1, keepdims=True)
-    error = np.abs(estimate - exact) / np.where(scale > 0, scale, 1.0)
+    _, pairs = problem.modes(theta, derivatives=False)
+    exact = [residual.dr @ directions.T for residual in evaluation.residuals]
+    scale = [float(np.linalg.norm(x, axis=0).max()) or 1.0 for x in exact]
+    error = np.empty((len(exact), len(directions)))
+    for column, d in enumerate(directions):
+        slopes = _slopes(problem, pairs, theta, d)
+        error[:, column] = [
+            np.linalg.norm(slope - x[:, column]) / size
+            for slope, x, size in zip(slopes, exact, scale, strict=True)
+        ]
     i, k = np.unravel_index(int(np.argmax(error)), error.shape)  # the first NaN, if there is any
     return Agreement(float(error[i, k]), theta, int(i), STEP * directions[k])
 
 
 def derivative_error(problem: UpdatingProblem) -> float:
-    """Return the greatest relative error of dJ against extrapolated central differences."""
+    """Return the greatest relative error of dr against extrapolated central differences."""
     return compared(problem).error
 
 
@@ -104,23 +114,31 @@ def _directions(unit: Floats) -> Floats:
     return out
 
 
-def _slope(problem: UpdatingProblem, theta: Floats, direction: Floats) -> Floats:
-    """Return the slopes of the objectives, with a shorter step where the model needs one."""
+def _slopes(
+    problem: UpdatingProblem, pairs: Pairs, theta: Floats, direction: Floats
+) -> list[Floats]:
+    """Return the slopes of the residuals of pairs, with a shorter step where the model needs one.
 
-    def central(h: float) -> Floats:
-        ahead = problem.evaluate(theta + h * direction, derivatives=False).J
-        behind = problem.evaluate(theta - h * direction, derivatives=False).J
-        if not np.isfinite([ahead, behind]).all():
-            return np.full(len(ahead), np.nan)
-        return (ahead - behind) / (2 * h)
+    NaN where the model is not defined with the shortest.
+    """
+
+    def central(h: float) -> list[Floats]:
+        ahead, behind = (
+            problem.vectors(
+                problem.modes(theta + sign * h * direction, derivatives=False)[0], pairs
+            )
+            for sign in (1, -1)
+        )
+        return [(a - b) / (2 * h) for a, b in zip(ahead, behind, strict=True)]
 
     h = STEP
     for _ in range(ATTEMPTS):
-        estimate = (4 * central(h / 2) - central(h)) / 3
-        if np.isfinite(estimate).all():
-            break
-        h /= SHRINK
-    return estimate
+        try:
+            slopes = zip(central(h / 2), central(h), strict=True)
+            return [(4 * half - whole) / 3 for half, whole in slopes]
+        except ModelError:
+            h /= SHRINK
+    return [np.full(1, np.nan) for _ in problem.groups]
 
 
 def cause_of(problem: UpdatingProblem, agreement: Agreement) -> str:
@@ -161,12 +179,8 @@ def _mode_and_cause(problem: UpdatingProblem, theta: Floats, step: Floats) -> tu
         bend = np.maximum(bend, np.abs(np.nan_to_num(fourth / np.abs(of[2]).clip(TINY))))
     r = int(np.argmax(bend))
     mode = problem.data.modes[r]
-    pairs = {int(x.quantities["paired_mode"][r]) for x in points}
-    if len(pairs) > 1:
-        listed = " and ".join(map(str, sorted(pairs)))
-        return mode, f"it is paired with the model modes {listed} in turn; they are alike in MAC"
     frequency = np.sort(problem.modes(theta, derivatives=False)[0].frequency)
-    k = pairs.pop() - 1
+    k = int(points[2].quantities["paired_mode"][r]) - 1
     near = [abs(frequency[i] / frequency[k] - 1) for i in (k - 1, k + 1) if 0 <= i < len(frequency)]
     if frequency[k] > 0 and near and min(near) < CLOSE:
         return mode, (

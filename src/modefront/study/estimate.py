@@ -17,13 +17,16 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront.errors import InputError, ModelError
+from modefront.front.simplex import default_points, size
 from modefront.models.reduced.model import ReducedModel
 from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.predictions import extent
-from modefront.solvers.continuation import default_points, size
 from modefront.study.definition import Study
 from modefront.work.costs import uncounted
+
+STARTS = 12
+"""Searches that an edge usually takes."""
 
 SHORT = 30.0
 """Seconds up to which no advice on a shorter run is given."""
@@ -133,9 +136,8 @@ def expected_tasks(study: Study) -> dict[str, int]:
     out = {
         "check-groups": 1,
         "sample": 1,
-        "edge": n,
-        "weights": len(study.weighted) + 1,
-        "optimal-weights": 1,
+        "edges": (n + len(study.weighted) + 1) * STARTS,
+        "optimal-weights": n + 2,
         "iterated-weights": 1,
         "manifold": n + 1 if models else 0,
         "second-derivatives": _models(study) if known else 1,
@@ -145,7 +147,8 @@ def expected_tasks(study: Study) -> dict[str, int]:
     }
     if n > 1:
         generations = max(pareto.evaluations // pareto.population, 1)
-        out["front"] = _points(study) if pareto.method in ("nbi", "weights") else generations
+        searched = 2 * (_points(study) + STARTS)
+        out["front"] = searched if pareto.method in ("nbi", "weights") else generations
     predicted = _models(study) + (study.uncertainty.draws or 1 + 2 * len(study.problem.start))
     return out | extent(study.predictions, predicted)
 
@@ -195,14 +198,12 @@ def _parts(study: Study, each: float, step: float) -> Iterator[Part]:
     """Yield the parts of the work, predictions apart: seconds of a model and of a step besides."""
     p, n = len(study.problem.start), len(study.problem.groups)
     search, pareto = study.search, study.pareto
-    runs = min(search.limit, search.starts + 4)
-    local = 8 + p / 2
     both = each + step
-    yield Part("optimal-weights", both * runs * local)
+    yield Part("optimal-weights", both * 6 * (8 + p / 2))
     yield Part(
-        "edge",
-        both * n * runs * local,
-        f"fewer local searches ([search] limit, now {search.limit}; starts, now {search.starts})",
+        "edges",
+        both * min((n + 1) * STARTS * (8 + p / 2), search.evaluations),
+        f"fewer evaluations of the search ([search] evaluations, now {search.evaluations})",
     )
     points = _points(study)
     point = 4 + p / 2
@@ -219,7 +220,7 @@ def _parts(study: Study, each: float, step: float) -> Iterator[Part]:
     yield Part(
         "manifold", each * 3 * manifolds, "fewer equivalent models ([identifiability] models)"
     )
-    yield Part("second-derivatives", each * 2 * p * points)
+    yield Part("second-derivatives", each * points)
     samples = study.uncertainty.bootstrap
     if samples:
         yield Part(

@@ -16,7 +16,8 @@ from modefront.data.modal import ModalData
 from modefront.diagnosis.groups import UnusedGroup
 from modefront.diagnosis.places import DataDirection
 from modefront.errors import Fault, InputError, ModelError, reason
-from modefront.fronts.options import Pareto
+from modefront.front.options import Pareto
+from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
 from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.models.base import Model
@@ -24,7 +25,6 @@ from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.model import ReducedModel
 from modefront.pairing.match import Pairing
 from modefront.residuals.problem import UpdatingProblem
-from modefront.solvers.explore import Search
 from modefront.study.definition import Origin, Study, undrawn
 from modefront.study.labels import labels_of
 from modefront.study.tables.data import read_data

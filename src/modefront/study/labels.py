@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from modefront.fronts.methods import METHODS
-from modefront.fronts.point import Kind, label
+from modefront.front.methods import METHODS
+from modefront.front.point import Kind, label
 
 ITERATED = "iterated-weights"
 """Name of the model at which the iteration of the weights arrives."""

@@ -7,7 +7,7 @@ from contextlib import AbstractContextManager
 from modefront.work.backend import Backend
 from modefront.work.workers import backend
 
-WARM = "modefront.fronts.driver", "modefront.analysis.front"
+WARM = "modefront.front.pareto", "modefront.analysis.front"
 """What processes import when they start: nearly all that their tasks need."""
 
 

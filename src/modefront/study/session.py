@@ -22,18 +22,19 @@ from modefront.analysis.certified import (
 from modefront.analysis.coverage import coverage
 from modefront.analysis.front import AnalysisOptions, analyse_front
 from modefront.errors import Fault, InputError, reason
-from modefront.fronts.driver import pareto_front
-from modefront.fronts.front import Front
-from modefront.fronts.given import Weighted
-from modefront.fronts.options import Pareto, ParetoOptions
-from modefront.fronts.point import Kind, Point
+from modefront.front.front import Front
+from modefront.front.given import Weighted
+from modefront.front.options import Pareto, ParetoOptions
+from modefront.front.pareto import pareto_front
+from modefront.front.point import Kind, Point
+from modefront.front.search import Search
 from modefront.identifiability.combinations import unchanged_groups
 from modefront.identifiability.options import Identifiability
+from modefront.optim.sqp import Solution, given
+from modefront.outputs import remove_unfinished
 from modefront.predictions import Prediction
 from modefront.predictions.runner import PredictionRunner
 from modefront.residuals.problem import UpdatingProblem
-from modefront.solvers.explore import Search
-from modefront.solvers.sqp import Solution, given
 from modefront.study.check import refuse_too_many, refuse_unchanged_groups
 from modefront.study.definition import Study
 from modefront.study.estimate import expected_tasks
@@ -185,10 +186,16 @@ def run_on(
     study = study.completed()
     tasks = folder / FOLDER / f"{study.work[:12]}-{__version__}"
     _prepare(folder)
+    for path in (tasks.parent, tasks):
+        if path.is_symlink():
+            found = f"a link to {path.readlink()}: remove it, or choose another folder with -o"
+            raise InputError(Fault(str(path), "folder", "a folder of its own", found))
+    _prepare(tasks.parent)
     progress = progress or Progress()
     with locked(folder):
         _prepare(tasks, (tasks, folder / FILE) if fresh or not study.work else ())
-        _remove_leftovers(folder / FILE, tasks)
+        remove_unfinished(folder, FILE)
+        remove_unfinished(tasks)
         with carrier as opened:
             progress.workers = opened.workers
             data = _Session(study, Run(Store(tasks), progress, opened)).results()
@@ -320,12 +327,6 @@ class _Session:
 def _nominal(problem: UpdatingProblem) -> Solution:
     """Return the model at the nominal parameters."""
     return given(problem.evaluate(problem.start))
-
-
-def _remove_leftovers(file: Path, tasks: Path) -> None:
-    """Remove files that a killed run has not written to the end."""
-    for path in (file.with_name(f"{file.name}.tmp"), *tasks.glob("*.tmp")):
-        path.unlink(missing_ok=True)
 
 
 def _set_aside(path: Path) -> None:

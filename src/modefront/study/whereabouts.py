@@ -9,6 +9,7 @@ from pathlib import Path
 
 from modefront.errors import Fault, InputError
 from modefront.inputs import MOST_TABLES
+from modefront.outputs import write_text
 from modefront.study.definition import Study
 from modefront.study.file import load
 from modefront.work.store import FOLDER
@@ -30,7 +31,7 @@ def note_study(folder: Path, tasks: Path, file: Path) -> None:
     """
     try:
         path = os.path.relpath(file.absolute(), folder.absolute())
-        (tasks / NOTE).write_text(Path(path).as_posix() + "\n", encoding="utf-8")
+        write_text(tasks / NOTE, Path(path).as_posix() + "\n")
     except (ValueError, OSError):  # another drive; a note that cannot be written is no loss
         return
 

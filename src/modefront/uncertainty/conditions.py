@@ -10,8 +10,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Bools, Floats
-from modefront.solvers.attainment import SHARE, active_bounds
-from modefront.solvers.curvature import SecondOrder
+from modefront.front.subproblems import RHO, active_bounds
+from modefront.optim.problem import Evaluation
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.validity import std
 
@@ -36,7 +36,7 @@ class Bounds:
 
     def switch(self, w: Floats, dw: Floats, dJ: Floats, dtau: Floats) -> bool:
         """Return whether errors of one standard deviation change the active set."""
-        weight = w * self.n - SHARE
+        weight = w * self.n - RHO
         hardly = weight <= std(dw * self.n + w * self.dn)
         close = self.slack <= std(self.moved - dJ + dtau * self.n)
         return bool(np.where(self.active, hardly, close).any())
@@ -69,18 +69,18 @@ def given_weights(noise: Noise) -> Conditions:
     return _open(np.zeros((n, p)), np.ones(n), np.zeros(noise.J.shape))
 
 
-def optimal_weights(point: SecondOrder, a: Floats, noise: Noise) -> Conditions:
+def optimal_weights(point: Evaluation, a: Floats, noise: Noise) -> Conditions:
     """Return the conditions of w = a / J."""
-    second = a / point.evaluation.J**2
-    return _open(second[:, None] * point.evaluation.dJ, np.ones(a.size), -second * noise.J)
+    second = a / point.J**2
+    return _open(second[:, None] * point.dJ, np.ones(a.size), -second * noise.J)
 
 
-def level(point: SecondOrder, objective: int, dv: Floats, noise: Noise) -> Conditions:
+def level(point: Evaluation, objective: int, dv: Floats, noise: Noise) -> Conditions:
     """Return the conditions of the least of the others at J_objective = v; dv is (sources,)."""
-    is_held = np.arange(point.evaluation.J.size) == objective
+    is_held = np.arange(point.J.size) == objective
     f = np.zeros(noise.J.shape)
     f[:, objective] = dv - noise.J[:, objective]
-    return _open(is_held[:, None] * point.evaluation.dJ, (~is_held).astype(float), f)
+    return _open(is_held[:, None] * point.dJ, (~is_held).astype(float), f)
 
 
 @dataclass(frozen=True)
@@ -105,15 +105,14 @@ def between(E: Floats, dE: Floats) -> Target:
     return Target(utopia, E - utopia[:, None], dutopia, dE - dutopia[:, :, None])
 
 
-def over_ranges(E: Floats, dE: Floats, top: Floats, dtop: Floats) -> Target:
-    """Return the simplex of the ranges up to ``top`` (n,), which changes by (sources, n)."""
+def over_ranges(E: Floats, dE: Floats, top: Floats) -> Target:
+    """Return the simplex of the ranges up to ``top`` (n,), which stay; E and dE as above."""
     utopia, dutopia = np.diag(E), np.einsum("mii->mi", dE)
-    dP = (dtop - dutopia)[:, :, None] * np.eye(top.size)
-    return Target(utopia, np.diag(top - utopia), dutopia, dP)
+    return Target(utopia, np.diag(top - utopia), dutopia, -dutopia[:, :, None] * np.eye(top.size))
 
 
 def boundary(
-    point: SecondOrder, w: Floats, target: Target, beta: Floats, noise: Noise
+    point: Evaluation, w: Floats, target: Target, beta: Floats, noise: Noise
 ) -> tuple[Floats, Conditions]:
     """Return the weights in their right size and the conditions of a point of NBI.
 
@@ -121,15 +120,14 @@ def boundary(
     """
     n = target.P.sum(axis=1)
     dn = target.dP.sum(axis=2)
-    active = np.ones(n.size, dtype=np.bool_) if n.size == 2 else active_bounds(w * n)
+    equations = bool((w < 0).any())  # of Das & Dennis, which have weights of any sign
+    active = np.ones(n.size, dtype=np.bool_) if equations else active_bounds(w * n)
     w = w / (w[active] @ n[active])
-    above = point.evaluation.J - target.utopia - target.P @ beta  # n c
+    above = point.J - target.utopia - target.P @ beta  # n c
     tau = float((above / n)[active].mean())
     moved = target.dutopia + target.dP @ (beta + tau) - noise.J
-    f = np.where(active, moved, -SHARE * dn / n**2)
+    f = np.where(active, moved, -RHO * dn / n**2)
     e = np.where(active, n, 0.0)[:, None]
     h = -(dn[:, active] @ w[active])[:, None]
-    bounds = None if n.size == 2 else Bounds(active, n, dn, tau * n - above, moved)
-    return w, Conditions(
-        active[:, None] * point.evaluation.dJ, (~active).astype(float), e, f, h, bounds
-    )
+    bounds = None if active.all() else Bounds(active, n, dn, tau * n - above, moved)
+    return w, Conditions(active[:, None] * point.dJ, (~active).astype(float), e, f, h, bounds)

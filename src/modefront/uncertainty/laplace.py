@@ -32,8 +32,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Bools, Floats
-from modefront.solvers.curvature import SecondOrder
-from modefront.solvers.problem import Problem
+from modefront.optim.problem import Evaluation, Problem
 from modefront.uncertainty.scatter import held_at_bounds, spaces
 
 
@@ -59,24 +58,23 @@ class Posterior:
 
 
 def laplace(
-    problem: Problem, point: SecondOrder, a: Floats, floor: Floats | float = 0.0
+    problem: Problem, evaluation: Evaluation, a: Floats, floor: Floats | float = 0.0
 ) -> Posterior | None:
     """Return the posterior around a minimum of sum a ln J; ``a`` (n,) counts the properties.
 
-    With a ``floor`` b (n,), J + b stands for J, as in bounded weights. None where the point is no
-    regular minimum: an objective vanishes, or the curvature is not positive in all directions that
-    residuals determine.
+    The evaluation has second derivatives. With a ``floor`` b (n,), J + b stands for J, as in
+    bounded weights. None where the point is no regular minimum: an objective vanishes, or the
+    curvature is not positive in all directions that residuals determine.
     """
-    evaluation = point.evaluation
     J = evaluation.J + floor
     if not (J > 0).all():
         return None
     w = a / J
     span = problem.upper - problem.lower
-    held = held_at_bounds(problem, point, w)
-    Q, free = spaces(problem, point, w, held)
+    held = held_at_bounds(problem, evaluation, w)
+    Q, free = spaces(problem, evaluation, w, held)
     B = span[:, None] * Q
-    second = np.tensordot(w, point.H, axes=1) - evaluation.dJ.T @ (
+    second = np.tensordot(w, evaluation.H, axes=1) - evaluation.dJ.T @ (
         (a / J**2)[:, None] * evaluation.dJ
     )
     half = B.T @ second @ B / 2

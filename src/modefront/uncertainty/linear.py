@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.curvature import SecondOrder
-from modefront.solvers.problem import Problem
+from modefront.front.front import Front
+from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
+from modefront.optim.sqp import Solution
 from modefront.uncertainty.conditions import (
+    Conditions,
     Target,
     between,
     boundary,
@@ -19,82 +23,68 @@ from modefront.uncertainty.conditions import (
     over_ranges,
 )
 from modefront.uncertainty.noise import Noise
-from modefront.uncertainty.points import Kind, Role, SolvedPoint, edge_weights, in_order
+from modefront.uncertainty.points import Role, SolvedPoint, edge_weights, in_order
 from modefront.uncertainty.scatter import Scatter, scatter
+from modefront.uncertainty.validity import LinearisationWarning, has_rival, near_an_end
+from modefront.work.codec import record
 
-Local = tuple[SecondOrder, Noise]
 
-Differentiate = Callable[[Sequence[tuple[SolvedPoint, Floats | None]]], list[Local | None]]
-"""Returns the second derivatives and the noise at each point; None where they are not defined.
+@record
+@dataclass(frozen=True)
+class Local:
+    """What the scatter of a point follows from.
 
-A point with weights (n,) is solved with these first.
-"""
+    Attributes
+    ----------
+    evaluation : with second derivatives
+    noise : of its objectives
+    slopes : derivatives (modes, p) of predicted quantities
+    """
 
-DEPENDENT: tuple[tuple[Kind, ...], ...] = (
-    ("edge", "minimum"),
-    ("level",),
-    ("weights", "optimal", "boundary"),
-)
-"""Kinds of programmes, each after those on whose scatter its own depends."""
+    evaluation: Evaluation
+    noise: Noise
+    slopes: Mapping[str, Floats]
 
 
 def front_scatter(
     problem: Problem,
     points: Sequence[SolvedPoint],
+    known: Mapping[str, Local],
     a: Floats,
     sizes: Floats,
-    differentiate: Differentiate,
 ) -> dict[str, Scatter]:
     """Return the scatter of the points for which it is defined, by label."""
     level_of: dict[int, Floats] = {}  # changes of the least value of each objective
     ends: dict[str, tuple[Floats, Floats]] = {}
     out: dict[str, Scatter] = {}
-    for kinds in DEPENDENT:
-        chosen = [
-            point
-            for point in in_order(points)
-            if point.role.kind in kinds and _is_defined(point, ends, level_of)
-        ]
-        weights = [
-            edge_weights(point.role.objective, sizes) if kinds == DEPENDENT[0] else None
-            for point in chosen
-        ]
-        derivatives = differentiate(list(zip(chosen, weights, strict=True)))
-        for solved, local, w in zip(chosen, derivatives, weights, strict=True):
-            if local is None:
-                continue
-            point, noise = local
-            role, text = solved.role, solved.label
-            if w is None:
-                w = a / point.evaluation.J if role.kind == "optimal" else solved.solution.weights
-            if role.kind in ("edge", "minimum", "weights"):
+    conditions: Conditions
+    for solved in in_order(points):
+        role, text, w = solved.role, solved.label, solved.solution.weights
+        beta = solved.solution.beta
+        if role.kind == "end" and role.ends[0] in out:
+            out[text] = out[role.ends[0]]
+        if text not in known:
+            continue
+        point, noise = known[text].evaluation, known[text].noise
+        match role.kind:
+            case "edge":
+                w, conditions = edge_weights(role.objective, sizes), given_weights(noise)
+            case "weights":
                 conditions = given_weights(noise)
-            elif role.kind == "optimal":
-                conditions = optimal_weights(point, a, noise)
-            elif role.kind == "level":
+            case "optimal":
+                w, conditions = a / point.J, optimal_weights(point, a, noise)
+            case "level" if role.objective in level_of:
                 dv = (1 + role.tolerance) * level_of[role.objective]
                 conditions = level(point, role.objective, dv, noise)
-            elif (beta := solved.solution.beta) is not None:
+            case "boundary" if beta is not None and {*role.ends} <= set(ends):
                 w, conditions = boundary(point, w, _target(role, ends), beta, noise)
-            out[text] = scatter(problem, point, w, conditions, noise)
-            if role.kind in ("edge", "minimum", "level"):
-                ends[text] = point.evaluation.J, out[text].J
-            if role.kind == "edge":
-                level_of[role.objective] = out[text].J[:, role.objective]
-    for end in points:
-        if end.role.kind == "end" and end.role.ends[0] in out:
-            out[end.label] = out[end.role.ends[0]]
+            case _:
+                continue
+        out[text] = scatter(problem, point, w, conditions, noise)
+        ends[text] = point.J, out[text].J
+        if role.kind == "edge":
+            level_of[role.objective] = out[text].J[:, role.objective]
     return out
-
-
-def _is_defined(
-    point: SolvedPoint, ends: Mapping[str, object], level_of: Mapping[int, object]
-) -> bool:
-    """Return whether all is known on which the scatter of a point depends."""
-    role = point.role
-    if role.kind == "boundary":
-        return point.solution.beta is not None and {*role.ends, *role.worst} <= set(ends)
-    return role.kind != "level" or role.objective in level_of
 
 
 def _target(role: Role, ends: Mapping[str, tuple[Floats, Floats]]) -> Target:
@@ -103,6 +93,48 @@ def _target(role: Role, ends: Mapping[str, tuple[Floats, Floats]]) -> Target:
     dE = np.stack([ends[label][1] for label in role.ends], axis=2)
     if not role.worst:
         return between(E, dE)
-    top = np.array([ends[label][0][i] for i, label in enumerate(role.worst)])
-    dtop = np.stack([ends[label][1][:, i] for i, label in enumerate(role.worst)], axis=1)
-    return over_ranges(E, dE, top, dtop)
+    return over_ranges(E, dE, np.array([x.J[i] for i, x in enumerate(role.worst)]))
+
+
+def with_neighbours(
+    front: Front,
+    points: Sequence[SolvedPoint],
+    scatter: Mapping[str, Scatter],
+    a: Floats,
+    sizes: Floats,
+) -> dict[str, Scatter]:
+    """Return the scatter of points with the warnings that their neighbours raise."""
+    ends = [end.J for gap in front.gaps for end in gap.ends]
+    out: dict[str, Scatter] = {}
+    for point in in_order(points):
+        kind, known = point.role.kind, scatter.get(point.label)
+        if kind == "end" and known:
+            out[point.label] = out[point.role.ends[0]]
+        elif known:
+            near = kind == "boundary" and near_an_end(point.solution.J, known.J, ends)
+            reasons = {
+                LinearisationWarning.ENDS: near,
+                LinearisationWarning.RIVAL: _has_rival(front, point, known, a, sizes),
+                LinearisationWarning.UNSOLVED: not point.solution.converged,
+            }
+            warnings = (*known.warnings, *(warning for warning in reasons if reasons[warning]))
+            out[point.label] = replace(known, warnings=warnings)
+    return out
+
+
+def _has_rival(
+    front: Front, point: SolvedPoint, scatter: Scatter, a: Floats, sizes: Floats
+) -> bool:
+    """Return whether another minimum of what an edge or the optimal weights minimise is as good."""
+    programme: Scalarisation
+    others: Sequence[Solution]
+    if point.role.kind == "edge":
+        i = point.role.objective
+        programme, others = weighted(edge_weights(i, sizes)), front.edges[i].minima[1:]
+    elif point.role.kind == "optimal":
+        programme, others = LogSum(a), front.optimal[1:]
+    else:
+        return False
+    J = point.solution.J
+    changes = scatter.J @ programme.gradient(J)
+    return has_rival(programme.value(J), changes, [programme.value(x.J) for x in others])

@@ -55,12 +55,8 @@ def available(data: ModalData) -> tuple[Source, ...]:
     return (*(("std",) if std else ()), *(("sets",) if sets else ()))
 
 
-def noise(problem: UpdatingProblem, theta: Floats, source: Source) -> Noise:
-    """Return the effects of errors of the data at ``theta``; solves one eigenproblem.
-
-    Raises ModelError where the model has no modes there.
-    """
-    modes, pairs = problem.modes(theta)
+def noise(problem: UpdatingProblem, modes: Modes, pairs: Pairs, source: Source) -> Noise:
+    """Return the effects of errors of the data at paired modes with derivatives."""
     return (_from_std if source == "std" else _from_sets)(problem, modes, pairs)
 
 

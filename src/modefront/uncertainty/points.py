@@ -9,14 +9,14 @@ from typing import Literal, get_args
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.solvers.edges import near_best
-from modefront.solvers.nbi import programmes
-from modefront.solvers.payoff import spanned
-from modefront.solvers.problem import Problem
-from modefront.solvers.scalarisation import LogSum, Scalarisation, weighted
-from modefront.solvers.sqp import Solution, begin, solve
+from modefront.front.edges import near_best
+from modefront.front.simplex import spanned
+from modefront.front.subproblems import Point
+from modefront.optim.problem import Problem
+from modefront.optim.scalarisation import LogSum, Scalarisation, weighted
+from modefront.optim.sqp import Solution, begin, solve
 
-Kind = Literal["edge", "minimum", "level", "weights", "optimal", "end", "boundary"]
+Kind = Literal["edge", "level", "weights", "optimal", "end", "boundary"]
 """Kinds of programmes of points; each kind depends only on those before it."""
 
 SMALL = 1e-4
@@ -33,18 +33,18 @@ class Role:
 
     Attributes
     ----------
-    kind : an edge; another minimum of an objective; the best of the others at a level of an
-        objective; weights that are given or optimal; one of the ends; a point of NBI
+    kind : an edge; the best of the others at a level of an objective; weights that are given or
+        optimal; one of the ends; a point of NBI
     ends : labels of the ends between which a point of NBI lies, one an objective; or the end
-    worst : labels of the points up to which the ranges of the objectives reach, where the
-        simplex is that of the ranges
-    objective : of an edge, a minimum or a level
+    worst : models up to which the ranges of the objectives reach, which stay where they are, where
+        the simplex is that of the ranges
+    objective : of an edge or a level
     tolerance : share by which a level exceeds the least value of its objective
     """
 
     kind: Kind
     ends: tuple[str, ...] = ()
-    worst: tuple[str, ...] = ()
+    worst: Sequence[Solution] = ()
     objective: int = -1
     tolerance: float = 0.0
 
@@ -100,7 +100,7 @@ def _again(
         programme = LogSum(a)
     elif role.kind == "weights":
         programme = weighted(point.solution.weights)
-    elif role.kind in ("edge", "minimum", "level"):
+    elif role.kind in ("edge", "level"):
         best = solve(problem, weighted(edge_weights(role.objective, sizes)), start)
         if role.kind != "level" or not best.feasible:
             return best
@@ -109,9 +109,10 @@ def _again(
         return near_best(problem, best, role.objective, role.tolerance, sizes, [start])
     else:
         ends = [solved[label] for label in role.ends]
-        target = spanned(ends, [solved[label] for label in role.worst], sizes)
+        target = spanned(ends, role.worst, sizes)
         beta = point.solution.beta
         if target is None or beta is None:
             return start
-        return programmes(target, ends).solve(problem, beta, start)
+        equations = bool((point.solution.weights < 0).any())
+        return Point(beta, (), target, equations).solve(problem, start)
     return solve(problem, programme, start)

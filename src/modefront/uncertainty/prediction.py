@@ -19,8 +19,6 @@ probability (Papadimitriou, Beck & Katafygiotis 2001, Probabilistic Engineering 
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 import numpy as np
 
 from modefront._typing import Floats
@@ -81,23 +79,6 @@ def draw(
         accepted += len(within)
         drawn_count += BATCH
     return np.concatenate([*parts, np.empty((0, theta.size))])[:count]
-
-
-def sampled(
-    theta: Floats,
-    covariance: Floats,
-    predict: Callable[[Floats], Floats],
-    rng: np.random.Generator,
-    count: int = 1000,
-    bounds: tuple[Floats, Floats] | None = None,
-) -> Floats:
-    """Return predictions (count, ...) at a sample of the Gaussian around ``theta`` (p,).
-
-    ``bounds``, and what is raised, are those of `draw`.
-    """
-    lam, V = np.linalg.eigh(covariance)
-    root = V * np.sqrt(np.maximum(lam, 0.0))
-    return np.array([predict(parameters) for parameters in draw(theta, root, rng, count, bounds)])
 
 
 def summary(values: Floats) -> Floats:

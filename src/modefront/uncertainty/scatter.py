@@ -32,10 +32,9 @@ boundary (NBI)      :math:`J_A = (J^* + P (\beta + \tau e))_A` on the active bou
 ==================  =====================================================================
 
 With the edges E as columns, :math:`J^* = \operatorname{diag} E` and :math:`P = E - J^* e^T`; of the
-simplex of the ranges, P is diagonal. So points of the front also follow the edges, which scatter
-themselves; :math:`\beta` is fixed. Of two groups all bounds are active, since they are equations;
-of more, those whose weight is more than that of the share :math:`\rho`
-(`modefront.solvers.attainment`).
+simplex of the ranges, P is diagonal, and their upper ends stay. So points of the front also follow
+the edges, which scatter themselves; :math:`\beta` is fixed. Active bounds are those whose weight is
+more than that of the share :math:`\rho` (`modefront.front.subproblems`); equations are all active.
 
 A parameter at an active bound is fixed. Directions in which no residual changes are left out and
 named, since no data determine them.
@@ -52,15 +51,18 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Bools, Floats
-from modefront.solvers.curvature import ERROR, SecondOrder
-from modefront.solvers.problem import Problem
-from modefront.solvers.tangents import AT_BOUND
+from modefront.optim.problem import AT_BOUND, Evaluation, Problem
+from modefront.rounding import TINY
 from modefront.uncertainty.conditions import Conditions
 from modefront.uncertainty.noise import Noise
 from modefront.uncertainty.validity import LinearisationWarning, std
 
 FLAT = 1e-12
 """Eigenvalue over the greatest one below which a direction changes no residual."""
+
+BENT = 1e-5
+"""Second derivative over the greatest one below which it is none: a distance of the solution of
+1e-7 leaves less, and so do differences."""
 
 DEPENDENT = 1e-14
 """Singular value of equations of size one, over the greatest, that is their rounding."""
@@ -96,9 +98,9 @@ class Scatter:
         return self.theta.T @ self.theta
 
 
-def held_at_bounds(problem: Problem, point: SecondOrder, w: Floats) -> Bools:
+def held_at_bounds(problem: Problem, evaluation: Evaluation, w: Floats) -> Bools:
     """Return which parameters the slope of w^T J presses against a bound."""
-    evaluation, span = point.evaluation, problem.upper - problem.lower
+    span = problem.upper - problem.lower
     u = (evaluation.theta - problem.lower) / span
     parts = np.abs(w[:, None] * evaluation.dJ) * span
     slope = w @ evaluation.dJ * span
@@ -108,37 +110,39 @@ def held_at_bounds(problem: Problem, point: SecondOrder, w: Floats) -> Bools:
     return held
 
 
-def spaces(problem: Problem, point: SecondOrder, w: Floats, held: Bools) -> tuple[Floats, Floats]:
+def spaces(
+    problem: Problem, evaluation: Evaluation, w: Floats, held: Bools
+) -> tuple[Floats, Floats]:
     """Return bases (p, .) over the ranges: of what residuals determine, and of what is free.
 
     Free is where no residual changes to first order and their squares do not to second order.
     """
-    evaluation, span = point.evaluation, problem.upper - problem.lower
-    top = np.abs(evaluation.H).max(axis=(1, 2))
-    first = np.tensordot(1 / np.where(top > 0, top, 1.0), evaluation.H, axes=1) * np.outer(
-        span, span
-    )
-    second = np.tensordot(np.abs(w), point.H, axes=1) * np.outer(span, span)
-    lam, V = np.linalg.eigh(first[np.ix_(~held, ~held)])
-    basis = np.zeros((held.size, lam.size))
-    basis[~held] = V
-    flat = lam <= FLAT * max(float(lam.max(initial=0.0)), np.finfo(float).tiny)
+    area = np.multiply.outer(span := problem.upper - problem.lower, span)
+    G, B = evaluation.gauss_newton, np.tensordot(np.abs(w), evaluation.H, axes=1) * area
+    top = np.abs(G).max(axis=(1, 2))
+    G = np.tensordot(1 / np.where(top > 0, top, 1.0), G, axes=1) * area
+    basis = np.eye(held.size)[:, ~held]
+    lam, V = np.linalg.eigh(basis.T @ G @ basis)
+    basis, flat = basis @ V, lam <= FLAT * max(float(lam.max(initial=0.0)), TINY)
     N = basis[:, flat]
-    mu, U = np.linalg.eigh(N.T @ second @ N)
-    bent = np.abs(mu) > ERROR * np.abs(second).max()
+    mu, U = np.linalg.eigh(N.T @ B @ N)
+    bent = np.abs(mu) > BENT * np.abs(B).max()
     return np.hstack([basis[:, ~flat], N @ U[:, bent]]), N @ U[:, ~bent]
 
 
 def scatter(
-    problem: Problem, point: SecondOrder, w: Floats, conditions: Conditions, noise: Noise
+    problem: Problem, evaluation: Evaluation, w: Floats, conditions: Conditions, noise: Noise
 ) -> Scatter:
-    """Return how a solution with weights w (n,) moves with the errors of the data."""
-    evaluation, span = point.evaluation, problem.upper - problem.lower
-    held = held_at_bounds(problem, point, w)
-    Q, free = spaces(problem, point, w, held)
+    """Return how a solution with weights w (n,) moves with the errors of the data.
+
+    The evaluation has second derivatives.
+    """
+    span = problem.upper - problem.lower
+    held = held_at_bounds(problem, evaluation, w)
+    Q, free = spaces(problem, evaluation, w, held)
     B = span[:, None] * Q  # parameters for unit changes of what is determined
     dJ = evaluation.dJ @ B
-    second = np.tensordot(w, point.H, axes=1)
+    second = np.tensordot(w, evaluation.H, axes=1)
     W = B.T @ second @ B
     c = conditions
     n, k = c.e.shape

@@ -12,7 +12,7 @@ from dataclasses import dataclass
 from typing import Any, Protocol
 
 from modefront.work.costs import Costs, counted
-from modefront.work.task import Executor, Task
+from modefront.work.task import Task
 
 
 @dataclass(frozen=True)
@@ -32,24 +32,16 @@ class Backend(Protocol):
         """Number of tasks that are computed at the same time."""
 
     def compute(
-        self,
-        tasks: Sequence[Task[Any]],
-        ahead: Sequence[Task[Any]],
-        begun: Callable[[int], None],
-        /,
+        self, tasks: Sequence[Task[Any]], begun: Callable[[int], None], /
     ) -> Iterator[tuple[int, Done]]:
-        """Yield the positions and results of tasks as they end; ``begun`` is called at their start.
-
-        Tasks ``ahead`` may be computed as well where there is nothing else to do. Of a list, the
-        caller may add tasks while it takes results, and exchange those ahead.
-        """
+        """Yield positions and results of tasks as they end; ``begun`` is called at their start."""
 
 
-def computed(task: Task[Any], work: Executor | None = None) -> Done:
-    """Return the result of a task, computed here and now; ``work`` computes its parts."""
+def computed(task: Task[Any]) -> Done:
+    """Return the result of a task, computed here and now."""
     began = time.perf_counter()
     with counted() as costs:
-        result = task(work)
+        result = task()
     return Done(result, costs, time.perf_counter() - began)
 
 
@@ -60,11 +52,7 @@ class InTurn:
     workers: int = 1
 
     def compute(
-        self,
-        tasks: Sequence[Task[Any]],
-        _: Sequence[Task[Any]],
-        begun: Callable[[int], None],
-        /,
+        self, tasks: Sequence[Task[Any]], begun: Callable[[int], None], /
     ) -> Iterator[tuple[int, Done]]:
         """Yield the results in the order of the tasks, each as it is wanted."""
         for k, task in enumerate(tasks):

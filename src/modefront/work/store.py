@@ -1,23 +1,22 @@
 """Results of tasks in a folder, one small file a task, so that an interrupted run loses only one.
 
-A file is written under another name and then renamed, so that it is there whole or not at all;
-arrays are stored exactly, so that a run that is continued gives the same results to the last digit
-as one that was not interrupted.
+A file ends with a checksum of all before, which alone says whether it is whole; a task of which it
+is not is done again. Arrays are stored exactly, so that a run that is continued gives the same
+results to the last digit as one that was not interrupted.
 """
 
 from __future__ import annotations
 
 import hashlib
+import io
 import json
-import os
-import zipfile
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront.outputs import write_bytes
 from modefront.work.codec import decode, encode
 from modefront.work.costs import Costs
 from modefront.work.task import Task
@@ -25,12 +24,11 @@ from modefront.work.task import Task
 FOLDER = "tasks"
 """Folder of the kept results, within that of the results of a run."""
 
+CHECKSUM = 32
+"""Bytes of the checksum at the end of a file."""
+
 LONGEST = 60
 """Characters of a key at most in a file name, which ends in a hash."""
-
-_DAMAGED = (OSError, EOFError, ValueError, KeyError, TypeError, RuntimeError, zipfile.BadZipFile)
-"""Errors of damaged files; RuntimeError where their bytes ask for decryption or for
-another compression."""
 
 
 @dataclass(frozen=True)
@@ -42,52 +40,42 @@ class Store:
     def read(self, task: Task[Any]) -> tuple[Any, Costs] | None:
         """Return the result of a task and what it cost; None where no whole one is kept."""
         path = self._path(task)
-        if not path.is_file():  # a pipe in its place would be waited for
-            return None
         try:
-            with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-                arrays = {key: file[key] for key in file.files}
-            head = json.loads(arrays.pop("head").tobytes())
-            if head["key"] != _identity(task):
+            if not path.is_file():  # a pipe in its place would be waited for
                 return None
-            return decode(head["result"], arrays), Costs(**head["costs"])
-        except _DAMAGED:
+            kept = path.read_bytes()
+        except OSError:
             return None
-
-    def has(self, task: Task[Any]) -> bool:
-        """Return whether there is a file of a task, whole or damaged."""
-        return self._path(task).is_file()
-
-    def remove(self, task: Task[Any]) -> None:
-        """Remove the result of a task, if there is one."""
-        self._path(task).unlink(missing_ok=True)
+        content = kept[:-CHECKSUM]
+        if kept[-CHECKSUM:] != _checksum(task, content):
+            return None
+        with np.load(io.BytesIO(content), allow_pickle=False) as file:
+            arrays = {key: file[key] for key in file.files}
+        head = json.loads(arrays.pop("head").tobytes())
+        return decode(head["result"], arrays), Costs(**head["costs"])
 
     def write(self, task: Task[Any], result: Any, costs: Costs) -> None:
         """Keep the result of a task, whole or not at all."""
-        arrays: dict[str, Floats] = {}
-        content = encode(result, arrays)
-        head = json.dumps({"key": _identity(task), "costs": vars(costs), "result": content})
-        path = self._path(task)
+        arrays: dict[str, Any] = {}
+        head = json.dumps({"result": encode(result, arrays), "costs": vars(costs)})
+        content = io.BytesIO()
+        np.savez(content, head=np.frombuffer(head.encode(), np.uint8), **arrays)
+        path, kept = self._path(task), content.getvalue()
         path.parent.mkdir(parents=True, exist_ok=True)
-        temporary = path.with_suffix(".tmp")
-        named: dict[str, Any] = dict(arrays)
-        try:
-            with temporary.open("wb") as stream:
-                np.savez(stream, head=np.frombuffer(head.encode(), np.uint8), **named)
-                stream.flush()
-                os.fsync(stream.fileno())
-            temporary.replace(path)
-        except BaseException:  # a full disk or an interrupt
-            temporary.unlink(missing_ok=True)
-            raise
+        write_bytes(path, kept + _checksum(task, kept), lasting=True)
 
     def _path(self, task: Task[Any]) -> Path:
         return self.folder / f"{_file_name(task)}.npz"
 
 
+def _checksum(task: Task[Any], content: bytes) -> bytes:
+    """Return a hash of what is kept of a task, and of which task that is."""
+    return hashlib.blake2b(_identity(task).encode() + content, digest_size=CHECKSUM).digest()
+
+
 def _identity(task: Task[Any]) -> str:
     """Return the identity of a task as text: its parts, which may hold any characters."""
-    return repr((task.key, task.turn))
+    return repr(task.identity)
 
 
 def _file_name(task: Task[Any]) -> str:

@@ -4,10 +4,6 @@ A task is a module-level function with picklable arguments and a key that nothin
 has. Tasks of one call of `Executor.run` are independent of each other; their results come back in
 the order of the tasks, whoever computed them and whenever. Random numbers belong to the task: a
 task with a seed passes a generator of its own to its function.
-
-Where one task follows from another, a caller names those that it will probably ask for next. An
-executor may compute them ahead; what is not asked for then is forgotten, and neither results nor
-costs depend on it.
 """
 
 from __future__ import annotations
@@ -24,7 +20,6 @@ Part = str | int | tuple[int, ...]
 Key = tuple[Part, ...]
 """Parts that name a task; the first one names its stage."""
 
-Identity = tuple[Key, Key, Callable[..., Any]]
 R = TypeVar("R")
 
 
@@ -39,7 +34,6 @@ class Task(Generic[R]):
     arguments : picklable
     seed : of the generator that the function is passed as ``rng``; None where it takes none
     turn : which repetition of the stage the task belongs to
-    has_parts : whether the function is passed an executor as ``work``, which computes its parts
     in_process : whether it changes its arguments, and is computed in the process that has them
     memory : bytes that it takes besides its arguments, where these are many
     """
@@ -49,7 +43,6 @@ class Task(Generic[R]):
     arguments: tuple[Any, ...] = ()
     seed: np.random.SeedSequence | None = None
     turn: Key = ()
-    has_parts: bool = False
     in_process: bool = False
     memory: float = 0.0
 
@@ -59,13 +52,9 @@ class Task(Generic[R]):
         return str(self.key[0])
 
     @property
-    def identity(self) -> Identity:
-        """Identity of the task among all tasks of the run.
-
-        The function is a part, so that no other one that was expected under its name is taken for
-        it.
-        """
-        return self.key, self.turn, self.function
+    def identity(self) -> tuple[Key, Key]:
+        """Identity of the task among all tasks of the run."""
+        return self.key, self.turn
 
     @property
     def name(self) -> str:
@@ -76,24 +65,19 @@ class Task(Generic[R]):
         ]
         return "-".join(parts)
 
-    def __call__(self, work: Executor | None = None) -> R:
-        """Return the result of the function; ``work`` computes its parts, if it has any."""
+    def __call__(self) -> R:
+        """Return the result of the function."""
         options: dict[str, Any] = {}
         if self.seed is not None:
             options["rng"] = np.random.default_rng(self.seed)
-        if self.has_parts:
-            options["work"] = work or IMMEDIATE
         return self.function(*self.arguments, **options)
 
 
 class Executor(Protocol):
     """Carries out tasks."""
 
-    def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
-        """Return the results of independent tasks, in their order.
-
-        Tasks ``ahead`` will probably be asked for next, in this order.
-        """
+    def run(self, tasks: Sequence[Task[R]], /) -> list[R]:
+        """Return the results of independent tasks, in their order."""
 
     def expect(self, stages: Mapping[str, int]) -> None:
         """Take note of how many tasks of each stage are still to come, in the order of stages."""
@@ -103,7 +87,7 @@ class Executor(Protocol):
 class Immediate:
     """Computes every task at once, keeps and reports nothing."""
 
-    def run(self, tasks: Sequence[Task[R]], _: Sequence[Task[Any]] = (), /) -> list[R]:
+    def run(self, tasks: Sequence[Task[R]], /) -> list[R]:
         """Return the results of the tasks."""
         return [task() for task in tasks]
 
@@ -116,29 +100,24 @@ IMMEDIATE = Immediate()
 
 @dataclass(frozen=True)
 class Within:
-    """An executor for a part of the work, or for a repetition of it.
+    """An executor for a repetition of the work.
 
     Attributes
     ----------
     inner : carries out the tasks
-    part : put before the keys of the tasks, so that their stage is that of the part
-    turn : put behind their turns
+    turn : put behind the turns of the tasks
     """
 
     inner: Executor
-    part: Key = ()
-    turn: Key = ()
+    turn: Key
 
-    def run(self, tasks: Sequence[Task[R]], ahead: Sequence[Task[Any]] = (), /) -> list[R]:
+    def run(self, tasks: Sequence[Task[R]], /) -> list[R]:
         """Return the results of the tasks."""
-        return self.inner.run([self._of(x) for x in tasks], [self._of(x) for x in ahead])
+        return self.inner.run([replace(x, turn=(*x.turn, *self.turn)) for x in tasks])
 
     def expect(self, stages: Mapping[str, int]) -> None:
-        """Pass on the extent of the work; that of a part is known by the part."""
-        self.inner.expect({str(self.part[0]): sum(stages.values())} if self.part else stages)
-
-    def _of(self, task: Task[R]) -> Task[R]:
-        return replace(task, key=(*self.part, *task.key), turn=(*task.turn, *self.turn))
+        """Pass on the extent of the work."""
+        self.inner.expect(stages)
 
 
 def seed_sequence(seed: int, *parts: Part) -> np.random.SeedSequence:

@@ -80,15 +80,6 @@ class Sender:
         memory += max((task.memory for task in tasks), default=0.0)
         return Message(stream.getvalue(), tuple(pickler.met), memory)
 
-    def knows(self, names: Sequence[str]) -> bool:
-        """Return whether all shared objects of these names are as they were when named."""
-        known = set()
-        for (_, version), (name, found) in self._objects.items():
-            value = found()
-            if value is not None and value.version == version:
-                known.add(name)
-        return known.issuperset(names)
-
     def objects(self, names: Sequence[str]) -> dict[str, bytes]:
         """Return shared objects by their names, in this order."""
         values = {name: found() for name, found in self._objects.values()}

@@ -1,7 +1,6 @@
 """A backend that hands tasks to other processes.
 
-Tasks are sent as bytes, short ones several at a time. What a caller will probably ask for next is
-computed where there is nothing else to do, and kept until it asks for something else.
+Tasks are sent as bytes, short ones several at a time.
 
 Where a process is lost, the tasks that it may have computed are done again, one at a time. One
 that is lost alone as well, or whose memory does not suffice twice, is given up: the others are
@@ -24,7 +23,7 @@ from modefront.errors import Fault, InputError, UnfinishedError, wrong
 from modefront.work.backend import Backend, Done, InTurn, computed
 from modefront.work.costs import spend
 from modefront.work.pools import Cluster, LocalPool, Loss, Pool
-from modefront.work.task import Identity, Task
+from modefront.work.task import Key, Task
 from modefront.work.transfer import Message, Reply, Sender
 
 SHORT = 0.02
@@ -52,12 +51,12 @@ class _Sent:
 
     Attributes
     ----------
-    tasks : sent together
+    positions : of the tasks sent together, within their call
     message : of these tasks
     lacked : names of the shared objects that came with it, as some process did not know them
     """
 
-    tasks: Sequence[Task[Any]]
+    positions: Sequence[int]
     message: Message
     lacked: frozenset[str] = frozenset()
 
@@ -68,24 +67,20 @@ class _Call:
 
     Attributes
     ----------
-    tasks : of the call, to which others may be added
-    seen : number of tasks that were taken up
-    position : of each task that has no result yet, by its identity
+    tasks : of the call
+    begun : is called with the position of each task that is sent or computed
     pending : positions of tasks to be sent
     alone : positions of tasks that are sent one at a time, since a process was lost with them
+    flying : tasks that were sent, by what will come back
     errors : of tasks, by their position
     """
 
     tasks: Sequence[Task[Any]]
-    seen: int = 0
-    position: dict[Identity, int] = field(default_factory=dict)
-    pending: deque[int] = field(default_factory=deque)
+    begun: Callable[[int], None]
+    pending: deque[int]
     alone: deque[int] = field(default_factory=deque)
+    flying: dict[Future[Reply], _Sent] = field(default_factory=dict)
     errors: dict[int, Exception] = field(default_factory=dict)
-
-    def wants(self, task: Task[Any]) -> bool:
-        """Return whether a task is one of the call without a result."""
-        return task.identity in self.position
 
 
 @dataclass
@@ -101,10 +96,8 @@ class Workers:
     pool: Pool
     memory: float = field(default_factory=lambda: SHARE * available_memory())
     _sender: Sender = field(default_factory=Sender)
-    _flying: dict[Future[Reply], _Sent] = field(default_factory=dict)
-    _ready: dict[Identity, Done] = field(default_factory=dict)
     _seconds: dict[str, float] = field(default_factory=dict)
-    _losses: Counter[Identity] = field(default_factory=Counter)
+    _losses: Counter[tuple[Key, Key]] = field(default_factory=Counter)
 
     @property
     def workers(self) -> int:
@@ -118,11 +111,7 @@ class Workers:
         self.pool.close()
 
     def compute(
-        self,
-        tasks: Sequence[Task[Any]],
-        ahead: Sequence[Task[Any]],
-        begun: Callable[[int], None],
-        /,
+        self, tasks: Sequence[Task[Any]], begun: Callable[[int], None], /
     ) -> Iterator[tuple[int, Done]]:
         """Yield the results of the tasks as they end.
 
@@ -130,51 +119,19 @@ class Workers:
         the model cannot be sent to another process, and what tasks raise; but for a cluster that
         is gone, all other tasks are computed first.
         """
-        call = _Call(tasks)
-        while True:
-            yield from self._taken_up(call, ahead, begun)
-            if not call.position:
-                break
-            if self._is_for_this_process(call, ahead):
-                yield self._computed_here(call, begun)
+        call = _Call(tasks, begun, deque(range(len(tasks))))
+        while call.pending or call.alone or call.flying:
+            if self._is_for_this_process(call):
+                yield self._computed_here(call)
                 continue
-            self._send(call, begun)
-            self._send_ahead(call, ahead)
-            for future in wait(self._flying, return_when=FIRST_COMPLETED).done:
-                if future in self._flying:  # else it was lost with another one
+            self._send(call)
+            for future in wait(call.flying, return_when=FIRST_COMPLETED).done:
+                if future in call.flying:  # else it was lost with another one
                     yield from self._received(call, future)
         if call.errors:
             raise call.errors[min(call.errors)]
 
-    def _taken_up(
-        self, call: _Call, ahead: Sequence[Task[Any]], begun: Callable[[int], None]
-    ) -> Iterator[tuple[int, Done]]:
-        """Take up the tasks that are new in a call; yield those that were computed ahead."""
-        while call.seen < len(call.tasks):
-            new = range(call.seen, len(call.tasks))
-            call.seen = len(call.tasks)
-            call.position |= {call.tasks[k].identity: k for k in new}
-            self._forget(call, ahead)
-            flying = {task.identity for sent in self._flying.values() for task in sent.tasks}
-            for k in new:
-                task = call.tasks[k]
-                if task.identity in self._ready:
-                    begun(k)
-                    yield self._finished(call, task, self._ready.pop(task.identity))
-                elif task.identity in flying:
-                    begun(k)
-                else:
-                    call.pending.append(k)
-
-    def _forget(self, call: _Call, ahead: Sequence[Task[Any]]) -> None:
-        """Forget what was computed ahead and is not wanted any more."""
-        requested = {*(task.identity for task in ahead), *call.position}
-        self._ready = {x: done for x, done in self._ready.items() if x in requested}
-        for future, sent in list(self._flying.items()):
-            if requested.isdisjoint(task.identity for task in sent.tasks) and future.cancel():
-                del self._flying[future]
-
-    def _is_for_this_process(self, call: _Call, ahead: Sequence[Task[Any]]) -> bool:
+    def _is_for_this_process(self, call: _Call) -> bool:
         """Return whether the next task is computed here: a single one, and while the pool starts.
 
         So are tiny ones. Where a process was lost, none is: it might have been the fault of a task.
@@ -183,67 +140,54 @@ class Workers:
             return False
         if not self.pool.ready:
             return True
-        next_ones = [*(call.tasks[k] for k in call.pending), *ahead]
-        lone = len(next_ones) == 1 and not self._flying
-        return lone or sum(self._seconds.get(_kind(task), SHORT) for task in next_ones) < TINY
+        lone = len(call.pending) == 1 and not call.flying
+        seconds = (self._seconds.get(_kind(call.tasks[k]), SHORT) for k in call.pending)
+        return lone or sum(seconds) < TINY
 
-    def _computed_here(self, call: _Call, begun: Callable[[int], None]) -> tuple[int, Done]:
+    def _computed_here(self, call: _Call) -> tuple[int, Done]:
         """Return the position and the result of the next task, computed in this process."""
         k = call.pending.popleft()
-        begun(k)
+        call.begun(k)
         done = computed(call.tasks[k])
         self._learn(call.tasks[k], done.seconds)
-        del call.position[call.tasks[k].identity]
         return k, done
 
-    def _send(self, call: _Call, begun: Callable[[int], None]) -> None:
+    def _send(self, call: _Call) -> None:
         """Send tasks of a call, as many as the processes have room for."""
         if call.alone:
-            if not self._flying:
-                self._submit([call.tasks[call.alone.popleft()]])
+            if not call.flying:
+                self._submit(call, [call.alone.popleft()])
             return
-        while call.pending and len(self._flying) < QUEUED * self.pool.count:
+        while call.pending and len(call.flying) < QUEUED * self.pool.count:
             share = ceil(len(call.pending) / self.pool.count)
             first = call.tasks[call.pending[0]]
             count = min(share, self._together(first), len(call.pending))
             positions = [call.pending[k] for k in range(count)]
-            if not self._submit([call.tasks[k] for k in positions]):
+            if not self._submit(call, positions):
                 return
             for k in positions:
                 call.pending.popleft()
-                begun(k)
+                call.begun(k)
 
-    def _send_ahead(self, call: _Call, ahead: Sequence[Task[Any]]) -> None:
-        """Send tasks that will probably be wanted to processes that have nothing else to do."""
-        if call.pending or call.alone:
-            return
-        known = {task.identity for sent in self._flying.values() for task in sent.tasks}
-        left = [x for x in ahead if x.identity not in known and x.identity not in self._ready]
-        while left and len(self._flying) < self.pool.count:
-            count = self._together(left[0])
-            if not self._submit(left[:count]):
-                return
-            del left[:count]
-
-    def _submit(self, tasks: Sequence[Task[Any]]) -> bool:
+    def _submit(self, call: _Call, positions: Sequence[int]) -> bool:
         """Send tasks; return False where the memory does not suffice for one message more."""
         try:
-            message = self._sender.message(tasks)
+            message = self._sender.message([call.tasks[k] for k in positions])
         except (PicklingError, AttributeError, TypeError) as error:
             expected = "a model that other processes can import: functions of a module"
             raise InputError(Fault("", "workers", expected, str(error))) from None
-        taken = sum(sent.message.memory for sent in self._flying.values())
-        if self._flying and taken + message.memory > self.memory:
+        taken = sum(sent.message.memory for sent in call.flying.values())
+        if call.flying and taken + message.memory > self.memory:
             return False
-        self._fly(_Sent(tasks, message))
+        self._fly(call, _Sent(positions, message))
         return True
 
-    def _fly(self, sent: _Sent) -> None:
+    def _fly(self, call: _Call, sent: _Sent) -> None:
         """Send tasks with the shared objects that a process has lacked."""
         message, names = sent.message, sent.message.names
         objects = self._sender.objects([name for name in names if name in sent.lacked])
         try:
-            self._flying[self.pool.submit(message, objects)] = sent
+            call.flying[self.pool.submit(message, objects)] = sent
         except Exception as error:
             loss = self.pool.lost(error)
             if loss is Loss.CLUSTER:
@@ -251,7 +195,7 @@ class Workers:
             if loss is not Loss.POOL:
                 raise
             self.pool.restart()
-            self._flying[self.pool.submit(message, objects)] = sent
+            call.flying[self.pool.submit(message, objects)] = sent
 
     def _received(self, call: _Call, future: Future[Reply]) -> Iterator[tuple[int, Done]]:
         """Yield what has come back with one message."""
@@ -263,64 +207,49 @@ class Workers:
                 raise
             self._lose(call, future, loss)
             return
-        sent = self._flying.pop(future)
+        sent = call.flying.pop(future)
         if reply.lacking:
-            if self._sender.knows(sent.message.names):
-                self._fly(replace(sent, lacked=sent.lacked.union(reply.lacking)))
-            else:  # they were sent ahead, and what they share has changed since
-                self._send_again(call, sent.tasks)
+            self._fly(call, replace(sent, lacked=sent.lacked.union(reply.lacking)))
             return
-        for task, done in zip(sent.tasks, reply.done, strict=False):
-            self._learn(task, done.seconds)
-            if call.wants(task):
-                yield self._finished(call, task, done)
-            else:
-                self._ready[task.identity] = done
+        for k, done in zip(sent.positions, reply.done, strict=False):
+            self._learn(call.tasks[k], done.seconds)
+            spend(done.costs)
+            yield k, done
         if reply.error is not None:
-            self._fail(call, sent.tasks[len(reply.done) :], reply.error)
+            self._fail(call, sent.positions[len(reply.done) :], reply.error)
 
-    def _finished(self, call: _Call, task: Task[Any], done: Done) -> tuple[int, Done]:
-        """Return the position and the result of a task, which counts now."""
-        spend(done.costs)
-        return call.position.pop(task.identity), done
-
-    def _fail(self, call: _Call, tasks: Sequence[Task[Any]], error: Exception) -> None:
+    def _fail(self, call: _Call, positions: Sequence[int], error: Exception) -> None:
         """Take note of the error of the first of some tasks; the others are sent again."""
-        failed, *others = tasks
-        if call.wants(failed):
-            if isinstance(error, MemoryError):
-                self._lost_one(call, failed, "its memory does not suffice")
-            else:
-                call.errors[call.position.pop(failed.identity)] = error
-        self._send_again(call, others)
-
-    def _send_again(self, call: _Call, tasks: Sequence[Task[Any]]) -> None:
-        """Send those among some tasks again that are wanted."""
-        call.pending.extend(call.position[x.identity] for x in tasks if call.wants(x))
+        failed, *others = positions
+        if isinstance(error, MemoryError):
+            self._lost_one(call, failed, "its memory does not suffice")
+        else:
+            call.errors[failed] = error
+        call.pending.extend(others)
 
     def _lose(self, call: _Call, future: Future[Reply], loss: Loss) -> None:
         """Take note of a loss; the tasks that it concerns are done again, one at a time."""
         if loss is Loss.CLUSTER:
             raise UnfinishedError("the Dask scheduler is gone; what was done is kept")
-        lost = list(self._flying.values()) if loss is Loss.POOL else [self._flying[future]]
+        lost = list(call.flying.values()) if loss is Loss.POOL else [call.flying[future]]
         if loss is Loss.POOL:
-            self._flying.clear()
+            call.flying.clear()
             self.pool.restart()
         else:
-            del self._flying[future]
+            del call.flying[future]
         for sent in lost:
-            for task in sent.tasks:
-                if call.wants(task):
-                    self._lost_one(call, task, "the process that computed it ended")
+            for k in sent.positions:
+                self._lost_one(call, k, "the process that computed it ended")
 
-    def _lost_one(self, call: _Call, task: Task[Any], reason: str) -> None:
+    def _lost_one(self, call: _Call, position: int, reason: str) -> None:
         """Take note that a task was lost, and give it up where that is not the first time."""
+        task = call.tasks[position]
         self._losses[task.identity] += 1
         if self._losses[task.identity] < LOSSES:
-            call.alone.append(call.position[task.identity])
+            call.alone.append(position)
             return
         text = f"task '{task.name}' could not be done: {reason}, twice; all others are kept"
-        call.errors[call.position.pop(task.identity)] = UnfinishedError(text)
+        call.errors[position] = UnfinishedError(text)
 
     def _together(self, task: Task[Any]) -> int:
         """Return how many tasks like this one are sent together."""

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from modefront.errors import Fault, InputError
 from modefront.inputs import available_memory
 
@@ -74,6 +76,18 @@ def check_header(path: Path, header: Header) -> None:
         expected = f"a matrix that fits into the {free / 1e9:.3g} GB of memory that are free"
         found = f"{header.entries} entries in {shape[0]} rows, which take {need / 1e9:.3g} GB"
         raise wrong(path, expected, found)
+
+
+def check_compressed(data: Any, index: Any, pointer: Any, lines: int) -> None:
+    """Raise ValueError where the parts of a matrix of compressed rows or columns do not fit.
+
+    ``pointer`` says where each of so many lines begins among the entries, and where the last ends;
+    programs may keep room for entries beyond. SciPy would follow it out of the arrays.
+    """
+    if pointer.size != lines + 1 or pointer[0] != 0 or (np.diff(pointer) < 0).any():
+        raise ValueError(f"{pointer.size} beginnings of {lines} rows or columns, or falling ones")
+    if not len(data) == index.size >= int(pointer[-1]):
+        raise ValueError(f"{len(data)} entries at {index.size} places, {pointer[-1]} announced")
 
 
 def check_growth(path: Path, content: int, compressed: int) -> None:

@@ -10,7 +10,13 @@ import scipy.sparse
 from modefront.errors import suggestion
 from modefront.inputs import available_memory, is_hdf5
 from modefront.isolated import Read, isolated, seconds_for
-from modefront.models.formats.base import Header, MatrixFormat, check_header, wrong
+from modefront.models.formats.base import (
+    Header,
+    MatrixFormat,
+    check_compressed,
+    check_header,
+    wrong,
+)
 from modefront.models.formats.matlab_5 import Variable, read_variable, variables
 
 READER = "modefront.models.formats.matlab_7_3"
@@ -65,6 +71,7 @@ def _from_hdf5(path: Path, name: str) -> Any:
     check_header(path, Header(size, 0))
     if "data" not in arrays:
         return scipy.sparse.csc_array(size)
+    check_compressed(arrays["data"], arrays["rows"], arrays["columns"], size[1])
     A = scipy.sparse.csc_array((arrays["data"], arrays["rows"], arrays["columns"]), shape=size)
     A.check_format(full_check=True)
     return A

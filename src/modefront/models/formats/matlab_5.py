@@ -31,7 +31,7 @@ from typing import Any
 import numpy as np
 import scipy.sparse
 
-from modefront.models.formats.base import Header, check_growth, check_header
+from modefront.models.formats.base import Header, check_compressed, check_growth, check_header
 
 START = 128
 """Bytes of the header of a file."""
@@ -120,12 +120,12 @@ def variables(path: Path) -> Iterator[Variable]:
                 announced = int(np.frombuffer(inside, f"{order}u4")[1])
                 yield _variable(content, order, announced, (position, size, True))
                 position += size
-            else:
-                if kind == MATRIX:
-                    yield _variable(
-                        stream.read(min(size, HEAD)), order, size, (position, size, False)
-                    )
+            elif kind == MATRIX:
+                head = stream.read(min(size, HEAD))
+                yield _variable(head, order, size, (position, size, False))
                 position += size + -size % 8
+            else:
+                raise ValueError(f"an element of the type {kind} in place of a variable")
     raise ValueError(f"more than {MOST_VARIABLES} variables")
 
 
@@ -166,24 +166,28 @@ def read_variable(path: Path, variable: Variable) -> Any:
         )
         size = int(announced[1])
         check_growth(path, size, variable.size)
-        content = zlib.decompressobj().decompress(content, size + 8)[8:]
-        if len(content) < size:
+        expander = zlib.decompressobj()
+        content = expander.decompress(content, size + 9)[8:]
+        if len(content) != size or not expander.eof:
             raise ValueError(f"{size} bytes of '{variable.name}' announced, {len(content)} there")
     order, shape = variable.order, variable.header.shape
+    count = (6 if variable.is_sparse else 4) + variable.is_complex
+    elements = _elements(content, order, count, len(content))
+    if elements[-1].end + -elements[-1].end % 8 != len(content):
+        raise ValueError(f"{len(content)} bytes of '{variable.name}', which has {elements[-1].end}")
     if not variable.is_sparse:
-        elements = _elements(content, order, 5 if variable.is_complex else 4, len(content))
         parts = [_values(content, each, order) for each in elements[3:]]
         if any(part.size != math.prod(shape) for part in parts):
             raise ValueError(f"{parts[0].size} values of '{variable.name}', which is {shape}")
         whole = parts[0] if len(parts) == 1 else parts[0] + 1j * parts[1]
         return whole.reshape(shape, order="F")
-    elements = _elements(content, order, 7 if variable.is_complex else 6, len(content))
     rows, columns, *parts = (_values(content, each, order) for each in elements[3:])
-    if columns.size != shape[1] + 1 or not 0 <= int(columns[-1]) <= min(rows.size, parts[0].size):
+    count = int(columns[-1]) if columns.size else 0
+    if not {rows.size, *(part.size for part in parts)} <= {count, variable.header.entries}:
         raise ValueError(f"the columns of '{variable.name}' do not fit its entries")
-    count = int(columns[-1])
     values = parts[0][:count] if len(parts) == 1 else parts[0][:count] + 1j * parts[1][:count]
     index = rows[:count].astype(np.int64), columns.astype(np.int64)
+    check_compressed(values, *index, shape[1])
     A = scipy.sparse.csc_array((values, *index), shape=shape)
     A.check_format(full_check=True)
     return A

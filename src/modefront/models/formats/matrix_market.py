@@ -14,6 +14,7 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
+from modefront.complete import counted, ended, first_repeated
 from modefront.inputs import available_memory
 from modefront.isolated import isolated, seconds_for
 from modefront.models.formats.base import Header, MatrixFormat, check_header, wrong
@@ -71,21 +72,32 @@ def read_entries(path: Path, *, square: bool = True) -> Any:
     stored = announced.header.entries
     if announced.layout == "array":
         rows = announced.header.shape[0]
-        stored = rows**2 if announced.symmetry == "general" else rows * (rows - 1) // 2
+        triangle = rows * (rows - 1 if announced.symmetry == "skew-symmetric" else rows + 1) // 2
+        stored = rows * announced.header.shape[1] if announced.symmetry == "general" else triangle
         shortest = 2
     else:
         shortest = SHORTEST[announced.numbers]
-    if stored * shortest > size + 1:  # the last line may lack its end
+    ended(path)
+    if stored * shortest > size:
         raise wrong(path, WHAT, f"{stored} entries announced in {size} bytes")
+    found, before = 0, b" "
     with path.open("rb") as stream:
         stream.seek(announced.start)
         while chunk := stream.read(CHUNK):
+            found += len(chunk.split()) - (len((before + chunk[:1]).strip()) == 2)
+            before = chunk[-1:]
             if other := chunk.translate(None, NUMERIC):
                 raise wrong(path, WHAT, f"the byte {other[:1]!r} among the entries")
+    if announced.layout == "array":
+        counted(path, "file", "values", stored * (1 + (announced.numbers == "complex")), found)
     seconds = seconds_for(path.stat().st_size)
     arrays, shape = isolated(READER, path, seconds, available_memory())
     if "values" in arrays:
         return arrays["values"]
+    repeated = first_repeated(arrays["row"], arrays["column"], int(shape[1]))
+    if repeated is not None:
+        row, column = (int(arrays[name][repeated]) + 1 for name in ("row", "column"))
+        raise wrong(path, f"{WHAT}: each entry once", "it again", f"row {row}, column {column}")
     entries = arrays["data"], (arrays["row"], arrays["column"])
     return scipy.sparse.coo_array(entries, shape=(int(shape[0]), int(shape[1])))
 

@@ -54,9 +54,9 @@ def array_header(stream: IO[bytes]) -> tuple[tuple[int, ...], bool, np.dtype[Any
 
 
 def check_size(shape: tuple[int, ...], dtype: np.dtype[Any], size: int) -> None:
-    """Raise ValueError where an array of this shape and type takes more than ``size`` bytes."""
+    """Raise ValueError where an array of this shape and type takes other than ``size`` bytes."""
     needed = math.prod(shape) * dtype.itemsize
-    if needed > size:
+    if needed != size:
         raise ValueError(f"{needed} bytes of values announced, {size} there")
 
 

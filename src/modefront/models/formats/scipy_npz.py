@@ -22,7 +22,14 @@ import numpy as np
 import scipy.sparse
 
 from modefront.errors import InputError
-from modefront.models.formats.base import Header, MatrixFormat, check_growth, check_header, wrong
+from modefront.models.formats.base import (
+    Header,
+    MatrixFormat,
+    check_compressed,
+    check_growth,
+    check_header,
+    wrong,
+)
 from modefront.models.formats.numpy_npy import array_header, check_size
 
 PARTS: Mapping[str, tuple[str, ...]] = {
@@ -60,6 +67,8 @@ def read(path: Path, _: str | None) -> Any:
     else:
         kinds = {"csr": "csr_array", "csc": "csc_array", "bsr": "bsr_array"}
         make = getattr(scipy.sparse, kinds[form])
+        lines = shape[form == "csc"] // (data.shape[1] if form == "bsr" else 1)
+        check_compressed(data, index["indices"], index["indptr"], lines)
         A = make((data, index["indices"], index["indptr"]), shape=shape)
         A.check_format(full_check=True)  # wrong indices would be followed out of the array
     return A

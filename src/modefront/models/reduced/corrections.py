@@ -164,7 +164,7 @@ def _derivatives(
     pencil: Pencil, theta: Floats, count: int, half_range: Floats, space: Basis
 ) -> _Derivatives:
     ritz = dense.decompose(space.K.at(theta), space.M.at(theta))
-    dlam, S, _ = dense.nelson(space.K, space.M, theta, ritz, count)
+    dlam, S, *_ = dense.nelson(space.K, space.M, theta, ritz, count)
     lam = np.repeat(ritz.lam[:count], theta.size)
     unit = np.tile(half_range, count) / np.sqrt(lam - space.sigma)
     dY = ritz.X @ S[:, :count].reshape(space.columns, -1) * unit

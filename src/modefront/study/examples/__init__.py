@@ -6,6 +6,7 @@ from importlib import resources
 from pathlib import Path
 
 from modefront.errors import Fault, InputError, reason, suggestion
+from modefront.outputs import write_bytes
 
 HAMMER_TEST = "hammer-test"
 """The example of which tests are simulated, and their modes identified, where it is written."""
@@ -45,7 +46,7 @@ def write_example(name: str, directory: Path) -> list[Path]:
                 Fault(str(path), "file", expected, "an existing one") for path in existing
             )
         for source, path in zip(sources, targets, strict=True):
-            path.write_bytes(source.read_bytes())
+            write_bytes(path, source.read_bytes())
         if simulated:
             hammer_test.write(directory)
     except OSError as error:

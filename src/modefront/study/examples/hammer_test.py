@@ -19,6 +19,7 @@ from modefront.data.csv import write_csv
 from modefront.data.modal_test import read_test
 from modefront.identification.identify import identify
 from modefront.identification.sets import combine, modal_data_of
+from modefront.outputs import write_text
 
 THETA = np.array([1.10, 0.95, 1.05])
 MASSES = 22.6 * np.array([1.0, 1.0, 0.76])  # kg
@@ -56,7 +57,7 @@ def write(folder: Path) -> None:
     for model, added in ADDED.items():
         H = accelerances(added)
         for name, j in _tests(model):
-            (folder / name).write_text(_measured(H[j], rng), encoding="utf-8")
+            write_text(folder / name, _measured(H[j], rng))
     for model in ADDED:
         test = read_test(folder / f"test-{model}.toml")
         identified = [identify(part.assembled.data, test.band, test.modes) for part in test.sets]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Container, Sequence
 
-from modefront.fronts.given import Weighted, label_faults
+from modefront.front.given import Weighted, label_faults
 from modefront.options import each_once
 from modefront.study.tables.options import note, read_record
 from modefront.toml import Table, has_name

@@ -1,0 +1,125 @@
+r"""Flat parts of a front: where one objective hardly changes while others do.
+
+The models next to an edge may all be nearly as good in its objective, far from each other as they
+are: the data do not say which of them it is. Such a part of the front is flat: points with
+
+.. math:: J_i \le (1 + \epsilon) \min J_i
+
+spread over much of the range of another objective. The identifiable part of the front begins where
+the best of the others at that level lies (`modefront.front.edges.near_best`), and is covered by
+points of its own. Of three and more objectives the flat part is a patch, and that point is one of
+its border: points of the new simplex that come to lie in the patch are left out.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront._typing import Floats, Ints
+from modefront.front.archive import Archive
+from modefront.front.edges import near_best
+from modefront.front.proposers.polish import Polish
+from modefront.front.proposers.rivals import Rivals
+from modefront.front.search import Loop, Search
+from modefront.front.simplex import Payoff, lattice, payoff
+from modefront.front.state import State, distinct_points
+from modefront.front.subproblems import Point
+from modefront.optim.lexicographic import EXACT, TIE
+from modefront.optim.problem import Problem
+from modefront.optim.sqp import Solution
+from modefront.work.task import IMMEDIATE, Executor, Task
+
+SPREAD = 0.2
+"""Share of the range of another objective over which a flat part extends at least."""
+
+
+@dataclass(frozen=True)
+class Identifiable:
+    """The part of a front that is not flat.
+
+    Attributes
+    ----------
+    flat : (n,) how many points of the whole front lie in the flat part at each edge, besides it
+    uncut : (n,) likewise, where the end of the flat part was not found, so that it is not cut
+    ends : where the part ends, one solution an objective
+    target : the simplex between them; None where the part is one point
+    points : along it; empty where it is one point
+    """
+
+    flat: Ints
+    uncut: Ints
+    ends: Sequence[Solution]
+    target: Payoff | None = None
+    points: Sequence[Solution] = ()
+
+
+def flat_points(J: Floats, least: Floats, tolerance: float, sizes: Floats) -> Ints:
+    """Return how many rows of J (points, n) lie in the flat part at each edge, besides the edge.
+
+    ``least`` (n,) are the least values; an objective that is fitted exactly, compared with
+    ``sizes`` (n,), has no flat part. Fewer than two points make none, nor do such as spread over
+    less than a fifth of the range of every other objective: neighbours of a minimum.
+
+    >>> J = np.array([[1.0, 3.0], [1.001, 2.0], [1.002, 1.0], [1.5, 0.5], [2.0, 0.4]])
+    >>> flat_points(J, np.array([1.0, 0.4]), 0.01, np.ones(2)).tolist()
+    [2, 0]
+    """
+    within = (1 + tolerance) * least >= J
+    count = within.sum(axis=0) - 1
+    scaled = J / np.maximum(np.ptp(J, axis=0), np.finfo(float).tiny)
+    spread = [np.ptp(scaled[chosen], axis=0).max() if chosen.any() else 0.0 for chosen in within.T]
+    enough = (count >= 2) & (np.array(spread) >= SPREAD) & (least > EXACT * sizes)
+    return np.where(enough, count, 0)
+
+
+def same(solution: Solution, other: Solution) -> bool:
+    """Return whether two solutions are of the same parameters."""
+    return bool(np.array_equal(solution.theta, other.theta))
+
+
+# 8 arguments: the front, and the options of the part.
+def identifiable_part(
+    problem: Problem,
+    points: Sequence[Solution],
+    edges: Sequence[Solution],
+    known: Sequence[Solution],
+    tolerance: float,
+    sizes: Floats,
+    divisions: int,
+    work: Executor = IMMEDIATE,
+) -> Identifiable | None:
+    """Return the part of a front that is not flat; None where nothing is flat.
+
+    A flat part of which the end is not found is not cut, and counted. ``points`` lie along the
+    whole front, ``edges`` are its edges, ``known`` are solutions to start from; ``divisions`` are
+    the steps along each edge of the simplex.
+    """
+    least = np.array([solution.J[i] for i, solution in enumerate(edges)])
+    flat = flat_points(np.array([solution.J for solution in points]), least, tolerance, sizes)
+    if not flat.any():
+        return None
+    ends = list(edges)
+    for i in np.flatnonzero(flat).tolist():
+        arguments = (problem, edges[i], i, tolerance, sizes, known)
+        key = ("identifiable", "edge", problem.objectives[i])
+        (ends[i],) = work.run([Task(key, near_best, arguments)])
+    moved = [not same(solution, edge) for solution, edge in zip(ends, edges, strict=True)]
+    flat, uncut = np.where(moved, flat, 0), np.where(moved, 0, flat)
+    target = payoff(ends, sizes) if flat.any() else None
+    if target is None:
+        return Identifiable(flat, uncut, ends)
+    state = State(problem, Search().tolerance, Archive(problem.lower.size, len(edges)))
+    for solution in [*ends, *known]:
+        state.archive.add(solution.theta, solution.J)
+    state.models += [*ends, *points]
+    counts = lattice(len(edges), divisions)
+    subproblems = [Point(row / divisions, tuple(row.tolist()), target) for row in counts]
+    state.add(subproblems, [None] * len(counts))
+    Loop(state, [Polish(), Rivals()], Search(), work).run("identifiable")
+    along = distinct_points([place.incumbent for place in state.places], target.scale)
+    floor = np.where(flat > 0, (1 - TIE) * target.utopia, 0.0)
+    above = [solution for solution in along if (floor <= solution.J).all()]
+    return Identifiable(flat, uncut, ends, target, above)

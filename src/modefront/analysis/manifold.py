@@ -1,0 +1,388 @@
+r"""Equivalent models: manifolds of minima, followed and sampled to their ends.
+
+Where data do not determine all parameters, the minimisers of a scalarisation f(J) form a manifold
+(Katafygiotis & Lam 2002, Earthquake Engineering and Structural Dynamics 31, 791-812). Its tangents
+and the corrections that lead back to it are those of `modefront.analysis.tangents`. How far it is
+followed depends on its dimension d.
+
+* Curves and surfaces (d = 1, 2) are covered. New points grow from points by steps of length h until
+  every step from every point arrives next to a known one (a packing, as in Henderson 2002,
+  International Journal of Bifurcation and Chaos 12, 451-476). A step that would leave the bounds
+  ends on them, and one that starts at a bound and would cross it goes along it. A surface has half
+  of the models that are wanted, and h is no less than these allow; if they do not cover it, it is
+  treated like what follows, from all of its points.
+* A covering of more dimensions takes a number of points that grows like :math:`h^{-d}`. What is
+  wanted of them is how far each parameter can go: :math:`\max \pm u_j` on the manifold, from the
+  best point that is known, by steps that are best on the tangents,
+
+  .. math:: \max_y \pm (T y)_j \quad\text{subject to}\quad 0 \le u + T y \le 1, \quad
+      \|T y\|_\infty \le H ,
+
+  linear programmes, each step corrected. What is reached is a local maximum: a parameter goes so
+  far at least. No evaluation is spent on a parameter that is known to reach its bound.
+
+So found are all minima that one can get to from the start. Another minimum lies on a manifold that
+is known if a walk along that one, towards it, arrives there. Then it is not followed again, nor
+where it is the minimum of another programme that is as good on all of the manifold. Not found are
+other pieces of the set of minima, which need starts of their own, and what branches off with
+another dimension. Sheets nearer to one another than h are not told apart. The evaluations of all
+manifolds of a programme are bounded; where they are spent, what is known until then is returned.
+
+Variables are :math:`u = (\theta - lower) / (upper - lower)`.
+
+========  =======  =================================================================
+symbol    shape    meaning
+========  =======  =================================================================
+d         ()       dimension of the manifold; 0 is an isolated minimum
+h, H      ()       distance of neighbouring points, and longest step of a walk, in u
+T         (p, d)   orthonormal basis of the tangent space, in u
+========  =======  =================================================================
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+import scipy.linalg
+
+from modefront._typing import Bools, Floats
+from modefront.analysis.tangents import ARRIVED, Context, TangentPoint, context_of
+from modefront.optim.problem import AT_BOUND, Evaluation, Problem, Wrapped
+from modefront.optim.scalarisation import Scalarisation
+from modefront.work.codec import record
+from modefront.work.steps import note
+
+NEAR = 0.7
+"""Distance over the length of a step, below which a point counts as one that is known: below 1, as
+corrected steps do not end where they were to, and above 1/2, or points lie twice as dense."""
+
+SHORT = 0.3
+"""Step over h, below which it is not worth making to a bound, but at the ends of a curve: an
+evaluation or more for a model like the last one."""
+
+SAME_MINIMUM = 1e-5
+"""Distance in u below which two isolated minima are the same: a hundred times the tolerance of a
+step (`modefront.optim.sqp.Options`), which minima that are nearly flat miss by as much."""
+
+HALVINGS = 4
+"""Halvings of a step that finds no point, at most."""
+
+COVERED = 2
+"""Dimensions up to which a manifold is covered: with a distance of 0.1, three take a thousand
+models."""
+
+FAR = 0.25
+"""H: longest step of a walk over the ranges of the parameters."""
+
+GAIN = 1e-2
+"""Share of its range by which a parameter has to go on, lest it counts as at its end: what is
+reported of a range has two digits."""
+
+FAITHFUL = 0.8
+"""Gain of a step over that along the tangents, above which the next one is longer."""
+
+WALK = 16
+"""Steps of a walk at most: of the longest ones, four times across the range of a parameter."""
+
+SPEND = 10
+"""Evaluations for the manifolds of a programme, over the number of models of one of them."""
+
+AHEAD = 0.5
+"""Least cosine between tangents at the two ends of a step, and between a step and where it is to
+lead: 60 degrees."""
+
+
+@record
+class Extent(Enum):
+    """Extent to which a manifold was followed; the value describes it."""
+
+    ISOLATED = "an isolated minimum"
+    CLOSED = "followed until it closed, within the bounds"
+    BOUNDED = "followed until it closed or met the bounds"
+    CUT = "followed until there were as many models as wanted; it goes on"
+    LOST = "followed as far as steps could be made; it may go on"
+    SPANNED = "followed along each parameter as far as it goes"
+    SPENT = "followed until the eigenproblems allowed for it were spent; it may go on"
+
+
+@record
+@dataclass(frozen=True)
+class Manifold:
+    """A connected set of equivalent models.
+
+    Attributes
+    ----------
+    dimension : its dimension at the start
+    models : evaluations on it; those of a curve in their order along it, those of a manifold of
+        more than two dimensions where parameters go the farthest
+    extent : how far it was followed
+    evaluations : what that took
+    minima : how many of the minima lie on it
+    twin : position, among the manifolds that were known before, of the same one; None where it
+        was not known
+    """
+
+    dimension: int
+    models: Sequence[Evaluation]
+    extent: Extent
+    evaluations: int = 0
+    minima: int = 1
+    twin: int | None = None
+
+
+class _SpentError(Exception):
+    """The evaluations that were allowed are spent."""
+
+
+@dataclass
+class _Meter:
+    """Counts evaluations, of which no more than ``most`` are made."""
+
+    most: int
+    spent: int = 0
+
+    def evaluation(
+        self, problem: Problem, theta: Floats, derivatives: bool, second: bool
+    ) -> Evaluation:
+        """Return an evaluation; raises _SpentError where none is left."""
+        if self.spent >= self.most:
+            raise _SpentError
+        self.spent += 1
+        note(f"model {self.spent} of at most {self.most}")
+        return problem.evaluate(theta, derivatives=derivatives, second=second)
+
+
+# 8 arguments: the minima, and limits by keyword.
+def equivalent_models(
+    problem: Problem,
+    programme: Scalarisation,
+    minima: Sequence[Evaluation],
+    *,
+    h: float = 0.05,
+    limit: int = 100,
+    evaluations: int | None = None,
+    known: Sequence[Manifold] = (),
+    idle: Bools | None = None,
+) -> list[Manifold]:
+    """Return the manifolds through minima of a programme without constraints.
+
+    ``minima`` are evaluations with derivatives; one that lies on a manifold found before adds
+    none. ``h`` is the distance of neighbouring models over the ranges of the parameters,
+    ``limit`` the number of models of one manifold at most, and ``evaluations`` how many are made
+    in all, ten times as many where nothing is said. One that is among the ``known`` manifolds, of
+    other programmes, is not followed again. Parameters that are ``idle`` (p,), without effect on
+    any objective, are left where they are. Minima for which no evaluation is left are manifolds of
+    one model.
+    """
+    meter = _Meter(SPEND * limit if evaluations is None else evaluations)
+    metered = Wrapped(problem, meter.evaluation)
+    still = np.zeros(problem.lower.size, dtype=bool) if idle is None else idle
+    span = np.where(still, np.inf, problem.upper - problem.lower)
+    out: list[Manifold] = []
+    for minimum in minima:
+        before, twin = meter.spent, None
+        on = next((k for k, x in enumerate(out) if _is_on(x, minimum, span, h)), None)
+        if on is None:
+            try:
+                context, first = context_of(metered, programme, minimum, still)
+                twin = _position(context, first, [*out, *known], h)
+                on = twin if twin is not None and twin < len(out) else None
+                manifold = _follow(context, first, h, limit) if twin is None else None
+            except _SpentError:
+                manifold = Manifold(0, [minimum], Extent.SPENT)
+        spent = meter.spent - before
+        if on is not None:
+            same = out[on]
+            out[on] = replace(same, minima=same.minima + 1, evaluations=same.evaluations + spent)
+        elif manifold is not None:
+            out.append(replace(manifold, evaluations=spent))
+        elif twin is not None:
+            twin -= len(out)
+            out.append(replace(known[twin], evaluations=spent, minima=1, twin=twin))
+    return out
+
+
+def _is_on(manifold: Manifold, minimum: Evaluation, span: Floats, h: float) -> bool:
+    """Return whether a minimum is next to a model of a manifold."""
+    theta = np.array([model.theta for model in manifold.models])
+    near = float(np.linalg.norm((theta - minimum.theta) / span, axis=1).min())
+    return near <= (h if manifold.dimension else SAME_MINIMUM)
+
+
+def _position(
+    context: Context, first: TangentPoint, manifolds: Sequence[Manifold], h: float
+) -> int | None:
+    """Return the position of the manifold to which a walk from a minimum leads; None if to none.
+
+    It has the same dimension, and all of its models are as good.
+    """
+    for k, manifold in enumerate(manifolds):
+        alike = manifold.dimension == context.dimension > 0
+        if alike and all(map(context.equivalent, manifold.models)):
+            distances = [np.linalg.norm(context.offset(first.u, x)) for x in manifold.models]
+            if _reaches(context, first, manifold.models[int(np.argmin(distances))], h):
+                return k
+    return None
+
+
+def _reaches(context: Context, point: TangentPoint, evaluation: Evaluation, h: float) -> bool:
+    """Return whether a walk along the manifold from a point arrives next to a point on it."""
+    for _ in range(WALK):
+        offset = context.offset(point.u, evaluation)
+        distance = float(np.linalg.norm(offset))
+        if distance <= h:
+            return True
+        step = point.T @ (point.T.T @ offset)
+        size = float(np.linalg.norm(step))
+        if size < AHEAD * distance:
+            return False
+        u = np.clip(point.u + step * min(1.0, FAR / size), 0, 1)
+        landed = context.landed(point, u, context.held)
+        if landed is None or np.linalg.norm(context.offset(landed.u, evaluation)) >= distance:
+            return False
+        point = landed
+    return False
+
+
+def _follow(context: Context, first: TangentPoint, h: float, limit: int) -> Manifold:
+    """Return the manifold of minima through one of them, as far as evaluations are left."""
+    d, points, extent = context.dimension, [first], Extent.ISOLATED
+    try:
+        if d == 1:
+            extent = _cover(context, points, h, limit)
+        elif d == COVERED:
+            covering = max(limit // 2, 1)
+            extent = _cover(context, points, max(h, covering ** (-1 / 2)), covering)
+        if d > COVERED or (d == COVERED and extent is Extent.CUT):
+            extent = _span(context, points, limit)
+    except _SpentError:
+        extent = Extent.SPENT
+    if len(points) == 1 and extent not in (Extent.CUT, Extent.SPENT):
+        d, extent = 0, Extent.ISOLATED  # flat to second order only, or held by bounds
+    return Manifold(d, [point.evaluation for point in points], extent)
+
+
+def _cover(context: Context, points: list[TangentPoint], h: float, limit: int) -> Extent:
+    """Add points all over a curve or a surface, those of a curve in their order along it."""
+    extents = [Extent.CLOSED]
+    queue = deque((points[0], side * t, side) for t in points[0].T.T for side in (1, -1))
+    while queue:
+        point, t, side = queue.popleft()
+        if len(points) == limit:
+            return Extent.CUT
+        new, extent = _advance(context, points, point, t, h)
+        extents.append(extent)
+        if new is not None:
+            points.insert(len(points) if side > 0 or context.dimension > 1 else 0, new)
+            queue.extend((new, s * t, side) for t in new.T.T for s in (1, -1))
+    return next((x for x in (Extent.LOST, Extent.BOUNDED) if x in extents), Extent.CLOSED)
+
+
+def _advance(
+    context: Context, points: Sequence[TangentPoint], point: TangentPoint, t: Floats, h: float
+) -> tuple[TangentPoint | None, Extent]:
+    """Return the point at the end of a step along a tangent t, if it is new, and what it met."""
+    least = ARRIVED if context.dimension == 1 else SHORT * h
+    held, room = context.held, _room(point.u, t)
+    while room.min() < least:  # go along the bounds that are in the way
+        held = held | (room < least)
+        along = point.T @ scipy.linalg.null_space(point.T[held])
+        t = along @ (along.T @ t)
+        size = float(np.linalg.norm(t))
+        if size < SHORT:
+            return None, Extent.BOUNDED
+        t = np.where(held, 0.0, t / size)
+        room = _room(point.u, t)
+    length = min(h, float(room.min()))
+    for _ in range(HALVINGS + 1):
+        ahead = point.u + length * t
+        if _known(ahead, points, NEAR * length):
+            return None, Extent.CLOSED
+        new = context.landed(point, ahead, held)
+        if new is not None and _continues(point, new, length):
+            radius = NEAR * min(length, float(np.linalg.norm(new.u - point.u)))
+            bound = bool((~context.held & ((new.u == 0) | (new.u == 1))).any())
+            extent = Extent.BOUNDED if bound else Extent.CLOSED
+            return None if _known(new.u, points, radius) else new, extent
+        length /= 2
+    return None, Extent.LOST
+
+
+def _room(u: Floats, t: Floats) -> Floats:
+    """Return the length of a step along t after which each variable meets its bound, (p,)."""
+    moving = np.abs(t) > np.finfo(float).eps
+    return np.divide((t > 0) - u, t, out=np.full(t.size, np.inf), where=moving)
+
+
+def _continues(point: TangentPoint, new: TangentPoint, length: float) -> bool:
+    """Return whether a new point carries on from another: not back, and in a like direction."""
+    if np.linalg.norm(new.u - point.u) < SHORT * length:
+        return False
+    return bool(np.linalg.svd(point.T.T @ new.T, compute_uv=False)[-1] >= AHEAD)
+
+
+def _known(u: Floats, points: Sequence[TangentPoint], radius: float) -> bool:
+    """Return whether u is within a radius of one of the points."""
+    return any(float(np.linalg.norm(u - point.u)) < radius for point in points)
+
+
+def _span(context: Context, points: list[TangentPoint], limit: int) -> Extent:
+    """Add points of a manifold where parameters go the farthest, then those passed on the way."""
+    passed: list[TangentPoint] = []
+    ends: dict[tuple[int, int], TangentPoint] = {}
+    aims = [(j, sign) for j in np.flatnonzero(~context.held).tolist() for sign in (1, -1)]
+    try:
+        for j, sign in [*aims, *aims]:  # what other parameters led to may go on
+            if len(points) >= limit:
+                return Extent.CUT
+            walk = [max(points, key=lambda point: sign * point.u[j])]
+            if walk[0] is not ends.get((j, sign)):
+                try:
+                    _walk(context, walk, j, sign)
+                finally:
+                    ends[j, sign] = walk[-1]
+                    points += walk[1:][-1:]
+                    passed += walk[1:-1]
+    finally:
+        points += passed[: limit - len(points)]
+    return Extent.SPANNED
+
+
+def _walk(context: Context, walk: list[TangentPoint], j: int, sign: int) -> None:
+    """Add the points of a walk that increases sign * u_j as far as it can."""
+    length = FAR
+    for _ in range(WALK):
+        point = walk[-1]
+        step = _best_step(point, j, sign, length)
+        gain = float(sign * step[j])
+        to_bound = not AT_BOUND < point.u[j] + step[j] < 1 - AT_BOUND
+        if gain <= AT_BOUND or (gain < min(GAIN, length / 2) and not to_bound):
+            return
+        landed = context.landed(point, point.u + step, context.held)
+        share = 0.0 if landed is None else float(sign * (landed.u[j] - point.u[j])) / gain
+        if landed is not None and share >= SHORT:
+            walk.append(landed)
+            length = min(2 * length, FAR) if share > FAITHFUL else length
+        elif length > FAR / 2**HALVINGS:
+            length /= 2
+        else:
+            return
+
+
+def _best_step(point: TangentPoint, j: int, sign: int, length: float) -> Floats:
+    """Return the tangent step within the bounds that increases sign * u_j the most.
+
+    No variable moves by more than ``length``.
+    """
+    import scipy.optimize
+
+    T, u = point.T, point.u
+    limits = np.maximum(np.concatenate([np.minimum(length, 1 - u), np.minimum(length, u)]), 0.0)
+    best = scipy.optimize.linprog(
+        -sign * T[j], np.vstack([T, -T]), limits, bounds=(None, None), method="highs"
+    )
+    return T @ best.x if best.status == 0 else np.zeros(u.size)

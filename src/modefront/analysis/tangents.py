@@ -1,0 +1,193 @@
+r"""Points on a manifold of minima: their tangents, and corrections back to it.
+
+The tangent space of the minimisers of f(J) is the null space of the second derivatives
+
+.. math:: B = \sum_i w_i \, \partial^2 J_i + \partial J^T f'' \partial J, \qquad
+    w = \partial f / \partial J
+
+within the variables that no bound holds. In it, either no residual changes to first order, or
+residuals turn while the sum of their squares stays. What changes residuals a little is weakly
+determined and no tangent. A step along the tangents is corrected back to the manifold across them,
+by Newton's method on a basis Q of their complement,
+
+.. math:: s = -Q\, (Q^T B Q)^{-1} Q^T g, \qquad g = w^T \partial J ,
+
+until s vanishes; where residuals vanish, with Gauss-Newton's G, which is B on the manifold and
+leads farther. Every evaluation gives B, exactly, so that a point needs no other one for its
+tangents. Of a model without exact second derivatives B is that of Gauss-Newton: the tangents are
+the directions in which no residual changes.
+
+========  =========  ==========================================================
+symbol    shape      meaning
+========  =========  ==========================================================
+u         (p,)       :math:`(\theta - lower) / (upper - lower)`
+d         ()         dimension of the manifold; 0 is an isolated minimum
+T         (p, d)     orthonormal basis of the tangent space, in u
+B, G      (p, p)     second derivatives of f(J), and Gauss-Newton's, in u
+g         (p,)       slope of f(J), in u
+========  =========  ==========================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg
+from scipy.linalg import null_space
+
+from modefront._typing import Bools, Floats
+from modefront.optim.lexicographic import EXACT, TIE
+from modefront.optim.problem import AT_BOUND, Evaluation, Problem
+from modefront.optim.scalarisation import Scalarisation
+
+FLAT = 1e-5
+"""Eigenvalue of B over the greatest one, below which a direction may be flat: more than what the
+distance from the manifold leaves."""
+
+UNCHANGED, TURNING = 1e-12, 1e-3
+"""Eigenvalue of G over the greatest one of B, up to which no residual changes in a direction of the
+null space of B, and from which residuals turn there; slopes of residuals are its roots."""
+
+ARRIVED = 1e-7
+"""Correction in u below which a point lies on the manifold: the tolerance of a step
+(`modefront.optim.sqp.Options`)."""
+
+CORRECTIONS = 12
+"""Corrections after which a step is given up; quadratic ones take two to four."""
+
+
+@dataclass(frozen=True)
+class TangentPoint:
+    """A point on the manifold with its tangents (p, d)."""
+
+    evaluation: Evaluation
+    u: Floats
+    T: Floats
+
+
+@dataclass(frozen=True)
+class Context:
+    """Quantities that are the same everywhere on a manifold.
+
+    Attributes
+    ----------
+    problem, programme : of which its points are minima
+    most : the greatest f that is as good as that of the start
+    top : the greatest eigenvalue of B
+    held : (p,) variables that stay at a bound, or that are idle
+    idle : (p,) variables without effect
+    fits : whether residuals vanish on the manifold
+    dimension : of the manifold
+    """
+
+    problem: Problem
+    programme: Scalarisation
+    most: float
+    top: float
+    held: Bools
+    idle: Bools
+    fits: bool = False
+    dimension: int = 0
+
+    @property
+    def span(self) -> Floats:
+        """Ranges of the parameters, shape (p,)."""
+        return self.problem.upper - self.problem.lower
+
+    def offset(self, u: Floats, evaluation: Evaluation) -> Floats:
+        """Return the difference of an evaluation from u, but for idle variables."""
+        goal = (evaluation.theta - self.problem.lower) / self.span
+        return np.where(self.idle, 0.0, goal - u)
+
+    def equivalent(self, evaluation: Evaluation) -> bool:
+        """Return whether a model is as good as the start."""
+        return self.programme.value(evaluation.J) <= self.most
+
+    def second(self, evaluation: Evaluation) -> Floats:
+        """Return B."""
+        J, dJ = evaluation.J, evaluation.dJ * self.span
+        B = self._weighted(evaluation, evaluation.H)
+        return B + dJ.T @ self.programme.hessian(J) @ dJ if evaluation.exact else B
+
+    def tangents(self, evaluation: Evaluation) -> Floats:
+        """Return a basis (p, .) of the null space of B, without what is weakly determined."""
+        N = np.eye(self.held.size)[:, ~self.held]
+        lam, V = np.linalg.eigh(N.T @ self.second(evaluation) @ N)
+        N = N @ V[:, np.abs(lam) <= FLAT * self.top]
+        G = self._weighted(evaluation, evaluation.gauss_newton)
+        gamma, V = np.linalg.eigh(N.T @ G @ N)
+        return N @ V[:, (gamma <= UNCHANGED * self.top) | (gamma >= TURNING * self.top)]
+
+    def corrected(self, start: TangentPoint, u: Floats, held: Bools) -> TangentPoint | None:
+        """Return the point of the manifold next to u, to which a step from ``start`` led, or None.
+
+        Each variable that is held at a bound takes a dimension away from what is left to move on;
+        one that leaves its bounds on the way is held there.
+        """
+        for _ in range(CORRECTIONS):
+            evaluation = self.problem.evaluate(self.problem.lower + u * self.span, second=True)
+            if not evaluation.feasible or (held & ~self.held).sum() > self.dimension:
+                return None
+            T = start.T @ null_space(start.T[held])
+            Q = null_space(np.vstack([T.T, np.eye(u.size)[held]]))
+            try:
+                factor = scipy.linalg.cho_factor(Q.T @ self._across(evaluation) @ Q)
+            except np.linalg.LinAlgError:
+                return None
+            g = self.programme.gradient(evaluation.J) @ evaluation.dJ * self.span
+            s = -Q @ scipy.linalg.cho_solve(factor, Q.T @ g)
+            if np.abs(s).max(initial=0.0) <= ARRIVED:
+                point = TangentPoint(evaluation, u, self.tangents(evaluation))
+                on = self.equivalent(evaluation) and point.T.shape[1] == self.dimension
+                return point if on else None
+            u = u + s
+            held = held | (u < 0) | (u > 1)
+            u = np.clip(u, 0, 1)
+        return None
+
+    def landed(self, start: TangentPoint, u: Floats, held: Bools) -> TangentPoint | None:
+        """Return the point next to u, likewise, on the bounds that u is at if there is one.
+
+        ``held`` (p,) variables stay where they are.
+        """
+        at_bound = ~held & ((u <= AT_BOUND) | (u >= 1 - AT_BOUND))
+        point = None
+        if at_bound.any() and (at_bound | held & ~self.held).sum() <= self.dimension:
+            point = self.corrected(start, np.where(at_bound, np.round(u), u), held | at_bound)
+        return self.corrected(start, np.clip(u, 0, 1), held) if point is None else point
+
+    def _across(self, evaluation: Evaluation) -> Floats:
+        """Return the second derivatives for a correction: G is B where residuals vanish."""
+        if self.fits:
+            return self._weighted(evaluation, evaluation.gauss_newton)
+        return self.second(evaluation)
+
+    def _weighted(self, evaluation: Evaluation, H: Floats) -> Floats:
+        w = self.programme.gradient(evaluation.J)
+        return np.asarray(np.tensordot(w, H, axes=1) * np.outer(self.span, self.span))
+
+
+def context_of(
+    problem: Problem, programme: Scalarisation, evaluation: Evaluation, idle: Bools
+) -> tuple[Context, TangentPoint]:
+    """Return the context of the manifold through a minimum, and the minimum with its tangents.
+
+    Variables that the slope presses against a bound are held there, and those that are ``idle``
+    where they are.
+    """
+    if not evaluation.exact:
+        evaluation = problem.evaluate(evaluation.theta, second=True)
+    w, span = programme.gradient(evaluation.J), problem.upper - problem.lower
+    size, value = float(np.abs(w) @ np.abs(evaluation.J)), programme.value(evaluation.J)
+    u, g = (evaluation.theta - problem.lower) / span, w @ evaluation.dJ * span
+    free = np.zeros(u.size, dtype=bool)
+    context = Context(problem, programme, value, 0.0, free, idle)
+    top = float(np.abs(np.linalg.eigvalsh(context.second(evaluation))).max())
+    pressed = np.abs(g) > TIE * np.sqrt(top * size) + ARRIVED * top
+    held = idle | (pressed & np.where(g > 0, u <= 0, u >= 1))
+    most = value + TIE * size + top * TIE**2
+    fits = size <= EXACT * top
+    context = replace(context, top=top, held=held, most=most, fits=fits)
+    T = context.tangents(evaluation)
+    return replace(context, dimension=T.shape[1]), TangentPoint(evaluation, u, T)

@@ -1,0 +1,71 @@
+"""A Pareto front with its edges, weighted models and gaps."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from modefront._typing import Floats, Ints
+from modefront.front.gaps import Gap
+from modefront.front.point import Point, reference
+from modefront.front.simplex import Payoff
+from modefront.optim.sqp import Solution
+
+
+@dataclass(frozen=True)
+class Edge:
+    """The edge of one objective, and all other minima of that objective."""
+
+    best: Solution
+    minima: Sequence[Solution]
+
+
+# 13 fields: everything that a search leaves, which tasks keep as one record.
+@dataclass(frozen=True)
+class Front:
+    """A Pareto front with its edges, its weighted models and its gaps.
+
+    The record has more than ten fields because results report each of them.
+
+    Attributes
+    ----------
+    method : by which the front was found
+    points : points along the front, then edges and weighted models
+    edges : the edge of each objective with its other minima
+    optimal : all minima of the optimally weighted residuals that are accepted, best first
+    iterated : fixed point of the iteration of the weights; None where it met a singularity
+    exact : (n,) whether a model fits the objective exactly
+    target : utopia point and ranges over the edges; None where the front is one point
+    gaps : gaps between the branches of a front of two objectives
+    lattice : (places, n) lattice points of normal-boundary intersection
+    places : (places,) the point of the front, from 0, to which each of them led; -1 for none
+    known : (models, n) objectives of evaluated models that no evaluated model dominates
+    floor : (n,) bounds b of J in the bounded weights; None where there is no such model
+    sizes : (n,) typical sizes of the objectives, of random models; empty where not known
+    """
+
+    method: str
+    points: Sequence[Point]
+    edges: Sequence[Edge]
+    optimal: Sequence[Solution]
+    iterated: Solution | None
+    exact: tuple[bool, ...]
+    target: Payoff | None
+    gaps: Sequence[Gap]
+    lattice: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    places: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
+    known: Floats = field(default_factory=lambda: np.zeros((0, 0)))
+    floor: Floats | None = None
+    sizes: Floats = field(default_factory=lambda: np.zeros(0))
+
+    @property
+    def reference(self) -> Point:
+        """The model that the data prefer: of optimal, else bounded, else equal weights."""
+        return reference(self.points)
+
+    @property
+    def scale(self) -> Floats | None:
+        """Range of each objective over the edges, shape (n,)."""
+        return self.target.scale if self.target else None

@@ -1,0 +1,168 @@
+r"""Where the branches of a disconnected front of two objectives end.
+
+Points of the lattice whose normal passes through a gap all lead to the same model: the end of one
+branch at which one objective is least within it, and less than the normal asks for of the other
+one. It has *slack* in that one. If its least objective is the second, the branch before the gap
+ends there; if the first, the branch behind the gap starts there. The other branch comes to the same
+level of that objective at the other side of the gap, which is solved for, from the point next to
+the gap: the least of the objective with slack, at that level. Where the other branch has a point
+with slack at the gap, too, that is where it ends.
+
+Equations have no slack. Between points that are none of them dominated, but have dominated ones
+between them, the branch behind starts at its own least first objective, if that lies to the right
+of the last point before that it does not dominate; otherwise the branch before ends at its least
+second objective.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from modefront._typing import Bools, Floats, Ints
+from modefront.optim.problem import Problem
+from modefront.optim.scalarisation import level, weighted
+from modefront.optim.sqp import Options, Solution, solve
+from modefront.work.task import IMMEDIATE, Executor, Task
+
+_TIGHT = Options(reduction=1e-17)
+
+NARROW = 1e-4
+"""Width of a gap, over the range of an objective, below which it is none: what the share of all
+objectives in those of the lattice leaves."""
+
+
+@dataclass(frozen=True)
+class Gap:
+    """A gap of the front.
+
+    Attributes
+    ----------
+    last, first : the points of the front before the gap and behind it
+    end : where the branch before it ends; None where that is not known
+    start : where the branch behind it starts; None where that is not known
+    """
+
+    last: Solution
+    first: Solution
+    end: Solution | None
+    start: Solution | None
+
+    @property
+    def ends(self) -> list[Solution]:
+        """The end and the start, as far as they are known."""
+        return [solution for solution in (self.end, self.start) if solution is not None]
+
+    @property
+    def middle(self) -> float:
+        """The first objective in the middle of the gap."""
+        return float((self.end or self.last).J[0] + (self.start or self.first).J[0]) / 2
+
+
+def gaps(
+    problem: Problem,
+    points: Sequence[Solution],
+    optimal: Bools,
+    scale: Floats,
+    work: Executor = IMMEDIATE,
+    slack: Bools | None = None,
+) -> list[Gap]:
+    """Return the gaps between points in their order along the front, of two objectives.
+
+    ``optimal`` (points,) says which points are Pareto optimal among them, and ``slack`` (points, 2)
+    in which objective a point of the lattice has slack; none of them unless given.
+    """
+    slack = np.zeros((len(points), 2), dtype=np.bool_) if slack is None else slack
+    tasks, sides = [], []
+    kept = np.flatnonzero(optimal).tolist()
+    for k, (a, b) in enumerate(pairwise(kept)):
+        known = bool(slack[a, 0]), bool(slack[b, 1])
+        if any(known) or b > a + 1:
+            before = [points[i] for i in kept[: k + 1]]
+            arguments = (problem, before, points[b], known, scale)
+            tasks.append(Task(("gap", a + 1, b + 1), _ends, arguments))
+            sides.append((points[a], points[b], known))
+    out = []
+    for (last, first, known), (end, start) in zip(sides, work.run(tasks), strict=True):
+        if end and start and not _lies_between(end, start, scale):
+            own, beyond = (end, first) if known[0] else (start, last)
+            if not any(known) or np.abs((own.J - beyond.J) / scale).max() <= NARROW:
+                continue  # the branch goes on to the other side
+            end, start = (end, None) if known[0] else (None, start)
+        out.append(Gap(last, first, end, start))
+    return out
+
+
+def _lies_between(end: Solution, start: Solution, scale: Floats) -> bool:
+    """Return whether a start lies to the right of an end and below it, apart from it."""
+    width = (start.J - end.J) / scale
+    return bool(width[0] >= -NARROW and width[1] <= NARROW and np.ptp(width) > NARROW)
+
+
+def _ends(
+    problem: Problem,
+    before: Sequence[Solution],
+    b: Solution,
+    slack: tuple[bool, bool],
+    scale: Floats,
+) -> list[Solution | None]:
+    """Return where the branch before a gap ends and that of b starts; ``slack`` of these points."""
+
+    def own(i: int, of: Solution) -> Solution | None:
+        """Return where an objective is least within the branch of a point."""
+        return _converged(solve(problem, weighted(np.eye(2)[i] / scale), of, _TIGHT))
+
+    def at_level(i: int, of: Solution, other: Solution | None) -> Solution | None:
+        """Return where the branch of a point has as much of an objective as the other end."""
+        if other is None:
+            return None
+        goal = level(1 - i, i, float(other.J[i]), scale)
+        return _converged(solve(problem, goal, of, _TIGHT))
+
+    a = before[-1]
+    ends_itself, starts_itself = slack
+    end = own(1, a) if ends_itself else None
+    start = own(0, b) if starts_itself or not ends_itself else None
+    if not any(slack) and start:
+        a = next((x for x in before[::-1] if (x.J < start.J).any()), a)
+        if start.J[0] < a.J[0]:
+            ends_itself, end = True, own(1, a)
+    if not ends_itself:
+        end = at_level(0, a, start)
+    elif not starts_itself:
+        start = at_level(1, b, end)
+    return [end, start]
+
+
+def _converged(solution: Solution) -> Solution | None:
+    return solution if solution.converged else None
+
+
+def branches_of(
+    points: Sequence[Solution], optimal: Bools, gaps: Sequence[Gap]
+) -> list[list[Solution]]:
+    """Return the optimal points of each branch of a front, with its ends at gaps."""
+    J = np.array([solution.J for solution in points])
+    number = branch_numbers(J, optimal, gaps)
+    out = []
+    for k in range(len(gaps) + 1):
+        start = gaps[k - 1].start if k else None
+        end = gaps[k].end if k < len(gaps) else None
+        within = (points[i] for i in np.flatnonzero(number == k + 1).tolist())
+        out.append([solution for solution in (start, *within, end) if solution is not None])
+    return out
+
+
+def branch_numbers(J: Floats, optimal: Bools, gaps: Sequence[Gap]) -> Ints:
+    """Return the branch, from 1, that each row of J (points, 2) lies on; 0 for none.
+
+    A point that no other point dominates lies on no branch if the start of a branch dominates it.
+    """
+    middles = np.array([gap.middle for gap in gaps])
+    starts = np.array([gap.start.J for gap in gaps if gap.start]).reshape(-1, 2)
+    branch = 1 + (J[:, :1] > middles).sum(axis=1)
+    below = np.all(starts <= J[:, None], axis=2) & np.any(starts < J[:, None], axis=2)
+    return np.where(optimal & ~np.any(below, axis=1), branch, 0)

@@ -1,0 +1,74 @@
+r"""Coverage of a front by a set of points: hypervolume, IGD+ and largest gap.
+
+In units of the range of each objective, :math:`y = (J - J^*) / scale`, with the points :math:`Y`
+and a reference set :math:`R`:
+
+.. math::
+    HV &= \mathrm{vol} \bigcup_{y \in Y} [y, (1.1, \ldots, 1.1)] \\
+    IGD^+ &= \frac1{|R|} \sum_{\rho \in R} \min_{y \in Y} \| \max(y - \rho, 0) \|
+
+(Zitzler & Thiele 1998, doi:10.1007/BFb0056872; Ishibuchi et al. 2015,
+doi:10.1007/978-3-319-15892-1_8). The largest gap is the longest branch of the shortest tree that
+joins all points (for two objectives: the greatest distance of neighbours along the front).
+"""
+
+from __future__ import annotations
+
+import importlib.util
+
+import numpy as np
+from scipy.sparse.csgraph import minimum_spanning_tree
+from scipy.spatial.distance import pdist, squareform
+
+from modefront._typing import Floats
+from modefront.front.dominance import nondominated
+
+REFERENCE = 1.1
+"""Each coordinate of the point up to which the hypervolume counts."""
+
+
+def hypervolume(Y: Floats) -> float:
+    """Return the hypervolume of points (points, n), n >= 2.
+
+    For three and more objectives the package moocore (the extra ``metrics``) computes it; NaN
+    where it is not installed.
+
+    >>> round(hypervolume(np.array([[0.0, 1.0], [0.5, 0.5], [1.0, 0.0]])), 12)
+    0.46
+    """
+    Y = Y[(Y < REFERENCE).all(axis=1)]
+    if len(Y) == 0:
+        return 0.0
+    if Y.shape[1] > 2:
+        if importlib.util.find_spec("moocore") is None:
+            return float("nan")
+        import moocore
+
+        return float(moocore.hypervolume(Y, ref=np.full(Y.shape[1], REFERENCE)))
+    Y = Y[nondominated(Y, tolerance=0.0)]
+    Y = Y[np.argsort(Y[:, 0], kind="stable")]
+    width = np.diff(np.append(Y[:, 0], REFERENCE))
+    return float(width @ (REFERENCE - np.minimum.accumulate(Y[:, 1])))
+
+
+def igd_plus(Y: Floats, R: Floats) -> float:
+    """Return the IGD+ of points (points, n) to a reference set (m, n).
+
+    >>> igd_plus(np.array([[1.0, 0.5]]), np.array([[0.0, 1.0], [2.0, 0.0]]))
+    0.75
+    """
+    behind = np.array([np.linalg.norm(np.maximum(Y - rho, 0.0), axis=1).min() for rho in R])
+    return float(behind.mean())
+
+
+def largest_gap(Y: Floats) -> float:
+    """Return the longest branch of the shortest tree that joins points (points, n).
+
+    >>> round(largest_gap(np.array([[0.0, 1.0], [1.0, 0.0], [0.5, 0.5]])) ** 2, 12)
+    0.5
+    """
+    if len(Y) < 2:
+        return 0.0
+    # Points that coincide are no branch, which a length of 0 would be in a sparse matrix.
+    tree = minimum_spanning_tree(squareform(pdist(np.unique(Y, axis=0))))
+    return float(tree.data.max(initial=0.0))

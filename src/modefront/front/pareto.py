@@ -1,0 +1,475 @@
+"""The search for a Pareto front: edges and weighted models first, then the points between them."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from itertools import pairwise
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.errors import UnfinishedError
+from modefront.front.archive import Archive, recorded
+from modefront.front.dominance import nondominated
+from modefront.front.edges import near_best, sample
+from modefront.front.evolutionary import evolve_front
+from modefront.front.front import Edge, Front
+from modefront.front.gaps import NARROW, Gap, gaps
+from modefront.front.methods import METHODS
+from modefront.front.options import Pareto
+from modefront.front.point import Kind, Point, of_kind
+from modefront.front.proposers.base import Proposer, Rate
+from modefront.front.proposers.evolution import Evolution
+from modefront.front.proposers.polish import Polish
+from modefront.front.proposers.rivals import Rivals
+from modefront.front.proposers.starts import Starts
+from modefront.front.search import Loop, Search
+from modefront.front.simplex import Payoff, default_points, lattice, nearest, neighbours, payoff
+from modefront.front.state import DISTINCT, Place, State, distinct_points
+from modefront.front.subproblems import RHO, Least, Subproblem, Weights, active_bounds
+from modefront.front.subproblems import Point as LatticePoint
+from modefront.front.weights import (
+    accepted,
+    iterate_weights,
+    least_along,
+    optimal_minimum,
+)
+from modefront.optim.lexicographic import EXACT
+from modefront.optim.problem import Problem
+from modefront.optim.sqp import Solution
+from modefront.work.task import IMMEDIATE, Executor, Key, Task, seed_sequence
+
+LOOSE = 10 * RHO
+"""Distance of a point from its normal, over the ranges, above which the front ends there: the share
+of all objectives in what it minimises moves it by less."""
+
+LEAST = 1e-6
+"""Least weight of a sweep: without any, the minimum of the others would not be unique."""
+
+FINEST = 7
+"""Halvings of the distance between neighbours at most, where a front is refined."""
+
+TURNS = 4
+"""Fronts that are searched at most, each between edges that the search of the one before moved."""
+
+
+# 9 arguments: the problem, and each group of options of a search.
+def pareto_front(
+    problem: Problem,
+    a: Floats,
+    options: Pareto | None = None,
+    *,
+    seed: int = 0,
+    search: Search | None = None,
+    given: Sequence[tuple[str, Floats]] = (),
+    floor: Floats | None = None,
+    work: Executor = IMMEDIATE,
+    known: Front | None = None,
+) -> Front:
+    """Return the edges, the weighted models, the front by a method, and its gaps.
+
+    ``a`` (n,) counts the measured properties of each objective; ``given`` are named weights (n,);
+    ``floor`` (n,) is the part of each objective that errors of the data alone explain, for bounded
+    weights. With a ``known`` front of nearly the same problem, its models are solved for again, and
+    nothing else is sought. Raises UnfinishedError where no edge can be found.
+    """
+    run = _Run(
+        problem, a, options or Pareto(), seed, search or Search(), tuple(given), floor, work, known
+    )
+    return run.front()
+
+
+class _Run:
+    """A search for a front; see `pareto_front`."""
+
+    # 9 arguments: those of `pareto_front`.
+    def __init__(
+        self,
+        problem: Problem,
+        a: Floats,
+        options: Pareto,
+        seed: int,
+        search: Search,
+        given: tuple[tuple[str, Floats], ...],
+        floor: Floats | None,
+        work: Executor,
+        known: Front | None,
+    ) -> None:
+        self.problem, self.a, self.options, self.given = problem, a, options, given
+        self.floor, self.work, self.known, self.seed = floor, work, known, seed
+        self.n = len(problem.objectives)
+        self.state = State(problem, search.tolerance, Archive(problem.lower.size, self.n))
+        self._swept: dict[Key, Floats] = {}
+        self._bests: list[Solution] = []
+        rng = np.random.default_rng(seed_sequence(seed, "search"))
+        self.starts, self.rivals = Starts(rng), Rivals()
+        proposers: list[Proposer] = [Polish()]
+        if known is None:
+            others = np.random.default_rng(seed_sequence(seed, "evolution"))
+            proposers += [self.rivals, self.starts, Evolution(others, self.starts)]
+        self.loop = Loop(self.state, proposers, search, work)
+
+    def front(self) -> Front:
+        """Return all that is found."""
+        sizes = self._sizes()
+        self._add_anchors(sizes)
+        self.loop.run("edges")
+        for place in self.places:
+            if not place.incumbent.feasible:
+                raise UnfinishedError(f"no minimum of {place.subproblem.key} was found")
+        target = self._between(sizes)
+        self._complete()
+        edges = self._edges()
+        weighted = [
+            Point(kind, self.place("weights", kind.value, name).incumbent, name)
+            for kind, name, _ in self._weights()
+        ]
+        points, places, beta = self._points(target)
+        if METHODS[self.options.method].programme is None and target is not None:
+            points = self._evolved()
+        bests = self._reported(sizes, TURNS)
+        optimal, more = self._optimal(weighted, bests, points, target, sizes)
+        weighted += more
+        iterated = self._iterated(weighted, bests, sizes)
+        return Front(
+            self.options.method,
+            [
+                *(Point(Kind.FRONT, x, self.options.method, i + 1) for i, x in enumerate(points)),
+                *(
+                    Point(Kind.EDGE, x, name)
+                    for name, x in zip(self.problem.objectives, bests, strict=True)
+                ),
+                *weighted,
+            ],
+            edges,
+            optimal,
+            iterated,
+            tuple(edge.best.J[i] <= EXACT * sizes[i] for i, edge in enumerate(edges)),
+            target,
+            self._gaps(points, target),
+            beta,
+            places,
+            self.state.archive.J.copy(),
+            self.floor if of_kind(weighted, Kind.BOUNDED) else None,
+            sizes,
+        )
+
+    @property
+    def places(self) -> list[Place]:
+        """The places of all subproblems."""
+        return self.state.places
+
+    def place(self, *key: str | int) -> Place:
+        """Return the place of a subproblem."""
+        return next(x for x in self.places if x.subproblem.key == key)
+
+    def _weights(self) -> list[tuple[Kind, str, Floats]]:
+        """Return kind and name of the models of given and of equal weights, with these weights."""
+        named = [(Kind.GIVEN, name, w) for name, w in self.given]
+        return [*named, (Kind.EQUAL, "", np.ones(self.n))]
+
+    def _sizes(self) -> Floats:
+        """Return the typical size of each objective, (n,), of random models, unless it is known."""
+        seed = seed_sequence(0 if self.known else 1, "sample")
+        task = Task(("sample",), recorded, (sample, self.problem), seed)
+        (seen,) = self.work.run([task])
+        self.state.evaluations += seen.evaluations
+        for theta, J in zip(seen.theta, seen.J, strict=True):
+            self.state.archive.add(theta, J)
+        if self.known:
+            return self.known.sizes
+        if not seen.result.size:
+            raise UnfinishedError(
+                "the model cannot be evaluated at any of the parameters tried within the bounds"
+            )
+        return np.asarray(seen.result)
+
+    def _add_anchors(self, sizes: Floats) -> None:
+        """Add the subproblems of the edges and of the weighted models."""
+        out: list[Subproblem] = [
+            Least(i, sizes, name) for i, name in enumerate(self.problem.objectives)
+        ]
+        for kind, name, w in self._weights():
+            out.append(Weights(w, ("weights", kind.value, name), EXACT * float(w @ sizes)))
+        self.state.add(out, [self._known_solution(each) for each in out])
+
+    def _known_solution(self, subproblem: Subproblem) -> Solution | None:
+        """Return the solution of a subproblem in the known front, evaluated again."""
+        if self.known is None:
+            return None
+        found: list[Solution] = []
+        if isinstance(subproblem, Least):
+            found = [self.known.edges[subproblem.objective].best]
+        elif isinstance(subproblem, LatticePoint):
+            along = [x.solution for x in of_kind(self.known.points, Kind.FRONT)]
+            apart = {
+                k: np.abs(x.beta - subproblem.beta).max()
+                for k, x in enumerate(along)
+                if x.beta is not None
+            }
+            found = [along[min(apart, key=lambda k: apart[k])]] if apart else []
+        else:
+            labels = {("weights", x.kind.value, x.name): x.solution for x in self.known.points}
+            found = [x for key, x in labels.items() if key == subproblem.key]
+        if not found:
+            return None
+        task = Task(("known", *subproblem.key), recorded, (_evaluated, self.problem, found[0]))
+        (seen,) = self.work.run([task])
+        self.state.evaluations += seen.evaluations
+        return seen.result if seen.result.feasible else None
+
+    def _between(self, sizes: Floats) -> Payoff | None:
+        """Search the points between the edges, until these stay where they are."""
+        if self.n == 1:
+            return None
+        divisions = (self.options.points or default_points(self.n)) - 1
+        counts = [tuple(map(int, row)) for row in lattice(self.n, divisions)]
+        target: Payoff | None = None
+        first = len(self.places)
+        for turn in range(TURNS):
+            bests = self._reported(sizes, turn)
+            new = payoff(bests, sizes, self.state.models)
+            if new is None:
+                del self.places[first:]
+                return target
+            if target is not None and _are_alike(new, target):
+                break
+            target, self._bests = new, bests
+            if METHODS[self.options.method].programme is None:
+                break  # its points are the models of a population
+            before = {x.subproblem.key: x.incumbent for x in self.places[first:]}
+            del self.places[first:]
+            self._add_points(target, counts, before)
+            self._run_front()
+            self._grow(target)
+            self._refine(target)
+        return target
+
+    def _run_front(self) -> None:
+        """Search for the points that are there."""
+        self.rivals.rate = Rate()
+        self.loop.run("front")
+
+    def _add_points(
+        self,
+        target: Payoff,
+        counts: Sequence[tuple[int, ...]],
+        before: Mapping[Key, Solution] | None = None,
+    ) -> None:
+        """Add points of the lattice, from the models that they had ``before``."""
+        new: list[Subproblem] = []
+        for row in counts:
+            beta = np.array(row) / sum(row)
+            if self.options.method == "weights":
+                w = np.maximum(beta, LEAST)
+                new.append(Weights(w, ("sweep", *row), EXACT * float(w @ target.scale)))
+                self._swept[new[-1].key] = beta
+            else:
+                new.append(LatticePoint(beta, row, target, self.options.programme == "equations"))
+        starts = [(before or {}).get(each.key) or self._known_solution(each) for each in new]
+        self.state.add(new, starts)
+
+    def _lattice(self) -> list[tuple[Place, LatticePoint]]:
+        """Return the places of the points of the lattice, with their subproblems."""
+        pairs = ((x, x.subproblem) for x in self.places)
+        return [(x, point) for x, point in pairs if isinstance(point, LatticePoint)]
+
+    def _grow(self, target: Payoff) -> None:
+        """Add points beside such as lie on their normals, and below others, while there are any.
+
+        The simplex between the edges of more than two objectives does not cover the whole front. At
+        most as many points are added as there are within it.
+        """
+        most = 2 * len(self._lattice())
+        while self.n > 2:
+            here = self._lattice()
+            taken = {point.place for _, point in here}
+            beyond: set[tuple[int, ...]] = set()
+            for x, point in here:
+                if x.incumbent.converged and point.spread(x.incumbent.J) < LOOSE:
+                    beyond.update(neighbours(point.place))
+                elif x.incumbent.converged:
+                    beyond.add(nearest(target.place(x.incumbent.J), sum(point.place)))
+            added = sorted(beyond - taken)[: most - len(here)]
+            if not added:
+                break
+            self._add_points(target, added)
+            self._run_front()
+        for x, point in self._lattice():
+            on_normal = x.incumbent.converged and point.spread(x.incumbent.J) < LOOSE
+            if min(point.place) < 0 and not on_normal:
+                self.state.places = [other for other in self.places if other is not x]
+
+    def _refine(self, target: Payoff) -> None:
+        """Add points half-way between neighbours of two objectives that are too far apart."""
+        size = self.options.refined
+        for _ in range(FINEST if size is not None else 0):
+            here = sorted(self._lattice(), key=lambda pair: -float(pair[1].beta[0]))
+            new = []
+            for (x, one), (y, other) in pairwise(here):
+                apart = np.linalg.norm((x.incumbent.J - y.incumbent.J) / target.scale)
+                loose = max(one.spread(x.incumbent.J), other.spread(y.incumbent.J)) > LOOSE
+                if apart > (size or 0.0) and not loose:
+                    middle = np.array(one.place) * sum(other.place)
+                    middle += np.array(other.place) * sum(one.place)
+                    new.append(tuple((middle // np.gcd.reduce(middle)).tolist()))
+            if not new:
+                break
+            self._add_points(target, new)
+            self._run_front()
+
+    def _complete(self) -> None:
+        """Evaluate the derivatives of incumbents that no search has started from: at the budget."""
+        rest = [x for x in self.places if x.incumbent.evaluation.derivatives is None]
+        tasks = [
+            Task(
+                ("front", "rest", *x.subproblem.key),
+                recorded,
+                (_evaluated, self.problem, x.incumbent),
+            )
+            for x in rest
+        ]
+        for place, seen in zip(rest, self.work.run(tasks), strict=True):
+            place.incumbent = seen.result
+            self.state.evaluations += seen.evaluations
+
+    def _edges(self) -> list[Edge]:
+        """Return the edge of each objective with its other minima."""
+        out = []
+        span = self.state.span
+        for k, _ in enumerate(self.problem.objectives):
+            best = self.places[k].incumbent
+            minima = [best]
+            for solution in sorted(self.starts.ends.get(k, ()), key=lambda x: float(x.J[k])):
+                if all(np.abs((solution.theta - x.theta) / span).max() > DISTINCT for x in minima):
+                    minima.append(solution)
+            out.append(Edge(best, minima))
+        return out
+
+    def _points(self, target: Payoff | None) -> tuple[list[Solution], np.ndarray, Floats]:
+        """Return the points of the front, each once, and which lattice point led to which."""
+        if target is None:
+            return [], np.zeros(0, dtype=np.intp), np.zeros((0, self.n))
+        lattice = sorted(self._lattice(), key=lambda pair: tuple(-pair[1].beta))
+        solutions = [
+            replace(self._end(point, target) or x.incumbent, beta=point.beta)
+            for x, point in lattice
+        ]
+        beta = [point.beta for _, point in lattice]
+        sweep = [x for x in self.places if x.subproblem.key[0] == "sweep"]
+        solutions += [x.incumbent for x in sweep]
+        beta += [self._swept[x.subproblem.key] for x in sweep]
+        kept = distinct_points(solutions, target.scale)
+        J = np.array([x.J for x in kept])
+        apart = [(np.abs(J - x.J) / target.scale).max(axis=1) for x in solutions]
+        return kept, np.array([each.argmin() for each in apart], dtype=np.intp), np.array(beta)
+
+    def _end(self, point: LatticePoint, target: Payoff) -> Solution | None:
+        """Return the edge that a corner of the simplex is; None of other points."""
+        if target.worst or max(point.place) < sum(point.place) or min(point.place) < 0:
+            return None
+        return self._bests[int(np.argmax(point.place))]
+
+    def _reported(self, sizes: Floats, turn: int) -> list[Solution]:
+        """Return the edges, those within the tolerance that are best in the others if wanted."""
+        names = self.problem.objectives
+        bests = [self.place("edge", name).incumbent for name in names]
+        tolerance = self.options.tolerance
+        if tolerance == 0:
+            return bests
+        starts = [place.incumbent for place in self.places]
+        tasks = [
+            Task(
+                ("near", name),
+                near_best,
+                (self.problem, x, i, tolerance, sizes, starts),
+                turn=("near", turn),
+            )
+            for i, (name, x) in enumerate(zip(names, bests, strict=True))
+        ]
+        return self.work.run(tasks)
+
+    def _evolved(self) -> list[Solution]:
+        """Return the nondominated models of the last population of an evolutionary method."""
+        options = self.options
+        rng = np.random.default_rng(seed_sequence(self.seed, options.method))
+        population, evaluations = options.population, options.evaluations
+        arguments = (self.problem, options.method, population, evaluations, rng, self.work)
+        return evolve_front(*arguments)
+
+    def _gaps(self, points: Sequence[Solution], target: Payoff | None) -> Sequence[Gap]:
+        """Return the gaps of a front of two objectives."""
+        if self.n != 2 or target is None or len(points) < 2 or self.options.method != "nbi":
+            return []
+        optimal = nondominated(np.array([x.J for x in points]))
+        slack = np.zeros((len(points), 2), dtype=np.bool_)
+        for k, x in enumerate(points):
+            if x.converged and x.beta is not None and self.options.programme == "bounds":
+                c = target.r * target.excess(x.beta, x.J)
+                slack[k] = (c.max() - c > NARROW) & ~active_bounds(x.weights * target.unit)
+        return gaps(self.problem, points, optimal, target.scale, self.work, slack)
+
+    def _optimal(
+        self,
+        models: Sequence[Point],
+        bests: Sequence[Solution],
+        points: Sequence[Solution],
+        target: Payoff | None,
+        sizes: Floats,
+    ) -> tuple[list[Solution], list[Point]]:
+        """Return accepted minima of the optimally weighted residuals, and the model to report.
+
+        Bounded weights take the place of optimal ones where no minimum is accepted.
+        """
+        weighted_models = [model.solution for model in models]
+        near = least_along(points, self.a, sizes)
+        starts = [*weighted_models, *bests, *near]
+        minima = self._minima("optimal-weights", starts, sizes, 0.0)
+        scale = target.scale if target else sizes
+        rivals = [*weighted_models, *points]
+        optimal = accepted(minima, self.a, sizes, rivals, self.state.archive.J, scale)
+        if optimal:
+            return optimal, [Point(Kind.OPTIMAL, optimal[0])]
+        if self.floor is None:
+            return [], []
+        bounded = self._minima("bounded-weights", starts, sizes, self.floor)
+        return [], [Point(Kind.BOUNDED, x) for x in bounded[:1]]
+
+    def _minima(
+        self, stage: str, starts: Sequence[Solution], sizes: Floats, floor: Floats | float
+    ) -> list[Solution]:
+        """Return the distinct minima of I below some starts, best first."""
+        tasks = [
+            Task((stage, k + 1), recorded, (optimal_minimum, self.problem, self.a, sizes, floor, x))
+            for k, x in enumerate(starts)
+        ]
+        out: list[Solution] = []
+        for seen in self.work.run(tasks):
+            self.state.evaluations += seen.evaluations
+            x: Solution = seen.result
+            apart = [np.abs((x.theta - y.theta) / self.state.span).max() > DISTINCT for y in out]
+            if x.converged and all(apart):
+                out.append(x)
+        shift = np.asarray(floor)
+        return sorted(out, key=lambda x: float(self.a @ np.log(np.maximum(x.J + shift, 1e-300))))
+
+    def _iterated(
+        self, models: Sequence[Point], bests: Sequence[Solution], sizes: Floats
+    ) -> Solution | None:
+        """Return the fixed point of the iteration of the weights."""
+        equal = of_kind(models, Kind.EQUAL)
+        first = equal[0].solution if equal else bests[0]
+        arguments = (self.problem, self.a, sizes, first)
+        return self.work.run([Task(("iterated-weights",), iterate_weights, arguments)])[0]
+
+
+def _are_alike(one: Payoff, other: Payoff) -> bool:
+    """Return whether two simplexes hardly differ."""
+    utopia = np.abs((one.utopia - other.utopia) / one.scale).max()
+    return bool(max(utopia, np.abs(one.scale / other.scale - 1).max()) < DISTINCT)
+
+
+def _evaluated(problem: Problem, solution: Solution) -> Solution:
+    """Return a solution with derivatives."""
+    return replace(solution, evaluation=problem.evaluate(solution.theta, second=True))

@@ -1,0 +1,86 @@
+"""A point of the results: a model, and why it is reported."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from enum import Enum
+
+from modefront.optim.sqp import Solution
+from modefront.work.codec import record
+
+
+@record
+class Kind(Enum):
+    """Reason why a model is reported."""
+
+    NOMINAL = "nominal"
+    FRONT = "front"
+    EDGE = "edge"
+    GIVEN = "given-weights"
+    EQUAL = "equal-weights"
+    OPTIMAL = "optimal-weights"
+    BOUNDED = "bounded-weights"
+    IDENTIFIABLE = "identifiable-part"
+    IDENTIFIABLE_EDGE = "identifiable-edge"
+
+
+WEIGHTED = (Kind.GIVEN, Kind.EQUAL, Kind.OPTIMAL, Kind.BOUNDED)
+"""Kinds of models that minimise weighted residuals."""
+
+REFERENCES = (Kind.OPTIMAL, Kind.BOUNDED, Kind.EQUAL)
+"""Kinds that the data prefer, the first of them that there is."""
+
+
+@dataclass(frozen=True)
+class Point:
+    """A model with the reason why it is reported.
+
+    Attributes
+    ----------
+    kind : the reason
+    solution : the model, and how it was found
+    name : method of a point of the front, group of an edge, name of given weights; else empty
+    index : number along the front or its identifiable part, from 1; else 0
+    """
+
+    kind: Kind
+    solution: Solution
+    name: str = ""
+    index: int = 0
+
+    @property
+    def label(self) -> str:
+        """Text by which results show the point."""
+        return label(self.kind, self.name, self.index)
+
+
+def label(kind: Kind, name: str = "", index: int = 0) -> str:
+    """Return the text by which results show a point.
+
+    >>> label(Kind.FRONT, "nbi", 3), label(Kind.EDGE, "shapes"), label(Kind.EQUAL)
+    ('nbi-3', 'edge-shapes', 'equal-weights')
+    """
+    match kind:
+        case Kind.FRONT:
+            return f"{name}-{index}"
+        case Kind.EDGE:
+            return f"edge-{name}"
+        case Kind.GIVEN:
+            return name
+        case Kind.IDENTIFIABLE:
+            return f"identifiable-{index}"
+        case Kind.IDENTIFIABLE_EDGE:
+            return f"identifiable-edge-{name}"
+        case _:
+            return kind.value
+
+
+def of_kind(points: Iterable[Point], *kinds: Kind) -> list[Point]:
+    """Return the points of some kinds, in their order."""
+    return [point for point in points if point.kind in kinds]
+
+
+def reference(points: Sequence[Point]) -> Point:
+    """Return the model that the data prefer: of optimal, else bounded, else equal weights."""
+    return next(point for kind in REFERENCES for point in points if point.kind is kind)

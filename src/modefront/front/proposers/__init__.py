@@ -1,0 +1,1 @@
+"""Proposers: each says what to search next, one a file."""

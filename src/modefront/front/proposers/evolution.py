@@ -1,0 +1,76 @@
+"""Evolution: models between those that are known, by differential evolution over all subproblems.
+
+Each child is the incumbent of a subproblem, moved by the difference of two other known models
+(Storn & Price 1997, doi:10.1023/A:1008202821328) in some of its parameters, and mutated in a few
+(Deb & Agrawal 1995). A generation is evaluated without derivatives; whatever is better than an
+incumbent takes its place, and is polished from there. So evolution finds the basins that no start
+falls into, and Newton's method their bottoms.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.front.archive import Outcome
+from modefront.front.proposers.base import Offer, Rate, evaluate_all
+from modefront.front.proposers.starts import Starts
+from modefront.front.state import State
+
+CHILDREN = 10
+"""Models of a generation, which take as many evaluations as a local search."""
+
+INDEX = 20.0
+"""Distribution index of mutations: the usual value."""
+
+
+@dataclass
+class Evolution:
+    """Proposes generations of children, more where starts have left minima unseen.
+
+    Attributes
+    ----------
+    rng : random numbers
+    starts : tell how much of the box has not been covered
+    rate : of the generations so far
+    """
+
+    rng: np.random.Generator
+    starts: Starts
+    name: str = "evolution"
+    rate: Rate = field(default_factory=Rate)
+
+    def offers(self, state: State, _: int) -> Iterator[Offer]:
+        """Yield one generation."""
+        if len(state.places) > 1 and all(place.closed for place in state.places):
+            chance = max(self.rate.recent, self.starts.unseen * self.rate.chance)
+            yield evaluate_all(self._children(state), chance)
+
+    def learn(self, state: State, _: Offer, outcome: Outcome, gain: float) -> None:
+        """Count the generation."""
+        self.rate.note(gain > state.tolerance, outcome.evaluations)
+
+    def _children(self, state: State) -> Floats:
+        """Return the parameters of a generation, (children, p)."""
+        lower, upper, span = state.problem.lower, state.problem.upper, state.span
+        known = np.array([*(x.incumbent.theta for x in state.places), *state.archive.theta])
+        out = []
+        for _ in range(CHILDREN):
+            base = state.places[int(self.rng.integers(len(state.places)))].incumbent.theta
+            one, two = known[self.rng.integers(len(known), size=2)]
+            crossed = self.rng.uniform(size=base.size) < self.rng.uniform()
+            theta = np.where(crossed, base + self.rng.uniform(0.2, 1.0) * (one - two), base)
+            mutated = self.rng.uniform(size=base.size) < 1 / base.size
+            theta = np.where(mutated, theta + self._mutation(base.size) * span, theta)
+            out.append(np.clip(theta, lower, upper))
+        return np.array(out)
+
+    def _mutation(self, p: int) -> Floats:
+        """Return polynomial mutations over the ranges, (p,)."""
+        u = self.rng.uniform(size=p)
+        below = (2 * u) ** (1 / (INDEX + 1)) - 1
+        above = 1 - (2 * (1 - u)) ** (1 / (INDEX + 1))
+        return np.where(u < 0.5, below, above)

@@ -1,0 +1,84 @@
+"""Rivals: known models from which another subproblem may be better solved.
+
+What a model may lead to is told by its own derivatives (`modefront.front.proposers.prediction`).
+Where that is better than the incumbent, the model is a rival, and a few steps are taken from it:
+the model that they lead to is compared in its turn.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from modefront.front.archive import Outcome
+from modefront.front.proposers.base import STEPS, Offer, Rate, approach_from
+from modefront.front.proposers.prediction import is_hopeless, promised
+from modefront.front.state import DISTINCT, State
+from modefront.optim.sqp import Solution
+
+
+@dataclass
+class Rivals:
+    """Proposes models that may lead a subproblem to another basin than that of its incumbent.
+
+    Attributes
+    ----------
+    seen : number of models that were compared with each place
+    found : predicted gain of each pair of place and model that is not tried yet
+    rate : of the searches so far
+    """
+
+    name: str = "rivals"
+    seen: dict[int, int] = field(default_factory=dict)
+    found: dict[tuple[int, int], float] = field(default_factory=dict)
+    rate: Rate = field(default_factory=Rate)
+    _tried: set[tuple[int, int]] = field(default_factory=set)
+
+    def offers(self, state: State, most: int) -> Iterator[Offer]:
+        """Yield the most promising pairs."""
+        for k, place in enumerate(state.places):
+            if not place.closed:
+                continue
+            first = self.seen.get(k, 0)
+            for m in range(first, len(state.models)):
+                if not place.subproblem.is_near(state.models[m].J):
+                    continue
+                gain = predicted_gain(state, k, state.models[m])
+                if gain > state.tolerance:
+                    self.found[k, m] = gain
+            self.seen[k] = len(state.models)
+        used: set[int] = set()
+        count = len(state.places)
+        self.found = {pair: gain for pair, gain in self.found.items() if pair[0] < count}
+        for k, m in sorted(self.found, key=lambda pair: -self.found[pair]):
+            if k in used or not state.places[k].closed:
+                continue
+            used.add(k)
+            if len(used) > most:
+                break
+            place = state.places[k]
+            if predicted_gain(state, k, state.models[m]) <= state.tolerance:
+                del self.found[k, m]  # the incumbent has become better
+                continue
+            start, chance = state.models[m], self.rate.recent
+            yield approach_from(k, place.subproblem, start, chance, STEPS)
+
+    def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
+        """Count the search, and try the pair no more."""
+        self.rate.note(gain > state.tolerance, outcome.evaluations)
+        m = next(i for i, x in enumerate(state.models) if x is offer.start)
+        self.found.pop((offer.place, m), None)
+
+
+def predicted_gain(state: State, k: int, model: Solution) -> float:
+    """Return the gain that a model's own derivatives promise a subproblem, 0 for its incumbent."""
+    place = state.places[k]
+    if np.abs((model.theta - place.incumbent.theta) / state.span).max() <= DISTINCT:
+        return 0.0
+    w = place.subproblem.weights(place.incumbent)
+    if is_hopeless(state.problem, model.evaluation, w, float(w @ place.incumbent.J)):
+        return 0.0
+    J = promised(state.problem, place.subproblem, model.evaluation)
+    return place.subproblem.gain(J, place.incumbent)

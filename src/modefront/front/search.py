@@ -1,0 +1,111 @@
+"""The search: proposers are asked, the best offers are solved, and all are told what was found.
+
+An offer is worth making as long as the chance that some subproblem gains more than the tolerance is
+above the doubt that is allowed. Of these, the ones with the greatest chance per evaluation are
+solved, some at a time. The search ends when no offer is worth making, or at its budget. Nothing
+depends on who solves the offers, and in which order they are done.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+from typing import Annotated
+
+from modefront.front.archive import recorded
+from modefront.front.proposers.base import Offer, Proposer
+from modefront.front.state import State
+from modefront.options import check_fields, number, whole
+from modefront.work.task import Executor, Task
+
+BATCH = 6
+"""Offers that are solved at the same time."""
+
+MOST = 10**9
+"""Evaluations that may be asked for."""
+
+SHARE = number("a share above 0 and below 1", lambda x: 0 < x < 1)
+
+USUAL = 10
+"""Evaluations that a search is expected to take before any is known."""
+
+
+@dataclass(frozen=True)
+class Search:
+    """How far the search for global minima goes.
+
+    Raises InputError for values that are not possible.
+
+    Attributes
+    ----------
+    evaluations : budget of eigenproblems, 1 or more; what is open at its end is said
+    tolerance : gain of a result, over itself, that counts; between 0 and 1
+    doubt : chance of such a gain below which a search is not worth making; between 0 and 1
+    """
+
+    evaluations: Annotated[int, whole(1, MOST)] = 20_000
+    tolerance: Annotated[float, SHARE] = 1e-3
+    doubt: Annotated[float, SHARE] = 0.05
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+@dataclass
+class Loop:
+    """A search at work.
+
+    Attributes
+    ----------
+    state : what is known
+    proposers : in the order in which they are asked
+    search : when it ends
+    work : solves the offers
+    turn : number of batches that were solved
+    costs : searches and evaluations of each proposer
+    """
+
+    state: State
+    proposers: Sequence[Proposer]
+    search: Search
+    work: Executor
+    turn: int = 0
+    costs: dict[str, list[int]] = field(default_factory=dict)
+
+    def run(self, stage: str) -> None:
+        """Search until nothing is worth it."""
+        while self.state.evaluations < self.search.evaluations:
+            chosen = self._chosen()
+            if not chosen:
+                break
+            self.turn += 1
+            tasks = [
+                Task(
+                    (stage, self.turn, j + 1),
+                    recorded,
+                    (offer.function, self.state.problem, *offer.arguments),
+                )
+                for j, (_, offer) in enumerate(chosen)
+            ]
+            for (proposer, offer), outcome in zip(chosen, self.work.run(tasks), strict=True):
+                gain = self.state.tell(offer.place, offer.start, offer.final, outcome)
+                proposer.learn(self.state, offer, outcome, gain)
+                spent = self.costs.setdefault(proposer.name, [0, 0])
+                spent[0] += 1
+                spent[1] += outcome.evaluations
+
+    def _chosen(self) -> list[tuple[Proposer, Offer]]:
+        """Return the offers with the greatest chance per evaluation."""
+        offers = []
+        for place, proposer in enumerate(self.proposers):
+            cost = self._cost(proposer.name)
+            for offer in proposer.offers(self.state, BATCH):
+                if offer.chance >= self.search.doubt:
+                    offers.append((offer.chance / cost, -place, proposer, offer))
+        offers.sort(key=lambda each: each[:2], reverse=True)
+        return [(proposer, offer) for _, _, proposer, offer in offers[:BATCH]]
+
+    def _cost(self, name: str) -> float:
+        """Return the evaluations that a search is expected to take."""
+        tries, spent = self.costs.get(name, (0, 0))
+        return (spent + USUAL) / (tries + 1)

@@ -1,0 +1,179 @@
+"""The simplex between the edges of a front, and its lattice."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import combinations
+from math import comb
+
+import numpy as np
+import scipy.linalg
+
+from modefront._typing import Floats, Ints
+from modefront.front.dominance import nondominated
+from modefront.optim.scalarisation import Linear, constrained
+from modefront.optim.sqp import Solution
+
+POINT = 1e-10
+"""Range of an objective over the edges, over its typical size, below which it is no range."""
+
+FLAT = 1e-2
+"""Least singular value of Phi, over the greatest one, below which the simplex is flat."""
+
+MANY = 300
+"""Points of the simplex that are not exceeded if nothing else is wanted."""
+
+
+def lattice(objectives: int, divisions: int) -> Ints:
+    """Return the lattice of Das and Dennis with ``divisions`` steps along each edge, (points, n).
+
+    Whole coordinates whose sum is ``divisions``: the first point is the edge of the first
+    objective, the last point that of the last one.
+
+    >>> lattice(2, 2).tolist()
+    [[2, 0], [1, 1], [0, 2]]
+    """
+    total = divisions + objectives - 1
+    bars = np.array(list(combinations(range(total), objectives - 1)), dtype=int)
+    ends = np.hstack([np.full((len(bars), 1), -1), bars, np.full((len(bars), 1), total)])
+    return np.asarray(np.diff(ends, axis=1)[::-1] - 1)
+
+
+def neighbours(place: tuple[int, ...]) -> list[tuple[int, ...]]:
+    """Return the points of the lattice one step from one, within the simplex or beyond it."""
+    n = len(place)
+    return [
+        tuple(x + (k == i) - (k == j) for k, x in enumerate(place))
+        for i in range(n)
+        for j in range(n)
+        if i != j
+    ]
+
+
+def nearest(beta: Floats, divisions: int) -> tuple[int, ...]:
+    """Return a point of the lattice next to coordinates (n,) of the plane.
+
+    >>> nearest(np.array([0.6, 0.6, -0.2]), 5)
+    (3, 3, -1)
+    """
+    counts = np.rint(beta * divisions)
+    rest = beta * divisions - counts
+    counts[int(np.argmax(rest * (divisions - counts.sum())))] += divisions - counts.sum()
+    return tuple(counts.astype(int).tolist())
+
+
+def default_points(objectives: int) -> int:
+    """Return how many points lie along each edge if nothing else is wanted: 20, or fewer of many.
+
+    >>> [default_points(n) for n in (2, 3, 6)]
+    [20, 20, 6]
+    """
+    fitting = (points for points in range(20, 2, -1) if size(objectives, points) <= MANY)
+    return next(fitting, 2)
+
+
+def size(objectives: int, points: int) -> int:
+    """Return the number of points of the simplex with so many along each edge."""
+    return comb(points + objectives - 2, objectives - 1)
+
+
+@dataclass(frozen=True)
+class Payoff:
+    """The simplex between the edges.
+
+    Attributes
+    ----------
+    utopia : (n,) least objectives
+    scale : (n,) range of each objective
+    Phi : (n, n) the scaled pay-off matrix, one column an edge
+    worst : the model worst in each objective, where the simplex is that of the ranges; else none
+    """
+
+    utopia: Floats
+    scale: Floats
+    Phi: Floats
+    worst: Sequence[Solution] = ()
+
+    @cached_property
+    def r(self) -> Floats:
+        """The normal towards greater objectives, (n,), in units of the ranges."""
+        return np.asarray(self.Phi.sum(axis=1))
+
+    @property
+    def unit(self) -> Floats:
+        """The normal towards greater objectives, (n,)."""
+        return self.scale * self.r
+
+    def place(self, J: Floats) -> Floats:
+        """Return the coordinates (..., n) of the points of the plane that are projected onto J."""
+        y = (J - self.utopia) / self.scale
+        gamma = np.linalg.solve(self.Phi, y[..., None])[..., 0]
+        return np.asarray(gamma - (gamma.sum(axis=-1, keepdims=True) - 1) / gamma.shape[-1])
+
+    def offset(self, beta: Floats) -> Floats:
+        """Return the point of the plane at beta over the normal, (n,)."""
+        return np.asarray((self.utopia / self.scale + self.Phi @ beta) / self.r)
+
+    def excess(self, beta: Floats, J: Floats) -> Floats:
+        """Return how far objectives (..., n) lie above a point of the plane, over the normal."""
+        return np.asarray(J / self.unit - self.offset(beta))
+
+    def boundary(self, beta: Floats) -> Linear:
+        r"""Return the equations of normal-boundary intersection (Das & Dennis 1998).
+
+        Maximise t subject to :math:`\Phi \beta + t \hat n = J - J^*`
+        (doi:10.1137/S1052623496307510); t is eliminated: it is the component of the equation along
+        the normal, and what is across the normal remains as constraints.
+        """
+        normal = -self.r
+        across = scipy.linalg.null_space(normal[None]).T
+        point = self.Phi @ beta + self.utopia / self.scale
+        w = -normal / (normal @ normal)
+        return constrained(w / self.scale, across / self.scale, across @ point)
+
+
+def payoff(
+    edges: Sequence[Solution], sizes: Floats, known: Sequence[Solution] = ()
+) -> Payoff | None:
+    """Return the pay-off of the edges; None where an objective does not vary over them.
+
+    ``sizes`` are typical sizes of the objectives. Where nothing varies, one model is the best in
+    everything and the front is one point.
+
+    One model may be best in several of more objectives, and the simplex between the edges then is
+    flat. Its place takes the simplex between the points that are worst in one objective and best in
+    all others, with the ranges over all ``known`` models, which need not be attained.
+    """
+    P = simplex(edges)
+    if (POINT * sizes[:, None] >= P).all():
+        return None
+    sigma = np.linalg.svd(P / np.maximum(P.max(axis=1), POINT * sizes)[:, None], compute_uv=False)
+    if len(edges) == 2 or sigma[-1] > FLAT * sigma[0]:
+        return spanned(edges, (), sizes)
+    everything = [*edges, *known]
+    optimal = nondominated(np.array([solution.J for solution in everything]))
+    kept = [everything[k] for k in np.flatnonzero(optimal).tolist()]
+    worst = [max(kept, key=lambda solution: float(solution.J[i])) for i in range(len(edges))]
+    return spanned(edges, worst, sizes)
+
+
+def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats) -> Payoff | None:
+    """Return the pay-off of the edges, or of the ranges up to the ``worst`` models if given.
+
+    None where an objective does not vary.
+    """
+    P, utopia = simplex(edges), np.array([solution.J[i] for i, solution in enumerate(edges)])
+    if worst:
+        P = np.diag([solution.J[i] for i, solution in enumerate(worst)] - utopia)
+    scale = P.max(axis=1)
+    if (scale <= POINT * sizes).any():
+        return None
+    return Payoff(utopia, scale, P / scale[:, None], worst)
+
+
+def simplex(edges: Sequence[Solution]) -> Floats:
+    """Return the objectives of the edges above the least ones, (n, n), one column an edge."""
+    J = np.array([edge.J for edge in edges]).T
+    return np.asarray(J - np.diag(J)[:, None])

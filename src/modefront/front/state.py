@@ -1,0 +1,146 @@
+"""The state of a search: an incumbent for each subproblem, and all that is known of models."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.front.archive import Archive, Outcome
+from modefront.front.subproblems import Subproblem
+from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.sqp import Solution, begin
+
+DISTINCT = 1e-3
+"""Distance of two models, over the ranges of the parameters, above which they are two."""
+
+COPY = 1e-5
+"""Distance of two points, over the ranges of the objectives, below which they are copies."""
+
+
+@dataclass
+class Place:
+    """A subproblem with the best model known.
+
+    Attributes
+    ----------
+    incumbent : the best model
+    closed : whether the search from the incumbent itself leads nowhere better
+    """
+
+    subproblem: Subproblem
+    incumbent: Solution
+    closed: bool = False
+
+
+@dataclass
+class State:
+    """What a search knows.
+
+    Attributes
+    ----------
+    problem : that is searched
+    tolerance : gain of a subproblem that counts
+    places : subproblems with their incumbents
+    archive : nondominated models of all evaluations
+    models : solutions that programmes led to, each once, in the order in which they were found
+    evaluations : so far
+    """
+
+    problem: Problem
+    tolerance: float
+    archive: Archive
+    places: list[Place] = field(default_factory=list)
+    models: list[Solution] = field(default_factory=list)
+    evaluations: int = 0
+
+    @property
+    def span(self) -> Floats:
+        """Ranges of the parameters, (p,)."""
+        return self.problem.upper - self.problem.lower
+
+    def add(self, subproblems: Sequence[Subproblem], starts: Sequence[Solution | None]) -> None:
+        """Add subproblems; what is known of each, or the best model of the archive, is a start."""
+        for subproblem, start in zip(subproblems, starts, strict=True):
+            place = Place(subproblem, start or self.best(subproblem), closed=False)
+            self.places.append(place)
+            self.challenge(place, self.archive.theta, self.archive.J)
+
+    def best(self, subproblem: Subproblem) -> Solution:
+        """Return the best of the known models in a subproblem."""
+        k = int(subproblem.value(self.archive.J).argmin())
+        best = begin(Evaluation(self.archive.theta[k], self.archive.J[k]))
+        values = [float(subproblem.value(x.J)) for x in self.models]
+        near = int(np.argmin(values)) if values else -1
+        # a model whose derivatives are known saves an evaluation
+        close = near >= 0 and subproblem.gain(best.J, self.models[near]) <= self.tolerance
+        return self.models[near] if close else best
+
+    def tell(self, k: int, start: Solution, final: bool, outcome: Outcome) -> float:
+        """Take note of what a search led to; return the greatest gain of a subproblem.
+
+        It is a solution of the place ``k`` where it is ``final``.
+        """
+        solution: Solution = outcome.result
+        self.evaluations += outcome.evaluations
+        for theta, J in zip(outcome.theta, outcome.J, strict=True):
+            self.archive.add(theta, J)
+        gain = 0.0
+        if final and solution.feasible:
+            place = self.places[k]
+            own = place.subproblem.gain(solution.J, place.incumbent)
+            is_incumbent = start is place.incumbent
+            if place.subproblem.competes:
+                first = solution.converged and not place.closed
+                better = own > 0 or (own > -self.tolerance and first)
+            else:
+                better = not place.closed or (solution.converged and own > 0)
+            gain = max(gain, own)
+            if better:
+                place.incumbent = solution
+            place.closed = place.closed or better or is_incumbent
+        elif final and start is self.places[k].incumbent:
+            self.places[k].closed = True
+        for place in self.places:
+            gain = max(gain, self.challenge(place, outcome.theta, outcome.J, solution))
+        if solution.feasible and solution.evaluation.derivatives and self.is_new(solution):
+            self.models.append(solution)
+        return gain
+
+    def challenge(
+        self, place: Place, theta: Floats, J: Floats, solution: Solution | None = None
+    ) -> float:
+        """Let models compete for a place; return the gain where it had been solved, else 0."""
+        if not len(J) or (place.closed and not place.subproblem.competes):
+            return 0.0
+        k = int(place.subproblem.value(J).argmin())
+        gain = place.subproblem.gain(J[k], place.incumbent)
+        if gain <= self.tolerance:
+            return 0.0
+        was_closed = place.closed
+        known = solution is not None and np.array_equal(solution.theta, theta[k])
+        place.incumbent = (
+            solution if known and solution else begin(Evaluation(theta[k].copy(), J[k].copy()))
+        )
+        place.closed = False
+        return gain if was_closed else 0.0
+
+    def is_new(self, solution: Solution) -> bool:
+        """Return whether a solution is another model than all known ones."""
+        return all(
+            np.abs((solution.theta - x.theta) / self.span).max() > DISTINCT for x in self.models
+        )
+
+
+def distinct_points(points: Sequence[Solution], scale: Floats) -> list[Solution]:
+    """Return points of a front, each once: objectives over ``scale`` (n,) tell copies apart."""
+    out: list[Solution] = []
+    for x in points:
+        same = [k for k, y in enumerate(out) if (np.abs(y.J - x.J) <= COPY * scale).all()]
+        if not same:
+            out.append(x)
+        elif x.converged and not out[same[0]].converged:
+            out[same[0]] = x
+    return out

@@ -1,0 +1,277 @@
+r"""Subproblems: an order on the objectives J, a programme that a local solver minimises.
+
+The search for a front (`modefront.front.search`) is decomposed into subproblems, as in MOEA/D
+(Zhang & Li 2007, doi:10.1109/TEVC.2007.892759). Each orders all models by J alone, so that whatever
+model one of them meets competes for the place of the best in all others.
+
+- **Edge** of objective i: least :math:`J_i`, and of such models the least
+  :math:`\sum_{j \ne i} J_j / c_j` (`modefront.optim.lexicographic`).
+- **Weights** w: least :math:`w^T J`.
+- **Point** :math:`\beta` of the lattice: with the excess of J over :math:`\Phi \beta` along the
+  normal, :math:`c_i = (y_i - (\Phi \beta)_i) / r_i`, least
+
+  .. math:: \max_i c_i + \rho \sum_i c_i
+
+  (Pascoletti & Serafini 1984, doi:10.1007/BF00934564). Where all :math:`c_i` are equal, this is the
+  point of normal-boundary intersection (Das & Dennis 1998, doi:10.1137/S1052623496307510), which
+  has equations in the place of the maximum; elsewhere it lies on the border of the front. The small
+  share :math:`\rho` of all objectives keeps every weight positive, and every solution Pareto
+  optimal (Wierzbicki 1980, doi:10.1007/978-3-642-48782-8_32).
+
+========  =======  ==========================================================
+symbol    shape    meaning
+========  =======  ==========================================================
+c         (n,)     typical sizes of the objectives; excess of a point
+y         (n,)     objectives over the utopia point, in units of their ranges
+Phi       (n, n)   corners of the simplex, one a column, in the same units
+r         (n,)     normal towards greater objectives, Phi e
+========  =======  ==========================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Protocol
+
+import numpy as np
+
+from modefront._typing import Bools, Floats
+from modefront.front.simplex import Payoff
+from modefront.optim.lexicographic import EXACT, Lexicographic
+from modefront.optim.problem import Problem
+from modefront.optim.scalarisation import Scalarisation, achievement, weighted
+from modefront.optim.sqp import Options, Solution, solve
+from modefront.work.task import Key
+
+NEAR = 3
+"""Steps of the lattice from a point to models that are compared with it."""
+
+RHO = 1e-4
+"""Share of all objectives in what a point of the lattice minimises."""
+
+
+def active_bounds(shares: Floats) -> Bools:
+    """Return which bounds are active, from the weights times the normal (n,): the others have rho.
+
+    >>> active_bounds(np.array([0.3, RHO, 0.7])).tolist()
+    [True, False, True]
+    """
+    return np.asarray(shares > 2 * RHO)
+
+
+NEGLIGIBLE = 1e-2 * EXACT
+"""Objective over its typical size at which a search ends: it is fitted more than exactly."""
+
+_TIGHT, _ROUGH = (
+    Options(step=1e-8, reduction=1e-24, negligible=NEGLIGIBLE),
+    Options(step=3e-4, constraint=3e-4),
+)
+
+
+class Subproblem(Protocol):
+    """An order on J, and a programme that leads to a model that is best in it."""
+
+    @property
+    def key(self) -> Key:
+        """Name among all subproblems."""
+
+    @property
+    def competes(self) -> bool:
+        """Whether any model that is better takes its place; else only its own solutions do."""
+
+    def value(self, J: Floats) -> Floats:
+        """Return numbers (...) that order models with objectives J (..., n), least first."""
+
+    def gain(self, J: Floats, known: Solution) -> float:
+        """Return how much better objectives (n,) are than a known model: over what that has."""
+
+    def weights(self, known: Solution) -> Floats:
+        """Return the slope (n,) of what is minimised at a known solution."""
+
+    def is_near(self, J: Floats, /) -> bool:
+        """Return whether a model with objectives (n,) may lead to a solution by a few steps."""
+
+    @property
+    def programme(self) -> Scalarisation:
+        """What is minimised, among equals apart."""
+
+    def solve(self, problem: Problem, start: Solution) -> Solution:
+        """Return the solution that a start leads to."""
+
+    def approach(self, problem: Problem, start: Solution, steps: int) -> Solution:
+        """Return a model on the way to the solution, after so many steps at most."""
+
+
+@dataclass(frozen=True)
+class Least:
+    """The lexicographic minimum of one objective; ``sizes`` (n,) are typical ones."""
+
+    objective: int
+    sizes: Floats
+    name: str
+    competes: bool = True
+
+    @property
+    def order(self) -> Lexicographic:
+        """The order of the models."""
+        return Lexicographic(self.objective, self.sizes)
+
+    @property
+    def key(self) -> Key:
+        """Name among all subproblems."""
+        return ("edge", self.name)
+
+    def value(self, J: Floats) -> Floats:
+        """Return nearly what orders models; among equals in J_i, the others decide."""
+        return np.asarray(J @ self._slope(1e-6))
+
+    def gain(self, J: Floats, known: Solution) -> float:
+        """Return the share by which J_i falls, or where that is tied, the others."""
+        i, before = self.objective, known.J
+        margin = self.order.margin(float(min(J[i], before[i])))
+        if abs(J[i] - before[i]) > margin:
+            return float((before[i] - J[i]) / max(before[i], EXACT * self.sizes[i]))
+        others = self.order.others
+        return float(others @ (before - J)) / max(float(others @ before), EXACT)
+
+    def is_near(self, _: Floats) -> bool:
+        """Return True: any model may."""
+        return True
+
+    def weights(self, _: Solution) -> Floats:
+        """Return the slope of J_i."""
+        return self._slope(0.0)
+
+    @property
+    def programme(self) -> Scalarisation:
+        """J_i."""
+        return weighted(self._slope(0.0))
+
+    def solve(self, problem: Problem, start: Solution) -> Solution:
+        """Return the lexicographic minimum below a start."""
+        return self.order.solve(problem, start, _TIGHT)
+
+    def approach(self, problem: Problem, start: Solution, steps: int) -> Solution:
+        """Return the minimum of J_i alone."""
+        return self.order.first(problem, start, replace(_TIGHT, iterations=steps))
+
+    def _slope(self, rest: float) -> Floats:
+        out = rest * self.order.others
+        out[self.objective] = 1 / self.sizes[self.objective]
+        return out
+
+
+@dataclass(frozen=True)
+class Weights:
+    """The minimum of w^T J; values below ``negligible`` differ in nothing."""
+
+    w: Floats
+    key: Key
+    negligible: float
+    competes: bool = True
+
+    def value(self, J: Floats) -> Floats:
+        """Return w^T J."""
+        return np.asarray(J @ self.w)
+
+    def gain(self, J: Floats, known: Solution) -> float:
+        """Return the share by which w^T J falls."""
+        before = float(self.w @ known.J)
+        return float(before - self.w @ J) / max(before, self.negligible)
+
+    def is_near(self, _: Floats) -> bool:
+        """Return True: any model may."""
+        return True
+
+    def weights(self, _: Solution) -> Floats:
+        """Return w."""
+        return self.w
+
+    @property
+    def programme(self) -> Scalarisation:
+        """w^T J."""
+        return weighted(self.w)
+
+    def solve(self, problem: Problem, start: Solution) -> Solution:
+        """Return the minimum below a start."""
+        return solve(problem, self.programme, start, self._options)
+
+    def approach(self, problem: Problem, start: Solution, steps: int) -> Solution:
+        """Return a model near the minimum below a start."""
+        return solve(
+            problem,
+            self.programme,
+            start,
+            replace(_ROUGH, iterations=steps, negligible=self._options.negligible),
+        )
+
+    @property
+    def _options(self) -> Options:
+        """Options of a solution."""
+        return Options(negligible=NEGLIGIBLE / EXACT * self.negligible)
+
+
+@dataclass(frozen=True)
+class Point:
+    """The point of the lattice at ``beta`` (n,).
+
+    With ``equations``, those of Das & Dennis are solved, which may lead to dominated models.
+    """
+
+    beta: Floats
+    place: tuple[int, ...]
+    target: Payoff
+    equations: bool = False
+
+    @property
+    def key(self) -> Key:
+        """Name among all subproblems."""
+        return ("point", *self.place)
+
+    @property
+    def competes(self) -> bool:
+        """Whether it is no solution of equations."""
+        return not self.equations
+
+    def spread(self, J: Floats) -> float:
+        """Return how far objectives (n,) lie from the normal, over the ranges."""
+        c = self.target.excess(self.beta, J) * self.target.r
+        return float(np.ptp(c))
+
+    def value(self, J: Floats) -> Floats:
+        """Return the greatest excess with its share of all."""
+        c = self.target.excess(self.beta, J)
+        return np.asarray(c.max(axis=-1) + RHO * c.sum(axis=-1))
+
+    def gain(self, J: Floats, known: Solution) -> float:
+        """Return the fall of the excess, over the objectives along the normal or their ranges."""
+        w = self.weights(known)
+        return float(self.value(known.J) - self.value(J)) / min(max(float(w @ known.J), EXACT), 1.0)
+
+    def is_near(self, J: Floats) -> bool:
+        """Return whether a model lies few steps of the lattice from the normal."""
+        steps = np.abs(self.target.place(J) - self.beta) * abs(sum(self.place))
+        return bool(steps.max() <= NEAR)
+
+    def weights(self, known: Solution) -> Floats:
+        """Return the multipliers of the excess at a solution, or of the greatest one at others."""
+        if known.weights.any():
+            return known.weights
+        c = self.target.excess(self.beta, known.J)
+        return np.asarray(((c == c.max()) + RHO) / self.target.unit)
+
+    def solve(self, problem: Problem, start: Solution) -> Solution:
+        """Return the point that a start leads to."""
+        return replace(solve(problem, self.programme, start), beta=self.beta)
+
+    def approach(self, problem: Problem, start: Solution, steps: int) -> Solution:
+        """Return a model near the point that a start leads to."""
+        return solve(problem, self.programme, start, replace(_ROUGH, iterations=steps))
+
+    @property
+    def programme(self) -> Scalarisation:
+        """What is minimised."""
+        if self.equations:
+            return self.target.boundary(self.beta)
+        unit = self.target.unit
+        return achievement(RHO / unit, np.diag(1 / unit), self.target.offset(self.beta))

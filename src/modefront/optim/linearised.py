@@ -1,0 +1,179 @@
+r"""A programme at a point: its linearisation, the step from there, and what that promises.
+
+With the symbols of `modefront.optim.sqp`, what is minimised is near the point
+
+.. math:: f + g^T s + \tfrac12 s^T B s + \max_i\,(y + \partial y\, s)_i
+    \quad\text{subject to}\quad c + \partial c\, s = 0 ,
+
+and the augmented Lagrangian (`modefront.optim.merit`) falls along a step s by
+
+.. math:: -(g + \partial c^T \mu + \partial y^T \kappa)^T s - \tfrac12 s^T B s
+    + \tfrac\nu2 \big( \|c\|^2 - \|c + \partial c\, s\|^2 \big)
+
+and the fall of the surplus of y.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.optim.merit import PENALTY, Multipliers, surplus
+from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.qp import QuadraticProgramme, QuadraticStep, solve_qp
+from modefront.optim.scalarisation import Scalarisation
+
+STEEP = 1e6
+"""Greatest multiplier of a constraint, with objective and constraints in their own units."""
+
+NOISE = 1e-11
+"""Relative error of the objectives that a step is not blamed for: that of a large eigenproblem."""
+
+
+@dataclass(frozen=True)
+class Linearised:
+    """A programme at a point, in u; see the module for the symbols.
+
+    ``reach`` (2, p) are the steps to the lower and the upper bounds, ``df`` (n,) is the slope of f
+    with respect to J.
+    """
+
+    programme: Scalarisation
+    evaluation: Evaluation
+    span: Floats
+    reach: Floats
+    df: Floats
+    g: Floats
+    c: Floats
+    dc: Floats
+    y: Floats
+    dy: Floats
+
+    @property
+    def free(self) -> bool:
+        """Whether there are neither constraints nor functions of which the maximum counts."""
+        return not (self.c.size or self.y.size)
+
+    @property
+    def f(self) -> float:
+        """Smooth part of what is minimised."""
+        return self.programme.value(self.evaluation.J)
+
+    def step(
+        self, H: Floats, radius: float, multipliers: Multipliers | None
+    ) -> tuple[QuadraticProgramme, QuadraticStep, Multipliers]:
+        """Return the quadratic programme, its solution, and the multipliers there.
+
+        ``H`` (n, p, p) are second derivatives of the objectives with respect to theta. B takes the
+        ``multipliers`` of the step before; where there is none, those of the slopes at the point
+        and, of functions of which the maximum counts, those of another step.
+        """
+        dJ, span = self.evaluation.dJ * self.span, self.span[:, None] * self.span
+        lo, hi = np.maximum(self.reach[0], -radius), np.minimum(self.reach[1], radius)
+        curved = dJ.T @ self.programme.hessian(self.evaluation.J) @ dJ
+
+        def with_curvature(B: Floats) -> QuadraticProgramme:
+            return QuadraticProgramme(B, self.g, self.dc, -self.c, lo, hi, self.dy, self.y)
+
+        passes = 1
+        if multipliers is None:
+            multipliers, passes = self._first(with_curvature(curved)), 2 if self.y.size else 1
+        for _ in range(passes):
+            w = multipliers.weights(self.programme, self.evaluation.J)
+            qp = with_curvature(weighted(w, H) * span + curved)
+            step = solve_qp(qp)
+            multipliers = self._bounded(qp, step)
+        return qp, step, multipliers
+
+    def _first(self, qp: QuadraticProgramme) -> Multipliers:
+        """Return multipliers of the slopes at the point, and the same one of all functions."""
+        still = QuadraticStep(np.zeros_like(self.g), [])
+        mu = self._bounded(qp, still).mu
+        return Multipliers(mu, np.full(self.y.size, 1 / max(self.y.size, 1)))
+
+    def _bounded(self, qp: QuadraticProgramme, step: QuadraticStep) -> Multipliers:
+        """Return the multipliers at the end of a step.
+
+        Where the constraints hardly depend on the variables that are free, they say nothing.
+        """
+        if self.free:
+            return Multipliers(np.zeros(0), np.zeros(0))
+        A = self.programme.constraints.matrix
+        most = STEEP * length(self.df) / float(np.abs(A).max(initial=np.finfo(float).tiny))
+        free = (qp.lo - step.s < 0) & (qp.hi - step.s > 0)
+        mu, kappa = qp.multipliers(step.s, step.active, free)
+        kappa = np.maximum(kappa, 0.0)
+        return Multipliers(np.clip(mu, -most, most), kappa / kappa.sum() if step.active else kappa)
+
+    def slope(self, multipliers: Multipliers) -> Floats:
+        """Return the slope of the Lagrangian, shape (p,)."""
+        if self.free:
+            return self.g
+        return np.asarray(self.g + multipliers.mu @ self.dc + multipliers.kappa @ self.dy)
+
+    def tied(self, active: list[int]) -> Floats:
+        """Return the rows (., n) of A, and the differences of active functions from the base."""
+        A, C = self.programme.constraints.matrix, self.programme.maximised.matrix
+        return np.vstack([A, C[active[1:]] - C[active[:1]]])
+
+    def unchanging(self, s: Floats, reduction: float) -> bool:
+        """Return whether what is minimised changes by less than its share along a step."""
+        before = self.y.max() if self.y.size else 0.0
+        after = (self.y + self.dy @ s).max() if self.y.size else 0.0
+        return bool(abs(self.g @ s + (after - before)) <= reduction * abs(self.f + before))
+
+    def predicted(
+        self, B: Floats, s: Floats, multipliers: Multipliers, penalty: float
+    ) -> tuple[float, float]:
+        """Return the reduction of the augmented Lagrangian by a step, and the penalty in it.
+
+        That is as great as makes the reduction positive; it falls slowly.
+        """
+        gain = -self.slope(multipliers) @ s - 0.5 * s @ B @ s
+        if self.free:
+            return float(gain), penalty
+        c, y = self.c + self.dc @ s, self.y + self.dy @ s
+        kappa = multipliers.kappa
+        squares = 0.5 * (self.c @ self.c - c @ c)
+        drop = squares + (surplus(self.y, kappa, penalty) - surplus(y, kappa, penalty)) / penalty
+        if drop > 0:
+            penalty = max(PENALTY, 0.1 * penalty, float(-2 * gain / drop))
+        above = surplus(self.y, kappa, penalty) - surplus(y, kappa, penalty)
+        return float(gain + penalty * squares + above), penalty
+
+    def end(self, problem: Problem, s: Floats) -> Floats:
+        """Return the parameters at the end of a step."""
+        theta = self.evaluation.theta + s * self.span
+        return np.minimum(np.maximum(theta, problem.lower), problem.upper)
+
+    def noise(self, multipliers: Multipliers) -> float:
+        """Return the change of the augmented Lagrangian that may be rounding."""
+        if self.free:
+            return NOISE * abs(self.f)
+        A, C = self.programme.constraints.matrix, self.programme.maximised.matrix
+        rows = np.abs(multipliers.mu) @ np.abs(A @ self.evaluation.J)
+        rows += multipliers.kappa @ np.abs(C @ self.evaluation.J)
+        return float(NOISE * (abs(self.f) + rows))
+
+
+def linearised(problem: Problem, programme: Scalarisation, evaluation: Evaluation) -> Linearised:
+    """Return a programme at an evaluation with derivatives."""
+    span = problem.upper - problem.lower
+    reach = np.array([problem.lower - evaluation.theta, problem.upper - evaluation.theta]) / span
+    df, dJ = programme.gradient(evaluation.J), evaluation.dJ * span
+    constraints, maximised = programme.constraints, programme.maximised
+    c, dc = constraints.at(evaluation.J), constraints.matrix @ dJ
+    y, dy = maximised.at(evaluation.J), maximised.matrix @ dJ
+    return Linearised(programme, evaluation, span, reach, df, df @ dJ, c, dc, y, dy)
+
+
+def weighted(w: Floats, H: Floats) -> Floats:
+    """Return sum_i w_i H_i for w (n,) and H (n, p, p)."""
+    return np.asarray((w[None] @ H.reshape(len(H), -1)).reshape(H.shape[1:]))
+
+
+def length(s: Floats) -> float:
+    """Return the greatest component; 0 of nothing."""
+    return float(np.abs(s).max()) if s.size else 0.0

@@ -1,0 +1,184 @@
+r"""Interface of problems to the solvers: objectives J(theta) with derivatives, within bounds.
+
+========  =========  ==================================================================
+symbol    shape      meaning
+========  =========  ==================================================================
+theta     (p,)       parameters
+J         (n,)       objectives, to be made small
+dJ        (n, p)     their derivatives, exact
+H         (n, p, p)  their second derivatives, exact; or, unless these are requested, a
+                     part that is known with the first ones, such as Gauss-Newton's
+                     :math:`2 \partial r^T \partial r`
+========  =========  ==================================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+from dataclasses import dataclass, field, replace
+from math import isfinite
+from typing import Protocol
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.work.codec import record
+
+AT_BOUND = 1e-9
+"""Distance over the range of a parameter below which it is at its bound: a hundredth of the
+tolerance of a step (`modefront.optim.sqp.Options`)."""
+
+
+@record
+@dataclass(frozen=True)
+class Residual:
+    """A vector r (rows,) with its derivatives (rows, p)."""
+
+    r: Floats
+    dr: Floats
+
+
+@record
+@dataclass(frozen=True)
+class ObjectiveDerivatives:
+    """Derivatives dJ (n, p) and H (n, p, p), the second ones if ``exact``, else a part of them."""
+
+    dJ: Floats
+    H: Floats
+    exact: bool = False
+
+
+@record
+@dataclass(frozen=True)
+class Evaluation:
+    r"""The objectives at one point.
+
+    ``derivatives`` is None where they were not requested, or the objectives are not defined.
+    ``quantities`` are what the problem wants kept with it; ``residuals`` are the vectors r_i, one
+    an objective, of objectives that are sums of squares, :math:`J_i = \|r_i\|^2`. They are empty
+    where the objectives are no such sums, or no derivatives were asked for. ``branch`` tells the
+    smooth piece of the objectives on which the point lies, where they jump from one to another.
+    """
+
+    theta: Floats
+    J: Floats
+    derivatives: ObjectiveDerivatives | None = None
+    quantities: Mapping[str, Floats] = field(default_factory=dict)
+    residuals: Sequence[Residual] = ()
+    branch: tuple[int, ...] = ()
+
+    @property
+    def feasible(self) -> bool:
+        """Whether the objectives are defined here."""
+        return all(map(isfinite, self.J.tolist()))
+
+    @property
+    def dJ(self) -> Floats:
+        """Derivatives of the objectives, (n, p); raises ValueError where there are none."""
+        return self._known.dJ
+
+    @property
+    def H(self) -> Floats:
+        """Second derivatives or a part of them, (n, p, p); raises ValueError without any."""
+        return self._known.H
+
+    @property
+    def exact(self) -> bool:
+        """Whether the second derivatives are known, and not only a part of them."""
+        return self.derivatives is not None and self.derivatives.exact
+
+    @property
+    def gauss_newton(self) -> Floats:
+        """Second derivatives without those of the residuals, (n, p, p); `H` of no residuals."""
+        if not self.residuals:
+            return self.H
+        return np.array([2 * each.dr.T @ each.dr for each in self.residuals])
+
+    @property
+    def _known(self) -> ObjectiveDerivatives:
+        if self.derivatives is None:
+            raise ValueError("expected an evaluation with derivatives, found one without")
+        return self.derivatives
+
+
+def infeasible(theta: Floats, objectives: int) -> Evaluation:
+    """Return the evaluation of a point at which the objectives are not defined."""
+    return Evaluation(theta, np.full(objectives, np.inf))
+
+
+class Problem(Protocol):
+    """A vector of objectives over a box."""
+
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """Names of the objectives."""
+
+    @property
+    def lower(self) -> Floats:
+        """Lower bounds, shape (p,), finite."""
+
+    @property
+    def upper(self) -> Floats:
+        """Upper bounds, shape (p,), finite."""
+
+    @property
+    def start(self) -> Floats:
+        """A first guess within the bounds, shape (p,)."""
+
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
+        """Return the objectives at ``theta``; infinite ones where they are not defined.
+
+        ``second`` requests exact second derivatives too, where the problem has them.
+        """
+
+    def on_branch(self, branch: tuple[int, ...]) -> Problem:
+        """Return the problem of one smooth piece of the objectives, wherever it is evaluated."""
+
+
+@dataclass(frozen=True)
+class Wrapped:
+    """A problem that is evaluated in another way, and is the same in everything else.
+
+    Attributes
+    ----------
+    problem : the problem that is evaluated
+    evaluation : returns the evaluation of a problem at theta (p,), with derivatives or without,
+        and with second ones or without
+    names : names of the objectives, where they are not those of the problem
+    """
+
+    problem: Problem
+    evaluation: Callable[[Problem, Floats, bool, bool], Evaluation]
+    names: tuple[str, ...] | None = None
+
+    @property
+    def objectives(self) -> tuple[str, ...]:
+        """Names of the objectives."""
+        return self.problem.objectives if self.names is None else self.names
+
+    @property
+    def lower(self) -> Floats:
+        """Lower bounds, shape (p,)."""
+        return self.problem.lower
+
+    @property
+    def upper(self) -> Floats:
+        """Upper bounds, shape (p,)."""
+        return self.problem.upper
+
+    @property
+    def start(self) -> Floats:
+        """The first guess of the problem, shape (p,)."""
+        return self.problem.start
+
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
+        """Return the objectives at ``theta``."""
+        return self.evaluation(self.problem, theta, derivatives, second)
+
+    def on_branch(self, branch: tuple[int, ...]) -> Problem:
+        """Return the problem of one smooth piece, which is evaluated in the same way."""
+        return replace(self, problem=self.problem.on_branch(branch))

@@ -1,0 +1,159 @@
+r"""Ways to turn a vector of objectives into one programme.
+
+.. math:: \min_\theta f(J(\theta)) + \max_i\,(C J(\theta) - d)_i
+    \quad\text{subject to}\quad A J(\theta) = b
+
+Every method of the package is one of these members, and one solver (`modefront.optim.sqp`)
+serves them all. Most have no maximum (m = 0), and most no constraints (k = 0).
+
+========  =========  ===========================================
+symbol    shape      meaning
+========  =========  ===========================================
+f         ()         smooth part of what is minimised
+df        (n,)       its derivatives with respect to J
+ddf       (n, n)     its second derivatives
+A, b      (k, n)     linear constraints on the objectives
+C, d      (m, n)     linear functions of which the maximum is minimised
+========  =========  ===========================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from modefront._typing import Floats
+
+LEAST = 1e-100
+"""An objective below which its logarithm and the derivatives change no more: the second ones, of
+size 1e200, do not overflow."""
+
+
+@dataclass(frozen=True)
+class Rows:
+    """Linear functions of the objectives, matrix J - offset.
+
+    Attributes
+    ----------
+    matrix : (rows, n)
+    offset : (rows,)
+    """
+
+    matrix: Floats
+    offset: Floats
+
+    def at(self, J: Floats) -> Floats:
+        """Return the values, shape (rows,)."""
+        return self.matrix @ J - self.offset if self.offset.size else self.offset
+
+
+def no_rows(objectives: int) -> Rows:
+    """Return no functions of so many objectives."""
+    return Rows(np.zeros((0, objectives)), np.zeros(0))
+
+
+class Scalarisation(Protocol):
+    """A smooth function of the objectives, a maximum of linear ones, and linear constraints."""
+
+    @property
+    def constraints(self) -> Rows:
+        """A J - b, which vanishes at a solution; may be empty."""
+
+    @property
+    def maximised(self) -> Rows:
+        """C J - d, of which the greatest value is minimised together with f; may be empty."""
+
+    def value(self, J: Floats) -> float:
+        """Return f."""
+
+    def gradient(self, J: Floats) -> Floats:
+        """Return df/dJ, shape (n,)."""
+
+    def hessian(self, J: Floats) -> Floats:
+        """Return d2f/dJ2, shape (n, n)."""
+
+
+@dataclass(frozen=True)
+class Linear:
+    """f = w^T J, with linear constraints or a maximum of linear functions."""
+
+    w: Floats
+    constraints: Rows
+    maximised: Rows
+
+    def value(self, J: Floats) -> float:
+        """Return w^T J."""
+        return float(self.w @ J)
+
+    def gradient(self, J: Floats) -> Floats:
+        """Return w, whatever J is."""
+        return np.full(J.shape, self.w)
+
+    def hessian(self, J: Floats) -> Floats:
+        """Return zeros."""
+        return np.zeros((J.size, J.size))
+
+
+@dataclass(frozen=True)
+class LogSum:
+    """I = sum_i a_i ln J_i, equation (8): its stationary points have the weights w_i = a_i / J_i.
+
+    With a ``floor`` b (n,), J_i + b_i stands for J_i: the weights a_i / (J_i + b_i) are bounded,
+    and there is a minimum also where a group can be fitted exactly. Where some J_i + b_i is not
+    above ``vanishing`` (n,), I is minus infinity. ``a`` (n,) counts the measured properties of
+    each group.
+    """
+
+    a: Floats
+    floor: Floats | float = 0.0
+    vanishing: Floats | float = 0.0
+
+    @property
+    def constraints(self) -> Rows:
+        """No constraints."""
+        return no_rows(self.a.size)
+
+    @property
+    def maximised(self) -> Rows:
+        """No maximum."""
+        return no_rows(self.a.size)
+
+    def value(self, J: Floats) -> float:
+        """Return I; minus infinity where an objective vanishes."""
+        if (J + self.floor <= self.vanishing).any():
+            return -np.inf
+        return float(self.a @ np.log(np.maximum(J + self.floor, LEAST)))
+
+    def gradient(self, J: Floats) -> Floats:
+        """Return a / (J + b)."""
+        return self.a / np.maximum(J + self.floor, LEAST)
+
+    def hessian(self, J: Floats) -> Floats:
+        """Return -a / (J + b)**2 on the diagonal."""
+        return np.diag(-self.a / np.maximum(J + self.floor, LEAST) ** 2)
+
+
+def weighted(w: Floats) -> Linear:
+    """Return min w^T J."""
+    return Linear(w, no_rows(w.size), no_rows(w.size))
+
+
+def constrained(w: Floats, A: Floats, b: Floats) -> Linear:
+    """Return min w^T J subject to A J = b."""
+    return Linear(w, Rows(A, b), no_rows(w.size))
+
+
+def achievement(w: Floats, C: Floats, d: Floats) -> Linear:
+    """Return min w^T J + max (C J - d), an achievement function.
+
+    Wierzbicki 1980, doi:10.1007/978-3-642-48782-8_32.
+    """
+    return Linear(w, no_rows(w.size), Rows(C, d))
+
+
+def level(minimised: int, fixed: int, value: float, scale: Floats) -> Linear:
+    """Return min J_minimised subject to J_fixed = value, in units of ``scale``."""
+    unit = np.eye(scale.size) / scale
+    return constrained(unit[minimised], unit[[fixed]], np.array([value / scale[fixed]]))

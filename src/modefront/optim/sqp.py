@@ -1,0 +1,365 @@
+r"""Sequential quadratic programming with exact first and second derivatives.
+
+Solves :math:`\min f(J(\theta)) + \max_i\,(C J(\theta) - d)_i` subject to :math:`A J(\theta) = b`
+and bounds, for any member of `modefront.optim.scalarisation`: it is the only loop of steps in a
+trust region, and its steps are all from `modefront.optim.qp`. With multipliers :math:`\mu` of
+the constraints and :math:`\kappa` of the functions of which the maximum counts, and the weights
+
+.. math:: w = \partial f / \partial J + A^T \mu + C^T \kappa
+
+of the objectives, the Hessian of the Lagrangian is
+
+.. math:: B = \sum_i w_i H_i + \partial J^T f'' \partial J
+
+with the second derivatives :math:`H_i` of the objectives. Where a problem does not know these, such
+as a model that is a function of the user's, :math:`H_i` is the part that it knows (Gauss-Newton's),
+and the rest :math:`S_i` is learned from differences of gradients (`modefront.optim.secant`). Where
+residuals vanish, S is a burden: B is taken with it or without it, whichever predicted the last step
+better (Dennis, Gay & Welsch 1981, doi:10.1145/355958.355965).
+
+Steps solve a quadratic programme within a box, the trust region; they are judged by the augmented
+Lagrangian (`modefront.optim.merit`) which, unlike an exact penalty, does not reject good steps
+near the solution. Far from it, multipliers may be absurd: they are bounded, and a step that leaves
+the constraints by much more than the start did is shortened. One attempt is made to leave a
+stationary point with clearly negative curvature. A poor step gets a second-order
+correction (`modefront.optim.correction`), and both steps are judged as one. Where the objectives
+are known no better than the steps promise, a solution ends before its tolerances are met.
+
+=========  =========  ==================================================================
+symbol     shape      meaning
+=========  =========  ==================================================================
+u          (p,)       variables, :math:`(\theta - lower) / (upper - lower)`
+s          (p,)       step in u
+g          (p,)       slope of f
+c, dc      (k, p)     violations (k,) of the constraints and their slopes
+y, dy      (m, p)     functions (m,) of which the maximum counts, and their slopes
+mu, kappa  (k,) (m,)  their multipliers
+w          (n,)       weights of the objectives
+S          (n, p, p)  learned part of their second derivatives, with respect to theta
+=========  =========  ==================================================================
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from enum import Enum
+
+import numpy as np
+import scipy.linalg
+
+from modefront._typing import Floats
+from modefront.optim.correction import Correction
+from modefront.optim.linearised import length, linearised
+from modefront.optim.merit import PENALTY, Merit, Multipliers
+from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.qp import QuadraticProgramme
+from modefront.optim.scalarisation import Scalarisation
+from modefront.optim.secant import learned_from
+from modefront.work.codec import record
+from modefront.work.steps import note_iteration
+
+TAKEN, POOR, GOOD = 1e-4, 0.25, 0.7
+"""Actual over predicted reduction from which a step is taken, below which the next one is shorter,
+and above which it may be longer: the usual values (Nocedal & Wright, *Numerical Optimization*,
+2006, algorithm 4.1), but that any reduction is taken, as a derivative costs as much."""
+
+FULL, WHOLE = 0.9, 0.99
+"""Step over the radius above which the region has held it back: a good one is followed by a longer
+one, or it is no measure of the distance from the solution."""
+
+COLLAPSED = 1e-3
+"""Radius over the tolerance of steps, below which no step is better than the point."""
+
+SADDLE = 1e-3
+"""Negative curvature, over the greatest one, above which a stationary point is left again."""
+
+FUNNEL = 10.0
+"""Growth of the violation of the start, up to which a step is judged; 1 is always allowed, the
+range of the objectives where constraints are in units of these."""
+
+SWITCH = 0.5
+"""Share of the error of a prediction, below which the other model is the better one: with 1, the
+models would take turns near a solution, where both are right."""
+
+FAILURES, BENT = 4, 0.5
+"""Failures of corrections one after another, after which none is tried; actual over predicted
+reduction up to which a step is corrected."""
+
+FREE = 1e-4
+"""Gradient, over the greatest curvature, below which a bound does not hold a variable."""
+
+PATIENCE = 30
+"""Iterations in which the violation of the constraints is to be halved, from the worst of these, or
+there is no way."""
+
+REST, SHORTER = 6, 0.9
+"""Steps one after another that promise no more than rounding, none of them shorter than this share
+of the shortest one before, after which the objectives tell no more."""
+
+
+@record
+class Status(Enum):
+    """How a solution ended; the value says what it means and what to do about it."""
+
+    CONVERGED = "converged"
+    STALLED = (
+        "no step improves it further: the constraints cannot be met from there, the objectives are "
+        "not smooth, or bounds conflict"
+    )
+    UNBOUNDED = "what is minimised falls without bound: an objective vanishes"
+    EXHAUSTED = "the limit of iterations was reached: more iterations, or another start"
+    SAMPLED = "the method has no tolerance: more evaluations, or normal-boundary intersection"
+    GIVEN = "a model that was given, not sought"
+    INFEASIBLE = "the model cannot be evaluated at the start: narrower bounds, or another start"
+
+
+@dataclass(frozen=True)
+class Options:
+    """Tolerances, relative to the range of the parameters and to the scale of the constraints.
+
+    A value of a programme without constraints below ``negligible`` is as good as any.
+    """
+
+    step: float = 1e-7
+    constraint: float = 1e-7
+    reduction: float = 1e-14
+    iterations: int = 100
+    radius: float = 0.15
+    negligible: float = -np.inf
+
+
+@record
+@dataclass(frozen=True)
+class Solution:
+    """A solution of one programme.
+
+    Attributes
+    ----------
+    evaluation : of the model that it is
+    weights : (n,) weights w of the objectives at which it is stationary
+    violation : greatest violation of the constraints
+    status : how it ended
+    evaluations : evaluations that it took
+    beta : (n,) the point of the simplex that it was projected from, by normal-boundary
+        intersection; None of another programme
+    """
+
+    evaluation: Evaluation
+    weights: Floats
+    violation: float
+    status: Status
+    evaluations: int
+    beta: Floats | None = None
+
+    @property
+    def theta(self) -> Floats:
+        """Parameters, shape (p,)."""
+        return self.evaluation.theta
+
+    @property
+    def J(self) -> Floats:
+        """Objectives, shape (n,)."""
+        return self.evaluation.J
+
+    @property
+    def feasible(self) -> bool:
+        """Whether the objectives are defined."""
+        return self.evaluation.feasible
+
+    @property
+    def converged(self) -> bool:
+        """Whether the tolerances were met as far as rounding allows, or none apply."""
+        return self.status in (Status.CONVERGED, Status.GIVEN)
+
+
+def given(evaluation: Evaluation) -> Solution:
+    """Return the solution that a given model is."""
+    return replace(begin(evaluation), status=Status.GIVEN, violation=0.0)
+
+
+def begin(evaluation: Evaluation) -> Solution:
+    """Return a start for `solve` from an evaluation."""
+    status = Status.EXHAUSTED if evaluation.feasible else Status.INFEASIBLE
+    return Solution(evaluation, np.zeros(evaluation.J.size), np.inf, status, 0)
+
+
+# 62 lines: the loop reads as the algorithm in the head of the module.
+def solve(
+    problem: Problem, programme: Scalarisation, start: Solution, options: Options | None = None
+) -> Solution:
+    """Solve a programme from the point at which ``start`` ended.
+
+    The start itself is not evaluated again where its second derivatives are known. Steps to points
+    at which the objectives are not defined are shortened.
+    """
+    options = options or Options()
+    if not start.feasible:
+        return replace(start, status=Status.INFEASIBLE, evaluations=0)
+    evaluation, count = start.evaluation, -1
+    if evaluation.derivatives is None:
+        evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
+    S = np.zeros_like(evaluation.H)
+    trusted, escaped, failed = False, False, 0
+    radius, penalty = options.radius, PENALTY
+    multipliers: Multipliers | None = None
+    progress = _Progress(options, length(programme.constraints.at(evaluation.J)))
+    while True:
+        count += 1
+        note_iteration(count + 1)
+        local = linearised(problem, programme, evaluation)
+        if local.f == -np.inf:
+            return Solution(evaluation, local.df, 0.0, Status.UNBOUNDED, count)
+        if local.free and local.f <= options.negligible:
+            return Solution(evaluation, local.df, 0.0, Status.CONVERGED, count)
+        learned = not evaluation.exact
+        qp, step, multipliers = local.step(
+            evaluation.H + S if learned and trusted else evaluation.H, radius, multipliers
+        )
+        s, w = step.s, multipliers.weights(programme, evaluation.J)
+        violation, far = length(local.c), length(s)
+        progress.proposed(far, radius)
+        still = far <= options.step or local.unchanging(s, options.reduction)
+        if still and violation <= options.constraint and not escaped:
+            escaped, s = True, _off_the_saddle(qp, local.slope(multipliers), step.active)
+            still, far = not s.any(), length(s)
+        status = progress.outcome(count, violation, still, far, radius)
+        if status or count >= options.iterations:
+            return Solution(evaluation, w, violation, status or Status.EXHAUSTED, count)
+
+        predicted, penalty = local.predicted(qp.B, s, multipliers, penalty)
+        noise = local.noise(multipliers)
+        here = Solution(evaluation, w, violation, Status.CONVERGED, count)
+        calm = progress.resting(here, far, predicted <= noise)
+        if calm and calm.violation <= options.constraint:
+            return replace(calm, evaluations=count)
+        new = problem.evaluate(local.end(problem, s), second=True)
+        if not new.feasible or length(programme.constraints.at(new.J)) > progress.farthest:
+            radius = far / 4
+            continue
+        merit = Merit(programme, multipliers, penalty)
+        before = merit.at(evaluation)
+        if (
+            evaluation.residuals
+            and failed < FAILURES
+            and before - merit.at(new) <= BENT * predicted
+        ):
+            corrected = Correction(merit, local.tied(step.active)).evaluated(
+                problem, evaluation, s, new
+            )
+            failed = 0 if corrected else failed + 1
+            new = corrected or new
+        actual = before - merit.at(new)
+        if learned:
+            change = s * local.span
+            rest = 0.5 * w @ (S @ change @ change) * (1 if trusted else -1)
+            if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):
+                trusted = not trusted
+            S = learned_from(S, evaluation, new, local.span)
+        ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
+        if ratio > TAKEN:
+            evaluation = new
+        radius = _next_radius(radius, far, ratio)
+
+
+@dataclass
+class _Progress:
+    """Progress of the steps, by which the solution ends.
+
+    Attributes
+    ----------
+    options : tolerances
+    start : first violation of the constraints
+    worst : greatest violation since patience was last counted
+    proposal : length of the last step that the trust region did not hold back
+    shortest : length of the shortest of the last steps, if all of these promise only rounding
+    calm : the point from which it led
+    idle : how many of these steps, one after another, were not clearly shorter than all before
+    """
+
+    options: Options
+    start: float
+    worst: float = np.inf
+    proposal: float = np.inf
+    shortest: float = np.inf
+    idle: int = 0
+    calm: Solution | None = None
+
+    @property
+    def farthest(self) -> float:
+        """Violation of the constraints up to which a step is judged."""
+        return max(1.0, FUNNEL * self.start)
+
+    def proposed(self, step: float, radius: float) -> None:
+        """Remember the length of a step that the trust region does not hold back."""
+        if step < WHOLE * radius:
+            self.proposal = step
+
+    def outcome(
+        self, count: int, violation: float, still: bool, step: float, radius: float
+    ) -> Status | None:
+        """Return how the solution ends at a point; None where it goes on.
+
+        ``still`` says whether no step is worth making, ``step`` is the length of the next one.
+        """
+        self.worst = max(self.worst, violation)
+        if count % PATIENCE == 0:
+            if violation > max(self.options.constraint, 0.5 * self.worst) and count > 0:
+                return Status.STALLED
+            self.worst = violation
+        if still and violation <= self.options.constraint:
+            return Status.CONVERGED
+        if step > np.finfo(float).eps and radius > self.options.step * COLLAPSED:
+            return None
+        # Steps that were not held back were below the tolerance: rounding of J stops it here.
+        near = self.proposal <= self.options.step and violation <= 10 * self.options.constraint
+        return Status.CONVERGED if near else Status.STALLED
+
+    def resting(self, here: Solution, step: float, negligible: bool) -> Solution | None:
+        """Return the point from which the step was the shortest, where rounding decides on steps.
+
+        ``here`` is the point at hand, and ``negligible`` says that the next step promises no more
+        than rounding. None where steps have not come to rest.
+        """
+        if not negligible:
+            self.shortest, self.idle = np.inf, 0
+            return None
+        self.idle = 0 if step < SHORTER * self.shortest else self.idle + 1
+        if step < self.shortest:
+            self.shortest, self.calm = step, here
+        return self.calm if self.idle >= REST else None
+
+
+def _next_radius(radius: float, step: float, ratio: float) -> float:
+    """Return the radius after a step of this length, with its actual over predicted reduction."""
+    if ratio < POOR:
+        return step / (4 if ratio < TAKEN else 2)
+    return min(2 * radius, 1.0) if ratio > GOOD and step > FULL * radius else radius
+
+
+def _off_the_saddle(qp: QuadraticProgramme, slope: Floats, active: list[int]) -> Floats:
+    """Return a step along clearly negative curvature within the constraints, or zeros.
+
+    ``slope`` is that of the Lagrangian: a variable at a bound that it does not hold there is as
+    free as those within.
+    """
+    lo, hi, E = qp.lo, qp.hi, qp.ties(active)
+    s = np.zeros(slope.size)
+    flat = np.abs(slope) <= FREE * np.abs(qp.B).max()
+    free = ((lo < 0) & (hi > 0)) | (flat & (lo < hi))
+    Z = scipy.linalg.null_space(E[:, free]) if E.size else np.eye(int(free.sum()))
+    if Z.shape[1] == 0:
+        return s
+    curvature, V = np.linalg.eigh(Z.T @ qp.B[np.ix_(free, free)] @ Z)
+    if curvature[0] < -SADDLE * np.abs(curvature).max():
+        v = Z @ V[:, 0]
+        v[np.abs(v) < FREE] = 0.0
+        v *= -1.0 if slope[free] @ v > 0 else 1.0
+        ahead, behind = _longest(v, lo[free], hi[free]), _longest(-v, lo[free], hi[free])
+        s[free] = 0.5 * (ahead if ahead.any() else behind)
+    return s
+
+
+def _longest(v: Floats, lo: Floats, hi: Floats) -> Floats:
+    """Return the longest step along a direction within the box."""
+    bound, moving = np.where(v > 0, hi, lo), v != 0
+    return np.asarray(v * np.min(bound[moving] / v[moving]))

@@ -1,0 +1,91 @@
+"""Files that are written: whole or not at all, and never through a link.
+
+A file is written under a name that nobody else has, in the same folder, and then takes the place of
+what has its name: of a link, the link and not what it leads to. Nothing else here opens a file for
+writing (`tests/test_outputs.py`).
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import os
+import stat
+import tempfile
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager, suppress
+from pathlib import Path
+
+ENDING = ".tmp"
+"""Ending of files that are not yet written to the end."""
+
+KEPT = 40
+"""Characters of its name that a file has while it is written."""
+
+MASK = os.umask(0o077)
+"""Permissions that new files of this process do not have; read once, as reading changes it."""
+os.umask(MASK)
+
+
+@contextmanager
+def output(path: Path, *, lasting: bool = False) -> Iterator[io.BufferedRandom]:
+    """Open a file that takes the place of ``path`` when all of it is written.
+
+    It has the permissions of the file that was there, or those of any new file. A ``lasting`` one
+    is on the drive before it takes its place. Raises OSError where it cannot be written.
+    """
+    descriptor, name = tempfile.mkstemp(ENDING, f".{path.name[:KEPT]}-", path.parent)
+    try:
+        with os.fdopen(descriptor, "w+b") as stream:
+            if hasattr(os, "fchmod"):
+                with suppress(OSError):  # drives without permissions
+                    os.fchmod(descriptor, _permissions(path))
+            yield stream
+            stream.flush()
+            if lasting:
+                os.fsync(descriptor)
+        Path(name).replace(path)
+    except BaseException:  # a full disk or an interrupt
+        Path(name).unlink(missing_ok=True)
+        raise
+
+
+@contextmanager
+def output_by_name(path: Path) -> Iterator[Path]:
+    """Yield a name for packages that open files themselves; what they write is for ``path``."""
+    with tempfile.TemporaryDirectory() as folder:
+        copy = Path(folder) / "copy"
+        yield copy
+        write_bytes(path, copy.read_bytes())
+
+
+def write_bytes(path: Path, content: bytes, *, lasting: bool = False) -> None:
+    """Write bytes, as `output` does."""
+    with output(path, lasting=lasting) as stream:
+        stream.write(content)
+
+
+def write_text(path: Path, text: str, *, lasting: bool = False) -> None:
+    """Write a text in UTF-8, as `output` does."""
+    write_bytes(path, text.encode(), lasting=lasting)
+
+
+def write_table(path: Path, rows: Iterable[Sequence[object]]) -> None:
+    """Write rows as CSV, as `output` does."""
+    text = io.StringIO()
+    csv.writer(text, lineterminator="\n").writerows(rows)
+    write_text(path, text.getvalue())
+
+
+def remove_unfinished(folder: Path, name: str = "") -> None:
+    """Remove what processes that were killed have not written to the end, of a file or of all."""
+    for path in folder.glob(f".{name}*{ENDING}"):
+        path.unlink(missing_ok=True)
+
+
+def _permissions(path: Path) -> int:
+    with suppress(OSError):
+        mode = path.lstat().st_mode
+        if stat.S_ISREG(mode):
+            return stat.S_IMODE(mode) & 0o777
+    return 0o666 & ~MASK

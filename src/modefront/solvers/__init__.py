@@ -1,1 +1,0 @@
-"""Solvers of vector problems J(theta) within bounds; nothing here knows of structures."""

@@ -1,0 +1,99 @@
+"""Ends of the branches of disconnected fronts, where closed forms say they are."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+from problems import Derivatives, Known, box, disconnected
+from scipy.optimize import brentq
+
+from modefront._typing import Bools, Floats
+from modefront.front.dominance import nondominated
+from modefront.front.gaps import Gap, branch_numbers, gaps
+from modefront.front.simplex import Payoff
+from modefront.front.subproblems import Point
+from modefront.optim.sqp import Solution, begin
+from modefront.work.costs import Costs
+
+
+def f(x: float) -> float:
+    return float(disconnected(np.array([x, 0.0]))[0][1])
+
+
+LEFT = float(np.arccos(-1 / np.pi)) / (4 * np.pi)
+RIGHT = float(brentq(lambda x: f(x) - f(LEFT), 0.4, 0.55))
+
+
+def mirrored(theta: Floats) -> tuple[Floats, Floats, Floats]:
+    """The same front with its objectives exchanged: the branch behind the gap starts by itself."""
+    J, dJ, H = disconnected(theta)
+    return J[::-1], dJ[::-1], H[::-1]
+
+
+def front(problem: Known, equations: bool) -> tuple[list[Solution], Bools, Floats]:
+    """Points of a lattice between the ends at x = 0 and 0.651, their slack, and the ranges."""
+    edges = [problem.evaluate(np.array([x, 0.0])).J for x in (0.0, 0.651)]
+    if edges[0][0] > edges[1][0]:
+        edges = edges[::-1]
+    E = np.array(edges).T
+    utopia = np.diag(E)
+    scale = (E - utopia[:, None]).max(axis=1)
+    target = Payoff(utopia, scale, (E - utopia[:, None]) / scale[:, None])
+    points: list[Solution] = []
+    slack = []
+    for s in np.linspace(0.08, 0.92, 13):
+        point = Point(np.array([1 - s, s]), (), target, equations)
+        starts = [begin(problem.evaluate(np.array([x, 0.1]))) for x in np.linspace(0.05, 0.6, 8)]
+        found = [x for x in (point.solve(problem, start) for start in starts) if x.converged]
+        best = min(found, key=lambda x: float(point.value(x.J)))
+        c = target.r * target.excess(point.beta, best.J)
+        if not any(np.abs(best.J - x.J).max() < 1e-5 for x in points):
+            points.append(best)
+            slack.append(c.max() - c > 1e-3)
+    return points, np.array(slack), scale
+
+
+def one_gap(problem: Known, equations: bool) -> tuple[Gap, list[Solution], Bools]:
+    points, slack, scale = front(problem, equations)
+    optimal = nondominated(np.array([x.J for x in points]))
+    (gap,) = gaps(problem, points, optimal, scale, slack=None if equations else slack)
+    return gap, points, optimal
+
+
+@pytest.mark.parametrize("equations", [False, True])
+@pytest.mark.parametrize("function", [disconnected, mirrored])
+def test_branches_end_where_the_front_jumps(
+    function: Callable[[Floats], Derivatives], equations: bool
+) -> None:
+    problem = box(function, [0, -1], [0.651, 1])
+    gap, points, optimal = one_gap(problem, equations)
+    x = sorted(float(end.theta[0]) for end in gap.ends)
+    assert x == pytest.approx([LEFT, RIGHT], abs=1e-6)
+    assert gap.end is not None
+    assert gap.start is not None
+    assert gap.end.J[0] < gap.start.J[0]
+    J = np.array([point.J for point in points])
+    assert optimal.all() != equations, "equations lead into the gap"
+    branches = branch_numbers(J, optimal, [gap])
+    inside = branches > 0
+    assert set(branches[inside].tolist()) == {1, 2}
+    assert ((branches == 1) == (J[:, 0] < gap.middle))[inside].all()
+
+
+def test_a_point_with_slack_saves_the_search_of_an_end(costs: Costs) -> None:
+    problem = box(disconnected, [0, -1], [0.651, 1])
+    points, slack, scale = front(problem, equations=False)
+    before = costs.eigenproblems
+    (gap,) = gaps(problem, points, np.ones(len(points), dtype=bool), scale, slack=slack)
+    assert len(gap.ends) == 2
+    assert costs.eigenproblems - before <= 15
+
+
+def test_a_front_without_slack_has_no_gap() -> None:
+    points, slack, scale = front(box(disconnected, [0, -1], [0.651, 1]), equations=False)
+    left = [k for k, x in enumerate(points) if x.theta[0] < LEFT - 1e-3]
+    some = [points[k] for k in left]
+    problem = box(disconnected, [0, -1], [0.651, 1])
+    assert gaps(problem, some, np.ones(len(some), dtype=bool), scale, slack=slack[left]) == []

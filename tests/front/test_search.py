@@ -1,0 +1,520 @@
+"""The search: what it keeps, what a request and a budget mean, and each proposer alone."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+from dataclasses import dataclass, field, replace
+
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from problems import (
+    Derivatives,
+    Known,
+    bowls,
+    box,
+    circles,
+    concave,
+    curved,
+    disconnected,
+    many_minima,
+    three_wells,
+)
+
+from modefront._typing import Bools, Floats
+from modefront.errors import InputError
+from modefront.front.archive import Archive, Outcome, recorded
+from modefront.front.dominance import undominated
+from modefront.front.front import Front
+from modefront.front.options import Pareto
+from modefront.front.pareto import pareto_front
+from modefront.front.point import Kind, of_kind
+from modefront.front.proposers.base import Offer, Proposer, Rate, at, evaluate_all
+from modefront.front.proposers.evolution import CHILDREN, Evolution
+from modefront.front.proposers.polish import Polish
+from modefront.front.proposers.rivals import Rivals
+from modefront.front.proposers.starts import BLOCK, Starts, coverage, unseen
+from modefront.front.search import Loop, Search
+from modefront.front.simplex import lattice, spanned
+from modefront.front.state import State
+from modefront.front.subproblems import Least, Subproblem, Weights
+from modefront.front.subproblems import Point as LatticePoint
+from modefront.optim.problem import Evaluation
+from modefront.optim.sqp import Solution, Status, begin
+from modefront.optim.sqp import given as given_model
+from modefront.work.costs import counted
+from modefront.work.task import IMMEDIATE
+
+ONES = np.ones(2)
+TOLERANCE = Search().tolerance
+
+
+@dataclass(frozen=True)
+class Seen(Known):
+    """A problem that remembers the objectives of all its evaluations."""
+
+    all: list[Floats] = field(default_factory=list)
+
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
+        evaluation = super().evaluate(theta, derivatives=derivatives, second=second)
+        self.all.append(evaluation.J)
+        return evaluation
+
+
+def seen(problem: Known) -> Seen:
+    return Seen(problem.function, problem.lower, problem.upper, problem.start, problem.objectives)
+
+
+def waves(seed: int, n: int) -> Seen:
+    """Return a problem of n sums of squares of u and of sin 3u, about random centres."""
+    rng = np.random.default_rng(seed)
+    centres, height = rng.uniform(-1, 1, (n, 2)), float(rng.uniform(0, 0.7))
+
+    def function(theta: Floats) -> Derivatives:
+        u = theta - centres
+        J = 0.1 + (u**2 + height * np.sin(3 * u) ** 2).sum(axis=1)
+        H = np.array([np.diag(2 + 18 * height * np.cos(6 * row)) for row in u])
+        return J, 2 * u + 3 * height * np.sin(6 * u), H
+
+    return seen(box(function, [-2, -2], [2, 2], n))
+
+
+def front_points(front: Front) -> list[Solution]:
+    return [point.solution for point in of_kind(front.points, Kind.FRONT)]
+
+
+def assert_nothing_is_better(front: Front, problem: Seen, tolerance: float = TOLERANCE) -> None:
+    """Assert that no evaluated model beats an edge, a weighted model or a point, in its order."""
+    J = np.array(problem.all)
+    J = J[np.isfinite(J).all(axis=1)]
+    for i, edge in enumerate(front.edges):
+        order = Least(i, front.sizes, "edge")
+        assert max(order.gain(row, edge.best) for row in J) <= tolerance, f"edge {i}"
+    for point in of_kind(front.points, Kind.EQUAL):
+        w = np.ones(J.shape[1])
+        assert point.solution.J @ w <= (J @ w).min() * (1 + tolerance)
+    along = front_points(front)
+    assert front.target is not None
+    for beta, k in zip(front.lattice, front.places.tolist(), strict=True):
+        each = LatticePoint(beta, (), front.target)
+        assert max(each.gain(row, along[k]) for row in J) <= tolerance, f"point {beta}"
+
+
+# ---- what is kept ----------------------------------------------------------------------------
+
+
+@settings(max_examples=4)
+@given(st.integers(0, 2**31), st.integers(2, 3))
+def test_no_evaluated_model_is_better_than_what_is_reported(seed: int, n: int) -> None:
+    problem = waves(seed, n)
+    front = pareto_front(problem, np.ones(n), Pareto(points=4), seed=seed % 7)
+    assert_nothing_is_better(front, problem)
+
+
+@pytest.mark.parametrize(
+    ("function", "lower", "upper"),
+    [
+        (three_wells, [-1.0, -1.5], [2.0, 1.5]),
+        (disconnected, [0.0, -1.0], [0.651, 1.0]),
+        (many_minima, [-4.0, -4.0], [4.0, 4.0]),
+    ],
+)
+def test_nor_on_fronts_with_gaps_and_many_basins(
+    function: Callable[[Floats], Derivatives], lower: list[float], upper: list[float]
+) -> None:
+    problem = seen(box(function, lower, upper))
+    front = pareto_front(problem, ONES, Pareto(points=7), seed=3)
+    assert_nothing_is_better(front, problem)
+
+
+@pytest.mark.parametrize("method", ["nbi", "weights"])
+def test_one_seed_gives_one_front(method: str) -> None:
+    fronts = []
+    for _ in range(2):
+        problem = waves(5, 2)
+        front = pareto_front(problem, ONES, Pareto(method=method, points=5), seed=4)
+        fronts.append((front, np.array(problem.all)))
+    (one, evaluated), (other, again) = fronts
+    assert again.tobytes() == evaluated.tobytes()
+    assert other.known.tobytes() == one.known.tobytes()
+    assert [x.label for x in other.points] == [x.label for x in one.points]
+    for x, y in zip(one.points, other.points, strict=True):
+        assert x.solution.theta.tobytes() == y.solution.theta.tobytes()
+        assert x.solution.weights.tobytes() == y.solution.weights.tobytes()
+        assert x.solution.status is y.solution.status
+    assert [len(edge.minima) for edge in one.edges] == [len(edge.minima) for edge in other.edges]
+
+
+def test_given_weights_lead_to_models_of_their_names() -> None:
+    w = np.array([1.0, 3.0])
+    front = pareto_front(box(curved, [-2, -2], [2, 2]), ONES, Pareto(points=3), given=[("mine", w)])
+    (point,) = of_kind(front.points, Kind.GIVEN)
+    assert point.label == "mine"
+    assert point.solution.theta == pytest.approx([0.75, 0.75**2], abs=1e-6)
+    (equal,) = of_kind(front.points, Kind.EQUAL)
+    assert equal.solution.theta == pytest.approx([0.5, 0.25], abs=1e-6)
+
+
+def test_a_known_front_is_solved_for_again_and_nothing_else_is_sought() -> None:
+    def shifted(theta: Floats) -> Derivatives:
+        return circles(theta - [0.01, 0.0])
+
+    known = pareto_front(box(circles, [-2, -2], [2, 2]), ONES, Pareto(points=7), seed=1)
+    with counted() as first:
+        fresh = pareto_front(box(shifted, [-2, -2], [2, 2]), ONES, Pareto(points=7), seed=1)
+    with counted() as costs:
+        again = pareto_front(
+            box(shifted, [-2, -2], [2, 2]), ONES, Pareto(points=7), seed=1, known=known
+        )
+    assert costs.eigenproblems < 0.5 * first.eigenproblems
+    J, expected = (np.array([x.J for x in front_points(each)]) for each in (again, fresh))
+    assert J == pytest.approx(expected, abs=1e-5)
+    assert all(x.converged for x in front_points(again))
+
+
+# ---- what is asked for -----------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("function", "points"), [(circles, 2), (concave, 8), (three_wells, 3)])
+def test_a_front_of_two_groups_has_at_most_twice_the_points_that_are_asked_for(
+    function: Callable[[Floats], Derivatives], points: int
+) -> None:
+    front = pareto_front(box(function, [-1.5, -1.5], [2, 1.5]), ONES, Pareto(points=points))
+    assert points <= 2 * len(front_points(front))
+    assert len(front_points(front)) <= 2 * points
+
+
+@pytest.mark.parametrize("budget", [1, 50, 300])
+def test_at_its_budget_a_search_ends_and_says_what_did_not_converge(budget: int) -> None:
+    problem = waves(11, 2)
+    search = Search(evaluations=budget)
+    front = pareto_front(problem, ONES, Pareto(points=20), seed=1, search=search)
+    # What is being solved is finished, weights and gaps follow, and each point has its derivatives.
+    assert len(problem.all) <= budget + 1000
+    open_points = [point for point in front.points if not point.solution.converged]
+    assert open_points
+    assert {point.solution.status for point in open_points} <= {Status.EXHAUSTED, Status.STALLED}
+    for point in front.points:
+        assert point.solution.feasible
+        assert point.solution.evaluation.derivatives is not None
+    whole = waves(11, 2)
+    assert all(
+        point.solution.converged
+        for point in pareto_front(whole, ONES, Pareto(points=20), seed=1).points
+    )
+    assert len(whole.all) > len(problem.all)
+
+
+@pytest.mark.parametrize(
+    "wrong", [{"evaluations": 0}, {"tolerance": 0.0}, {"doubt": 1.0}, {"tolerance": -1.0}]
+)
+def test_options_that_are_not_possible_are_refused(wrong: dict[str, float]) -> None:
+    with pytest.raises(InputError):
+        Search(**wrong)  # type: ignore[arg-type]
+
+
+# ---- equations and bounds --------------------------------------------------------------------
+
+
+def dented(theta: Floats) -> Derivatives:
+    """The curve of `disconnected`, rising less: each normal crosses it once."""
+    x, y = theta
+    w = 4 * np.pi
+    J = np.array([x, 1 - x - np.sin(w * x) / 8 + y**2])
+    H = np.zeros((2, 2, 2))
+    H[1] = [[w**2 * np.sin(w * x) / 8, 0], [0, 2.0]]
+    return J, np.array([[1.0, 0.0], [-1 - w * np.cos(w * x) / 8, 2 * y]]), H
+
+
+def front_with(programme: str, function: Callable[[Floats], Derivatives]) -> tuple[Front, Bools]:
+    """Return a front of 25 points, and which of these no evaluated model dominates."""
+    problem = seen(box(function, [0, -1], [0.651, 1]))
+    front = pareto_front(problem, ONES, Pareto(points=25, programme=programme), seed=1)
+    J = np.array([x.J for x in front_points(front)])
+    assert front.target is not None
+    return front, undominated(J, np.array(problem.all), front.target.scale)
+
+
+@pytest.mark.parametrize(
+    "function",
+    [
+        dented,
+        pytest.param(
+            disconnected,
+            marks=pytest.mark.xfail(
+                reason="equations are solved from one start, and one that fails is no point",
+                strict=False,
+            ),
+        ),
+    ],
+)
+def test_equations_lead_to_the_points_of_das_and_dennis(
+    function: Callable[[Floats], Derivatives],
+) -> None:
+    front, optimal = front_with("equations", function)
+    points = front_points(front)
+    assert front.target is not None
+    assert len(points) == 25
+    for k, x in enumerate(points):
+        assert x.converged
+        assert x.beta == pytest.approx([1 - k / 24, k / 24])
+        assert x.beta is not None
+        constraints = front.target.boundary(x.beta).constraints.at(x.J)
+        assert constraints == pytest.approx(0.0, abs=1e-6)
+        assert x.theta[1] == pytest.approx(0.0, abs=1e-6)
+    assert 0 < (~optimal).sum() < 10, "equations lead into the gap"
+
+
+@pytest.mark.parametrize("function", [dented, disconnected])
+def test_bounds_lead_to_points_that_no_evaluated_model_dominates(
+    function: Callable[[Floats], Derivatives],
+) -> None:
+    front, optimal = front_with("bounds", function)
+    assert optimal.all()
+    assert len(optimal) < 25, "those in the gap lead to its ends"
+    assert len(front.gaps) == 1
+
+
+def test_where_nothing_is_dominated_both_programmes_agree() -> None:
+    problem = box(concave, [-2, -2], [2, 2])
+    fronts = [
+        pareto_front(problem, ONES, Pareto(points=9, programme=name), seed=1)
+        for name in ("bounds", "equations")
+    ]
+    bounds, equations = (np.array([x.J for x in front_points(front)]) for front in fronts)
+    assert bounds == pytest.approx(equations, abs=1e-3)
+    assert bounds[1:-1] == pytest.approx(equations[1:-1], abs=1e-6)
+
+
+# ---- proposers -------------------------------------------------------------------------------
+
+
+def state_of(problem: Known, subproblems: list[Subproblem], thetas: list[list[float]]) -> State:
+    """Return a state in which models at some parameters are known, with derivatives."""
+    state = State(problem, TOLERANCE, Archive(problem.lower.size, len(problem.objectives)))
+    for theta in thetas:
+        solution = begin(problem.evaluate(np.array(theta)))
+        state.archive.add(solution.theta, solution.J)
+        state.models.append(solution)
+    state.add(subproblems, [None] * len(subproblems))
+    return state
+
+
+def run(state: State, *proposers: Proposer, search: Search | None = None) -> Loop:
+    loop = Loop(state, list(proposers), search or Search(), IMMEDIATE)
+    loop.run("test")
+    return loop
+
+
+def anchors(problem: Known) -> list[Subproblem]:
+    n = len(problem.objectives)
+    edges = [Least(i, np.ones(n), name) for i, name in enumerate(problem.objectives)]
+    return [*edges, Weights(np.ones(n), ("weights", "equal", ""), 1e-10)]
+
+
+def points_between(problem: Known, corners: list[list[float]], points: int) -> list[Subproblem]:
+    edges = [given_model(problem.evaluate(np.array(theta))) for theta in corners]
+    n = len(edges)
+    target = spanned(edges, (), np.ones(n))
+    assert target is not None
+    counts = lattice(n, points - 1)
+    return [LatticePoint(row / (points - 1), tuple(row.tolist()), target) for row in counts]
+
+
+def test_polish_closes_every_incumbent() -> None:
+    problem = box(curved, [-2, -2], [2, 2])
+    between = points_between(problem, [[0, 0], [1, 1]], 7)
+    state = state_of(problem, [*anchors(problem), *between], [[0.1, 0.3], [1.2, 0.9]])
+    assert not any(place.closed for place in state.places)
+    loop = run(state, Polish())
+    assert all(place.closed for place in state.places)
+    assert all(place.incumbent.converged for place in state.places)
+    J = np.array([place.incumbent.J for place in state.places])
+    assert np.sqrt(J).sum(axis=1) == pytest.approx(1, abs=1e-6)
+    searches, evaluations = loop.costs["polish"]
+    assert searches >= len(state.places)
+    assert evaluations == state.evaluations
+    assert not list(Polish().offers(state, 6))
+
+
+def test_a_model_of_another_basin_is_a_rival_where_its_derivatives_promise_more() -> None:
+    problem = box(three_wells, [-1, -1.5], [2, 1.5])
+    edges = [[0.0, -1.0], [1.0, 1.0]]
+    between = points_between(problem, edges, 9)
+    alone = state_of(problem, between, edges)
+    run(alone, Polish())
+    assert not any(abs(place.incumbent.theta[1]) < 0.5 for place in alone.places)
+    state = state_of(problem, between, edges)
+    run(state, Polish())
+    # One model near the middle of the well between, dominated by others, as a start leaves it.
+    other = begin(problem.evaluate(np.array([0.5, 0.3])))
+    assert all(place.subproblem.gain(other.J, place.incumbent) <= 0 for place in state.places)
+    state.models.append(other)
+    rivals = Rivals()
+    run(state, Polish(), rivals)
+    assert sum(abs(place.incumbent.theta[1]) < 0.5 for place in state.places) >= 5
+    assert rivals.rate.gains >= 1
+    assert all(place.closed for place in state.places)
+
+
+def test_a_rival_is_none_for_its_own_incumbent() -> None:
+    problem = box(circles, [-2, -2], [2, 2])
+    state = state_of(problem, anchors(problem), [[0.3, 0.4]])
+    run(state, Polish())
+    state.models = [place.incumbent for place in state.places]
+    assert not list(Rivals().offers(state, 6))
+
+
+@given(st.integers(2, 60), st.integers(0, 60), st.integers(0, 20))
+def test_the_chance_of_a_start_is_what_is_not_covered(tries: int, gains: int, w: int) -> None:
+    rate = Rate(tries, min(gains, tries))
+    bound = w * (w + 1) / (tries * (tries - 1))
+    assert unseen(tries, w) == pytest.approx(min(bound, 1.0))
+    assert coverage(rate, w) == min(unseen(tries, w), rate.chance)
+    assert 0 <= coverage(rate, w) < 1
+    assert unseen(1, w) == unseen(0, w) == 1.0, "nothing is known of what one start says"
+
+
+def test_starts_begin_at_the_problem_s_own_and_cover_each_range_evenly() -> None:
+    problem = box(many_minima, [-4, -4], [4, 4])
+    state = state_of(problem, anchors(problem)[:1], [[0.0, 0.0]])
+    thetas = [
+        offer.start.theta for offer in Starts(np.random.default_rng(0)).offers(state, BLOCK + 1)
+    ]
+    assert thetas[0].tolist() == problem.start.tolist()
+    block = np.array(thetas[1:])
+    assert block.shape == (BLOCK, 2)
+    cells = np.floor((block + 4) / 8 * BLOCK).astype(int)
+    assert (np.sort(cells, axis=0) == np.arange(BLOCK)[:, None]).all()
+
+
+def test_starts_find_all_minima_and_then_stop() -> None:
+    """The least of two unequal wells, and of a third one, are told apart by their values."""
+
+    def wells(theta: Floats) -> Derivatives:
+        (x,) = theta
+        r = np.array([x**3 - 3 * x, 0.1 * x - 0.3])
+        dr = np.array([3 * x**2 - 3, 0.1])
+        J = np.array([r @ r])
+        return J, np.array([[2 * r @ dr]]), np.array([[[2 * dr @ dr]]])
+
+    problem = box(wells, [-3.0], [3.0], 1)
+    state = state_of(problem, [Least(0, np.ones(1), "J1")], [[0.0]])
+    starts = Starts(np.random.default_rng(0))
+    run(state, Polish(), starts)
+    ends = sorted(round(float(x.theta[0]), 1) for x in starts.ends[0])
+    assert ends == [-1.7, 0.0, 1.7]
+    assert state.places[0].incumbent.theta == pytest.approx([np.sqrt(3)], abs=0.02)
+    assert coverage(starts.rates[0], 3) < Search().doubt
+    assert starts.unseen == unseen(starts.rates[0].tries, 3)
+
+
+@given(st.integers(0, 2**31))
+def test_children_lie_within_the_bounds(seed: int) -> None:
+    problem = box(circles, [-0.1, -2.0], [1.0, 0.1])
+    edges = [[0.0, 0.0], [1.0, 0.0]]
+    state = state_of(problem, anchors(problem), [*edges, [0.5, 0.1], [-0.1, -2.0]])
+    rng = np.random.default_rng(seed)
+    evolution = Evolution(rng, Starts(rng))
+    assert not list(evolution.offers(state, 6)), "what is open is polished first"
+    for place in state.places:
+        place.closed = True
+    (offer,) = evolution.offers(state, 6)
+    (children,) = offer.arguments
+    assert children.shape == (CHILDREN, 2)
+    assert (children >= problem.lower).all()
+    assert (children <= problem.upper).all()
+    assert offer.place == -1
+    assert not offer.final
+    outcome = recorded(offer.function, problem, *offer.arguments)
+    assert outcome.evaluations == CHILDREN
+
+
+def test_evolution_alone_comes_close_to_an_edge() -> None:
+    problem = box(circles, [-5, -5], [5, 5])
+    state = state_of(problem, anchors(problem), [[-4.0, 3.0], [4.0, -3.0], [2.0, 4.0]])
+    for place in state.places:
+        place.closed = True
+    rng = np.random.default_rng(0)
+    evolution = Evolution(rng, Starts(rng))
+    for _ in range(40):
+        for place in state.places:
+            place.closed = True
+        (offer,) = evolution.offers(state, 6)
+        state.tell(-1, offer.start, False, recorded(offer.function, problem, *offer.arguments))
+    assert np.abs(state.places[0].incumbent.theta).max() < 0.5
+
+
+@dataclass
+class Given:
+    """A proposer from outside: models that somebody has an idea of, once."""
+
+    thetas: Floats
+    name: str = "given"
+    told: list[tuple[Outcome, float]] = field(default_factory=list)
+    asked: int = 0
+
+    def offers(self, state: State, most: int, /) -> Iterator[Offer]:
+        """Yield one evaluation of all models."""
+        self.asked += 1
+        assert most > 0
+        if not self.told:
+            yield evaluate_all(self.thetas, 0.9)
+
+    def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float, /) -> None:
+        """Remember what was found."""
+        self.told.append((outcome, gain))
+
+
+def test_a_proposer_from_outside_is_asked_and_told() -> None:
+    problem = box(three_wells, [-1, -1.5], [2, 1.5])
+    edges = [[0.0, -1.0], [1.0, 1.0]]
+    state = state_of(problem, points_between(problem, edges, 9), edges)
+    mine = Given(np.array([[0.5, 0.0], [0.8, 0.0], [-1.0, -1.5]]))
+    loop = run(state, Polish(), mine)
+    assert mine.asked >= 2
+    ((outcome, _),) = mine.told
+    assert outcome.evaluations == 3
+    assert len(outcome.J) == 2, "the third is dominated"
+    assert loop.costs["given"] == [1, 3]
+    # Whatever is better than an incumbent takes its place, and is polished from there.
+    assert sum(abs(place.incumbent.theta[1]) < 0.5 for place in state.places) >= 5
+    assert all(place.closed and place.incumbent.converged for place in state.places)
+
+
+def test_offers_below_the_doubt_are_not_made_and_the_best_per_evaluation_come_first() -> None:
+    @dataclass
+    class Hoping(Given):
+        chance: float = 0.0
+
+        def offers(self, state: State, most: int, /) -> Iterator[Offer]:
+            for offer in super().offers(state, most):
+                yield replace(offer, chance=self.chance)
+
+    problem = box(circles, [-2, -2], [2, 2])
+    state = state_of(problem, anchors(problem), [[0.5, 0.0]])
+    one, two = (
+        Hoping(np.ones((1, 2)), "one", chance=0.04),
+        Hoping(np.ones((2, 2)), "two", chance=0.06),
+    )
+    loop = run(state, one, two)
+    assert list(loop.costs) == ["two"]
+    assert one.asked == two.asked == 2
+    assert at(np.ones(2)).theta.tolist() == [1.0, 1.0]
+
+
+def test_models_that_cannot_be_evaluated_do_not_compete() -> None:
+    def hole(theta: Floats) -> Derivatives:
+        J, dJ, H = bowls(theta)
+        return (J if theta[0] < 0.6 else J + np.inf), dJ, H
+
+    problem = box(hole, [-2, -2], [2, 2], 3)
+    state = state_of(problem, anchors(problem), [[0.1, 0.1]])
+    before = [place.incumbent for place in state.places]
+    outcome = recorded(lambda of: begin(of.evaluate(np.array([1.0, 0.0]))), problem)
+    assert state.tell(0, before[0], True, outcome) == 0.0
+    assert all(x is place.incumbent for x, place in zip(before, state.places, strict=True))
+    assert len(state.models) == 1

@@ -1,0 +1,89 @@
+"""Lexicographic minima: least in one objective, then least in the others."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from problems import Derivatives, Known, box, circles, many_minima, valley
+
+from modefront._typing import Floats
+from modefront.optim.lexicographic import Lexicographic
+from modefront.optim.problem import Evaluation, Residual
+from modefront.optim.sqp import Options, begin
+
+TIGHT = Options(step=1e-8, reduction=1e-24)
+ONES = np.ones(2)
+
+
+@pytest.mark.parametrize("start", [[2.5, 2.5], [0.3, 2.9], [2.9, 0.2], [0.2, 0.2]])
+def test_of_a_curve_of_minima_the_point_is_found_that_is_best_in_the_other(
+    start: list[float],
+) -> None:
+    problem = box(valley, [0.1, 0.1], [3.0, 3.0])
+    best = Lexicographic(1, ONES).solve(problem, begin(problem.evaluate(np.array(start))), TIGHT)
+    assert best.converged
+    assert best.theta == pytest.approx([1, 1], abs=1e-6)
+    assert best.J[1] < 1e-12
+
+
+@given(st.integers(0, 2**31), st.floats(1e-3, 1e3))
+def test_of_a_line_of_minima_the_sizes_decide(seed: int, size: float) -> None:
+    """J1 = x**2 leaves y open; J2 / c2 + J3 / c3 is least at a mean of y and 1."""
+
+    def line(theta: Floats) -> Derivatives:
+        x, y = theta
+        J = np.array([x**2, (x - y) ** 2, (y - 1) ** 2])
+        dJ = np.array([[2 * x, 0.0], [2 * (x - y), -2 * (x - y)], [0.0, 2 * (y - 1)]])
+        H = np.array([[[2, 0], [0, 0]], [[2, -2], [-2, 2]], [[0, 0], [0, 2]]], dtype=float)
+        return J, dJ, H
+
+    problem = box(line, [-2.0, -2.0], [2.0, 2.0], 3)
+    theta = np.random.default_rng(seed).uniform(-2, 2, 2)
+    order = Lexicographic(0, np.array([1.0, size, 1.0]))
+    best = order.solve(problem, begin(problem.evaluate(theta)), TIGHT)
+    assert best.converged
+    assert best.theta == pytest.approx([0.0, size / (1 + size)], abs=1e-5)
+
+
+def test_the_local_minimum_of_each_well_is_found_from_within_it() -> None:
+    problem = box(many_minima, [-4, -4], [4, 4])
+    for x, y in [(1, 2), (1, -2), (-1, 2), (-1, -2)]:
+        start = begin(problem.evaluate(np.array([1.1 * x, 0.9 * y])))
+        best = Lexicographic(0, ONES).solve(problem, start, TIGHT)
+        assert best.theta == pytest.approx([x, y], abs=1e-6)
+
+
+def test_ties_are_values_within_rounding_of_the_least() -> None:
+    order = Lexicographic(0, np.array([10.0, 1.0]))
+    J = np.array([2.0, 5.0])
+    assert order.ties(J, np.array([2.0 + 1e-6, 9.0]))
+    assert not order.ties(J, np.array([2.0 + 1e-5, 5.0]))
+    assert order.ties(np.array([0.0, 5.0]), np.array([9e-10, 5.0])), "both are fitted exactly"
+    assert order.others.tolist() == [0.0, 1.0]
+
+
+def test_a_minimum_that_residuals_determine_is_not_open() -> None:
+    problem = box(circles, [-2.0, -2.0], [2.0, 2.0])
+    order, at = Lexicographic(0, ONES), problem.evaluate(np.zeros(2))
+    assert order.is_open(problem, at), "nothing is known of residuals"
+
+    def of(dr: list[list[float]]) -> Evaluation:
+        residual = Residual(np.zeros(len(dr)), np.array(dr))
+        return replace(at, residuals=[residual, residual])
+
+    assert order.is_open(problem, of([[1.0, 0.0]]))
+    assert order.is_open(problem, of([[1.0, 2.0], [2.0, 4.0]]))
+    assert not order.is_open(problem, of([[1.0, 2.0], [2.0, 1.0]]))
+
+
+def test_one_objective_alone_has_its_minimum() -> None:
+    def bowl(theta: Floats) -> Derivatives:
+        J, dJ, H = circles(theta)
+        return J[:1], dJ[:1], H[:1]
+
+    problem: Known = box(bowl, [-2.0, -2.0], [2.0, 2.0], 1)
+    start = begin(problem.evaluate(np.array([1.0, -1.0])))
+    best = Lexicographic(0, np.ones(1)).solve(problem, start, TIGHT)
+    assert best.theta == pytest.approx([0.0, 0.0], abs=1e-7)

@@ -1,0 +1,70 @@
+"""Scalarisations: their derivatives, and the programmes that they stand for."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from modefront.optim.scalarisation import (
+    LogSum,
+    Scalarisation,
+    achievement,
+    constrained,
+    level,
+    weighted,
+)
+
+ONES = np.ones(2)
+PROGRAMMES = [
+    weighted(np.array([1.0, 3.0])),
+    level(1, 0, 0.3, np.array([2.0, 5.0])),
+    achievement(1e-3 * ONES, np.eye(2), np.array([0.2, 0.1])),
+    LogSum(np.array([3.0, 9.0])),
+    LogSum(np.array([3.0, 9.0]), np.array([0.5, 0.1])),
+]
+
+
+@pytest.mark.parametrize("programme", PROGRAMMES)
+@given(st.floats(0.1, 5.0), st.floats(0.1, 5.0))
+def test_derivatives_are_those_of_the_value(programme: Scalarisation, x: float, y: float) -> None:
+    J, h = np.array([x, y]), 1e-6
+    slopes = [
+        (programme.value(J + h * e) - programme.value(J - h * e)) / (2 * h) for e in np.eye(2)
+    ]
+    assert programme.gradient(J) == pytest.approx(slopes, rel=1e-6)
+    bends = [
+        (programme.gradient(J + h * e) - programme.gradient(J - h * e)) / (2 * h) for e in np.eye(2)
+    ]
+    assert programme.hessian(J) == pytest.approx(np.array(bends), rel=1e-5, abs=1e-9)
+
+
+def test_a_level_is_met_where_the_constraint_vanishes() -> None:
+    programme = level(1, 0, 0.3, np.array([2.0, 5.0]))
+    assert programme.constraints.at(np.array([0.3, 7.0])) == pytest.approx(0.0)
+    assert programme.constraints.at(np.array([0.5, 7.0])) == pytest.approx(0.1), "over the scale"
+    assert programme.value(np.array([0.3, 7.0])) == pytest.approx(7.0 / 5)
+
+
+def test_an_achievement_has_no_constraints_and_constraints_have_no_maximum() -> None:
+    J = np.array([0.4, 0.9])
+    reached = achievement(ONES, np.eye(2), np.array([0.1, 0.2]))
+    assert reached.maximised.at(J) == pytest.approx([0.3, 0.7])
+    assert reached.constraints.at(J).size == 0
+    met = constrained(ONES, np.array([[1.0, 1.0]]), np.ones(1))
+    assert met.constraints.at(J) == pytest.approx(0.3)
+    assert met.maximised.at(J).size == 0
+
+
+def test_a_sum_of_logarithms_has_the_weights_a_over_J_and_bounded_ones_with_a_floor() -> None:
+    a, J, b = np.array([3.0, 9.0]), np.array([0.5, 2.0]), np.array([0.5, 1.0])
+    assert LogSum(a).gradient(J) == pytest.approx(a / J)
+    assert LogSum(a, b).gradient(J) == pytest.approx(a / (J + b))
+    assert (LogSum(a, b).gradient(0 * J) <= a / b).all()
+    assert LogSum(a, 0.0, np.array([0.6, 0.0])).value(J) == -np.inf, "an objective vanishes"
+
+
+def test_the_logarithm_of_an_objective_that_vanishes_has_finite_derivatives() -> None:
+    f = LogSum(np.array([3.0, 9.0]))
+    J = np.array([0.0, 1e-300])
+    assert np.isfinite(f.gradient(J)).all()
+    assert np.isfinite(f.hessian(J)).all()

@@ -1,0 +1,346 @@
+"""The parts of sequential quadratic programming, and programmes with a maximum."""
+
+from collections.abc import Callable
+
+import numpy as np
+import pytest
+import scipy.optimize
+from hypothesis import assume, given
+from hypothesis import strategies as st
+from problems import Derivatives, Known, bowls, box, circles, curved, sphere
+
+from modefront._typing import Floats
+from modefront.optim.correction import Correction
+from modefront.optim.merit import Merit, Multipliers, projected, surplus
+from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Residual
+from modefront.optim.scalarisation import Scalarisation, achievement, level, weighted
+from modefront.optim.secant import learned_from
+from modefront.optim.sqp import Options, Solution, Status, begin, solve
+
+SEEDS = st.integers(0, 2**31)
+NONE = Multipliers(np.zeros(0), np.zeros(0))
+
+
+# ---- one programme ---------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("function", [circles, curved])
+def test_weighted_sums_have_their_minimum(function: Callable[[Floats], Derivatives]) -> None:
+    problem = box(function, [-2, -2], [2, 2])
+    start = begin(problem.evaluate(np.array([1.5, -1.0])))
+    result = solve(problem, weighted(np.array([1.0, 3.0])), start)
+    x = 0.75
+    assert result.status is Status.CONVERGED
+    y = x**2 if function is curved else 0.0
+    assert result.theta == pytest.approx([x, y], abs=1e-6)
+
+
+def test_bounds_hold_exactly() -> None:
+    problem = box(circles, [0.6, 0.5], [2, 2])
+    result = solve(problem, weighted(np.array([1.0, 0.1])), begin(problem.evaluate(problem.start)))
+    assert result.converged
+    assert result.theta.tolist() == [0.6, 0.5]
+
+
+def test_levels_are_met() -> None:
+    problem = box(curved, [-2, -2], [2, 2])
+    programme = level(1, 0, 0.16, np.ones(2))
+    result = solve(problem, programme, begin(problem.evaluate(np.array([0.1, 0.3]))))
+    assert result.converged
+    assert result.theta == pytest.approx([0.4, 0.16], abs=1e-6)
+    # Its weights are those of the weighted sum with the same solution.
+    assert result.weights[0] / result.weights[1] == pytest.approx(0.6 / 0.4, rel=1e-5)
+
+
+def test_points_without_a_model_are_stepped_back_from() -> None:
+    def hole(theta: Floats) -> tuple[Floats, Floats, Floats]:
+        J, dJ, H = circles(theta)
+        return (J if theta[0] < 0.6 else J * np.inf), dJ, H
+
+    problem = box(hole, [-2, -2], [2, 2])
+    result = solve(problem, weighted(np.array([1.0, 1.0])), begin(problem.evaluate(-np.ones(2))))
+    assert result.converged
+    assert result.theta == pytest.approx([0.5, 0], abs=1e-6)
+    nowhere = begin(problem.evaluate(np.ones(2)))
+    assert solve(problem, weighted(np.ones(2)), nowhere).status is Status.INFEASIBLE
+
+
+def test_an_exhausted_search_says_so() -> None:
+    problem = box(curved, [-2, -2], [2, 2])
+    start = begin(problem.evaluate(np.array([1.9, -1.9])))
+    result = solve(problem, weighted(np.ones(2)), start, Options(iterations=1))
+    assert result.status is Status.EXHAUSTED
+    assert not result.converged
+
+
+# ---- merit -----------------------------------------------------------------------------------
+
+
+def test_the_projection_on_the_simplex_is_defined_however_great_the_numbers() -> None:
+    assert projected(np.array([3e17, 1.0, 5.0])).tolist() == [1.0, 0.0, 0.0]
+    assert projected(np.array([-3e20, -3e20])).tolist() == [0.5, 0.5]
+
+
+@given(SEEDS, st.integers(1, 6))
+def test_the_projection_is_the_nearest_point_of_the_simplex(seed: int, m: int) -> None:
+    rng = np.random.default_rng(seed)
+    x = 2 * rng.normal(size=m)
+    nearest = projected(x)
+    assert (nearest >= 0).all()
+    assert nearest.sum() == pytest.approx(1)
+    # The angle to every corner is obtuse.
+    assert ((np.eye(m) - nearest) @ (x - nearest)).max() <= 1e-12
+
+
+@given(SEEDS, st.integers(1, 5), st.floats(0.1, 1e4))
+def test_the_augmented_maximum_is_that_of_rockafellar(seed: int, m: int, nu: float) -> None:
+    rng = np.random.default_rng(seed)
+    y, kappa = rng.normal(size=m), projected(rng.normal(size=m))
+
+    def above(tau: float) -> float:
+        return tau + float((np.maximum(0, kappa + nu * (y - tau)) ** 2 - kappa**2).sum()) / 2 / nu
+
+    bracket = (y.min() - 2 / nu, y.max() + 2 / nu)
+    least = scipy.optimize.minimize_scalar(above, bounds=bracket, options={"xatol": 1e-12}).fun
+    value = kappa @ y + surplus(y, kappa, nu)
+    assert value == pytest.approx(least, abs=1e-6 / nu + 1e-9)
+    assert y.max() - 1 / nu - 1e-12 <= value <= y.max() + 1e-12
+
+
+@given(SEEDS, st.floats(0.1, 1e3))
+def test_equal_functions_have_no_surplus(seed: int, nu: float) -> None:
+    kappa = projected(np.random.default_rng(seed).normal(size=4))
+    assert surplus(np.full(4, 0.7), kappa, nu) == pytest.approx(0, abs=1e-12)
+
+
+def test_an_undefined_point_is_worse_than_any_other() -> None:
+    nowhere = Evaluation(np.zeros(1), np.array([np.inf]))
+    assert Merit(weighted(np.ones(1)), NONE, 10.0).at(nowhere) == np.inf
+
+
+# ---- learned second derivatives --------------------------------------------------------------
+
+
+@given(SEEDS, st.integers(1, 4), st.integers(1, 3))
+def test_second_derivatives_of_quadratic_objectives_are_learned(seed: int, p: int, n: int) -> None:
+    """After p steps along different directions, S is the part that is not known."""
+    rng = np.random.default_rng(seed)
+    root = rng.normal(size=(n, p, p))
+    full = np.einsum("ijk,ilk->ijl", root, root) + np.eye(p)
+    assume(np.linalg.cond(full).max() < 1e3)
+
+    def evaluation(theta: Floats) -> Evaluation:
+        return Evaluation(
+            theta, np.zeros(n), ObjectiveDerivatives(full @ theta, np.zeros((n, p, p)))
+        )
+
+    S, position = np.zeros((n, p, p)), evaluation(rng.normal(size=p))
+    for step in np.linalg.qr(rng.normal(size=(p, p)))[0]:
+        new = evaluation(position.theta + step)
+        S, position = learned_from(S, position, new, np.ones(p)), new
+        assert S @ step == pytest.approx(full @ step), "the last step is reproduced"
+        assert S == pytest.approx(S.transpose(0, 2, 1))
+
+
+def test_learned_second_derivatives_do_not_depend_on_the_units_of_parameters() -> None:
+    rng = np.random.default_rng(0)
+    full = rng.normal(size=(2, 3, 3))
+    full, unit = full + full.transpose(0, 2, 1), np.array([1e6, 1.0, 1e-4])
+
+    def learned(unit: Floats) -> Floats:
+        at = [
+            Evaluation(
+                u * unit,
+                np.zeros(2),
+                ObjectiveDerivatives(full @ u / unit, np.stack([np.diag(unit**-2.0)] * 2)),
+            )
+            for u in np.random.default_rng(1).normal(size=(3, 3))
+        ]
+        S = learned_from(np.zeros((2, 3, 3)), at[0], at[1], 2 * unit)
+        return learned_from(S, at[1], at[2], 2 * unit) * np.outer(unit, unit)
+
+    assert learned(unit) == pytest.approx(learned(np.ones(3)), rel=1e-9)
+
+
+def test_only_what_adds_to_known_second_derivatives_shrinks_with_them() -> None:
+    """A residual alone has no known part: its curvature changes sign without being forgotten."""
+    s = np.array([1.0, 0.0])
+
+    def at(theta: Floats, slope: Floats, H: Floats) -> Evaluation:
+        return Evaluation(theta, np.zeros(1), ObjectiveDerivatives(slope[None], H[None]))
+
+    for H, kept in ((np.zeros((2, 2)), 1.0), (np.diag([0.0, 1.0]), 0.0)):
+        S = np.diag([1.0, 1.0])[None]
+        new = learned_from(S, at(0 * s, 0 * s, H), at(s, 0 * s, H), np.ones(2))
+        assert new[0] == pytest.approx(np.diag([0.0, kept]))
+
+
+# ---- second-order correction -----------------------------------------------------------------
+
+
+def test_a_correction_leads_back_into_a_bent_valley() -> None:
+    """Of y - x**2 = 0 from the origin along x: the step ends beside it, the correction on it."""
+
+    def valley(theta: Floats) -> Evaluation:
+        x, y = theta
+        r = Residual(np.array([y - x**2]), np.array([[-2 * x, 1.0]]))
+        J, dJ = np.array([r.r @ r.r]), 2 * (r.r @ r.dr)[None]
+        H = 2 * (r.dr.T @ r.dr)[None]
+        return Evaluation(theta, J, ObjectiveDerivatives(dJ, H), residuals=[r])
+
+    class Valley(Known):
+        def evaluate(
+            self, theta: Floats, *, derivatives: bool = True, second: bool = False
+        ) -> Evaluation:
+            del derivatives
+            return valley(theta)
+
+    problem = Valley(curved, -np.ones(2), np.ones(2), np.zeros(2), ("J1",))
+    correction = Correction(Merit(weighted(np.ones(1)), NONE, 10.0), np.zeros((0, 1)))
+    point, s = valley(np.zeros(2)), np.array([0.1, 0.0])
+    new = valley(np.array([0.2, 0.0]))
+    corrected = correction.evaluated(problem, point, s, new)
+    assert corrected is not None
+    assert corrected.J[0] < 0.1 * new.J[0]
+    # No longer than the step itself, and never for the worse.
+    tiny = valley(np.array([1e-3, 0.5]))
+    assert correction.corrected(problem, point, np.array([5e-4, 0.0]), tiny) is not None
+    assert correction.evaluated(problem, point, np.zeros(2), valley(np.zeros(2))) is None
+
+
+# ---- programmes with a maximum ---------------------------------------------------------------
+
+
+def minimax(problem: Known, programme: Scalarisation) -> float:
+    """Return the least f + max that SLSQP finds from many starts."""
+    rng, best = np.random.default_rng(0), np.inf
+    p, rows = problem.lower.size, programme.maximised
+
+    def J(theta: Floats) -> Floats:
+        return problem.function(np.clip(theta, problem.lower, problem.upper))[0]
+
+    for _ in range(12):
+        theta = rng.uniform(problem.lower, problem.upper)
+        result = scipy.optimize.minimize(
+            lambda x: programme.value(J(x[:p])) + x[p],
+            np.append(theta, rows.at(J(theta)).max()),
+            method="SLSQP",
+            bounds=[*zip(problem.lower, problem.upper, strict=True), (None, None)],
+            constraints={"type": "ineq", "fun": lambda x: x[p] - rows.at(J(x[:p]))},
+            options={"ftol": 1e-13, "maxiter": 300},
+        )
+        reached = J(result.x[:p])
+        best = min(best, programme.value(reached) + rows.at(reached).max())
+    return best
+
+
+@pytest.mark.parametrize(
+    ("function", "lower", "upper"),
+    [
+        (bowls, [-2.0, -2.0], [2.0, 2.0]),
+        (bowls, [0.1, -2.0], [2.0, 0.3]),
+        (sphere, [0.0, 0.0, 0.0], [1.0, 1.0, 1.0]),
+    ],
+)
+@pytest.mark.parametrize("seed", range(6))
+def test_the_least_maximum_is_that_of_an_independent_solver(
+    function: Callable[[Floats], Derivatives], lower: list[float], upper: list[float], seed: int
+) -> None:
+    rng = np.random.default_rng(seed)
+    problem = box(function, lower, upper, 3)
+    point = rng.dirichlet(np.ones(3)) - 0.2
+    programme = achievement(np.full(3, 1e-3), np.diag(rng.uniform(0.5, 2, 3)), point)
+    starts = rng.uniform(problem.lower, problem.upper, (12, len(lower)))
+    result = [solve(problem, programme, begin(problem.evaluate(theta))) for theta in starts]
+    assert all(solution.converged for solution in result)
+    assert max(solution.evaluations for solution in result) <= 20
+    values = [
+        programme.value(solution.J) + programme.maximised.at(solution.J).max()
+        for solution in result
+    ]
+    assert min(values) == pytest.approx(minimax(problem, programme), abs=1e-6)
+    # The weights are those of a stationary Lagrangian: no parameter within its bounds gains.
+    for solution in result:
+        slope = solution.weights @ solution.evaluation.dJ
+        inside = (solution.theta > problem.lower + 1e-6) & (solution.theta < problem.upper - 1e-6)
+        assert slope[inside] == pytest.approx(0, abs=1e-4)
+        assert (solution.weights > 0).all()
+
+
+def test_a_maximum_is_found_within_constraints_too() -> None:
+    """The least of the greater of J2 and J3, at J1 = 0.3: on the diagonal of the triangle."""
+
+    class Both:
+        """A maximum with a constraint."""
+
+        constraints = level(1, 0, 0.3, np.ones(3)).constraints
+        maximised = achievement(np.zeros(3), np.eye(3)[1:], np.zeros(2)).maximised
+
+        def value(self, J: Floats) -> float:
+            return 0.0 * float(J.sum())
+
+        def gradient(self, J: Floats) -> Floats:
+            return np.zeros(J.size)
+
+        def hessian(self, J: Floats) -> Floats:
+            return np.zeros((J.size, J.size))
+
+    problem = box(bowls, [-2.0, -2.0], [2.0, 2.0], 3)
+    start = begin(problem.evaluate(np.array([0.2, -0.4])))
+    result = solve(problem, Both(), start)
+    assert result.converged
+    assert result.theta == pytest.approx(np.full(2, np.sqrt(0.15)), abs=1e-6)
+
+
+def test_a_point_between_equal_functions_is_no_minimum_where_the_curvature_is_negative() -> None:
+    """Max of x - y**2 and -x - y**2: from x = y = 0, y leads on to its bounds."""
+
+    def ridge(theta: Floats) -> Derivatives:
+        x, y = theta
+        J = np.array([x - y**2, -x - y**2])
+        H = np.zeros((2, 2, 2))
+        H[:, 1, 1] = -2.0
+        return J, np.array([[1.0, -2 * y], [-1.0, -2 * y]]), H
+
+    problem = box(ridge, [-1.0, -1.0], [1.0, 1.0])
+    programme = achievement(np.zeros(2), np.eye(2), np.zeros(2))
+    result = solve(problem, programme, begin(problem.evaluate(np.zeros(2))))
+    assert result.status is Status.CONVERGED
+    assert np.abs(result.theta) == pytest.approx([0.0, 1.0], abs=1e-6)
+    assert result.J.max() == pytest.approx(-1.0, abs=1e-6)
+
+
+def least_of(
+    function: Callable[[Floats], Derivatives], start: list[float], options: Options
+) -> Solution:
+    """Return the minimum of a single objective of two parameters within -1 and 2."""
+    problem = box(function, [-1.0, -1.0], [2.0, 2.0], 1)
+    first = begin(problem.evaluate(np.array(start)))
+    return solve(problem, weighted(np.ones(1)), first, options)
+
+
+def test_a_search_rests_where_only_rounding_is_left() -> None:
+    """J = 1 + x**2, and rounding of a great model along y."""
+
+    def noisy(theta: Floats) -> Derivatives:
+        noise = 1e-11 * np.sin(1e9 * theta[::-1])
+        J = np.array([1.0 + theta[0] ** 2 + noise[0]])
+        return J, np.array([2 * theta * [1.0, 0.0] + noise]), np.array([np.diag([2.0, 1e-10])])
+
+    result = least_of(noisy, [0.7, 0.3], Options(1e-8, reduction=1e-24))
+    assert result.status is Status.CONVERGED
+    assert abs(result.theta[0]) < 1e-8
+    assert result.evaluations < 25
+
+
+def test_a_search_does_not_rest_while_its_steps_get_shorter() -> None:
+    """Steps along y go a quarter of the way, and promise less than rounding below y = 1e-3."""
+
+    def slow(theta: Floats) -> Derivatives:
+        x, y = theta
+        J = np.array([1.0 + x**2 + y**4])
+        return J, np.array([[2 * x, 4 * y**3]]), np.array([np.diag([2.0, 16 * y**2])])
+
+    result = least_of(slow, [0.7, 0.9], Options(1e-5, reduction=1e-24))
+    assert result.status is Status.CONVERGED
+    assert abs(result.theta[1]) < 1.3e-4
