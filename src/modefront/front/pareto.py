@@ -101,7 +101,6 @@ class _Run:
         self.n = len(problem.objectives)
         self.state = State(problem, search.tolerance, Archive(problem.lower.size, self.n))
         self._swept: dict[Key, Floats] = {}
-        self._bests: list[Solution] = []
         rng = np.random.default_rng(seed_sequence(seed, "search"))
         self.starts, self.rivals = Starts(rng), Rivals()
         proposers: list[Proposer] = [Polish()]
@@ -125,10 +124,10 @@ class _Run:
             Point(kind, self.place("weights", kind.value, name).incumbent, name)
             for kind, name, _ in self._weights()
         ]
-        points, places, beta = self._points(target)
+        bests = self._reported(sizes, TURNS)
+        points, places, beta = self._points(target, bests)
         if METHODS[self.options.method].programme is None and target is not None:
             points = self._evolved()
-        bests = self._reported(sizes, TURNS)
         optimal, more = self._optimal(weighted, bests, points, target, sizes)
         weighted += more
         iterated = self._iterated(weighted, bests, sizes)
@@ -235,7 +234,7 @@ class _Run:
                 return target
             if target is not None and _are_alike(new, target):
                 break
-            target, self._bests = new, bests
+            target = new
             if METHODS[self.options.method].programme is None:
                 break  # its points are the models of a population
             before = {x.subproblem.key: x.incumbent for x in self.places[first:]}
@@ -347,15 +346,22 @@ class _Run:
             out.append(Edge(best, minima))
         return out
 
-    def _points(self, target: Payoff | None) -> tuple[list[Solution], np.ndarray, Floats]:
-        """Return the points of the front, each once, and which lattice point led to which."""
+    def _points(
+        self, target: Payoff | None, bests: Sequence[Solution]
+    ) -> tuple[list[Solution], np.ndarray, Floats]:
+        """Return the points of the front, each once, and which lattice point led to which.
+
+        The corners of the simplex between the edges are the edges that are reported.
+        """
         if target is None:
             return [], np.zeros(0, dtype=np.intp), np.zeros((0, self.n))
         lattice = sorted(self._lattice(), key=lambda pair: tuple(-pair[1].beta))
-        solutions = [
-            replace(self._end(point, target) or x.incumbent, beta=point.beta)
-            for x, point in lattice
-        ]
+        solutions = []
+        for x, point in lattice:
+            within = not target.worst and min(point.place) >= 0
+            corner = within and max(point.place) == sum(point.place)
+            best = bests[int(np.argmax(point.place))] if corner else x.incumbent
+            solutions.append(replace(best, beta=point.beta))
         beta = [point.beta for _, point in lattice]
         sweep = [x for x in self.places if x.subproblem.key[0] == "sweep"]
         solutions += [x.incumbent for x in sweep]
@@ -364,12 +370,6 @@ class _Run:
         J = np.array([x.J for x in kept])
         apart = [(np.abs(J - x.J) / target.scale).max(axis=1) for x in solutions]
         return kept, np.array([each.argmin() for each in apart], dtype=np.intp), np.array(beta)
-
-    def _end(self, point: LatticePoint, target: Payoff) -> Solution | None:
-        """Return the edge that a corner of the simplex is; None of other points."""
-        if target.worst or max(point.place) < sum(point.place) or min(point.place) < 0:
-            return None
-        return self._bests[int(np.argmax(point.place))]
 
     def _reported(self, sizes: Floats, turn: int) -> list[Solution]:
         """Return the edges, those within the tolerance that are best in the others if wanted."""

@@ -71,7 +71,7 @@ class State:
     def best(self, subproblem: Subproblem) -> Solution:
         """Return the best of the known models in a subproblem."""
         k = int(subproblem.value(self.archive.J).argmin())
-        best = begin(Evaluation(self.archive.theta[k], self.archive.J[k]))
+        best = begin(Evaluation(self.archive.theta[k].copy(), self.archive.J[k].copy()))
         values = [float(subproblem.value(x.J)) for x in self.models]
         near = int(np.argmin(values)) if values else -1
         # a model whose derivatives are known saves an evaluation

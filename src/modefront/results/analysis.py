@@ -25,6 +25,7 @@ from modefront.optim.sqp import Solution
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import TINY
 from modefront.uncertainty.prediction import linear
+from modefront.uncertainty.validity import std
 
 Values = dict[str, object]
 """Values of variables by name; `modefront.results.schema` describes them."""
@@ -164,7 +165,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
         slopes = analysis.slopes.get(name)
         if slopes is not None:
             for quantity, values in predicted.items():
-                values[i] = np.sqrt(np.diag(linear(scatter.covariance, slopes[quantity])))
+                values[i] = std(scatter.theta @ slopes[quantity].T)
     return {
         "theta_std": theta_std,
         "theta_covariance": theta,

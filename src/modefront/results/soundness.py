@@ -1,8 +1,7 @@
 """Conditions on the values of results, without which these have no meaning.
 
 `modefront.results.schema` says which variables there are, of which types and dimensions; this is
-about values that nothing can be shown of, in files that were damaged or made by another program. Of
-all other values the checksum says whether they are those of the run.
+about values of files that were damaged or made by another program.
 """
 
 from __future__ import annotations
@@ -15,6 +14,14 @@ import xarray as xr
 from modefront.front.point import REFERENCES, Kind
 from modefront.results.schema import ATTRIBUTES, DIMENSIONS, VARIABLES
 from modefront.text import NAME, clean
+
+FINITE = (
+    *("theta", "objective", "error", "frequency", "bounds", "properties"),
+    *("minimum_theta", "minimum_objective", "lattice", "equal_theta", "equal_objective"),
+    *("combination_direction", "combination_share"),
+    *("node", "shape_basis", "sensor_direction"),
+)
+"""Variables of numbers that are known wherever there are any."""
 
 UNIQUE = ("label", "parameter", "group", "mode")
 """Variables and coordinates whose values do not repeat."""
@@ -79,11 +86,28 @@ def _texts(data: xr.Dataset) -> Iterator[Fault]:
 
 def _numbers(data: xr.Dataset) -> Iterator[Fault]:
     for name in ("mode", *VARIABLES):
-        if name in data and (name == "mode" or VARIABLES[name].values == "count"):
-            values = data[name].values
+        if name not in data or data[name].dtype.kind not in "fiub":
+            continue
+        place, values = _variable(data, name), data[name].values
+        kind = VARIABLES[name].values if name in VARIABLES else "count"
+        if kind == "truth" and not np.isin(values, (0, 1)).all():
+            yield place, "truth values, 0 or 1", _first(values, ~np.isin(values, (0, 1)))
+        elif kind == "count":
             wrong = ~((np.abs(values) <= LARGEST) & (values == np.round(values)))
             if wrong.any():
-                yield _variable(data, name), "whole numbers", _first(values, wrong)
+                yield place, "whole numbers", _first(values, wrong)
+        elif name in FINITE and not np.isfinite(values).all():
+            yield place, "finite numbers", _first(values, ~np.isfinite(values))
+    for name in ("objective", "error", "minimum_objective"):
+        values = data[name].values
+        if (values < 0).any():
+            yield f"variable '{name}'", "numbers of 0 or more", _first(values, values < 0)
+    bounds = data["bounds"].values
+    if bounds.shape[1] == 2 and not (bounds[:, 0] < bounds[:, 1]).all():
+        yield "variable 'bounds'", "lower bounds below upper ones", str(bounds[0].tolist())
+    measured = data["measured_frequency"].values
+    if not (np.isnan(measured) | ((measured > 0) & np.isfinite(measured))).all():
+        yield "variable 'measured_frequency'", "frequencies above 0", str(measured.min())
 
 
 def _geometry(data: xr.Dataset) -> Iterator[Fault]:
