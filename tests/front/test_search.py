@@ -408,11 +408,11 @@ def test_starts_find_all_minima_and_then_stop() -> None:
     state = state_of(problem, [Least(0, np.ones(1), "J1")], [[0.0]])
     starts = Starts(np.random.default_rng(0))
     run(state, Polish(), starts)
-    ends = sorted(round(float(x.theta[0]), 1) for x in starts.ends[0])
+    ends = sorted(round(float(x.theta[0]), 1) for x in starts.ends[state.places[0].subproblem.key])
     assert ends == [-1.7, 0.0, 1.7]
     assert state.places[0].incumbent.theta == pytest.approx([np.sqrt(3)], abs=0.02)
-    assert coverage(starts.rates[0], 3) < Search().doubt
-    assert starts.unseen == unseen(starts.rates[0].tries, 3)
+    assert coverage(starts.rates[state.places[0].subproblem.key], 3) < Search().doubt
+    assert starts.unseen == unseen(starts.rates[state.places[0].subproblem.key].tries, 3)
 
 
 @given(st.integers(0, 2**31))

@@ -98,6 +98,8 @@ def test_the_results_say_so_too(frame: mf.UpdatingProblem) -> None:
     assert np.abs(data["at_bound"].values[labels.index("optimal-weights")]).sum() >= 6
     assert any(text.startswith("the posterior is given ") for text in data["finding"].values)
     of = data["equal_of"].values
-    assert data["equal_dimension"].values[of == "frequencies"].tolist() == [16] * 10
+    dimensions = data["equal_dimension"].values[of == "frequencies"]
+    assert dimensions.size >= 10
+    assert (dimensions == 16).all()
     J = data["equal_objective"].values[of == "frequencies", 0]
     assert J == pytest.approx(J[0], abs=1e-9)

@@ -123,7 +123,10 @@ def test_linearised_scatter_is_that_of_synthetic_data(source: str) -> None:
 
 @pytest.mark.slow
 def test_points_of_three_groups_scatter_as_synthetic_data_do() -> None:
-    """30 drawings tell a standard deviation to 13 %: within the simplex, on its border, beyond."""
+    """60 drawings tell a standard deviation to 9 %: within the simplex, on its border, beyond.
+
+    Where errors change which objectives bound a point, the linear scatter is doubted.
+    """
     base = problem_of(std=0.002)
     groups = (
         mf.Group("frequencies", frequency="all"),
@@ -132,19 +135,23 @@ def test_points_of_three_groups_scatter_as_synthetic_data_do() -> None:
     )
     problem = mf.UpdatingProblem(base.model, base.data, groups, base.lower, base.upper, base.start)
     data = mf.solve(
-        problem, points=4, seed=1, search=SEARCH, uncertainty=mf.Uncertainty("std", bootstrap=30)
+        problem, points=4, seed=1, search=SEARCH, uncertainty=mf.Uncertainty("std", bootstrap=60)
     ).dataset
     along = data["front_part"].values == "whole"
-    within = np.isin(data["label"].values, data["lattice_label"].values)
+    inside = (data["lattice"].values >= 0).all(axis=1)
+    within = np.isin(data["label"].values, data["lattice_label"].values[inside])
     assert (along & within).sum() > 2, "some lie within the simplex"
     assert (along & ~within).any(), "some lie beyond it"
+    doubt = data["scatter_doubt"].values
+    assert set(doubt[along]) <= {"", "switches"}
+    sound = along & (doubt == "")
+    assert sound.sum() > along.sum() / 2
     for name in ("theta", "objective"):
-        linear = data[f"{name}_std"].values[along]
-        drawn = data[f"bootstrap_{name}_std"].values[along]
+        linear = data[f"{name}_std"].values[sound]
+        drawn = data[f"bootstrap_{name}_std"].values[sound]
         kept = linear > 1e-3 * linear.max(axis=0)
         assert linear[kept] == pytest.approx(drawn[kept], rel=0.26), name
         assert np.median(linear[kept] / drawn[kept]) == pytest.approx(1, abs=0.1), name
-    assert (data["scatter_doubt"].values[along] == "").all()
 
 
 def test_predictions_scatter_with_the_parameters() -> None:

@@ -247,6 +247,7 @@ def _solved_points(
         else:
             out.append(SolvedPoint(text, edge.best, Role("edge", objective=i)))
     along = METHODS[front.method].programme
+    equations = options.pareto.programme == "equations"
     for point in [*front.points, *extra]:
         role: Role | None = None
         match point.kind:
@@ -255,11 +256,11 @@ def _solved_points(
             case Kind.GIVEN | Kind.EQUAL | Kind.BOUNDED:
                 role = Role("weights")
             case Kind.FRONT if along == "boundary":
-                role = _between(point.solution, whole, solutions, front.target)
+                role = _between(point.solution, whole, solutions, front.target, equations)
             case Kind.FRONT if along == "weights":
                 role = Role("weights")
             case Kind.IDENTIFIABLE if part:
-                role = _between(point.solution, ends, part.ends, part.target)
+                role = _between(point.solution, ends, part.ends, part.target, equations)
             case Kind.IDENTIFIABLE_EDGE:
                 role = Role("level", objective=names.index(point.name), tolerance=flat)
         if role:
@@ -268,13 +269,17 @@ def _solved_points(
 
 
 def _between(
-    solution: Solution, labels: tuple[str, ...], ends: Sequence[Solution], target: Payoff | None
+    solution: Solution,
+    labels: tuple[str, ...],
+    ends: Sequence[Solution],
+    target: Payoff | None,
+    equations: bool,
 ) -> Role:
     """Return the role of a point of NBI between labelled ends, or of one of these ends."""
     for text, end in zip(labels, ends, strict=True):
         if same(solution, end):
             return Role("end", (text,))
-    return Role("boundary", labels, target.worst if target else ())
+    return Role("boundary", labels, target.worst if target else (), equations)
 
 
 def _locals(

@@ -113,7 +113,7 @@ class Context:
     def tangents(self, evaluation: Evaluation) -> Floats:
         """Return a basis (p, .) of the null space of B, without what is weakly determined."""
         N = np.eye(self.held.size)[:, ~self.held]
-        lam, V = np.linalg.eigh(N.T @ self.second(evaluation) @ N)
+        lam, V = np.linalg.eigh(N.T @ self._across(evaluation) @ N)
         N = N @ V[:, np.abs(lam) <= FLAT * self.top]
         G = self._weighted(evaluation, evaluation.gauss_newton)
         gamma, V = np.linalg.eigh(N.T @ G @ N)
@@ -158,7 +158,7 @@ class Context:
         return self.corrected(start, np.clip(u, 0, 1), held) if point is None else point
 
     def _across(self, evaluation: Evaluation) -> Floats:
-        """Return the second derivatives for a correction: G is B where residuals vanish."""
+        """Return the second derivatives across the manifold: G is B where residuals vanish."""
         if self.fits:
             return self._weighted(evaluation, evaluation.gauss_newton)
         return self.second(evaluation)
@@ -173,8 +173,8 @@ def context_of(
 ) -> tuple[Context, TangentPoint]:
     """Return the context of the manifold through a minimum, and the minimum with its tangents.
 
-    Variables that the slope presses against a bound are held there, and those that are ``idle``
-    where they are.
+    Variables that the slope presses against a bound are held there, unless residuals vanish, and
+    those that are ``idle`` where they are.
     """
     if not evaluation.exact:
         evaluation = problem.evaluate(evaluation.theta, second=True)
@@ -184,10 +184,10 @@ def context_of(
     free = np.zeros(u.size, dtype=bool)
     context = Context(problem, programme, value, 0.0, free, idle)
     top = float(np.abs(np.linalg.eigvalsh(context.second(evaluation))).max())
-    pressed = np.abs(g) > TIE * np.sqrt(top * size) + ARRIVED * top
+    fits = size <= EXACT * top
+    pressed = (np.abs(g) > TIE * np.sqrt(top * size) + ARRIVED * top) & (not fits)
     held = idle | (pressed & np.where(g > 0, u <= 0, u >= 1))
     most = value + TIE * size + top * TIE**2
-    fits = size <= EXACT * top
     context = replace(context, top=top, held=held, most=most, fits=fits)
     T = context.tangents(evaluation)
     return replace(context, dimension=T.shape[1]), TangentPoint(evaluation, u, T)

@@ -25,9 +25,17 @@ from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.rivals import Rivals
 from modefront.front.proposers.starts import Starts
 from modefront.front.search import Loop, Search
-from modefront.front.simplex import Payoff, default_points, lattice, nearest, neighbours, payoff
+from modefront.front.simplex import (
+    Payoff,
+    default_points,
+    is_flat,
+    lattice,
+    nearest,
+    neighbours,
+    payoff,
+)
 from modefront.front.state import DISTINCT, Place, State, distinct_points
-from modefront.front.subproblems import RHO, Least, Subproblem, Weights, active_bounds
+from modefront.front.subproblems import RHO, Least, Subproblem, Weights, active_bounds, is_along
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.front.weights import (
     accepted,
@@ -49,6 +57,9 @@ LEAST = 1e-6
 
 FINEST = 7
 """Halvings of the distance between neighbours at most, where a front is refined."""
+
+FINE = 10_000
+"""Divisions of the lattice on which points are added at known models."""
 
 TURNS = 4
 """Fronts that are searched at most, each between edges that the search of the one before moved."""
@@ -225,25 +236,41 @@ class _Run:
         divisions = (self.options.points or default_points(self.n)) - 1
         counts = [tuple(map(int, row)) for row in lattice(self.n, divisions)]
         target: Payoff | None = None
-        first = len(self.places)
         for turn in range(TURNS):
             bests = self._reported(sizes, turn)
-            new = payoff(bests, sizes, self.state.models)
+            new = payoff(bests, sizes, self._others(bests, sizes))
             if new is None:
-                del self.places[first:]
+                self._drop_points()
                 return target
             if target is not None and _are_alike(new, target):
                 break
             target = new
             if METHODS[self.options.method].programme is None:
                 break  # its points are the models of a population
-            before = {x.subproblem.key: x.incumbent for x in self.places[first:]}
-            del self.places[first:]
+            before = {x.subproblem.key: x.incumbent for x in self._drop_points()}
             self._add_points(target, counts, before)
             self._run_front()
             self._grow(target)
+            self._fill(target, len(counts))
             self._refine(target)
         return target
+
+    def _others(self, bests: Sequence[Solution], sizes: Floats) -> list[Solution]:
+        """Return the best models without regard to one objective each, where edges coincide.
+
+        They tell the ranges of the front where the simplex between the edges is flat.
+        """
+        if not is_flat(bests, sizes):
+            return []
+        keys = [("others", name) for name in self.problem.objectives]
+        if not any(x.subproblem.key == keys[0] for x in self.places):
+            new = []
+            for i, key in enumerate(keys):
+                w = np.where(np.arange(self.n) == i, LEAST, 1.0) / sizes
+                new.append(Weights(w, key, EXACT * self.n))
+            self.state.add(new, [None] * self.n)
+            self.loop.run("ranges")
+        return [self.place(*key).incumbent for key in keys]
 
     def _run_front(self) -> None:
         """Search for the points that are there."""
@@ -269,13 +296,19 @@ class _Run:
         starts = [(before or {}).get(each.key) or self._known_solution(each) for each in new]
         self.state.add(new, starts)
 
+    def _drop_points(self) -> list[Place]:
+        """Take the points of a front away, and return them."""
+        along = [x for x in self.places if is_along(x.subproblem)]
+        self.state.places = [x for x in self.places if not is_along(x.subproblem)]
+        return along
+
     def _lattice(self) -> list[tuple[Place, LatticePoint]]:
         """Return the places of the points of the lattice, with their subproblems."""
         pairs = ((x, x.subproblem) for x in self.places)
         return [(x, point) for x, point in pairs if isinstance(point, LatticePoint)]
 
     def _grow(self, target: Payoff) -> None:
-        """Add points beside such as lie on their normals, and below others, while there are any.
+        """Add points beside such as lie on their normals, while there are any beyond the simplex.
 
         The simplex between the edges of more than two objectives does not cover the whole front. At
         most as many points are added as there are within it.
@@ -288,8 +321,6 @@ class _Run:
             for x, point in here:
                 if x.incumbent.converged and point.spread(x.incumbent.J) < LOOSE:
                     beyond.update(neighbours(point.place))
-                elif x.incumbent.converged:
-                    beyond.add(nearest(target.place(x.incumbent.J), sum(point.place)))
             added = sorted(beyond - taken)[: most - len(here)]
             if not added:
                 break
@@ -299,6 +330,29 @@ class _Run:
             on_normal = x.incumbent.converged and point.spread(x.incumbent.J) < LOOSE
             if min(point.place) < 0 and not on_normal:
                 self.state.places = [other for other in self.places if other is not x]
+
+    def _fill(self, target: Payoff, asked: int) -> None:
+        """Add points at models that all points are far from, until as many as asked are distinct.
+
+        Far is a model that each point is behind in some objective, over the ranges (the additive
+        epsilon indicator; Zitzler et al. 2003, doi:10.1109/TEVC.2003.810758).
+        """
+        known = 0
+        while self.n > 2 and self._lattice():
+            solutions = [x.incumbent for x, _ in self._lattice()]
+            points = np.array([x.J for x in distinct_points(solutions, target.scale)])
+            if not known < len(points) < asked:
+                break
+            known = len(points)
+            J = self.state.archive.J / target.scale
+            behind = (points / target.scale - J[:, None]).max(axis=2).min(axis=1)
+            added = set()
+            while len(points) + len(added) < asked and behind.max() > LOOSE:
+                k = int(behind.argmax())
+                added.add(nearest(target.place(J[k] * target.scale), FINE))
+                behind = np.minimum(behind, (J[k] - J).max(axis=1))
+            self._add_points(target, sorted(added))
+            self._run_front()
 
     def _refine(self, target: Payoff) -> None:
         """Add points half-way between neighbours of two objectives that are too far apart."""
@@ -338,9 +392,11 @@ class _Run:
         out = []
         span = self.state.span
         for k, _ in enumerate(self.problem.objectives):
-            best = self.places[k].incumbent
+            place = self.places[k]
+            best = place.incumbent
             minima = [best]
-            for solution in sorted(self.starts.ends.get(k, ()), key=lambda x: float(x.J[k])):
+            ends = self.starts.ends.get(place.subproblem.key, ())
+            for solution in sorted(ends, key=lambda x: float(x.J[k])):
                 if all(np.abs((solution.theta - x.theta) / span).max() > DISTINCT for x in minima):
                     minima.append(solution)
             out.append(Edge(best, minima))

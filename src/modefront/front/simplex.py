@@ -12,7 +12,6 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Floats, Ints
-from modefront.front.dominance import nondominated
 from modefront.optim.scalarisation import Linear, constrained
 from modefront.optim.sqp import Solution
 
@@ -134,29 +133,33 @@ class Payoff:
         return constrained(w / self.scale, across / self.scale, across @ point)
 
 
+def is_flat(edges: Sequence[Solution], sizes: Floats) -> bool:
+    """Return whether the simplex between edges has no volume; ``sizes`` (n,) are typical ones.
+
+    One model may be best in several of more than two objectives.
+    """
+    if len(edges) == 2:
+        return False
+    P = simplex(edges)
+    sigma = np.linalg.svd(P / np.maximum(P.max(axis=1), POINT * sizes)[:, None], compute_uv=False)
+    return bool(sigma[-1] <= FLAT * sigma[0])
+
+
 def payoff(
-    edges: Sequence[Solution], sizes: Floats, known: Sequence[Solution] = ()
+    edges: Sequence[Solution], sizes: Floats, others: Sequence[Solution] = ()
 ) -> Payoff | None:
     """Return the pay-off of the edges; None where an objective does not vary over them.
 
     ``sizes`` are typical sizes of the objectives. Where nothing varies, one model is the best in
-    everything and the front is one point.
-
-    One model may be best in several of more objectives, and the simplex between the edges then is
-    flat. Its place takes the simplex between the points that are worst in one objective and best in
-    all others, with the ranges over all ``known`` models, which need not be attained.
+    everything and the front is one point. ``others`` are models without regard to one objective
+    each: where the simplex between the edges is flat, its place takes that of the ranges over the
+    edges and these, whose corners need not be attained.
     """
-    P = simplex(edges)
-    if (POINT * sizes[:, None] >= P).all():
+    if (POINT * sizes[:, None] >= simplex([*edges])).all():
         return None
-    sigma = np.linalg.svd(P / np.maximum(P.max(axis=1), POINT * sizes)[:, None], compute_uv=False)
-    if len(edges) == 2 or sigma[-1] > FLAT * sigma[0]:
-        return spanned(edges, (), sizes)
-    everything = [*edges, *known]
-    optimal = nondominated(np.array([solution.J for solution in everything]))
-    kept = [everything[k] for k in np.flatnonzero(optimal).tolist()]
-    worst = [max(kept, key=lambda solution: float(solution.J[i])) for i in range(len(edges))]
-    return spanned(edges, worst, sizes)
+    everything = [*edges, *others]
+    worst = [max(everything, key=lambda x: float(x.J[i])) for i in range(len(edges))]
+    return spanned(edges, worst if others else (), sizes)
 
 
 def spanned(edges: Sequence[Solution], worst: Sequence[Solution], sizes: Floats) -> Payoff | None:

@@ -28,11 +28,13 @@ class Place:
     ----------
     incumbent : the best model
     closed : whether the search from the incumbent itself leads nowhere better
+    compared : number of known models that were compared with the incumbent as rivals
     """
 
     subproblem: Subproblem
     incumbent: Solution
     closed: bool = False
+    compared: int = 0
 
 
 @dataclass

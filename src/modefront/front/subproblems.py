@@ -59,8 +59,8 @@ def active_bounds(shares: Floats) -> Bools:
     return np.asarray(shares > 2 * RHO)
 
 
-NEGLIGIBLE = 1e-2 * EXACT
-"""Objective over its typical size at which a search ends: it is fitted more than exactly."""
+NEGLIGIBLE = 1e-16
+"""Objective over its typical size at which a search ends: residuals of the tolerance of steps."""
 
 _TIGHT, _ROUGH = (
     Options(step=1e-8, reduction=1e-24, negligible=NEGLIGIBLE),
@@ -275,3 +275,8 @@ class Point:
             return self.target.boundary(self.beta)
         unit = self.target.unit
         return achievement(RHO / unit, np.diag(1 / unit), self.target.offset(self.beta))
+
+
+def is_along(subproblem: Subproblem) -> bool:
+    """Return whether a subproblem is one of many along the front."""
+    return subproblem.key[0] in ("point", "sweep")

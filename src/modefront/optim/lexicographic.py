@@ -87,11 +87,24 @@ class Lexicographic:
         best = self.first(problem, start, options)
         if not best.feasible or self.sizes.size == 1 or not self.is_open(problem, best.evaluation):
             return best
-        coarse = fine = replace(start, evaluations=best.evaluations)
-        for epsilon in PATH:
+        spent = best.evaluations
+        for path, begins in ((PATH, start), (PATH[-2:], best)):
+            end = self._end(problem, path, begins, options)
+            spent += end.evaluations
+            i = self.objective
+            if end.feasible and (end.J[i] <= best.J[i] or self.ties(end.J, best.J)):
+                return replace(end, evaluations=spent)
+        return replace(best, evaluations=spent)  # the path leads to another basin
+
+    def _end(
+        self, problem: Problem, path: tuple[float, ...], start: Solution, options: Options
+    ) -> Solution:
+        """Return the limit to which a path of minimisers leads."""
+        coarse = fine = replace(start, evaluations=0)
+        for epsilon in path:
             coarse = fine
             fine = _solved(problem, self._with(epsilon), coarse, options)
-        theta = fine.theta + (fine.theta - coarse.theta) * PATH[-1] / (PATH[-2] - PATH[-1])
+        theta = fine.theta + (fine.theta - coarse.theta) * path[-1] / (path[-2] - path[-1])
         limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper), second=True)
         i = self.objective
         better = limit.feasible and limit.J[i] <= fine.J[i]

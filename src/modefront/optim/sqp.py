@@ -198,8 +198,8 @@ def solve(
     evaluation, count = start.evaluation, -1
     if evaluation.derivatives is None:
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
-    S = np.zeros_like(evaluation.H)
-    trusted, escaped, failed = False, False, 0
+    S = evaluation.H - evaluation.gauss_newton
+    trusted, escaped, failed = evaluation.exact, False, 0
     radius, penalty = options.radius, PENALTY
     multipliers: Multipliers | None = None
     progress = _Progress(options, length(programme.constraints.at(evaluation.J)))
@@ -211,10 +211,8 @@ def solve(
             return Solution(evaluation, local.df, 0.0, Status.UNBOUNDED, count)
         if local.free and local.f <= options.negligible:
             return Solution(evaluation, local.df, 0.0, Status.CONVERGED, count)
-        learned = not evaluation.exact
-        qp, step, multipliers = local.step(
-            evaluation.H + S if learned and trusted else evaluation.H, radius, multipliers
-        )
+        H = evaluation.gauss_newton + S if trusted else evaluation.gauss_newton
+        qp, step, multipliers = local.step(H, radius, multipliers)
         s, w = step.s, multipliers.weights(programme, evaluation.J)
         violation, far = length(local.c), length(s)
         progress.proposed(far, radius)
@@ -249,15 +247,16 @@ def solve(
             failed = 0 if corrected else failed + 1
             new = corrected or new
         actual = before - merit.at(new)
-        if learned:
-            change = s * local.span
-            rest = 0.5 * w @ (S @ change @ change) * (1 if trusted else -1)
-            if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):
-                trusted = not trusted
+        change = s * local.span
+        rest = 0.5 * w @ (S @ change @ change) * (1 if trusted else -1)
+        if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):
+            trusted = not trusted
+        if not evaluation.exact:
             S = learned_from(S, evaluation, new, local.span)
         ratio = (actual + noise) / (predicted + noise) if predicted > -noise else -1.0
         if ratio > TAKEN:
             evaluation = new
+            S = evaluation.H - evaluation.gauss_newton if evaluation.exact else S
         radius = _next_radius(radius, far, ratio)
 
 

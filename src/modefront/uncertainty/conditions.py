@@ -111,16 +111,22 @@ def over_ranges(E: Floats, dE: Floats, top: Floats) -> Target:
     return Target(utopia, np.diag(top - utopia), dutopia, -dutopia[:, :, None] * np.eye(top.size))
 
 
+# 6 arguments: those of the problem, and what is solved.
 def boundary(
-    point: Evaluation, w: Floats, target: Target, beta: Floats, noise: Noise
+    point: Evaluation,
+    w: Floats,
+    target: Target,
+    beta: Floats,
+    noise: Noise,
+    equations: bool = False,
 ) -> tuple[Floats, Conditions]:
     """Return the weights in their right size and the conditions of a point of NBI.
 
-    ``beta`` (n,) is the point of the simplex that it was projected from.
+    ``beta`` (n,) is the point of the simplex that it was projected from, by the ``equations`` of Das
+    & Dennis or with bounds.
     """
     n = target.P.sum(axis=1)
     dn = target.dP.sum(axis=2)
-    equations = bool((w < 0).any())  # of Das & Dennis, which have weights of any sign
     active = np.ones(n.size, dtype=np.bool_) if equations else active_bounds(w * n)
     w = w / (w[active] @ n[active])
     above = point.J - target.utopia - target.P @ beta  # n c
@@ -129,5 +135,5 @@ def boundary(
     f = np.where(active, moved, -RHO * dn / n**2)
     e = np.where(active, n, 0.0)[:, None]
     h = -(dn[:, active] @ w[active])[:, None]
-    bounds = None if active.all() else Bounds(active, n, dn, tau * n - above, moved)
+    bounds = None if equations else Bounds(active, n, dn, tau * n - above, moved)
     return w, Conditions(active[:, None] * point.dJ, (~active).astype(float), e, f, h, bounds)

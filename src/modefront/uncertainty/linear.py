@@ -77,7 +77,8 @@ def front_scatter(
                 dv = (1 + role.tolerance) * level_of[role.objective]
                 conditions = level(point, role.objective, dv, noise)
             case "boundary" if beta is not None and {*role.ends} <= set(ends):
-                w, conditions = boundary(point, w, _target(role, ends), beta, noise)
+                target = _target(role, ends)
+                w, conditions = boundary(point, w, target, beta, noise, role.equations)
             case _:
                 continue
         out[text] = scatter(problem, point, w, conditions, noise)

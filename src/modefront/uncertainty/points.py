@@ -38,6 +38,7 @@ class Role:
     ends : labels of the ends between which a point of NBI lies, one an objective; or the end
     worst : models up to which the ranges of the objectives reach, which stay where they are, where
         the simplex is that of the ranges
+    equations : whether a point of NBI solves the equations of Das & Dennis
     objective : of an edge or a level
     tolerance : share by which a level exceeds the least value of its objective
     """
@@ -45,6 +46,7 @@ class Role:
     kind: Kind
     ends: tuple[str, ...] = ()
     worst: Sequence[Solution] = ()
+    equations: bool = False
     objective: int = -1
     tolerance: float = 0.0
 
@@ -113,6 +115,5 @@ def _again(
         beta = point.solution.beta
         if target is None or beta is None:
             return start
-        equations = bool((point.solution.weights < 0).any())
-        return Point(beta, (), target, equations).solve(problem, start)
+        return Point(beta, (), target, role.equations).solve(problem, start)
     return solve(problem, programme, start)

@@ -25,30 +25,26 @@ class Rivals:
 
     Attributes
     ----------
-    seen : number of models that were compared with each place
     found : predicted gain of each pair of place and model that is not tried yet
     rate : of the searches so far
     """
 
     name: str = "rivals"
-    seen: dict[int, int] = field(default_factory=dict)
     found: dict[tuple[int, int], float] = field(default_factory=dict)
     rate: Rate = field(default_factory=Rate)
-    _tried: set[tuple[int, int]] = field(default_factory=set)
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
         """Yield the most promising pairs."""
         for k, place in enumerate(state.places):
             if not place.closed:
                 continue
-            first = self.seen.get(k, 0)
-            for m in range(first, len(state.models)):
+            for m in range(place.compared, len(state.models)):
                 if not place.subproblem.is_near(state.models[m].J):
                     continue
                 gain = predicted_gain(state, k, state.models[m])
                 if gain > state.tolerance:
                     self.found[k, m] = gain
-            self.seen[k] = len(state.models)
+            place.compared = len(state.models)
         used: set[int] = set()
         count = len(state.places)
         self.found = {pair: gain for pair, gain in self.found.items() if pair[0] < count}

@@ -22,9 +22,10 @@ from modefront.front.archive import Outcome
 from modefront.front.proposers.base import STEPS, Offer, Rate, approach_from, at, solve_from
 from modefront.front.proposers.prediction import promised
 from modefront.front.state import State
-from modefront.front.subproblems import Least, Point, Subproblem, Weights
+from modefront.front.subproblems import Least, Point, Subproblem, Weights, is_along
 from modefront.optim.lexicographic import EXACT
 from modefront.optim.sqp import Solution
+from modefront.work.task import Key
 
 BLOCK = 10
 """Starts that are spread evenly over each range together."""
@@ -40,7 +41,7 @@ class Starts:
     Attributes
     ----------
     rng : random numbers
-    rates : of each subproblem, by its number; those of all points of the lattice share one, -1
+    rates : of each subproblem, by its key; those of all points of the lattice share one, ()
     ends : distinct minima of each subproblem
     ties : minima of each subproblem that starts have led to
     tried : models from which the end of the front at an edge was sought
@@ -50,29 +51,30 @@ class Starts:
 
     rng: np.random.Generator
     name: str = "starts"
-    rates: dict[int, Rate] = field(default_factory=dict)
-    ends: dict[int, list[Solution]] = field(default_factory=dict)
-    ties: dict[int, list[Solution]] = field(default_factory=dict)
-    tried: dict[int, list[Solution]] = field(default_factory=dict)
-    along: dict[int, Rate] = field(default_factory=dict)
-    limits: dict[int, list[Solution]] = field(default_factory=dict)
+    rates: dict[Key, Rate] = field(default_factory=dict)
+    ends: dict[Key, list[Solution]] = field(default_factory=dict)
+    ties: dict[Key, list[Solution]] = field(default_factory=dict)
+    tried: dict[Key, list[Solution]] = field(default_factory=dict)
+    along: dict[Key, Rate] = field(default_factory=dict)
+    limits: dict[Key, list[Solution]] = field(default_factory=dict)
     _queue: list[Floats] = field(default_factory=list)
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
         """Yield random starts of each subproblem that is worth one."""
         points = []
         for k, place in enumerate(state.places):
-            if _is_along(place.subproblem):
+            if is_along(place.subproblem):
                 points.append(k)
                 continue
-            rate = self.rates.setdefault(k, Rate())
-            chance = coverage(rate, len(self.ends.get(k, ())))
+            key = place.subproblem.key
+            rate = self.rates.setdefault(key, Rate())
+            chance = coverage(rate, len(self.ends.get(key, ())))
             for number in range(rate.tries, rate.tries + most):
                 theta = state.problem.start if number == 0 else self._next(state)
                 yield approach_from(k, place.subproblem, at(theta), chance)
             yield from self._along(state, k)
         if points:
-            rate = self.rates.setdefault(-1, Rate())
+            rate = self.rates.setdefault((), Rate())
             for _ in range(most):
                 k = points[int(self.rng.integers(len(points)))]
                 place = state.places[k]
@@ -87,9 +89,10 @@ class Starts:
         order, best = place.subproblem.order, place.incumbent
         if not (place.closed and order.is_open(state.problem, best.evaluation)):
             return
-        rate = self.along.setdefault(k, Rate())
-        chance = coverage(rate, len(self.limits.get(k, ())))
-        tried = self.tried.setdefault(k, [])
+        key = place.subproblem.key
+        rate = self.along.setdefault(key, Rate())
+        chance = coverage(rate, len(self.limits.get(key, ())))
+        tried = self.tried.setdefault(key, [])
         i = place.subproblem.objective
         weighted = [x for x in state.places if isinstance(x.subproblem, Weights)]
         every = ((x, x.subproblem) for x in state.places)
@@ -97,7 +100,7 @@ class Starts:
         nearest = sorted(points, key=lambda pair: -pair[0])[1:2]
         others = (*weighted, *(x for _, x in nearest))
         known = [x.incumbent for x in others if x.closed]
-        known += [x for x in self.ties.get(k, ()) if order.ties(x.J, best.J)]
+        known += [x for x in self.ties.get(key, ()) if order.ties(x.J, best.J)]
         for solution in known:
             if all(solution is not x for x in tried):
                 yield solve_from(k, place.subproblem, solution, chance)
@@ -105,20 +108,21 @@ class Starts:
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
         """Count the start, and keep its minimum if it is new."""
         place, solution = state.places[offer.place], outcome.result
+        key = place.subproblem.key
         if offer.final:
-            self.along[offer.place].note(gain > state.tolerance, outcome.evaluations)
-            self.tried[offer.place].append(offer.start)
-            limits = self.limits.setdefault(offer.place, [])
+            self.along[key].note(gain > state.tolerance, outcome.evaluations)
+            self.tried[key].append(offer.start)
+            limits = self.limits.setdefault(key, [])
             if all(abs(place.subproblem.gain(solution.J, x)) > state.tolerance for x in limits):
                 limits.append(solution)
             return
-        shared = _is_along(place.subproblem)
-        rate = self.rates.setdefault(-1 if shared else offer.place, Rate())
+        shared = is_along(place.subproblem)
+        rate = self.rates.setdefault(() if shared else key, Rate())
         rate.note(gain > state.tolerance, outcome.evaluations)
         if shared or not solution.feasible:
             return
-        ends = self.ends.setdefault(offer.place, [])
-        self.ties.setdefault(offer.place, []).append(solution)
+        ends = self.ends.setdefault(key, [])
+        self.ties.setdefault(key, []).append(solution)
         if all(self._differ(state, place.subproblem, solution, x) for x in ends):
             ends.append(solution)
 
@@ -134,7 +138,7 @@ class Starts:
     @property
     def unseen(self) -> float:
         """Greatest part of the box from which unseen minima of a subproblem are reached."""
-        parts = (unseen(self.rates[k].tries, len(x)) for k, x in self.ends.items())
+        parts = (unseen(self.rates[key].tries, len(x)) for key, x in self.ends.items())
         return max(parts, default=1.0)
 
     def _next(self, state: State) -> Floats:
@@ -145,11 +149,6 @@ class Starts:
             u = (cells + self.rng.uniform(size=cells.shape)) / BLOCK
             self._queue = list(state.problem.lower + state.span * u)
         return self._queue.pop()
-
-
-def _is_along(subproblem: Subproblem) -> bool:
-    """Return whether a subproblem is one of many along the front."""
-    return subproblem.key[0] in ("point", "sweep")
 
 
 def coverage(rate: Rate, w: int) -> float:
