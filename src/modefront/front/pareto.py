@@ -346,7 +346,7 @@ class _Run:
             known = len(points)
             J = self.state.archive.J / target.scale
             behind = (points / target.scale - J[:, None]).max(axis=2).min(axis=1)
-            added = set()
+            added: set[tuple[int, ...]] = set()
             while len(points) + len(added) < asked and behind.max() > LOOSE:
                 k = int(behind.argmax())
                 added.add(nearest(target.place(J[k] * target.scale), FINE))

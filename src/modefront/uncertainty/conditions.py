@@ -122,8 +122,8 @@ def boundary(
 ) -> tuple[Floats, Conditions]:
     """Return the weights in their right size and the conditions of a point of NBI.
 
-    ``beta`` (n,) is the point of the simplex that it was projected from, by the ``equations`` of Das
-    & Dennis or with bounds.
+    ``beta`` (n,) is the point of the simplex that it was projected from, by the ``equations`` of
+    Das & Dennis or with bounds.
     """
     n = target.P.sum(axis=1)
     dn = target.dP.sum(axis=2)
