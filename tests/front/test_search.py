@@ -241,19 +241,7 @@ def front_with(programme: str, function: Callable[[Floats], Derivatives]) -> tup
     return front, undominated(J, np.array(problem.all), front.target.scale)
 
 
-@pytest.mark.parametrize(
-    "function",
-    [
-        dented,
-        pytest.param(
-            disconnected,
-            marks=pytest.mark.xfail(
-                reason="equations are solved from one start, and one that fails is no point",
-                strict=False,
-            ),
-        ),
-    ],
-)
+@pytest.mark.parametrize("function", [dented, disconnected])
 def test_equations_lead_to_the_points_of_das_and_dennis(
     function: Callable[[Floats], Derivatives],
 ) -> None:

@@ -98,7 +98,7 @@ class State:
                 first = solution.converged and not place.closed
                 better = own > 0 or (own > -self.tolerance and first)
             else:
-                better = not place.closed or (solution.converged and own > 0)
+                better = not place.closed or (solution.converged and not place.incumbent.converged)
             gain = max(gain, own)
             if better:
                 place.incumbent = solution

@@ -3,11 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
+from modefront._typing import Floats
 from modefront.front.archive import Outcome
 from modefront.front.proposers.base import Offer, solve_from
-from modefront.front.state import State
+from modefront.front.state import Place, State
+from modefront.work.task import Key
+
+SIDES = 2
+"""Neighbours from which equations are solved that their own start has not met."""
 
 
 @dataclass
@@ -16,21 +21,34 @@ class Polish:
 
     A point of the lattice that no search has reached has the best known model as its incumbent:
     those that lag least behind what they could be come first, next to what is solved. So a front
-    is followed from its edges inwards, each point from its neighbour.
+    is followed from its edges inwards, each point from its neighbour. Equations that are not met
+    from there are solved from the nearest models that meet theirs.
     """
 
     name: str = "polish"
+    _tried: set[tuple[Key, bytes]] = field(default_factory=set)
 
     def offers(self, state: State, most: int) -> Iterator[Offer]:
         """Yield the searches from incumbents that are open, the nearest first."""
         open_places = [k for k, place in enumerate(state.places) if not place.closed]
-        ranked = sorted(open_places, key=lambda k: lag(state, k))
+        ranked = sorted(
+            open_places, key=lambda k: lag(state.places[k], state.places[k].incumbent.J)
+        )
         for k in ranked[:most]:
             place = state.places[k]
             yield solve_from(k, place.subproblem, place.incumbent, 1.0)
+        equations = [(k, x) for k, x in enumerate(state.places) if not x.subproblem.competes]
+        met = [x.incumbent for _, x in equations if x.incumbent.converged]
+        for k, place in equations:
+            if place.closed and not place.incumbent.converged:
+                key = place.subproblem.key
+                for start in sorted(met, key=lambda x: lag(place, x.J))[:SIDES]:
+                    if (key, start.theta.tobytes()) not in self._tried:
+                        yield solve_from(k, place.subproblem, start, 1.0)
 
-    def learn(self, state: State, _: Offer, outcome: Outcome, __: float) -> None:
+    def learn(self, state: State, offer: Offer, outcome: Outcome, _: float) -> None:
         """Let the new model start what is open and lies nearer to it than the incumbents do."""
+        self._tried.add((state.places[offer.place].subproblem.key, offer.start.theta.tobytes()))
         solution = outcome.result
         if not (solution.feasible and solution.evaluation.derivatives):
             return
@@ -39,8 +57,7 @@ class Polish:
                 place.incumbent = solution
 
 
-def lag(state: State, k: int) -> float:
-    """Return a number that is the less, the nearer an incumbent is to the solution."""
-    place = state.places[k]
+def lag(place: Place, J: Floats) -> float:
+    """Return a number that is the less, the nearer objectives (n,) are to the solution."""
     spread = getattr(place.subproblem, "spread", None)
-    return float(spread(place.incumbent.J)) if spread else 0.0
+    return float(spread(J)) if spread else 0.0
