@@ -20,7 +20,7 @@ from modefront._typing import Floats, Ints
 from modefront.errors import InputError, reason
 from modefront.fem.errors import FemError
 from modefront.inputs import MOST_DATA, available_memory, file_size, is_hdf5, refuse_holes
-from modefront.isolated import IsolatedError, isolated, seconds_for
+from modefront.isolated import IsolatedError, isolated
 from modefront.text import one_line
 
 Kind = Literal["beam", "shell", "solid"]
@@ -145,7 +145,7 @@ def read_mesh(path: str | Path) -> Mesh:
         if reference := refers_to(path):
             raise FemError(f"{path}: expected a mesh that is one file, found {reference}")
         memory = min(available_memory(), MEMORY + PER_BYTE * size)
-        arrays, parts = isolated(READER, path, seconds_for(size), memory)
+        arrays, parts = isolated(READER, path, memory=memory)
     except IsolatedError as error:
         raise FemError(f"{path}: expected a mesh that meshio can read, found {error}") from None
     except InputError as error:

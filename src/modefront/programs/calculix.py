@@ -47,7 +47,7 @@ def read(path: Path, options: JobOptions) -> Job:
     labels = columns(files[".dof"], ".", "ii", comment="#")
     node, direction = (column.astype(np.intp) for column in labels)
     plain = DofTable(node, direction, np.ones(node.size))
-    entries = {suffix: coordinates(files[suffix], node.size) for suffix in (".sti", ".mas")}
+    entries = {suffix: coordinates(files[suffix]) for suffix in (".sti", ".mas")}
     _refuse_cut_off(files, entries, node.size)
     notes: list[str] = []
     deck = _deck(options.deck or job.with_name(job.name + ".inp"), notes)
