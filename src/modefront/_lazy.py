@@ -13,7 +13,9 @@ IMPORT = re.compile(r"^    from (modefront\S*) import (\w+) as \2$", re.MULTILIN
 """A line that says where a public name is, for people and checkers of types."""
 
 
-def lazy(package: str, file: str) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+def lazy(
+    package: str, file: str
+) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
     """Return ``__getattr__``, ``__dir__`` and ``__all__`` of a package, given its file.
 
     Its names are those that it imports ``if TYPE_CHECKING``.

@@ -23,9 +23,9 @@ from modefront.linalg.pencil import Pencil, pencil
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.mesh import mesh_model
 from modefront.modes import dense, derivatives, sparse
+from modefront.modes.derivatives import Shifted
 from modefront.modes.lanczos import Ritz, greatest
 from modefront.modes.result import ModeDerivatives, Modes
-from modefront.modes.spectrum import Shifted
 from modefront.work.costs import Costs, counted
 
 

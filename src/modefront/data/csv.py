@@ -26,10 +26,9 @@ from typing import TextIO
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.complete import ended_column
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, InputError, reason, suggestion
-from modefront.inputs import MOST_DATA, available_memory, file_size, refuse_holes
+from modefront.inputs import MOST_DATA, available_memory, ended_column, file_size, refuse_holes
 from modefront.outputs import write_table
 from modefront.rounding import LARGEST as LARGEST_NUMBER
 from modefront.text import NAME, clean

@@ -14,12 +14,11 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.complete import ended_column
 from modefront.data.blows import TIME, Contents, blow_of_columns
 from modefront.data.channels import Channel
 from modefront.data.csv import NUMBER
 from modefront.errors import Fault, InputError, reason, suggestion
-from modefront.inputs import MOST_DATA, available_memory, file_size, refuse_holes
+from modefront.inputs import MOST_DATA, available_memory, ended_column, file_size, refuse_holes
 from modefront.rounding import LARGEST
 
 FREQUENCY, REAL, IMAGINARY, COHERENCE = "frequency", "_re", "_im", "_coherence"

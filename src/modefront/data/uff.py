@@ -20,11 +20,10 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Complexes, Floats
-from modefront.complete import counted
 from modefront.data.blows import Blow, Contents
 from modefront.data.channels import Channel
 from modefront.errors import Fault, InputError, reason
-from modefront.inputs import MOST_DATA, read_text_bytes
+from modefront.inputs import MOST_DATA, counted, read_text_bytes
 from modefront.outputs import output_by_name
 
 FRF, COHERENCE, TIME = 4, 6, 1

@@ -13,8 +13,7 @@ import scipy.io
 import scipy.sparse
 
 from modefront._typing import Floats
-from modefront.exports.motion import NodeMotion, node_motion
-from modefront.exports.uff import write_uff
+from modefront.exports.uff import NodeMotion, node_motion, write_uff
 from modefront.models.dofs import DofTable, write_dofs
 from modefront.models.geometry import Cells
 from modefront.outputs import output, write_table, write_text

@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from modefront.fem.assembly import assemble as assemble
     from modefront.fem.dofs import DIRECTIONS as DIRECTIONS
     from modefront.fem.dofs import Dofs as Dofs
-    from modefront.fem.errors import FemError as FemError
-    from modefront.fem.material import Material as Material
     from modefront.fem.mesh import Mesh as Mesh
     from modefront.fem.mesh import read_mesh as read_mesh
+    from modefront.fem.section import FemError as FemError
+    from modefront.fem.section import Material as Material
     from modefront.fem.section import Section as Section
     from modefront.fem.section import circle as circle
     from modefront.fem.section import hollow_rectangle as hollow_rectangle

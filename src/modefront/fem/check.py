@@ -25,7 +25,7 @@ from modefront.fem.elements.shapes import (
     simplex_quadratic,
     square_4,
 )
-from modefront.fem.errors import Checks, FemError
+from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import Direction, Parameter, Shells, Structure
 
 FLAT = 1e-8

@@ -27,7 +27,7 @@ from scipy import sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.elements.common import cross_matrix
-from modefront.fem.errors import FemError
+from modefront.fem.section import FemError
 
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 

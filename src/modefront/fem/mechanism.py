@@ -32,8 +32,8 @@ from scipy.spatial import KDTree
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.check import SAME_PLACE
 from modefront.fem.dofs import DIRECTIONS, LinkRows
-from modefront.fem.errors import FemError
 from modefront.fem.scatter import Block
+from modefront.fem.section import FemError
 from modefront.rounding import ACCUMULATED, TINY
 
 BRICK_FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))

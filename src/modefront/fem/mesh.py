@@ -18,7 +18,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import InputError, reason
-from modefront.fem.errors import FemError
+from modefront.fem.section import FemError
 from modefront.inputs import MOST_DATA, available_memory, file_size, is_hdf5, refuse_holes
 from modefront.isolated import IsolatedError, isolated
 from modefront.text import one_line

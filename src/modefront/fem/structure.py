@@ -13,8 +13,7 @@ from typing import Literal
 import numpy.typing as npt
 
 from modefront.fem.dofs import DIRECTIONS
-from modefront.fem.material import Material
-from modefront.fem.section import Section
+from modefront.fem.section import Material, Section
 
 Direction = str | Sequence[float]
 Quantity = Literal["E", "density", "thickness", "spring", "mass"]

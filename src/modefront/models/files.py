@@ -16,9 +16,8 @@ import scipy.io
 import scipy.sparse
 
 from modefront._typing import Bools
-from modefront.complete import counted, ended, first_repeated
 from modefront.errors import Fault, InputError, suggestion
-from modefront.inputs import available_memory, file_size, is_hdf5
+from modefront.inputs import available_memory, counted, ended, file_size, first_repeated, is_hdf5
 from modefront.isolated import IsolatedError, Read, isolated
 from modefront.rounding import LARGEST, SYMMETRY
 

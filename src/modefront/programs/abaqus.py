@@ -23,6 +23,7 @@ from modefront.programs.base import (
     Job,
     JobOptions,
     Program,
+    columns,
     existing,
     kept,
     refuse_mass_alone,
@@ -31,7 +32,6 @@ from modefront.programs.base import (
 )
 from modefront.programs.inp import read_deck
 from modefront.programs.mesh import ProgramMesh
-from modefront.programs.text import columns
 
 HELD = 0.9e36
 """Diagonal entries from which a degree of freedom is a support."""

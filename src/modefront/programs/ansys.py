@@ -29,7 +29,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.complete import counted
+from modefront.inputs import counted
 from modefront.models.dofs import DofTable, read_dofs
 from modefront.models.files import read_entries
 from modefront.programs.base import (

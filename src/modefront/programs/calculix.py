@@ -23,9 +23,18 @@ import numpy as np
 from modefront._typing import Ints
 from modefront.errors import reason
 from modefront.models.dofs import DofTable
-from modefront.programs.base import Entries, Job, JobOptions, Program, existing, upper, wrong
+from modefront.programs.base import (
+    Entries,
+    Job,
+    JobOptions,
+    Program,
+    columns,
+    coordinates,
+    existing,
+    upper,
+    wrong,
+)
 from modefront.programs.inp import Deck, read_deck
-from modefront.programs.text import columns, coordinates
 
 SUFFIXES = (".inp", ".sti", ".mas", ".dof", ".dat", ".frd")
 

@@ -15,10 +15,9 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.complete import ended
 from modefront.errors import reason
-from modefront.programs.base import wrong
-from modefront.programs.text import fixed_width
+from modefront.inputs import ended
+from modefront.programs.base import fixed_width, wrong
 
 FIELD = 16
 """Characters of a large field."""

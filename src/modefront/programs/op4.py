@@ -23,10 +23,9 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.complete import counted
 from modefront.errors import reason
-from modefront.programs.base import Entries, wrong
-from modefront.programs.text import fixed_width
+from modefront.inputs import counted
+from modefront.programs.base import Entries, fixed_width, wrong
 
 STRING = 65536
 """Unit of the length in the header of a string."""

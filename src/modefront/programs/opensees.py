@@ -13,8 +13,8 @@ from typing import Any
 
 import numpy as np
 
-from modefront.complete import ended, once
 from modefront.errors import reason
+from modefront.inputs import ended, once
 from modefront.models.dofs import read_dofs
 from modefront.models.files import read_entries
 from modefront.programs.base import (

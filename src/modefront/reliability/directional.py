@@ -22,8 +22,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 from scipy.special import gammaincc, gammainccinv
 
-from modefront.reliability.conditional import conditional
-from modefront.reliability.elementary import Failed
+from modefront.reliability.elementary import Failed, conditional
 from modefront.reliability.estimate import Estimate, estimate
 from modefront.reliability.problem import FirstPassage
 from modefront.response.checks import FloatArray

@@ -15,12 +15,14 @@ The elementary failure itself is drawn with probability P_oj/ΣP. Nothing that i
 changes with its sign, so x_oj > b stands for both sides. z is the same for all levels.
 """
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import log_ndtr, ndtr, ndtri_exp
 
-from modefront.reliability.gaussian import GaussianResponse, IndexArray
+from modefront.reliability.estimate import Prepare, Weigh
+from modefront.reliability.gaussian import Convolution, GaussianResponse, IndexArray
 from modefront.response.checks import FloatArray
 
 
@@ -100,3 +102,31 @@ def given_failure(failures: ElementaryFailures, z: FloatArray, uniform: FloatArr
     a *= ((r - u) / sigma)[:, None, None]
     a += z
     return Failed(a, output, step)
+
+
+Share = Callable[[Failed, float, Iterator[FloatArray]], FloatArray]
+"""(samples, level, |x| by output) → the part of ΣP that each sample stands for, (samples,)."""
+
+
+def conditional(share: Share) -> Prepare:
+    """Return the weights ΣP · share, with the same normal numbers at every level."""
+
+    def prepare(response: GaussianResponse, levels: FloatArray) -> Weigh:
+        everywhere = [elementary_failures(response, level) for level in levels.tolist()]
+
+        def weigh(convolution: Convolution, rng: np.random.Generator, count: int) -> FloatArray:
+            z = rng.standard_normal((count, response.n_inputs, response.n_steps))
+            uniform = rng.random((2, count))
+            weights = np.zeros((levels.size, count))
+            for row, failures in zip(weights, everywhere, strict=True):
+                # At a barrier so high that P is below the smallest float, the estimate is zero;
+                # its coefficient of variation, infinite, says that there were no samples.
+                if failures.total > 0:
+                    failed = given_failure(failures, z, uniform)
+                    magnitudes = convolution.magnitudes(failed.z)
+                    row[:] = failures.total * share(failed, failures.level, magnitudes)
+            return weights
+
+        return weigh
+
+    return prepare

@@ -20,10 +20,9 @@ from pickle import PicklingError
 from typing import Any
 
 from modefront.errors import Fault, InputError, UnfinishedError, wrong
-from modefront.work.backend import Backend, Done, InTurn, computed
 from modefront.work.costs import spend
 from modefront.work.pools import Cluster, LocalPool, Loss, Pool
-from modefront.work.task import Key, Task
+from modefront.work.task import Backend, Done, InTurn, Key, Task, computed
 from modefront.work.transfer import Message, Reply, Sender
 
 SHORT = 0.02

@@ -31,8 +31,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.fem.elements.common import ElementMatrices, Part, attachment, congruence
-from modefront.fem.material import Material
-from modefront.fem.section import Section
+from modefront.fem.section import Material, Section
 
 AXIAL = np.array([0, 6])
 TORSION = np.array([3, 9])

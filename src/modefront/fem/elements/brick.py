@@ -28,7 +28,7 @@ from modefront.fem.elements.common import (
     solid_stiffness,
 )
 from modefront.fem.elements.shapes import cube_8, gauss_box, gradients, jacobian
-from modefront.fem.material import Material
+from modefront.fem.section import Material
 
 
 def brick(X: Floats, material: Material) -> ElementMatrices:

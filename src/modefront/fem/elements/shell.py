@@ -31,7 +31,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.fem.elements import membrane, plate
 from modefront.fem.elements.common import ElementMatrices, Part, attachment, congruence
-from modefront.fem.material import Material
+from modefront.fem.section import Material
 
 IN_PLANE = (0, 1, 5)
 OUT_OF_PLANE = (2, 3, 4)

@@ -33,7 +33,7 @@ from modefront.fem.elements.shapes import (
     jacobian,
     simplex_quadratic,
 )
-from modefront.fem.material import Material
+from modefront.fem.section import Material
 
 
 def tetrahedron(X: Floats, material: Material) -> ElementMatrices:

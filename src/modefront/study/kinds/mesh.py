@@ -8,14 +8,14 @@ from typing import Any, get_args
 
 from modefront import fem
 from modefront.data.csv import is_reserved
-from modefront.diagnosis.groups import unused_groups
+from modefront.diagnosis.places import unused_groups
 from modefront.errors import suggestion
 from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Quantity
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
-from modefront.study.kinds.axes import in_axes, read_axes
 from modefront.study.kinds.base import ModelKind
+from modefront.study.kinds.sensors import in_axes, read_axes
 from modefront.toml import Table, is_number
 
 _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
