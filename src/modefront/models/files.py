@@ -167,11 +167,18 @@ def _matrix_market(path: Path, _: str) -> Any:
             header.append(stream.readline(LONGEST))
             if not header[-1]:
                 raise ValueError("the end of the file in its header")
+        words, before = 0, b" "
         while chunk := stream.read(CHUNK):
+            words += len(chunk.split()) - (len((before + chunk[:1]).strip()) == 2)
+            before = chunk[-1:]
             if other := chunk.translate(None, NUMERIC):
                 raise ValueError(f"the byte {other[:1]!r} among the entries")
-    rows, columns, *_ = scipy.io.mminfo(path)
+    rows, columns, _, layout, numbers, symmetry = scipy.io.mminfo(path)
     _check_shape(path, (rows, columns), "")
+    if layout == "array":  # of which the reader takes a triangle that is cut off
+        triangle = rows * (rows - 1 if symmetry == "skew-symmetric" else rows + 1) // 2
+        stored = rows * columns if symmetry == "general" else triangle
+        counted(path, "file", "values", stored * (1 + (numbers == "complex")), words)
     matrix = scipy.io.mmread(path, spmatrix=False)
     if isinstance(matrix, np.ndarray):
         return matrix

@@ -114,6 +114,10 @@ LONGEST_HOLDER = 400
 def locked(folder: Path) -> Iterator[None]:
     """Hold the lock of a folder of results while a run works in it; its tasks have a folder.
 
+    It is the operating system's lock on a file, which ends with the process that holds it, however
+    that ends. On drives without such locks the file itself is the lock; `filelock` takes it from a
+    process that has certainly ended, one of the same machine and namespace, and never for its age.
+
     Raises InputError where another run holds it, and where the folder cannot be written to.
     """
     path, holder = folder / FOLDER / FILE, folder / FOLDER / HOLDER
