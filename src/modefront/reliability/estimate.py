@@ -30,12 +30,6 @@ Weigh = Callable[[Convolution, np.random.Generator, int], FloatArray]
 Prepare = Callable[[GaussianResponse, FloatArray], Weigh]
 """(response, levels) → what weighs samples at these levels."""
 
-Estimator = Callable[
-    [FirstPassage, ArrayLike, int, np.random.SeedSequence, int], "tuple[Estimate, ...]"
-]
-"""Signature of every method: (problem, levels, samples, seed, workers) → an estimate a level."""
-
-
 # 11 fields: an estimate repeats all that it depends on.
 @dataclass(frozen=True)
 class Estimate:
@@ -91,66 +85,80 @@ def spawn(seed: np.random.SeedSequence, number: int) -> np.random.SeedSequence:
     return np.random.SeedSequence(seed.entropy, spawn_key=key, pool_size=seed.pool_size)
 
 
-# 7 arguments: those of an `Estimator`, and the method.
-def estimate(
-    method: str,
-    prepare: Prepare,
-    problem: FirstPassage,
-    levels: ArrayLike,
-    samples: int,
-    seed: np.random.SeedSequence,
-    workers: int,
-) -> tuple[Estimate, ...]:
-    """Return the mean weight at each level, from `samples` samples drawn and weighed as prepared.
+@dataclass(frozen=True)
+class Estimator:
+    """A method: called, it estimates the probability at each of (n_levels,) barriers.
 
-    Raises
-    ------
-    InputError
-        For levels that are not positive, or fewer than two samples or one worker.
+    Attributes
+    ----------
+    method
+        Its name.
+    prepare
+        Returns what weighs samples.
 
     """
-    b = real_array("levels", levels, (None,), "barriers")
-    if np.any(b <= 0):
-        first = int(np.argmax(b <= 0))
-        raise wrong("levels", "positive numbers", f"{b[first]} at index {first}")
-    if positive_count("samples", samples) < 2:
-        raise wrong("samples", "at least 2, for a coefficient of variation", samples)
-    positive_count("workers", workers)
-    response = gaussian_response(problem)
-    weigh = prepare(response, b)
-    largest = LARGEST_BLOCK // (response.n_inputs * response.n_steps)
-    chunk = min(max(largest, 1), LARGEST_CHUNK)
-    free: SimpleQueue[Convolution] = SimpleQueue()
-    for _ in range(workers):
-        free.put(Convolution(response, chunk))
 
-    def weights_of(number: int) -> FloatArray:
-        count = min(chunk, samples - number * chunk)
-        convolution = free.get()
-        try:
-            return weigh(convolution, np.random.default_rng(spawn(seed, number)), count)
-        finally:
-            free.put(convolution)
+    method: str
+    prepare: Prepare
 
-    with ThreadPoolExecutor(workers) as pool:
-        chunks = pool.map(weights_of, range(-(-samples // chunk)))
-        weights = np.concatenate(list(chunks), axis=1)
-    mean = weights.mean(axis=1)
-    spread = weights.std(axis=1, ddof=1)
-    return tuple(
-        Estimate(
-            probability=float(p),
-            unit_coefficient_of_variation=float(s / p) if p > 0 else np.inf,
-            samples=samples,
-            method=method,
-            level=float(level),
-            duration=problem.duration,
-            time_step=problem.time_step,
-            density=problem.noise.density,
-            sided=problem.noise.sided,
+    def __call__(
+        self,
+        problem: FirstPassage,
+        levels: ArrayLike,
+        samples: int,
+        seed: np.random.SeedSequence,
+        workers: int = 1,
+    ) -> tuple[Estimate, ...]:
+        """Return the mean weight at each level, from `samples` samples drawn and weighed.
+
+        Raises
+        ------
+        InputError
+            For levels that are not positive, or fewer than two samples or one worker.
+
+        """
+        b = real_array("levels", levels, (None,), "barriers")
+        if np.any(b <= 0):
+            first = int(np.argmax(b <= 0))
+            raise wrong("levels", "positive numbers", f"{b[first]} at index {first}")
+        if positive_count("samples", samples) < 2:
+            raise wrong("samples", "at least 2, for a coefficient of variation", samples)
+        positive_count("workers", workers)
+        response = gaussian_response(problem)
+        weigh = self.prepare(response, b)
+        largest = LARGEST_BLOCK // (response.n_inputs * response.n_steps)
+        chunk = min(max(largest, 1), LARGEST_CHUNK)
+        free: SimpleQueue[Convolution] = SimpleQueue()
+        for _ in range(workers):
+            free.put(Convolution(response, chunk))
+
+        def weights_of(number: int) -> FloatArray:
+            count = min(chunk, samples - number * chunk)
+            convolution = free.get()
+            try:
+                return weigh(convolution, np.random.default_rng(spawn(seed, number)), count)
+            finally:
+                free.put(convolution)
+
+        with ThreadPoolExecutor(workers) as pool:
+            chunks = pool.map(weights_of, range(-(-samples // chunk)))
+            weights = np.concatenate(list(chunks), axis=1)
+        mean = weights.mean(axis=1)
+        spread = weights.std(axis=1, ddof=1)
+        return tuple(
+            Estimate(
+                probability=float(p),
+                unit_coefficient_of_variation=float(s / p) if p > 0 else np.inf,
+                samples=samples,
+                method=self.method,
+                level=float(level),
+                duration=problem.duration,
+                time_step=problem.time_step,
+                density=problem.noise.density,
+                sided=problem.noise.sided,
+            )
+            for p, s, level in zip(mean, spread, b, strict=True)
         )
-        for p, s, level in zip(mean, spread, b, strict=True)
-    )
 
 
 @dataclass(frozen=True)
