@@ -234,7 +234,8 @@ def _columns(
             if pieces.big:
                 length, first = _whole(pieces, line[:8], line[8:])
             else:
-                length, first = divmod(*_whole(pieces, line), STRING)
+                (word,) = _whole(pieces, line)
+                length, first = divmod(word, STRING)
             length -= 1
             take(first, length)
             strings, count = strings + length, count + 1 + pieces.big

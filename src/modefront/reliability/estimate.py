@@ -30,6 +30,7 @@ Weigh = Callable[[Convolution, np.random.Generator, int], FloatArray]
 Prepare = Callable[[GaussianResponse, FloatArray], Weigh]
 """(response, levels) → what weighs samples at these levels."""
 
+
 # 11 fields: an estimate repeats all that it depends on.
 @dataclass(frozen=True)
 class Estimate:
