@@ -21,7 +21,7 @@ from program_files import dense, labels, structure, write_op4, write_opensees
 
 from modefront.cli.main import cli
 from modefront.errors import InputError
-from modefront.exports.uff import node_motion
+from modefront.exports.model import node_motion
 from modefront.models.dofs import read_dofs
 from modefront.models.matrices import MatrixModel
 from modefront.programs import PROGRAMS

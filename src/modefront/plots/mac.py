@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import xarray as xr
 
-from modefront.plots.along import Along, titled
+from modefront.plots.along import Along, key, parallel, titled
 from modefront.plots.canvas import Picture, panels, picture
 from modefront.plots.models import is_path
-from modefront.plots.parallel import key, parallel
 from modefront.plots.style import COLUMNS
 
 

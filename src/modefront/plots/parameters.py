@@ -6,10 +6,9 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats
-from modefront.plots.along import Along, Bar, titled
+from modefront.plots.along import Along, Bar, key, parallel, titled
 from modefront.plots.canvas import Picture, panels, picture
 from modefront.plots.models import is_path
-from modefront.plots.parallel import key, parallel
 from modefront.plots.style import COLUMNS
 
 

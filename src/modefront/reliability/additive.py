@@ -26,7 +26,7 @@ import numpy as np
 
 from modefront.reliability.elementary import Failed, conditional
 from modefront.reliability.estimate import Estimator
-from modefront.response.checks import FloatArray
+from modefront.response.system import FloatArray
 
 
 def _share(failed: Failed, level: float, magnitudes: Iterator[FloatArray]) -> FloatArray:

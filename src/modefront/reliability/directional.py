@@ -23,7 +23,7 @@ from scipy.special import gammaincc, gammainccinv
 
 from modefront.reliability.elementary import Failed, conditional
 from modefront.reliability.estimate import Estimator
-from modefront.response.checks import FloatArray
+from modefront.response.system import FloatArray
 
 NEGLIGIBLE = 1e-22
 """The Q(ρ_oj) left out, relative to the largest: even millions of them are below rounding."""

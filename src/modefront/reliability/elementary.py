@@ -23,7 +23,7 @@ from scipy.special import log_ndtr, ndtr, ndtri_exp
 
 from modefront.reliability.estimate import Prepare, Weigh
 from modefront.reliability.gaussian import Convolution, GaussianResponse, IndexArray
-from modefront.response.checks import FloatArray
+from modefront.response.system import FloatArray
 
 
 @dataclass(frozen=True, eq=False)

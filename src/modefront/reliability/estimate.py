@@ -16,7 +16,7 @@ from numpy.typing import ArrayLike
 from modefront.errors import wrong
 from modefront.reliability.gaussian import Convolution, GaussianResponse, gaussian_response
 from modefront.reliability.problem import FirstPassage, Sided
-from modefront.response.checks import FloatArray, positive_count, real_array
+from modefront.response.system import FloatArray, positive_count, real_array
 
 LARGEST_CHUNK = 32
 """Samples in a chunk: enough for the loops in C, few enough for the cache."""

@@ -30,7 +30,7 @@ from scipy.fft import next_fast_len
 
 from modefront.reliability.problem import FirstPassage
 from modefront.reliability.pulse import pulse_response
-from modefront.response.checks import FloatArray
+from modefront.response.system import FloatArray
 
 IndexArray = NDArray[np.intp]
 

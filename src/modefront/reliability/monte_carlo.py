@@ -8,7 +8,7 @@ import numpy as np
 
 from modefront.reliability.estimate import Estimator, Weigh
 from modefront.reliability.gaussian import Convolution, GaussianResponse
-from modefront.response.checks import FloatArray
+from modefront.response.system import FloatArray
 
 
 def _prepare(response: GaussianResponse, levels: FloatArray) -> Weigh:

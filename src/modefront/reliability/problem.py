@@ -28,8 +28,7 @@ from enum import Enum
 import numpy as np
 
 from modefront.errors import Fault, InputError, wrong
-from modefront.response.checks import FloatArray, positive, real_array
-from modefront.response.system import ModalSystem
+from modefront.response.system import FloatArray, ModalSystem, positive, real_array
 from modefront.rounding import ACCUMULATED
 
 WHOLE = 1e-6

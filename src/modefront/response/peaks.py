@@ -28,10 +28,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from modefront.errors import wrong
-from modefront.response.checks import FloatArray
-from modefront.response.function import ResponseQuantity, derivatives
-from modefront.response.slope import Slope
-from modefront.response.system import ModalSystem
+from modefront.response.function import ResponseQuantity, Slope, derivatives
+from modefront.response.system import FloatArray, ModalSystem
 
 DEGREE = 24
 """Degree of the series; twice as many intervals with half of it cost about the same."""

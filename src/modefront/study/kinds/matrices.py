@@ -16,8 +16,7 @@ from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import matrices
 from modefront.models.terms import BASE, exponents_of, form_of
 from modefront.programs.mesh import ProgramMesh, read_mesh
-from modefront.study.kinds.base import ModelKind
-from modefront.study.kinds.sensors import read_base, read_outputs, read_sensors
+from modefront.study.kinds.sensors import ModelKind, read_base, read_outputs, read_sensors
 from modefront.toml import Table
 
 

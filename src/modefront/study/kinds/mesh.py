@@ -14,8 +14,7 @@ from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Quantity
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
-from modefront.study.kinds.base import ModelKind
-from modefront.study.kinds.sensors import in_axes, read_axes
+from modefront.study.kinds.sensors import ModelKind, in_axes, read_axes
 from modefront.toml import Table, is_number
 
 _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -10,9 +11,28 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.csv import is_reserved
 from modefront.fem.dofs import DIRECTIONS
+from modefront.models.base import Model
 from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
 from modefront.toml import Table, describe, is_name, is_number
+
+
+@dataclass(frozen=True)
+class ModelKind:
+    """A kind of model that a study file can name.
+
+    Attributes
+    ----------
+    name : value of ``kind`` in the table ``[model]``
+    read : returns the model of that table, given the names of the parameters, or None where the
+        table has faults; files are opened by `modefront.toml.Table.path`, so that they are known
+    is_reducible : whether a model may be large enough for a reduced basis
+    """
+
+    name: str
+    read: Callable[[Table, Sequence[str]], Model | None]
+    is_reducible: bool = True
+
 
 PARALLEL = 1e-9
 """Sine of the angle of two axes below which they are one."""
