@@ -6,7 +6,7 @@ along another axis, or all those of an axis, or two axes exchanged, are tried on
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -195,11 +195,11 @@ def unused_groups(mesh: Mesh, elements: Iterable[str], nodes: Iterable[str]) -> 
     }
     out: dict[str, UnusedGroup] = {}
     for block in mesh.blocks:
-        if block.group in used or block.group in out or _is_made(block.cells.tolist(), made):
+        if (
+            block.group in used
+            or block.group in out
+            or all(tuple(sorted(cell)) in made for cell in block.cells.tolist())
+        ):
             continue
         out[block.group] = UnusedGroup(block.group, block.type, len(block.cells))
     return list(out.values())
-
-
-def _is_made(cells: Sequence[Sequence[int]], made: set[tuple[int, ...]]) -> bool:
-    return all(tuple(sorted(cell)) in made for cell in cells)

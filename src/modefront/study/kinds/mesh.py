@@ -14,7 +14,7 @@ from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Quantity
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
-from modefront.study.kinds.sensors import ModelKind, in_axes, read_axes
+from modefront.study.kinds.sensors import ModelKind, in_axes, is_dof, read_axes
 from modefront.toml import Table, is_number
 
 _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
@@ -219,11 +219,7 @@ def _nodes(table: Table, key: str, mesh: Mesh, default: Any = ...) -> list[int] 
 
 
 def _is_place(value: object) -> bool:
-    return isinstance(value, str) or _is_node(value)
-
-
-def _is_node(value: object) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+    return isinstance(value, str) or is_dof(value)
 
 
 def _directions(table: Table) -> list[str]:

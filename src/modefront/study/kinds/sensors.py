@@ -117,7 +117,7 @@ def read_base(
     if table is None:
         return {}
     for name, value in table.values.items():
-        if isinstance(value, list) and all(map(_is_dof, value)):
+        if isinstance(value, list) and all(map(is_dof, value)):
             table.values[name] = [[dof, 1.0] for dof in value]
         elif dofs is not None and isinstance(value, dict) and value.get("direction") in DIRECTIONS:
             table.values[name] = [list(pair) for pair in dofs.of_direction(value["direction"])]
@@ -140,7 +140,7 @@ def _read(
                 else:
                     table.fault(name, "a name that a column of the data can have", repr(sensor))
             continue
-        pairs = [[value, 1.0]] if _is_dof(value) else value
+        pairs = [[value, 1.0]] if is_dof(value) else value
         if not _is_weighted(pairs):
             expected = "a degree of freedom from 0, or a list [[degree of freedom, weight], ...]"
             table.fault(name, expected, describe(value))
@@ -209,7 +209,8 @@ def _selects(pairs: Iterable[Any]) -> bool:
     return any(total.values())
 
 
-def _is_dof(value: object) -> bool:
+def is_dof(value: object) -> bool:
+    """Return whether a value is a whole number from 0."""
     return isinstance(value, int) and not isinstance(value, bool) and value >= 0
 
 
@@ -218,7 +219,7 @@ def _is_weighted(value: object) -> bool:
         isinstance(value, list)
         and bool(value)
         and all(
-            isinstance(pair, list) and len(pair) == 2 and _is_dof(pair[0]) and is_number(pair[1])
+            isinstance(pair, list) and len(pair) == 2 and is_dof(pair[0]) and is_number(pair[1])
             for pair in value
         )
     )
