@@ -13,6 +13,7 @@ import scipy.io
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
+from modefront.data.uff import dataset_55
 from modefront.models.dofs import DofTable, motion_of_nodes, write_dofs
 from modefront.models.geometry import Cells
 from modefront.outputs import output, write_table, write_text
@@ -54,8 +55,10 @@ def write_uff(
     path: Path, mesh: ProgramMesh | None, motion: NodeMotion, frequencies: Floats
 ) -> None:
     """Write nodes, elements and real, mass-normalised modes in Hz."""
-    datasets = [] if mesh is None else [(2411, _nodes(mesh)), (2412, _elements(mesh))]
-    datasets += [(55, _mode(motion, k, f)) for k, f in enumerate(frequencies.tolist())]
+    datasets: list[tuple[int, Iterable[str]]] = []
+    if mesh is not None:
+        datasets += [(2411, _nodes(mesh)), (2412, _elements(mesh))]
+    datasets += [(55, [_mode(motion, k, f)]) for k, f in enumerate(frequencies.tolist())]
     with output(path) as stream:
         for number, lines in datasets:
             stream.writelines(line.encode() for line in _dataset(number, lines))
@@ -86,16 +89,11 @@ def _elements(mesh: ProgramMesh) -> Iterator[str]:
             yield "".join(f"{x:10d}" for x in nodes) + "\n"
 
 
-def _mode(motion: NodeMotion, k: int, frequency: float) -> Iterator[str]:
-    """Yield dataset 55: structural, normal mode, 3 or 6 components, displacement, real."""
-    components = 6 if motion.turns else 3
-    kind = 3 if motion.turns else 2
-    yield f"mode {k + 1}\n{frequency:.9g} Hz\nNONE\nNONE\nNONE\n"
-    yield "".join(f"{x:10d}" for x in (1, 2, kind, 8, 2, components)) + "\n"
-    yield "".join(f"{x:10d}" for x in (2, 4, 1, k + 1)) + "\n"
-    yield "".join(f"{x:13.5E}" for x in (frequency, 1.0, 0.0, 0.0)) + "\n"
-    for number, values in zip(motion.number.tolist(), motion.values[k].tolist(), strict=True):
-        yield f"{number:10d}\n" + "".join(f"{x:13.5E}" for x in values[:components]) + "\n"
+def _mode(motion: NodeMotion, k: int, frequency: float) -> str:
+    """Return the dataset 55 of a real, mass-normalised mode."""
+    texts = f"mode {k + 1}", f"{frequency:.9g} Hz"
+    values = motion.values[k][:, : 6 if motion.turns else 3]
+    return dataset_55(texts, k + 1, (frequency, 1.0, 0.0, 0.0), motion.number.tolist(), values)
 
 
 @dataclass(frozen=True, eq=False)
