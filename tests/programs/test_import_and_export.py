@@ -194,7 +194,7 @@ def test_an_imported_study_has_the_geometry_of_its_deck(small: Path) -> None:
         ('{ node = 12, direction = ["z", "-z"] }', "a list of different ones"),
         ('{ node = 13, direction = "z" }', "a node with degrees of freedom, 3, 5, 7, 12, 40"),
         ('{ node = 12, direction = "rx" }', "node 12 can move .x, y, z., found rx, which is held"),
-        ('{ node = 12, direction = "up" }', "one of x, y, z, rx, ry, rz, with or without"),
+        ('{ node = 12, direction = "up" }', "one of x, -x, y, -y, z, -z"),
         ("{ node = 12, direction = [0, 0, 0] }", "a vector"),
         ('{ node = 0, direction = "z" }', "a whole number from 1"),
         ('{ node = 12, directoin = "z" }', "did you mean 'direction'"),

@@ -14,8 +14,8 @@ from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Quantity
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
-from modefront.study.kinds.sensors import ModelKind, in_axes, is_dof, read_axes
-from modefront.toml import Table, is_number
+from modefront.study.kinds.sensors import ModelKind, is_dof, read_direction, read_directions
+from modefront.toml import Table
 
 _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
     "rectangle": (fem.rectangle, ("b_y", "b_z")),
@@ -233,20 +233,6 @@ def _directions(table: Table) -> list[str]:
     return list(value)
 
 
-def _direction(table: Table, key: str, default: Any = ...) -> Any:
-    known = [sign + name for name in fem.DIRECTIONS for sign in ("", "-")]
-    return table.take(
-        key,
-        "one of " + ", ".join(known) + ", or a vector of 3 numbers",
-        lambda x: (
-            x in known
-            if isinstance(x, str)
-            else isinstance(x, list) and len(x) == 3 and all(map(is_number, x)) and any(x)
-        ),
-        default,
-    )
-
-
 def _springs(model: Table, mesh: Mesh) -> list[fem.Spring]:
     out = []
     for spring in model.tables("spring", required=False):
@@ -254,7 +240,7 @@ def _springs(model: Table, mesh: Mesh) -> list[fem.Spring]:
         nodes = _nodes(spring, "nodes", mesh)
         to = _nodes(spring, "to", mesh, default=None)
         stiffness = spring.number("stiffness", "a stiffness above 0", lambda x: x > 0)
-        direction = _direction(spring, "direction", default=None)
+        direction = read_direction(spring, default=None)
         spring.close()
         if name is not None and nodes is not None and stiffness is not None:
             out.append(fem.Spring(name, nodes, stiffness, direction, to))
@@ -325,8 +311,7 @@ def _places(table: Table) -> list[fem.Sensor]:
             continue
         node = place.integer("node", 0, 10**9, default=None)
         coordinates = place.numbers("at", "3 coordinates", lambda x: len(x) == 3, default=None)
-        directions = _sensor_directions(place)
-        axes = read_axes(place)
+        directions = read_directions(place)
         tolerance = place.number("tolerance", "a distance above 0", lambda x: x > 0, default=None)
         place.close()
         if (node is None) == (coordinates is None):
@@ -334,26 +319,8 @@ def _places(table: Table) -> list[fem.Sensor]:
             continue
         position = node if coordinates is None else coordinates
         for ending, direction in directions:
-            turned = in_axes(place, direction, axes)
-            if turned is not None:
-                out.append(fem.Sensor(name + ending, position, turned, tolerance))
+            out.append(fem.Sensor(name + ending, position, direction, tolerance))
     return out
-
-
-def _sensor_directions(place: Table) -> list[tuple[str, Any]]:
-    """Return the directions of a sensor, each with what it adds to the name."""
-    value = place.values.get("direction")
-    if not (isinstance(value, list) and any(isinstance(x, str) for x in value)):
-        direction = _direction(place, "direction")
-        return [] if direction is None else [("", direction)]
-    known = [sign + name for name in fem.DIRECTIONS for sign in ("", "-")]
-    several = place.take(
-        "direction",
-        "a list of different ones of " + ", ".join(known),
-        lambda x: all(y in known for y in x) and len({y.removeprefix("-") for y in x}) == len(x),
-        ...,
-    )
-    return [(direction.removeprefix("-"), direction) for direction in several or ()]
 
 
 def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:

@@ -61,6 +61,45 @@ def read_axes(place: Table) -> Floats | None:
     return np.stack([x, np.cross(z, x), z])
 
 
+NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
+"""Directions by their names."""
+
+
+def read_direction(place: Table, default: Any = ...) -> Any:
+    """Return a direction: its name, or a vector."""
+    return place.take(
+        "direction",
+        "one of " + ", ".join(NAMED) + ", or a vector of 3 numbers",
+        lambda x: x in NAMED if isinstance(x, str) else is_direction(x),
+        default,
+    )
+
+
+def read_directions(place: Table) -> list[tuple[str, Any]]:
+    """Return the directions of a sensor in the axes of the model, with what each adds to its name.
+
+    A list of named directions makes as many sensors: NAMEx, NAMEy and so on. With ``axes`` they are
+    local.
+    """
+    value = place.values.get("direction")
+    if isinstance(value, list) and any(isinstance(x, str) for x in value):
+        several = place.take(
+            "direction",
+            "a list of different ones of " + ", ".join(NAMED),
+            lambda x: (
+                all(y in NAMED for y in x) and len({y.removeprefix("-") for y in x}) == len(x)
+            ),
+            ...,
+        )
+        found = [(direction.removeprefix("-"), direction) for direction in several or ()]
+    else:
+        direction = read_direction(place)
+        found = [] if direction is None else [("", direction)]
+    axes = read_axes(place)
+    turned = [(ending, in_axes(place, direction, axes)) for ending, direction in found]
+    return [(ending, direction) for ending, direction in turned if direction is not None]
+
+
 def in_axes(place: Table, direction: Any, axes: Floats | None) -> Any:
     """Return a direction in the axes of the model, None where it has none there."""
     if axes is None:
@@ -170,35 +209,17 @@ def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, Sensor
     if place is None:
         return {}
     node = place.integer("node", 1, 2**62)
-    expected = f"one of {', '.join(DIRECTIONS)}, with or without a minus sign, a list of different "
-    expected += "ones, or a vector"
-    value = place.take("direction", expected, lambda x: is_direction(x) or _are_directions(x), ...)
-    axes = read_axes(place)
+    directions = read_directions(place)
     place.close()
-    if node is None or value is None:
+    if node is None:
         return {}
-    several = value if _are_directions(value) else ()
-    named = {name + axis.removeprefix("-"): axis for axis in several} or {name: value}
     out: dict[str, SensorSpec] = {}
-    for sensor, direction in named.items():
-        turned = in_axes(place, direction, axes)
-        if turned is None:
-            continue
+    for ending, direction in directions:
         try:
-            out[sensor] = dofs.sensor(node, turned)
+            out[name + ending] = dofs.sensor(node, direction)
         except LookupError as error:
             place.fault("", *error.args)
     return out
-
-
-def _are_directions(value: object) -> bool:
-    """Return whether a value is a list of different directions by name."""
-    return (
-        isinstance(value, list)
-        and bool(value)
-        and all(isinstance(direction, str) and is_direction(direction) for direction in value)
-        and len({direction.removeprefix("-") for direction in value}) == len(value)
-    )
 
 
 def _selects(pairs: Iterable[Any]) -> bool:
