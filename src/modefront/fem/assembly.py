@@ -66,10 +66,8 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
 
     Parameters
     ----------
-    structure
-        What to assemble.
-    floating
-        Whether the structure as a whole may move as a rigid body (as if hung in soft cords).
+    structure : what to assemble
+    floating : whether the structure as a whole may move as a rigid body (as if hung in soft cords)
 
     Raises
     ------

@@ -108,10 +108,8 @@ def check_sizes(relative: Floats, cells: Ints, what: str, place: str) -> None:
 
     Parameters
     ----------
-    relative
-        (elements,) smallest det J over the power of the element's extent.
-    cells, what, place
-        For the message.
+    relative : (elements,) smallest det J over the power of the element's extent
+    cells, what, place : for the message
     """
     wrong = np.flatnonzero(~(relative > FLAT))
     if len(wrong):

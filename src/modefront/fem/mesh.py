@@ -54,12 +54,9 @@ class CellBlock:
 
     Attributes
     ----------
-    group
-        Name.
-    type
-        As meshio and VTK say: line, triangle, quad, hexahedron, tetra10, vertex, ...
-    cells
-        Nodes (cells, k).
+    group : name
+    type : as meshio and VTK say: line, triangle, quad, hexahedron, tetra10, vertex, ..
+    cells : nodes (cells, k)
     """
 
     group: str
@@ -73,12 +70,9 @@ class Mesh:
 
     Attributes
     ----------
-    nodes
-        Coordinates (nodes, 3).
-    blocks
-        Cells of each type in each group.
-    node_sets
-        Nodes by the name of the set.
+    nodes : coordinates (nodes, 3)
+    blocks : cells of each type in each group
+    node_sets : nodes by the name of the set
     """
 
     nodes: Floats

@@ -69,12 +69,9 @@ class Material:
 
     Attributes
     ----------
-    E
-        Young's modulus, > 0.
-    nu
-        Poisson's ratio, -1 < nu < 0.5.
-    rho
-        Density, >= 0.
+    E : Young's modulus, > 0
+    nu : Poisson's ratio, -1 < nu < 0.5
+    rho : density, >= 0
 
     Raises
     ------
@@ -108,10 +105,8 @@ class Section:
 
     Attributes
     ----------
-    A, I_y, I_z, J
-        Area, second moments of area and torsion constant, all > 0.
-    kappa_y, kappa_z
-        Shear correction factors for deflection along y and z.
+    A, I_y, I_z, J : area, second moments of area and torsion constant, all > 0
+    kappa_y, kappa_z : shear correction factors for deflection along y and z
 
     Raises
     ------

@@ -26,10 +26,8 @@ class SensorPlaces:
 
     Attributes
     ----------
-    nodes
-        (sensors,) nodes.
-    directions
-        (sensors, 6) weights of x, y, z, rx, ry, rz.
+    nodes : (sensors,) nodes
+    directions : (sensors, 6) weights of x, y, z, rx, ry, rz
     """
 
     nodes: Ints

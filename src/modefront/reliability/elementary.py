@@ -32,13 +32,9 @@ class ElementaryFailures:
 
     Attributes
     ----------
-    response
-        The map from z to x.
-    level
-        Barrier b.
-    cumulative
-        (n_outputs · n,) sums of P_oj over the steps of one output after another.
-
+    response : the map from z to x
+    level : barrier b
+    cumulative : (n_outputs · n,) sums of P_oj over the steps of one output after another
     """
 
     response: GaussianResponse
@@ -57,11 +53,9 @@ class Failed:
 
     Attributes
     ----------
-    z
-        (samples, n_inputs, n) z*.
-    output, step
-        (samples,) o and j, counted from 0, of the elementary failure that each sample was given.
-
+    z : (samples, n_inputs, n) z*
+    output, step : (samples,) o and j, counted from 0, of the elementary failure that each sample
+        was given
     """
 
     z: FloatArray
@@ -82,13 +76,10 @@ def given_failure(failures: ElementaryFailures, z: FloatArray, uniform: FloatArr
 
     Parameters
     ----------
-    failures
-        The elementary failures, of which one at least has a probability above zero.
-    z
-        (samples, n_inputs, n) standard normal numbers.
-    uniform
-        (2, samples) uniform numbers in [0, 1): the choice of the elementary failure, and 1 - v.
-
+    failures : the elementary failures, of which one at least has a probability above zero
+    z : (samples, n_inputs, n) standard normal numbers
+    uniform : (2, samples) uniform numbers in [0, 1): the choice of the elementary failure, and 1 -
+        v
     """
     response, cumulative = failures.response, failures.cumulative
     # The last failure of non-zero probability is meant by a number that rounding brings to ΣP.

@@ -38,23 +38,15 @@ class Estimate:
 
     Attributes
     ----------
-    probability
-        Estimate of P.
-    unit_coefficient_of_variation
-        δ, standard deviation of one sample's weight over P; inf if no sample failed.
-    samples
-        Number of samples N; each takes one evaluation of the response.
-    method
-        Name of the method.
-    level
-        Barrier b; failure is |x| > b for any response.
-    duration, time_step
-        T and Δt in s; the response is looked at on the times j Δt only.
-    density, sided
-        Spectral density of the noise, per rad/s, and how it is meant.
-    barrier, start
-        Said for the record: both sides, and at rest.
-
+    probability : estimate of P
+    unit_coefficient_of_variation : δ, standard deviation of one sample's weight over P; inf if no
+        sample failed
+    samples : number of samples N; each takes one evaluation of the response
+    method : name of the method
+    level : barrier b; failure is |x| > b for any response
+    duration, time_step : T and Δt in s; the response is looked at on the times j Δt only
+    density, sided : spectral density of the noise, per rad/s, and how it is meant
+    barrier, start : said for the record: both sides, and at rest
     """
 
     probability: float
@@ -92,11 +84,8 @@ class Estimator:
 
     Attributes
     ----------
-    method
-        Its name.
-    prepare
-        Returns what weighs samples.
-
+    method : its name
+    prepare : returns what weighs samples
     """
 
     method: str
@@ -116,7 +105,6 @@ class Estimator:
         ------
         InputError
             For levels that are not positive, or fewer than two samples or one worker.
-
         """
         b = real_array("levels", levels, (None,), "barriers")
         if np.any(b <= 0):
@@ -171,9 +159,7 @@ class StepEffect:
 
     Attributes
     ----------
-    given, halved
-        The two estimates, from independent samples.
-
+    given, halved : the two estimates, from independent samples
     """
 
     given: Estimate

@@ -61,12 +61,9 @@ def frequency_response(
 
     Parameters
     ----------
-    system
-        The structure, with m modes, n_inputs loads and n_outputs responses.
-    omega
-        (n,) circular frequencies in rad/s, none negative.
-    quantity
-        What is set against the load.
+    system : the structure, with m modes, n_inputs loads and n_outputs responses
+    omega : (n,) circular frequencies in rad/s, none negative
+    quantity : what is set against the load
 
     Returns
     -------
@@ -77,7 +74,6 @@ def frequency_response(
     InputError
         For frequencies that are negative, or meet an undamped mode; for absolute acceleration of
         a system that does not say how its outputs move with the base.
-
     """
     lines = no_negative("omega", real_array("omega", omega, (None,), "frequencies"), "frequency")
     return derivatives(system, lines.astype(np.complex128), quantity)[0]

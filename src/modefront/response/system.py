@@ -82,27 +82,20 @@ class ModalSystem:
 
     Attributes
     ----------
-    omega
-        (m,) natural circular frequencies in rad/s; zero for a rigid-body mode.
-    zeta
-        (m,) damping ratios, none negative.
-    input
-        (m, n_inputs) modal loads: φᵀf for forces, -φᵀM r for base acceleration.
-    output
-        (n_outputs, m) mode shapes at the outputs.
-    static
-        (n_outputs, n_inputs) full static response to the loads, or None where the modes are all
-        there is: its excess over the static response of the modes given is the correction for
+    omega : (m,) natural circular frequencies in rad/s; zero for a rigid-body mode
+    zeta : (m,) damping ratios, none negative
+    input : (m, n_inputs) modal loads: φᵀf for forces, -φᵀM r for base acceleration
+    output : (n_outputs, m) mode shapes at the outputs
+    static : (n_outputs, n_inputs) full static response to the loads, or None where the modes are
+        all there is: its excess over the static response of the modes given is the correction for
         those cut off. With rigid-body modes there is no static response.
-    rigid
-        (n_outputs, n_inputs) displacement of the outputs for a unit displacement of the base, or
-        None where the load is a force; needed for absolute acceleration only.
+    rigid : (n_outputs, n_inputs) displacement of the outputs for a unit displacement of the base,
+        or None where the load is a force; needed for absolute acceleration only
 
     Raises
     ------
     InputError
         For wrong shapes, numbers that are not finite, negative frequencies or damping.
-
     """
 
     omega: FloatArray

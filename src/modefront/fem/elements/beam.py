@@ -99,15 +99,12 @@ def beam(
 
     Parameters
     ----------
-    X
-        Nodes (elements, 2, 3).
-    material, section
-        The same for all elements.
-    orientation
-        Vectors (elements, 3), not parallel to the beams; local y is their part across the axis.
-    r
-        Offsets (2, 3) of the flexible part's ends from the nodes, global. Along the axis it is
-        a rigid end zone (without mass), across it an eccentricity.
+    X : nodes (elements, 2, 3)
+    material, section : the same for all elements
+    orientation : vectors (elements, 3), not parallel to the beams; local y is their part across the
+        axis
+    r : offsets (2, 3) of the flexible part's ends from the nodes, global. Along the axis it is a
+        rigid end zone (without mass), across it an eccentricity.
     """
     ends = X + r
     R = axes(ends, orientation)

@@ -61,12 +61,9 @@ def shell(X: Floats, material: Material, thickness: float, offset: float) -> Ele
 
     Parameters
     ----------
-    X
-        Nodes (elements, 3 or 4, 3), counter-clockwise about the normal.
-    material, thickness
-        Isotropic; thickness in units of length.
-    offset
-        Distance of the mid-surface from the nodes along the normal.
+    X : nodes (elements, 3 or 4, 3), counter-clockwise about the normal
+    material, thickness : isotropic; thickness in units of length
+    offset : distance of the mid-surface from the nodes along the normal
     """
     R = axes(X)
     x, height = project(X, R)
