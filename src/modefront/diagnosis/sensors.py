@@ -314,14 +314,6 @@ def _merged(findings: Sequence[WrongSensors]) -> list[WrongSensors]:
         if known is not None:
             best = max(known, finding, key=lambda each: each.after - each.before)
             changes = (*known.changes, *finding.changes)
-            finding = WrongSensors(
-                changes,
-                finding.sets,
-                best.mode,
-                best.before,
-                best.after,
-                finding.against,
-                finding.other,
-            )
+            finding = replace(best, changes=changes, other=finding.other)
         out[finding.sets] = finding
     return list(out.values())

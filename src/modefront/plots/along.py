@@ -19,7 +19,7 @@ from matplotlib.lines import Line2D
 
 from modefront._typing import Floats
 from modefront.front.point import Kind
-from modefront.plots.canvas import Picture
+from modefront.plots.canvas import Picture, picture
 from modefront.plots.models import front_of, is_path, reference_of, shown
 from modefront.plots.style import COLOURS, MAP, plain, short
 
@@ -169,3 +169,25 @@ def key(axes: Axes, data: xr.Dataset) -> None:
     handles, labels = axes.get_legend_handles_labels()
     if figure is not None:
         figure.legend(handles, labels, loc="outside upper left", ncols=3)
+
+
+def across(
+    data: xr.Dataset,
+    values: Floats,
+    names: Sequence[str],
+    label: str,
+    line: float | None = None,
+    width: float = 0.4,
+) -> Picture:
+    """Return a figure of values (points, quantities) in parallel coordinates.
+
+    A dashed ``line`` is where nothing is wrong; ``width`` is that of a quantity in inches.
+    """
+    figure = picture(max(5.2, width * len(names)), 3.4)
+    axes = figure.add_subplot()
+    parallel(axes, data, values, names)
+    if line is not None:
+        axes.axhline(line, color="k", ls="--", lw=1, zorder=0)
+    axes.set_ylabel(label)
+    key(axes, data)
+    return figure
