@@ -8,7 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.data.modal import ModalData
+from modefront.data.modal import MEASURED, ModalData
 from modefront.diagnosis.fit import Updating
 from modefront.diagnosis.measured import Measured, log_frequencies, mac_values, measured
 from modefront.errors import ModelError
@@ -125,8 +125,7 @@ def of_few_sets(comparison: Comparison) -> Comparison:
         for seen in (np.isfinite(data.frequency), np.isfinite(data.shape).any(axis=2))
     ]
     chosen = np.unique(np.concatenate([even, *first]))
-    parts = ("frequency", "damping", "shape", "frequency_std", "shape_std")
-    few = {name: getattr(data, name)[chosen] for name in parts}
+    few = {name: getattr(data, name)[chosen] for name in MEASURED}
     sets = tuple(data.sets[k] for k in chosen.tolist())
     return with_data(comparison, replace(data, sets=sets, **few))
 

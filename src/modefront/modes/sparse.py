@@ -152,7 +152,7 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
                 )
                 if refined is not None:
                     beyond = lam[refined[0].size] if finite > refined[0].size else np.inf
-                    noise = _noise(K, refined[1])
+                    noise = np.asarray(np.finfo(float).eps * (K.diagonal() @ refined[1] ** 2))
                     return Spectrum(*refined, M, noise, beyond, lower, (below, above))
         needed, block = 2 * needed, 2 * block
     if lost:
@@ -184,11 +184,6 @@ def _finite(
     except SingularMatrixError:
         return lam.size
     return lam.size if factor.negative is None else factor.negative
-
-
-def _noise(K: scipy.sparse.csr_array, Phi: Floats) -> Floats:
-    """Return the rounding to be expected in the eigenvalues of modes (N, modes)."""
-    return np.asarray(np.finfo(float).eps * (K.diagonal() @ Phi**2))
 
 
 def is_singular(pencil: Pencil, theta: Floats) -> bool:

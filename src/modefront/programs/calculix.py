@@ -59,8 +59,9 @@ def read(path: Path, options: JobOptions) -> Job:
     entries = {suffix: coordinates(files[suffix]) for suffix in (".sti", ".mas")}
     _refuse_cut_off(files, entries, node.size)
     notes: list[str] = []
-    deck = _deck(options.deck or job.with_name(job.name + ".inp"), notes)
-    if deck is not None and _is_newer(job, files[".sti"]):
+    own = job.with_name(job.name + ".inp")
+    deck = _deck(options.deck or own, notes)
+    if deck is not None and own.is_file() and own.stat().st_mtime > files[".sti"].stat().st_mtime:
         notes.append(f"{job.name}.inp is newer than {job.name}.sti: was it run since?")
     dofs = _table(plain, deck)
     _describe(dofs, notes)
@@ -101,11 +102,6 @@ def _deck(path: Path, notes: list[str]) -> Deck | None:
         )
         notes[-1] += " shells and beams cannot be told from others"
         return None
-
-
-def _is_newer(job: Path, matrix: Path) -> bool:
-    deck = job.with_name(job.name + ".inp")
-    return deck.is_file() and deck.stat().st_mtime > matrix.stat().st_mtime
 
 
 def _table(labels: DofTable, deck: Deck | None) -> DofTable:

@@ -84,12 +84,7 @@ def _structure(table: Table, parameters: Sequence[str], mesh: Mesh) -> fem.Struc
     return fem.Structure(
         mesh.nodes,
         _groups(table, mesh, materials),
-        [
-            fem.Support(nodes, directions)
-            for support in table.tables("support", required=False)
-            for nodes, directions in [(_nodes(support, "nodes", mesh), _directions(support))]
-            if _closed(support) and nodes is not None
-        ],
+        _supports(table, mesh),
         _springs(table, mesh),
         _masses(table, mesh),
         _links(table, mesh),
@@ -111,11 +106,6 @@ def _named_nodes(model: Table) -> set[str]:
 
 def _listed(value: object) -> list[Any]:
     return value if isinstance(value, list) else [value]
-
-
-def _closed(table: Table) -> bool:
-    table.close()
-    return True
 
 
 def _materials(model: Table) -> dict[str, fem.Material]:
@@ -231,6 +221,16 @@ def _directions(table: Table) -> list[str]:
         known,
     )
     return list(value)
+
+
+def _supports(model: Table, mesh: Mesh) -> list[fem.Support]:
+    out = []
+    for support in model.tables("support", required=False):
+        nodes, directions = _nodes(support, "nodes", mesh), _directions(support)
+        support.close()
+        if nodes is not None:
+            out.append(fem.Support(nodes, directions))
+    return out
 
 
 def _springs(model: Table, mesh: Mesh) -> list[fem.Spring]:
