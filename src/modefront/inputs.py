@@ -1,7 +1,8 @@
 """Files that are read: regular ones, of a size that their kind can have, and without holes.
 
 A pipe or a device in place of a file would be waited for, or be read without an end; a file with
-holes (sparse, or left by a broken transfer) announces more than there is.
+holes (sparse, or left by a broken transfer) announces more than there is. What a file declares is
+compared with what it holds; what has a key is there once; lines of numbers are whole to the end.
 """
 
 from __future__ import annotations
