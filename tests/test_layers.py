@@ -14,7 +14,8 @@ import modefront
 LAYERS = (
     ("_lazy", "_typing", "_version", "outputs", "rounding", "text"),
     ("errors", "variables"),
-    ("complete", "inputs", "hdf5", "isolated"),
+    ("complete", "inputs", "hdf5"),
+    ("isolated",),
     ("toml", "linalg", "response", "work"),
     ("options",),
     ("data", "fem", "modes", "optim", "reliability"),

@@ -2,28 +2,34 @@
 
 from __future__ import annotations
 
+import re
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from importlib import import_module
+from pathlib import Path
 from typing import Any
+
+IMPORT = re.compile(r"^    from (modefront\S*) import (\w+) as \2$", re.MULTILINE)
+"""A line that says where a public name is, for people and checkers of types."""
 
 
 def lazy(
-    package: str, homes: Mapping[str, str], modules: Sequence[str] = ()
-) -> tuple[Callable[[str], Any], Callable[[], list[str]]]:
-    """Return ``__getattr__`` and ``__dir__`` of a package.
+    package: str, file: str
+) -> tuple[Callable[[str], Any], Callable[[], list[str]], list[str]]:
+    """Return ``__getattr__``, ``__dir__`` and ``__all__`` of a package, given its file.
 
-    ``homes`` are the modules of the names within it, ``modules`` those that are public themselves.
+    Its names are those that it imports ``if TYPE_CHECKING``.
     """
+    homes = {name: home for home, name in IMPORT.findall(Path(file).read_text(encoding="utf-8"))}
 
-    def getattribute(name: str) -> Any:
-        if name in modules:
-            return import_module(f"{package}.{name}")
+    def load(name: str) -> Any:
         if name not in homes:
-            raise AttributeError(f"module '{package}' has no attribute '{name}'")
-        return getattr(import_module(f"{package}.{homes[name]}"), name)
+            raise AttributeError(f"module {package!r} has no attribute {name!r}")
+        home = homes[name]
+        module = import_module(f"{package}.{name}" if home == package else home)
+        return module if home == package else getattr(module, name)
 
     def names() -> list[str]:
-        return sorted({*vars(sys.modules[package]), *homes, *modules})
+        return sorted({*vars(sys.modules[package]), *homes})
 
-    return getattribute, names
+    return load, names, sorted(homes)

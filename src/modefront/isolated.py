@@ -27,6 +27,7 @@ from typing import Any
 import numpy as np
 
 from modefront.errors import reason
+from modefront.inputs import available_memory
 from modefront.outputs import output, write_text
 from modefront.text import one_line
 
@@ -53,13 +54,12 @@ class IsolatedError(RuntimeError):
     """A reader failed, took too long, or ended its process; the message says which."""
 
 
-def seconds_for(size: int) -> float:
-    """Return the time in s that reading a file of so many bytes may take."""
-    return LEAST_SECONDS + size / SPEED
-
-
 def isolated(
-    function: str, path: Path, seconds: float, memory: int, arguments: Sequence[str] = ()
+    function: str,
+    path: Path,
+    seconds: float | None = None,
+    memory: int | None = None,
+    arguments: Sequence[str] = (),
 ) -> Read:
     """Return the arrays and texts that a function reads from a file in another process.
 
@@ -70,7 +70,8 @@ def isolated(
     path
         The file.
     seconds, memory
-        Limits; that of memory, in bytes, holds where the system has such limits.
+        Limits, by the size of the file and what is free unless given; that of memory, in bytes,
+        holds where the system has such limits.
     arguments
         Further texts that the function takes.
 
@@ -79,6 +80,8 @@ def isolated(
     IsolatedError
         Where nothing was read.
     """
+    seconds = seconds or LEAST_SECONDS + path.stat().st_size / SPEED
+    memory = memory or available_memory()
     with tempfile.TemporaryDirectory(prefix="modefront-") as name:
         folder = Path(name)
         called = [str(path.absolute()), *arguments]

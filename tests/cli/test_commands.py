@@ -27,7 +27,7 @@ from modefront.optim.problem import Problem
 from modefront.optim.sqp import Solution
 from modefront.results.files import FILE, read_dataset
 from modefront.study import session
-from modefront.work import lock
+from modefront.work import store as lock
 
 STUDY = (
     """

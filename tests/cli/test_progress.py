@@ -15,8 +15,7 @@ from modefront.front.search import Search
 from modefront.study.estimate import SHORT, Estimate, duration, estimate, expected_tasks
 from modefront.study.examples import write_example
 from modefront.work.costs import Costs
-from modefront.work.progress import State
-from modefront.work.steps import listening, note, note_iteration
+from modefront.work.progress import State, listening, note, note_iteration
 
 
 def drawn(lines: _Lines, width: int) -> list[str]:

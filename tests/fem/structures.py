@@ -11,11 +11,10 @@ from scipy.sparse.linalg import eigsh
 from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.fem.elements.beam import beam
-from modefront.fem.elements.brick import brick
+from modefront.fem.elements.brick import brick, tetrahedron
 from modefront.fem.elements.common import ElementMatrices
 from modefront.fem.elements.shapes import TETRAHEDRON_EDGES
 from modefront.fem.elements.shell import shell
-from modefront.fem.elements.tetrahedron import tetrahedron
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
 

@@ -21,7 +21,7 @@ from program_files import dense, labels, structure, write_op4, write_opensees
 
 from modefront.cli.main import cli
 from modefront.errors import InputError
-from modefront.exports.motion import node_motion
+from modefront.exports.model import node_motion
 from modefront.models.dofs import read_dofs
 from modefront.models.matrices import MatrixModel
 from modefront.programs import PROGRAMS
@@ -194,7 +194,7 @@ def test_an_imported_study_has_the_geometry_of_its_deck(small: Path) -> None:
         ('{ node = 12, direction = ["z", "-z"] }', "a list of different ones"),
         ('{ node = 13, direction = "z" }', "a node with degrees of freedom, 3, 5, 7, 12, 40"),
         ('{ node = 12, direction = "rx" }', "node 12 can move .x, y, z., found rx, which is held"),
-        ('{ node = 12, direction = "up" }', "one of x, y, z, rx, ry, rz, with or without"),
+        ('{ node = 12, direction = "up" }', "one of x, -x, y, -y, z, -z"),
         ("{ node = 12, direction = [0, 0, 0] }", "a vector"),
         ('{ node = 0, direction = "z" }', "a whole number from 1"),
         ('{ node = 12, directoin = "z" }', "did you mean 'direction'"),

@@ -36,7 +36,7 @@ def seed(number):
     return np.random.SeedSequence(number)
 
 
-@pytest.mark.parametrize("method", CONDITIONAL, ids=lambda m: m.__name__)
+@pytest.mark.parametrize("method", CONDITIONAL, ids=lambda m: m.method)
 def test_reference_values(method):
     for result in method(REFERENCE, list(REFERENCE_VALUES), 4000, seed(7), 1):
         expected = REFERENCE_VALUES[result.level]
@@ -67,7 +67,7 @@ def test_estimated_coefficient_of_variation_is_that_of_repetitions():
         assert p.std(ddof=1) == pytest.approx(claimed, rel=0.3)
 
 
-@pytest.mark.parametrize("method", CONDITIONAL, ids=lambda m: m.__name__)
+@pytest.mark.parametrize("method", CONDITIONAL, ids=lambda m: m.method)
 def test_one_time_step_is_known_exactly(method):
     """One response at one time: P = 2Φ(-b/σ), without any spread."""
     problem = FirstPassage(OSCILLATOR, WhiteNoise(1.0, Sided.TWO), 0.02, 0.02)
@@ -81,7 +81,7 @@ def test_one_time_step_is_known_exactly(method):
         assert result.unit_coefficient_of_variation < 1e-9
 
 
-@pytest.mark.parametrize("method", [*CONDITIONAL, monte_carlo], ids=lambda m: m.__name__)
+@pytest.mark.parametrize("method", [*CONDITIONAL, monte_carlo], ids=lambda m: m.method)
 @pytest.mark.parametrize("beta", [0.3, 0.8])
 def test_two_time_steps_against_quadrature(method, beta):
     """Two correlated normal numbers: one integral, also where P is no small number."""

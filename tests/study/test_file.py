@@ -19,7 +19,7 @@ from modefront.pairing.match import Pairing
 from modefront.residuals.groups import Group
 from modefront.study.definition import Study
 from modefront.study.file import load
-from modefront.study.kinds.base import ModelKind
+from modefront.study.kinds.sensors import ModelKind
 from modefront.toml import Table
 
 HEAD = """

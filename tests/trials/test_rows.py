@@ -15,7 +15,7 @@ from hypothesis import strategies as st
 from rows import FORMATS, Change, cannot_be_noticed, spoilt
 
 from modefront.errors import InputError, ModelError
-from modefront.fem.errors import FemError
+from modefront.fem.section import FemError
 
 EXAMPLES = int(os.environ.get("MODEFRONT_EXAMPLES", "25"))
 

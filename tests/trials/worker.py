@@ -32,8 +32,8 @@ class Once:
         self,
         function: str,
         path: Path,
-        seconds: float,
-        memory: int,
+        seconds: float | None = None,
+        memory: int | None = None,
         arguments: Sequence[str] = (),
     ) -> Read:
         """Return what the file holds, as `isolated` does."""

@@ -23,7 +23,7 @@ from typing import Any
 import pytest
 
 from modefront.errors import InputError
-from modefront.work.lock import FILE, HOLDER, locked
+from modefront.work.store import FILE, HOLDER, locked
 
 FIRST = 2**30
 """Number of the first process; this machine has none of these."""

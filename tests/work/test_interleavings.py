@@ -21,8 +21,7 @@ from hypothesis.stateful import (
 )
 from interleavings import Machine
 
-from modefront.work.lock import FILE
-from modefront.work.store import FOLDER
+from modefront.work.store import FILE, FOLDER
 
 MOST = 5
 """Runs in one folder."""

@@ -18,13 +18,12 @@ import pytest
 from refusals import command
 
 import modefront as mf
-from modefront.work.lock import FILE, HOLDER, locked
-from modefront.work.store import FOLDER
+from modefront.work.store import FILE, FOLDER, HOLDER, locked
 
 HOLD = """
 import sys
 from pathlib import Path
-from modefront.work.lock import locked
+from modefront.work.store import locked
 with locked(Path(sys.argv[1])):
     print("held", flush=True)
     sys.stdin.read()
@@ -118,7 +117,7 @@ def test_of_many_processes_one_works_at_a_time(results: Path) -> None:
 import sys, time
 from pathlib import Path
 from modefront.errors import InputError
-from modefront.work.lock import locked
+from modefront.work.store import locked
 results, count, own = map(Path, sys.argv[1:])
 for _ in range(20):
     try:
@@ -181,7 +180,7 @@ def test_a_holder_that_cannot_be_written(results: Path, monkeypatch: pytest.Monk
         raise OSError(errno.ENOSPC, "No space left on device")
 
     with monkeypatch.context() as patch:
-        patch.setattr("modefront.work.lock.write_text", full)
+        patch.setattr("modefront.work.store.write_text", full)
         with pytest.raises(mf.InputError, match="no space left"), locked(results):
             pass
     with locked(results):

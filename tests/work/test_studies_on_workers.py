@@ -26,9 +26,9 @@ import modefront as mf
 from modefront.errors import InputError, UnfinishedError
 from modefront.study import session
 from modefront.work import workers as module
-from modefront.work.lock import locked
 from modefront.work.pools import Cluster, LocalPool, Pool
 from modefront.work.progress import Progress, State
+from modefront.work.store import locked
 from modefront.work.workers import Workers
 
 # A scheduler that is gone leaves half-open connections, which Dask closes as they are collected.

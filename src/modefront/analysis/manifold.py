@@ -54,7 +54,7 @@ from modefront.analysis.tangents import ARRIVED, Context, TangentPoint, context_
 from modefront.optim.problem import AT_BOUND, Evaluation, Problem, Wrapped
 from modefront.optim.scalarisation import Scalarisation
 from modefront.work.codec import record
-from modefront.work.steps import note
+from modefront.work.progress import note
 
 NEAR = 0.7
 """Distance over the length of a step, below which a point counts as one that is known: below 1, as

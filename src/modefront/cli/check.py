@@ -11,9 +11,9 @@ from rich.table import Table
 
 from modefront.cli.layout import Screen
 from modefront.cli.tables import safe, table
-from modefront.diagnosis.changes import comac
 from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.sensitivity import Sensitivities
+from modefront.diagnosis.sensors import comac
 from modefront.diagnosis.words import enumerated
 from modefront.results.remarks import MOST, digest
 from modefront.study.check import Findings, spoils

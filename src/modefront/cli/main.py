@@ -27,8 +27,8 @@ if TYPE_CHECKING:
     import xarray as xr
 
     from modefront.study.definition import Study
-    from modefront.work.backend import Backend
     from modefront.work.costs import Costs
+    from modefront.work.task import Backend
 
 OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 """Exit statuses; 130 is that of shells for an interrupt."""

@@ -19,8 +19,7 @@ from rich.text import Text
 
 from modefront.text import NAME, clean
 from modefront.work.costs import Costs, counted
-from modefront.work.progress import Progress, State
-from modefront.work.steps import ITERATION, listening
+from modefront.work.progress import ITERATION, Progress, State, listening
 
 TITLES: Mapping[str, str] = {
     "check-groups": "check of the groups",

@@ -75,7 +75,7 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
     quantity = _quantity(channels, quantity)
     _check_values(channels)
     if turned:
-        channels = [_turned(channel) for channel in channels]
+        channels = [replace(x, reference=x.response, response=x.reference) for x in channels]
     references = tuple(dict.fromkeys(channel.reference for channel in channels))
     responses = tuple(dict.fromkeys(channel.response for channel in channels))
     groups: _Groups = {}
@@ -113,10 +113,6 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
         variance=variance if blows == 1 and np.isfinite(variance).any() else None,
     )
     return Assembled(data, tuple(warnings))
-
-
-def _turned(channel: Channel) -> Channel:
-    return replace(channel, reference=channel.response, response=channel.reference)
 
 
 def _check_axes(channels: Sequence[Channel]) -> None:

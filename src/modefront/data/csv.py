@@ -18,7 +18,6 @@ import re
 from collections import Counter
 from collections.abc import Collection, Iterator, Mapping, Sequence
 from contextlib import contextmanager
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from typing import TextIO
@@ -26,10 +25,9 @@ from typing import TextIO
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.complete import ended_column
 from modefront.data.modal import ModalData
 from modefront.errors import Fault, InputError, reason, suggestion
-from modefront.inputs import MOST_DATA, available_memory, file_size, refuse_holes
+from modefront.inputs import MOST_DATA, available_memory, ended_column, file_size, refuse_holes
 from modefront.outputs import write_table
 from modefront.rounding import LARGEST as LARGEST_NUMBER
 from modefront.text import NAME, clean
@@ -52,11 +50,6 @@ NUMBER = re.compile(r"[+-]?([0-9]+\.?[0-9]*|\.[0-9]+)(e[+-]?[0-9]+)?", re.IGNORE
 DECIMAL_COMMA = re.compile(r"^(\s*[+-]?[0-9]*),([0-9]*(?:e[+-]?[0-9]+)?\s*)$", re.IGNORECASE)
 """A number with a decimal comma, before and behind it."""
 
-FIELDS = re.compile(
-    rf"[ \t]*(?:{NUMBER.pattern})?[ \t]*(?:\n[ \t]*(?:{NUMBER.pattern})?[ \t]*)*", re.IGNORECASE
-)
-"""Numbers and empty fields, one a line."""
-
 SEPARATOR_LINE = re.compile(r'"?sep=(?P<separator>[,;\t])"?[,;\t \r\n]*', re.IGNORECASE)
 """First line by which spreadsheets say what separates the columns."""
 
@@ -76,9 +69,6 @@ MOST_FAULTS = 100
 
 SUGGESTED = 20
 """Unknown columns for which a known one is sought."""
-
-TOGETHER = 10_000
-"""Rows that are read at once, by columns."""
 
 FREQUENCIES = 1e-9, 1e12
 """Frequencies in Hz beyond which a number must be a slip."""
@@ -130,25 +120,33 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
         faults = [_fault(file, first, *found) for found in _header_faults(header, sensors)]
         if faults:
             raise InputError(faults)
-        parts: list[_Rows] = []
+        keys: list[tuple[int, str, int]] = []
+        table: list[list[float]] = []
         last: list[str] = []
-        while lines := list(islice(rows, TOGETHER)):
-            last += [fields[-1] for _, fields in lines]
-            part = _together(header, lines, sensors)
-            if part is None or faults:
-                part, row_faults = _one_by_one(header, lines, sensors)
-                faults += [_fault(file, *each) for each in row_faults]
-            parts.append(part)
+        for number, fields in rows:
             if len(faults) > MOST_FAULTS:
                 break
-    if not parts:
+            last.append(fields[-1])
+            if len(fields) != len(header):
+                expected = f"{len(header)} fields, as in the header"
+                faults.append(_fault(file, number, None, expected, str(len(fields))))
+                continue
+            texts = map(str.strip, fields)
+            key, values, found = _row(dict(zip(header, texts, strict=True)))
+            if key is not None:
+                keys.append((number, *key))
+                table.append(list(values.values()))
+                found = found or _empty_faults(values, sensors)
+            faults += [_fault(file, number, *each) for each in found]
+    if not last:
         raise InputError(Fault(file, "line 2", "a row for each measured mode", "the end"))
-    repeated = _repeated(file, parts, has_sets="set" in header)
+    repeated = _repeated(file, keys, has_sets="set" in header)
     faults += [] if len(faults) > MOST_FAULTS else list(islice(repeated, MOST_FAULTS))
     if faults:
         raise InputError(faults)
     ended_column(path, last)
-    return _assemble(path, header, parts, tuple(sensors))
+    columns = dict(zip((x for x in header if x not in KEYS), np.array(table).T, strict=True))
+    return _assemble(path, keys, columns, tuple(sensors))
 
 
 def write_csv(
@@ -175,16 +173,6 @@ def write_csv(
 def _fault(file: str, line: int, column: str | None, expected: str, found: str) -> Fault:
     place = f"line {line}, column {clean(column, NAME)!r}" if column is not None else f"line {line}"
     return Fault(file, place, expected, found)
-
-
-@dataclass(frozen=True)
-class _Rows:
-    """Some rows: their lines, sets and modes, and the values of all other columns by name."""
-
-    lines: Sequence[int]
-    sets: Sequence[str]
-    modes: Sequence[int]
-    values: Mapping[str, Floats]
 
 
 @contextmanager
@@ -238,86 +226,19 @@ def _with_points(rows: Iterator[tuple[int, list[str]]]) -> Iterator[tuple[int, l
         yield number, [DECIMAL_COMMA.sub(r"\1.\2", field) for field in row]
 
 
-def _together(
-    header: Sequence[str], lines: Sequence[tuple[int, list[str]]], sensors: Sequence[str]
-) -> _Rows | None:
-    """Return rows in which nothing is wrong, read by columns; None where something is."""
-    if any(len(fields) != len(header) for _, fields in lines):
-        return None
-    columns = dict(zip(header, zip(*(fields for _, fields in lines), strict=True), strict=True))
-    names, modes = columns.pop("set", (ONLY_SET,) * len(lines)), columns.pop("mode")
-    sets = {text: text.strip() for text in set(names)}
-    if not all(name and name.isprintable() for name in sets.values()):
-        return None
-    if not all(MODE.fullmatch(text.strip()) for text in set(modes)):
-        return None
-    numbers = {text: int(text) for text in set(modes)}
-    if not all(1 <= number <= MOST_MODES for number in numbers.values()):
-        return None
-    values: dict[str, Floats] = {}
-    for name, texts in columns.items():
-        if not FIELDS.fullmatch("\n".join(texts)):
-            return None
-        values[name] = _numbers(texts)
-        known = values[name][~np.isnan(values[name])]
-        if known.size and (_range(name, known.min()) or _range(name, known.max())):
-            return None
-    shape = np.abs([values[name] for name in sensors])
-    measured = ~np.isnan(shape)
-    greatest = np.where(measured, shape, 0.0).max(axis=0, initial=0.0)
-    possible = (greatest >= SHAPES[0]) & (greatest <= SHAPES[1])
-    if not np.where(measured.any(axis=0), possible, ~np.isnan(values["frequency"])).all():
-        return None
-    lines_of = [number for number, _ in lines]
-    return _Rows(
-        lines_of, [sets[text] for text in names], [numbers[text] for text in modes], values
-    )
-
-
-def _numbers(texts: Sequence[str]) -> Floats:
-    """Return numbers, NaN for empty fields."""
-    try:
-        return np.array(list(map(float, texts)))
-    except ValueError:
-        return np.array([float(text) if text.strip() else math.nan for text in texts])
-
-
-def _one_by_one(
-    header: Sequence[str], lines: Sequence[tuple[int, list[str]]], sensors: Sequence[str]
-) -> tuple[_Rows, list[tuple[int, str | None, str, str]]]:
-    """Return the keys of rows, and line, column, expected and found of what is wrong with them."""
-    faults: list[tuple[int, str | None, str, str]] = []
-    keys: list[tuple[int, str, int]] = []
-    for number, fields in lines:
-        if len(faults) > MOST_FAULTS:
-            break
-        if len(fields) != len(header):
-            expected = f"{len(header)} fields, as in the header"
-            faults.append((number, None, expected, str(len(fields))))
-            continue
-        texts = [field.strip() for field in fields]
-        key, values, row_faults = _row(dict(zip(header, texts, strict=True)))
-        if key is not None:
-            keys.append((number, *key))
-            row_faults = row_faults or _empty_faults(values, sensors)
-        faults += [(number, *each) for each in row_faults]
-    numbers, names, modes = zip(*keys, strict=True) if keys else ((), (), ())
-    return _Rows(numbers, names, modes, {}), faults
-
-
-def _repeated(file: str, parts: Sequence[_Rows], *, has_sets: bool) -> Iterator[Fault]:
-    """Yield the rows of modes that a data set has already."""
+def _repeated(
+    file: str, keys: Sequence[tuple[int, str, int]], *, has_sets: bool
+) -> Iterator[Fault]:
+    """Yield the rows, given by line, set and mode, of modes that a data set has already."""
+    place, expected = "columns 'set' and 'mode'", "each mode of a data set once"
+    if not has_sets:
+        place = "column 'mode'"
+        expected = "each mode once, or a column 'set' that tells data sets apart"
     seen: set[tuple[str, int]] = set()
-    for part in parts:
-        for line, name, mode in zip(part.lines, part.sets, part.modes, strict=True):
-            if (name, mode) in seen:
-                place, expected = "columns 'set' and 'mode'", "each mode of a data set once"
-                if not has_sets:
-                    place = "column 'mode'"
-                    expected = "each mode once, or a column 'set' that tells data sets apart"
-                found = f"{(name, mode)} again"
-                yield Fault(file, f"line {line}, {place}", expected, found)
-            seen.add((name, mode))
+    for line, name, mode in keys:
+        if (name, mode) in seen:
+            yield Fault(file, f"line {line}, {place}", expected, f"{(name, mode)} again")
+        seen.add((name, mode))
 
 
 def _header_faults(header: Sequence[str], sensors: Sequence[str]) -> list[tuple[str, str, str]]:
@@ -401,25 +322,27 @@ def _empty_faults(values: dict[str, float], sensors: Sequence[str]) -> list[tupl
 
 
 def _assemble(
-    path: Path, header: Sequence[str], parts: Sequence[_Rows], sensors: tuple[str, ...]
+    path: Path,
+    keys: Sequence[tuple[int, str, int]],
+    columns: Mapping[str, Floats],
+    sensors: tuple[str, ...],
 ) -> ModalData:
     """Return the data of all rows; raises InputError where they are spread over too many sets."""
-    of_sets = [name for part in parts for name in part.sets]
-    of_modes = [mode for part in parts for mode in part.modes]
-    sets, modes = tuple(dict.fromkeys(of_sets)), tuple(sorted(set(of_modes)))
-    size = 8 * len(sets) * len(modes) * len(header)
+    sets = tuple(dict.fromkeys(name for _, name, _ in keys))
+    modes = tuple(sorted({mode for _, _, mode in keys}))
+    size = 8 * len(sets) * len(modes) * len(columns)
     if size > available_memory() // 2:
-        found = f"{len(of_sets)} rows of {len(sets)} sets and {len(modes)} modes"
+        found = f"{len(keys)} rows of {len(sets)} sets and {len(modes)} modes"
         raise InputError(Fault(str(path), "rows", "most modes in every data set", found))
     places = {name: k for k, name in enumerate(sets)}
-    row = np.array([places[name] for name in of_sets])
-    column = np.searchsorted(modes, of_modes)
+    row = [places[name] for _, name, _ in keys]
+    column = np.searchsorted(modes, [mode for _, _, mode in keys])
 
     def collect(*names: str) -> Floats:
         out = np.full((len(sets), len(modes), len(names)), np.nan)
         for k, name in enumerate(names):
-            if name in parts[0].values:
-                out[row, column, k] = np.concatenate([part.values[name] for part in parts])
+            if name in columns:
+                out[row, column, k] = columns[name]
         return out
 
     return ModalData(

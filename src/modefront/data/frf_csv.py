@@ -14,21 +14,17 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.complete import ended_column
 from modefront.data.blows import TIME, Contents, blow_of_columns
 from modefront.data.channels import Channel
 from modefront.data.csv import NUMBER
 from modefront.errors import Fault, InputError, reason, suggestion
-from modefront.inputs import MOST_DATA, available_memory, file_size, refuse_holes
+from modefront.inputs import MOST_DATA, available_memory, ended_column, file_size, refuse_holes
 from modefront.rounding import LARGEST
 
 FREQUENCY, REAL, IMAGINARY, COHERENCE = "frequency", "_re", "_im", "_coherence"
 
 MOST_FAULTS = 5
 """Faults that are listed of one file."""
-
-TOGETHER = 10_000
-"""Rows that are read at once, where not all can be."""
 
 
 def read_test_csv(path: Path, reference: str) -> Contents:
@@ -101,22 +97,16 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
     if not numbered:
         raise InputError(Fault(file, "line 2", "a row for each line of frequency", "the end"))
     ended_column(path, (row.rpartition(",")[2] for _, row in numbered))
-    faults: list[Fault] = []
-    if (read := _together([row for _, row in numbered], len(header))) is not None:
-        return header, read
-    parts = []
-    for k in range(0, len(numbered), TOGETHER):
-        block = numbered[k : k + TOGETHER]
-        part = _together([row for _, row in block], len(header))
-        if part is None:
-            part, found = _one_by_one(file, header, block)
-            faults += found
-        parts.append(part)
-        if len(faults) >= MOST_FAULTS:
-            break
+    try:
+        values = np.loadtxt([row for _, row in numbered], delimiter=",", comments=None, ndmin=2)
+        if values.shape == (len(numbered), len(header)) and (np.abs(values) <= LARGEST).all():
+            return header, values
+    except ValueError:
+        pass
+    values, faults = _one_by_one(file, header, numbered)
     if faults:
         raise InputError(faults[:MOST_FAULTS])
-    return header, np.vstack(parts)
+    return header, values
 
 
 def _one_by_one(
@@ -141,16 +131,3 @@ def _one_by_one(
         if len(faults) >= MOST_FAULTS:
             break
     return values, faults
-
-
-def _together(rows: Sequence[str], columns: int) -> Floats | None:
-    """Return rows of finite numbers; None where any of them is something else."""
-    try:
-        values = np.loadtxt(rows, delimiter=",", comments=None, ndmin=2)
-    except ValueError:
-        return None
-    return (
-        values
-        if values.shape == (len(rows), columns) and (np.abs(values) <= LARGEST).all()
-        else None
-    )

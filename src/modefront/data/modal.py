@@ -9,6 +9,9 @@ import numpy as np
 
 from modefront._typing import Floats
 
+MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std")
+"""Arrays of modal data, of which data sets are the first axis."""
+
 
 @dataclass(frozen=True, eq=False)
 class MeasuredShapes:

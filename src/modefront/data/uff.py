@@ -1,7 +1,7 @@
 """Universal files: functions or records of blows from dataset 58, modes into dataset 55.
 
 Modes are read in `modefront.data.uff55`. A dataset stands between two lines with -1; what it
-declares is compared with what it holds. `pyuff`, an extra, writes dataset 55.
+declares is compared with what it holds.
 
 Format: Structural Dynamics Research Laboratory, University of Cincinnati, *Universal File
 Formats*, datasets 55, 58 and 58b.
@@ -14,18 +14,16 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from pathlib import Path
-from types import ModuleType
 from typing import Any
 
 import numpy as np
 
 from modefront._typing import Complexes, Floats
-from modefront.complete import counted
 from modefront.data.blows import Blow, Contents
 from modefront.data.channels import Channel
 from modefront.errors import Fault, InputError, reason
-from modefront.inputs import MOST_DATA, read_text_bytes
-from modefront.outputs import output_by_name
+from modefront.inputs import MOST_DATA, counted, read_text_bytes
+from modefront.outputs import write_text
 
 FRF, COHERENCE, TIME = 4, 6, 1
 """Types of functions in dataset 58."""
@@ -262,16 +260,6 @@ def _sizes(record: Sequence[bytes]) -> list[int]:
     return [count * (1 + values) * size, count * (4 + values * size)]
 
 
-def _pyuff(file: str) -> ModuleType:
-    try:
-        import pyuff
-    except ImportError:
-        expected = "pyuff, which `pip install modefront[uff]` brings"
-        raise InputError(Fault(file, "universal file", expected, "no such package")) from None
-    module: ModuleType = pyuff
-    return module
-
-
 def text_lines(content: bytes, block: Block) -> list[str]:
     """Return the lines of a dataset behind the one with its number."""
     return content[block.start : block.end].decode("utf-8", "replace").splitlines()
@@ -371,42 +359,44 @@ def write_uff55(
     ``modes`` holds, for every data set, poles in rad/s and complex shapes at the sensors; sensors
     that are named by node and direction keep both, others are numbered from 1, in X.
     """
-    pyuff = _pyuff(str(path))
     places = [_place(name, i) for i, name in enumerate(sensors)]
     nodes = list(dict.fromkeys(node for node, _ in places))
-    names = ", ".join(sensors)[:79]
+    rows, axes = [nodes.index(node) for node, _ in places], [axis for _, axis in places]
     written = []
     for name, listed in zip(sets, modes, strict=True):
         for number, (pole, phi) in enumerate(listed, start=1):
-            values = np.zeros((3, len(nodes)), complex)
-            for (node, axis), value in zip(places, phi, strict=True):
-                values[axis, nodes.index(node)] = value
-            written.append(
-                pyuff.prepare_55(
-                    model_type=1,
-                    id1=f"set {name}"[:79],
-                    id2=f"mode {number}, {abs(pole) / (2 * np.pi):.9g} Hz",
-                    id3=names or "NONE",
-                    id4="NONE",
-                    id5="NONE",
-                    analysis_type=3,
-                    data_ch=2,
-                    spec_data_type=8,
-                    data_type=5,
-                    n_data_per_node=3,
-                    r1=values[0],
-                    r2=values[1],
-                    r3=values[2],
-                    node_nums=nodes,
-                    load_case=1,
-                    mode_n=number,
-                    eig=pole,
-                    modal_a=0j,
-                    modal_b=0j,
-                )
-            )
-    with output_by_name(path) as copy:
-        pyuff.UFF(str(copy)).write_sets(written, "add")
+            values = np.zeros((len(nodes), 3), complex)
+            values[rows, axes] = phi
+            frequency = f"mode {number}, {abs(pole) / (2 * np.pi):.9g} Hz"
+            texts = (f"set {name}"[:79], frequency, ", ".join(sensors)[:79] or "NONE")
+            parameters = (pole.real, pole.imag, 0.0, 0.0, 0.0, 0.0)
+            content = dataset_55(texts, number, parameters, nodes, values)
+            written.append(f"    -1\n    55\n{content}    -1\n")
+    write_text(path, "".join(written))
+
+
+def dataset_55(
+    texts: Sequence[str],
+    number: int,
+    parameters: Sequence[float],
+    nodes: Sequence[int],
+    values: Floats | Complexes,
+) -> str:
+    """Return a dataset 55 behind the line of its number: displacements in a mode.
+
+    ``values`` (nodes, 3 or 6) are those of a normal mode where they are real, else of a complex one
+    of first order; ``parameters`` belong to the one or the other, and ``texts`` begin the dataset.
+    """
+    kind, data = (3, 5) if np.iscomplexobj(values) else (2, 2)
+    rows = np.ascontiguousarray(values).view(float).tolist()
+    size = values.shape[1]
+    integers = (1, kind, 3 if size == 6 else 2, 8, data, size), (2, len(parameters), 1, number)
+    lines = [*texts, *["NONE"] * (5 - len(texts))]
+    lines += ["".join(f"{x:10d}" for x in record) for record in integers]
+    lines.append("".join(f"{x:13.5E}" for x in parameters))
+    for node, row in zip(nodes, rows, strict=True):
+        lines += [f"{node:10d}", "".join(f"{x:13.5E}" for x in row)]
+    return "\n".join(lines) + "\n"
 
 
 def _place(name: str, index: int) -> tuple[int, int]:

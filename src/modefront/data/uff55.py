@@ -24,11 +24,10 @@ from typing import TypeVar
 import numpy as np
 
 from modefront._typing import Complexes, Floats, Ints
-from modefront.complete import counted, once
 from modefront.data.modal import ModalData
 from modefront.data.uff import AXES, Block, blocks, reals, text_lines
 from modefront.errors import Fault, InputError, reason
-from modefront.inputs import MOST_DATA, read_text_bytes
+from modefront.inputs import MOST_DATA, counted, once, read_text_bytes
 from modefront.rounding import LARGEST
 
 SUFFIXES = (".uff", ".unv", ".uf")

@@ -8,14 +8,13 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.data.modal import ModalData
+from modefront.data.modal import MEASURED, ModalData
 from modefront.diagnosis.fit import Updating
 from modefront.diagnosis.measured import Measured, log_frequencies, mac_values, measured
 from modefront.errors import ModelError
 from modefront.models.base import Model
-from modefront.models.local import matrices_at
+from modefront.models.local import full_of, matrices_at
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.model import ReducedModel
 from modefront.pairing.match import Pairs, match, modes_needed
 from modefront.residuals.problem import UpdatingProblem
 
@@ -92,7 +91,7 @@ def compare(problem: UpdatingProblem) -> Comparison:
     """
     count = modes_needed(problem.pairing, problem.data, problem.model.size)
     theta = problem.start
-    full = problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
+    full = full_of(problem.model)
     matrices = matrices_at(full, theta)
     modes = min(problem.model.size, count + MORE)
     frequency, phi, Phi = _modes(full, matrices, theta, count, modes)
@@ -126,8 +125,7 @@ def of_few_sets(comparison: Comparison) -> Comparison:
         for seen in (np.isfinite(data.frequency), np.isfinite(data.shape).any(axis=2))
     ]
     chosen = np.unique(np.concatenate([even, *first]))
-    parts = ("frequency", "damping", "shape", "frequency_std", "shape_std")
-    few = {name: getattr(data, name)[chosen] for name in parts}
+    few = {name: getattr(data, name)[chosen] for name in MEASURED}
     sets = tuple(data.sets[k] for k in chosen.tolist())
     return with_data(comparison, replace(data, sets=sets, **few))
 

@@ -8,7 +8,6 @@ from functools import partial
 import numpy as np
 
 from modefront.diagnosis.comparison import Comparison, of_few_sets, with_data
-from modefront.diagnosis.damping import DampingInPercent, damping_findings
 from modefront.diagnosis.explain import WrongPlaces, explained, finding_of, pairs_of
 from modefront.diagnosis.measured import measured
 from modefront.diagnosis.opposed import OpposedSensor, opposed_findings
@@ -25,8 +24,10 @@ from modefront.diagnosis.sets import (
     shape_findings,
 )
 from modefront.diagnosis.units import (
+    DampingInPercent,
     FrequencyFactor,
     OtherQuantity,
+    damping_findings,
     distance,
     shifts_to_try,
     unit_finding,

@@ -14,12 +14,18 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.diagnosis.changes import Change, applied
 from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.fit import Fit
 from modefront.diagnosis.measured import Measured, assigned, mac_values, pair_costs
 from modefront.diagnosis.places import Relocation, relocations
-from modefront.diagnosis.sensors import LEAST, WrongSensors, searched, wrong_sensors
+from modefront.diagnosis.sensors import (
+    LEAST,
+    Change,
+    WrongSensors,
+    applied,
+    searched,
+    wrong_sensors,
+)
 from modefront.diagnosis.units import FROM_ONE
 from modefront.models.matrices import MatrixModel
 

@@ -10,8 +10,7 @@ with a reversed sensor from another mode, nor frequencies alone which of two clo
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
@@ -49,11 +48,6 @@ class Measured:
     def has_shape(self) -> Bools:
         """Which modes have a shape at two sensors at least, shape (modes,)."""
         return np.asarray((self.seen.sum(axis=2) > 1).any(axis=0))
-
-    def of_sets(self, sets: Sequence[int]) -> Measured:
-        """Return the shapes of some data sets alone."""
-        chosen = list(sets)
-        return replace(self, psi=self.psi[chosen], seen=self.seen[chosen])
 
 
 def measured(data: ModalData) -> Measured:

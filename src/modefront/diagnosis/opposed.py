@@ -157,9 +157,9 @@ class _Setting:
         """Return measured and scaled model shapes at places (sets, modes, places), and modes."""
         psi, model = self.psi, self.model
         parts = [(psi[:, :, k], model[:, :, k]) for k in places]
-        x = (psi * model).sum(axis=2, keepdims=True) - _total([p * m for p, m in parts])
-        a = (psi**2).sum(axis=2, keepdims=True) - _total([p**2 for p, _ in parts])
-        b = (model**2).sum(axis=2, keepdims=True) - _total([m**2 for _, m in parts])
+        x = (psi * model).sum(axis=2, keepdims=True) - sum([p * m for p, m in parts])
+        a = (psi**2).sum(axis=2, keepdims=True) - sum([p**2 for p, _ in parts])
+        b = (model**2).sum(axis=2, keepdims=True) - sum([m**2 for _, m in parts])
         norm = a * b
         mac = np.divide(x**2, norm, out=np.zeros(norm.shape), where=norm > ACCUMULATED)
         fits = (mac >= FITS) & np.logical_and.reduce(
@@ -168,13 +168,6 @@ class _Setting:
         beta = np.divide(x, b, out=np.zeros(b.shape), where=fits)
         modes = np.asarray(fits.any(axis=0).sum(axis=0))
         return [np.where(fits, p, 0.0) for p, _ in parts], [beta * m for _, m in parts], modes
-
-
-def _total(parts: Sequence[Floats]) -> Floats:
-    out = parts[0]
-    for part in parts[1:]:
-        out = out + part
-    return out
 
 
 def _evidence(psi: Floats, model: Floats, modes: Ints, factor: float, unit: float) -> Evidence:

@@ -6,7 +6,7 @@ along another axis, or all those of an axis, or two axes exchanged, are tried on
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ import scipy.sparse
 
 from modefront._typing import Floats, Ints
 from modefront.diagnosis.comparison import Comparison
+from modefront.fem.mesh import Mesh
 from modefront.models.geometry import Geometry
 
 ALONG = 0.99
@@ -161,3 +162,44 @@ def axis_name(direction: Floats) -> str:
     if abs(direction[greatest]) > ALONG:
         return ("-" if direction[greatest] < 0 else "") + SIX[greatest]
     return "(" + ", ".join(f"{x:.2g}" for x in direction[:3]) + ")"
+
+
+@dataclass(frozen=True)
+class UnusedGroup:
+    """A group of cells of which the model has no elements, and which holds nothing either.
+
+    Attributes
+    ----------
+    name : of the group
+    type : of its cells, as VTK says
+    cells : their number
+    """
+
+    name: str
+    type: str
+    cells: int
+
+
+def unused_groups(mesh: Mesh, elements: Iterable[str], nodes: Iterable[str]) -> list[UnusedGroup]:
+    """Return the groups that the model uses neither for ``elements`` nor for ``nodes``.
+
+    A group that shares all of its cells with those that have elements is another name for them.
+    """
+    with_elements = set(elements)
+    used = with_elements.union(nodes)
+    made = {
+        tuple(sorted(cell))
+        for block in mesh.blocks
+        if block.group in with_elements
+        for cell in block.cells.tolist()
+    }
+    out: dict[str, UnusedGroup] = {}
+    for block in mesh.blocks:
+        if (
+            block.group in used
+            or block.group in out
+            or all(tuple(sorted(cell)) in made for cell in block.cells.tolist())
+        ):
+            continue
+        out[block.group] = UnusedGroup(block.group, block.type, len(block.cells))
+    return list(out.values())

@@ -8,12 +8,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, replace
-from typing import TypeAlias
+from typing import Any, TypeAlias
 
 import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.data.modal import ModalData
+from modefront.data.modal import MEASURED, ModalData
 from modefront.diagnosis.measured import Measured, assigned, measured
 from modefront.diagnosis.units import cause_of
 
@@ -317,14 +317,8 @@ def _renumbered(data: ModalData, k: int, index: Ints) -> ModalData:
         out[k, index] = values[k]
         return out
 
-    return replace(
-        data,
-        frequency=moved(data.frequency),
-        damping=moved(data.damping),
-        shape=moved(data.shape),
-        frequency_std=moved(data.frequency_std),
-        shape_std=moved(data.shape_std),
-    )
+    changed: dict[str, Any] = {name: moved(getattr(data, name)) for name in MEASURED}
+    return replace(data, **changed)
 
 
 def shape_findings(data: ModalData, view: Measured) -> list[SetShape]:

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Bools, Floats
+from modefront.data.modal import ModalData
 from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.measured import RIGID, Measured, assigned, mac_values, pair_costs
 
@@ -177,3 +178,28 @@ def _at(
 def _elastic(comparison: Comparison) -> Bools:
     """Return which modes of the model are none of a rigid body."""
     return np.asarray(comparison.frequency > RIGID * comparison.frequency.max())
+
+
+MEDIAN, GREATEST = 0.15, 0.4
+"""Median and greatest damping ratio beyond which percent must be meant."""
+
+
+@dataclass(frozen=True)
+class DampingInPercent:
+    """Damping ratios so great that percent must be meant.
+
+    Attributes
+    ----------
+    least, greatest : range of the damping ratios
+    """
+
+    least: float
+    greatest: float
+
+
+def damping_findings(data: ModalData) -> list[DampingInPercent]:
+    """Return whether damping looks like percent."""
+    known = data.damping[np.isfinite(data.damping) & (data.damping > 0)]
+    if not known.size or (np.median(known) <= MEDIAN and known.max() <= GREATEST):
+        return []
+    return [DampingInPercent(float(known.min()), float(known.max()))]

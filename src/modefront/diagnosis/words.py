@@ -7,16 +7,14 @@ from typing import Any
 
 import numpy as np
 
-from modefront.diagnosis.damping import DampingInPercent
 from modefront.diagnosis.diagnose import Finding
 from modefront.diagnosis.explain import WrongPlaces
-from modefront.diagnosis.groups import UnusedGroup
 from modefront.diagnosis.opposed import OpposedSensor
 from modefront.diagnosis.pairs import BeyondCandidates, DistantPair, OutsideModel, UnseenMode
-from modefront.diagnosis.places import DataDirection
+from modefront.diagnosis.places import DataDirection, UnusedGroup
 from modefront.diagnosis.sensors import WrongSensors
 from modefront.diagnosis.sets import SetFactor, SetFrequency, SetNumbers, SetShape
-from modefront.diagnosis.units import FrequencyFactor, OtherQuantity
+from modefront.diagnosis.units import DampingInPercent, FrequencyFactor, OtherQuantity
 
 CAUSES: Mapping[str, tuple[str, str]] = {
     "rad/s": (

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 from importlib.util import find_spec
 from pathlib import Path
@@ -12,16 +12,88 @@ import numpy as np
 import scipy.io
 import scipy.sparse
 
-from modefront._typing import Floats
-from modefront.exports.motion import NodeMotion, node_motion
-from modefront.exports.uff import write_uff
-from modefront.models.dofs import DofTable, write_dofs
+from modefront._typing import Floats, Ints
+from modefront.data.uff import dataset_55
+from modefront.models.dofs import DofTable, motion_of_nodes, write_dofs
 from modefront.models.geometry import Cells
 from modefront.outputs import output, write_table, write_text
 from modefront.programs.changes import Change
 from modefront.programs.mesh import ProgramMesh
 from modefront.results.results import ReportedModel
 from modefront.results.vtu import write_grid
+
+
+@dataclass(frozen=True, eq=False)
+class NodeMotion:
+    """Nodes and their motion in several modes.
+
+    Attributes
+    ----------
+    number : (nodes,) numbers of the nodes
+    values : (modes, nodes, 6) displacements x, y, z and rotations; 0 where a node cannot move
+    turns : whether any node has rotations
+    """
+
+    number: Ints
+    values: Floats
+    turns: bool
+
+
+def node_motion(dofs: DofTable, mesh: ProgramMesh | None, shapes: Floats) -> NodeMotion:
+    """Return the motion of all nodes of a mesh (those of ``dofs`` without one) in shapes (N, m)."""
+    number = np.unique(dofs.node[dofs.node > 0]) if mesh is None else mesh.number
+    values = np.asarray(motion_of_nodes(dofs, number) @ shapes).T.reshape(-1, number.size, 6)
+    turns = (dofs.direction > 3) & np.isin(dofs.node, number)
+    return NodeMotion(number, values, bool(turns.any()))
+
+
+ELEMENTS = {"line": 11, "triangle": 91, "quad": 94, "tetra": 111, "wedge": 112, "hexahedron": 115}
+"""Identifiers of dataset 2412: rod, thin shells, solids; others are left out."""
+
+
+def write_uff(
+    path: Path, mesh: ProgramMesh | None, motion: NodeMotion, frequencies: Floats
+) -> None:
+    """Write nodes, elements and real, mass-normalised modes in Hz."""
+    datasets: list[tuple[int, Iterable[str]]] = []
+    if mesh is not None:
+        datasets += [(2411, _nodes(mesh)), (2412, _elements(mesh))]
+    datasets += [(55, [_mode(motion, k, f)]) for k, f in enumerate(frequencies.tolist())]
+    with output(path) as stream:
+        for number, lines in datasets:
+            stream.writelines(line.encode() for line in _dataset(number, lines))
+
+
+def _dataset(number: int, lines: Iterable[str]) -> Iterator[str]:
+    yield f"    -1\n{number:6d}\n"
+    yield from lines
+    yield "    -1\n"
+
+
+def _nodes(mesh: ProgramMesh) -> Iterator[str]:
+    for number, point in zip(mesh.number.tolist(), mesh.coordinates, strict=True):
+        numbers = "".join(f"{x:25.16E}" for x in np.nan_to_num(point).tolist())
+        yield f"{number:10d}{1:10d}{1:10d}{11:10d}\n{numbers}\n"
+
+
+def _elements(mesh: ProgramMesh) -> Iterator[str]:
+    number = 0
+    for kind, table in mesh.cells.items():
+        if kind not in ELEMENTS:
+            continue
+        for nodes in table.tolist():
+            number += 1
+            yield "".join(f"{x:10d}" for x in (number, ELEMENTS[kind], 1, 1, 7, len(nodes))) + "\n"
+            if kind == "line":
+                yield "".join(f"{x:10d}" for x in (0, 0, 0)) + "\n"
+            yield "".join(f"{x:10d}" for x in nodes) + "\n"
+
+
+def _mode(motion: NodeMotion, k: int, frequency: float) -> str:
+    """Return the dataset 55 of a real, mass-normalised mode."""
+    texts = f"mode {k + 1}", f"{frequency:.9g} Hz"
+    values = motion.values[k][:, : 6 if motion.turns else 3]
+    return dataset_55(texts, k + 1, (frequency, 1.0, 0.0, 0.0), motion.number.tolist(), values)
 
 
 @dataclass(frozen=True, eq=False)

@@ -30,10 +30,10 @@ if TYPE_CHECKING:
     from modefront.fem.assembly import assemble as assemble
     from modefront.fem.dofs import DIRECTIONS as DIRECTIONS
     from modefront.fem.dofs import Dofs as Dofs
-    from modefront.fem.errors import FemError as FemError
-    from modefront.fem.material import Material as Material
     from modefront.fem.mesh import Mesh as Mesh
     from modefront.fem.mesh import read_mesh as read_mesh
+    from modefront.fem.section import FemError as FemError
+    from modefront.fem.section import Material as Material
     from modefront.fem.section import Section as Section
     from modefront.fem.section import circle as circle
     from modefront.fem.section import hollow_rectangle as hollow_rectangle
@@ -52,62 +52,4 @@ if TYPE_CHECKING:
     from modefront.fem.structure import Structure as Structure
     from modefront.fem.structure import Support as Support
 
-_HOMES = {
-    "ALL": "structure",
-    "Beams": "structure",
-    "DIRECTIONS": "dofs",
-    "Direction": "structure",
-    "Dofs": "dofs",
-    "FemError": "errors",
-    "Link": "structure",
-    "Mass": "structure",
-    "Material": "material",
-    "Mesh": "mesh",
-    "Parameter": "structure",
-    "Section": "section",
-    "Sensor": "structure",
-    "Shells": "structure",
-    "Solids": "structure",
-    "Spring": "structure",
-    "Structure": "structure",
-    "StructureMatrices": "assembly",
-    "Support": "structure",
-    "assemble": "assembly",
-    "circle": "section",
-    "hollow_rectangle": "section",
-    "read_mesh": "mesh",
-    "rectangle": "section",
-    "tube": "section",
-}
-"""Modules of the names."""
-
-__all__ = [
-    "ALL",
-    "DIRECTIONS",
-    "Beams",
-    "Direction",
-    "Dofs",
-    "FemError",
-    "Link",
-    "Mass",
-    "Material",
-    "Mesh",
-    "Parameter",
-    "Section",
-    "Sensor",
-    "Shells",
-    "Solids",
-    "Spring",
-    "Structure",
-    "StructureMatrices",
-    "Support",
-    "assemble",
-    "circle",
-    "grids",
-    "hollow_rectangle",
-    "read_mesh",
-    "rectangle",
-    "tube",
-]
-
-__getattr__, __dir__ = lazy("modefront.fem", _HOMES, ("grids",))
+__getattr__, __dir__, __all__ = lazy(__name__, __file__)

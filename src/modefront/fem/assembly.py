@@ -29,9 +29,9 @@ from modefront.fem.blocks import element_blocks, mass_blocks, spring_blocks
 from modefront.fem.check import check_names, check_parameters, check_points, node_list
 from modefront.fem.dofs import Dofs, LinkRows, direction_indices, link_rows, number_dofs
 from modefront.fem.elements.common import Part
-from modefront.fem.errors import Checks, FemError
 from modefront.fem.mechanism import check_mechanisms
 from modefront.fem.scatter import Block, Pattern, condense_links, scatter, scatter_plan
+from modefront.fem.section import Checks, FemError
 from modefront.fem.sensors import SensorPlaces, selection_matrix, sensor_places
 from modefront.fem.structure import Link, Parameter, Structure, Support
 from modefront.linalg.affine import Monomials, SparseAffine
@@ -66,10 +66,8 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
 
     Parameters
     ----------
-    structure
-        What to assemble.
-    floating
-        Whether the structure as a whole may move as a rigid body (as if hung in soft cords).
+    structure : what to assemble
+    floating : whether the structure as a whole may move as a rigid body (as if hung in soft cords)
 
     Raises
     ------

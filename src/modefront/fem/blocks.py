@@ -19,12 +19,11 @@ from modefront.fem.check import (
     unit_vector,
 )
 from modefront.fem.elements.beam import beam
-from modefront.fem.elements.brick import brick
+from modefront.fem.elements.brick import brick, tetrahedron
 from modefront.fem.elements.point import lumped_mass, spring
 from modefront.fem.elements.shell import shell
-from modefront.fem.elements.tetrahedron import tetrahedron
-from modefront.fem.errors import Checks, FemError
 from modefront.fem.scatter import Block
+from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import Beams, Mass, Shells, Solids, Spring
 from modefront.rounding import TINY
 

@@ -25,7 +25,7 @@ from modefront.fem.elements.shapes import (
     simplex_quadratic,
     square_4,
 )
-from modefront.fem.errors import Checks, FemError
+from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import Direction, Parameter, Shells, Structure
 
 FLAT = 1e-8
@@ -108,10 +108,8 @@ def check_sizes(relative: Floats, cells: Ints, what: str, place: str) -> None:
 
     Parameters
     ----------
-    relative
-        (elements,) smallest det J over the power of the element's extent.
-    cells, what, place
-        For the message.
+    relative : (elements,) smallest det J over the power of the element's extent
+    cells, what, place : for the message
     """
     wrong = np.flatnonzero(~(relative > FLAT))
     if len(wrong):

@@ -27,7 +27,7 @@ from scipy import sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.elements.common import cross_matrix
-from modefront.fem.errors import FemError
+from modefront.fem.section import FemError
 
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 
@@ -54,14 +54,10 @@ class Dofs:
 
     Attributes
     ----------
-    kept
-        (nodes, 6) number among the kept DOFs, -1 where there is none.
-    free
-        (free, 2): node and direction of each free DOF.
-    T
-        CSR (6 nodes, free): all displacements u, row 6 node + direction, from the free ones.
-    slave
-        (kept,) whether the DOF follows others.
+    kept : (nodes, 6) number among the kept DOFs, -1 where there is none
+    free : (free, 2): node and direction of each free DOF
+    T : CSR (6 nodes, free): all displacements u, row 6 node + direction, from the free ones
+    slave : (kept,) whether the DOF follows others
     """
 
     kept: Ints
@@ -81,10 +77,8 @@ class LinkRows:
 
     Attributes
     ----------
-    slave
-        (rows,) 6 node + direction.
-    master, weight
-        (rows, 3): 6 node + direction and factor; unused entries have weight 0.
+    slave : (rows,) 6 node + direction
+    master, weight : (rows, 3): 6 node + direction and factor; unused entries have weight 0
     """
 
     slave: Ints
@@ -114,10 +108,8 @@ def number_dofs(exists: Bools, held: Bools, links: Sequence[LinkRows]) -> Dofs:
 
     Parameters
     ----------
-    exists, held
-        (nodes, 6), true where an element or link uses the DOF, where a support holds it.
-    links
-        Rows of all rigid links.
+    exists, held : (nodes, 6), true where an element or link uses the DOF, where a support holds it
+    links : rows of all rigid links
 
     Raises
     ------

@@ -32,8 +32,8 @@ from scipy.spatial import KDTree
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.check import SAME_PLACE
 from modefront.fem.dofs import DIRECTIONS, LinkRows
-from modefront.fem.errors import FemError
 from modefront.fem.scatter import Block
+from modefront.fem.section import FemError
 from modefront.rounding import ACCUMULATED, TINY
 
 BRICK_FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
@@ -54,14 +54,10 @@ class Bodies:
 
     Attributes
     ----------
-    home
-        (nodes,) body, -1 for nodes without DOFs.
-    shared
-        (ties, 2): node and a body other than its home that it belongs to.
-    centre, extent
-        (bodies, 3) and (bodies,).
-    moves
-        (bodies, 6) whether the motion exists: a lone node may lack rotations.
+    home : (nodes,) body, -1 for nodes without DOFs
+    shared : (ties, 2): node and a body other than its home that it belongs to
+    centre, extent : (bodies, 3) and (bodies,)
+    moves : (bodies, 6) whether the motion exists: a lone node may lack rotations
     """
 
     home: Ints
@@ -221,14 +217,10 @@ def check_mechanisms(
 
     Parameters
     ----------
-    X
-        Nodes (nodes, 3).
-    elements, springs, links
-        What connects them.
-    held, exists
-        (nodes, 6) whether a support holds the DOF and whether it exists.
-    floating
-        Whether the structure as a whole may move as a rigid body.
+    X : nodes (nodes, 3)
+    elements, springs, links : what connects them
+    held, exists : (nodes, 6) whether a support holds the DOF and whether it exists
+    floating : whether the structure as a whole may move as a rigid body
 
     Raises
     ------

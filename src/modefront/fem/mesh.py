@@ -18,9 +18,9 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import InputError, reason
-from modefront.fem.errors import FemError
+from modefront.fem.section import FemError
 from modefront.inputs import MOST_DATA, available_memory, file_size, is_hdf5, refuse_holes
-from modefront.isolated import IsolatedError, isolated, seconds_for
+from modefront.isolated import IsolatedError, isolated
 from modefront.text import one_line
 
 Kind = Literal["beam", "shell", "solid"]
@@ -54,12 +54,9 @@ class CellBlock:
 
     Attributes
     ----------
-    group
-        Name.
-    type
-        As meshio and VTK say: line, triangle, quad, hexahedron, tetra10, vertex, ...
-    cells
-        Nodes (cells, k).
+    group : name
+    type : as meshio and VTK say: line, triangle, quad, hexahedron, tetra10, vertex, ..
+    cells : nodes (cells, k)
     """
 
     group: str
@@ -73,12 +70,9 @@ class Mesh:
 
     Attributes
     ----------
-    nodes
-        Coordinates (nodes, 3).
-    blocks
-        Cells of each type in each group.
-    node_sets
-        Nodes by the name of the set.
+    nodes : coordinates (nodes, 3)
+    blocks : cells of each type in each group
+    node_sets : nodes by the name of the set
     """
 
     nodes: Floats
@@ -145,7 +139,7 @@ def read_mesh(path: str | Path) -> Mesh:
         if reference := refers_to(path):
             raise FemError(f"{path}: expected a mesh that is one file, found {reference}")
         memory = min(available_memory(), MEMORY + PER_BYTE * size)
-        arrays, parts = isolated(READER, path, seconds_for(size), memory)
+        arrays, parts = isolated(READER, path, memory=memory)
     except IsolatedError as error:
         raise FemError(f"{path}: expected a mesh that meshio can read, found {error}") from None
     except InputError as error:

@@ -15,7 +15,7 @@ import meshio
 import numpy as np
 
 from modefront._typing import Ints
-from modefront.fem.errors import FemError
+from modefront.fem.section import FemError
 from modefront.hdf5 import check_tree
 from modefront.inputs import is_hdf5
 

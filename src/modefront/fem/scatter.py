@@ -36,14 +36,10 @@ class Block:
 
     Attributes
     ----------
-    name
-        Of the group, spring or mass.
-    cells
-        Nodes (elements, k).
-    directions
-        The d DOFs of each node that the matrices have, ascending.
-    matrices
-        Of size k d.
+    name : of the group, spring or mass
+    cells : nodes (elements, k)
+    directions : the d DOFs of each node that the matrices have, ascending
+    matrices : of size k d
     """
 
     name: str
@@ -126,12 +122,9 @@ def condense_links(
 
     Parameters
     ----------
-    pattern, data
-        Kept DOFs; data (terms, nnz).
-    T
-        (kept, free); rows of DOFs that are no slaves have one entry, 1, in ascending columns.
-    slave
-        (kept,)
+    pattern, data : kept DOFs; data (terms, nnz)
+    T : (kept, free); rows of DOFs that are no slaves have one entry, 1, in ascending columns
+    slave : (kept,)
     """
     n = T.shape[1]
     count = np.diff(T.indptr)

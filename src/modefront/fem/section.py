@@ -15,11 +15,88 @@ kappa      shear correction factors; `inf` leaves out shear deformation
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import ParamSpec, TypeVar
 
 import numpy as np
 
-from modefront.fem.errors import FemError
+P = ParamSpec("P")
+T = TypeVar("T")
+
+
+class FemError(ValueError):
+    """A model that cannot be built: says where, what was expected and what was found.
+
+    Attributes
+    ----------
+    messages : one for each thing that is wrong
+    """
+
+    def __init__(self, *messages: str) -> None:
+        self.messages = messages
+        super().__init__("\n".join(messages))
+
+
+@dataclass(frozen=True)
+class Checks:
+    """Checks that go on after one of them fails, so that all that is wrong is said at once.
+
+    Attributes
+    ----------
+    messages : what is wrong
+    """
+
+    messages: list[str] = field(default_factory=list)
+
+    def attempt(self, check: Callable[P, T], *args: P.args, **kwargs: P.kwargs) -> T | None:
+        """Return the result of a function; None, with its messages noted, where it fails."""
+        try:
+            return check(*args, **kwargs)
+        except FemError as error:
+            self.messages.extend(m for m in error.messages if m not in self.messages)
+            return None
+
+    def close(self) -> None:
+        """Raise FemError with everything that is wrong, if anything is."""
+        if self.messages:
+            raise FemError(*self.messages)
+
+
+@dataclass(frozen=True)
+class Material:
+    """Isotropic material, in consistent units (SI: Pa, -, kg/m^3).
+
+    Attributes
+    ----------
+    E : Young's modulus, > 0
+    nu : Poisson's ratio, -1 < nu < 0.5
+    rho : density, >= 0
+
+    Raises
+    ------
+    FemError
+        If a value is outside its range.
+    """
+
+    E: float
+    nu: float
+    rho: float
+
+    def __post_init__(self) -> None:
+        """Refuse values for which the elasticity matrix is not positive definite."""
+        for name, value, expected, ok in (
+            ("E", self.E, "> 0", self.E > 0),
+            ("nu", self.nu, "between -1 and 0.5", -1 < self.nu < 0.5),
+            ("rho", self.rho, ">= 0", self.rho >= 0),
+        ):
+            if not ok:
+                raise FemError(f"material: {name} must be {expected}, found {value!r}")
+
+    @property
+    def G(self) -> float:
+        """Shear modulus E / (2 (1 + nu))."""
+        return self.E / (2 * (1 + self.nu))
 
 
 @dataclass(frozen=True)
@@ -28,10 +105,8 @@ class Section:
 
     Attributes
     ----------
-    A, I_y, I_z, J
-        Area, second moments of area and torsion constant, all > 0.
-    kappa_y, kappa_z
-        Shear correction factors for deflection along y and z.
+    A, I_y, I_z, J : area, second moments of area and torsion constant, all > 0
+    kappa_y, kappa_z : shear correction factors for deflection along y and z
 
     Raises
     ------

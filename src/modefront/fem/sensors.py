@@ -16,7 +16,7 @@ from scipy.spatial import KDTree
 from modefront._typing import Floats, Ints
 from modefront.fem.check import SAME_PLACE, node_list, unit_vector
 from modefront.fem.dofs import Dofs
-from modefront.fem.errors import Checks, FemError
+from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import Sensor
 
 
@@ -26,10 +26,8 @@ class SensorPlaces:
 
     Attributes
     ----------
-    nodes
-        (sensors,) nodes.
-    directions
-        (sensors, 6) weights of x, y, z, rx, ry, rz.
+    nodes : (sensors,) nodes
+    directions : (sensors, 6) weights of x, y, z, rx, ry, rz
     """
 
     nodes: Ints

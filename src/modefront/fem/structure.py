@@ -13,8 +13,7 @@ from typing import Literal
 import numpy.typing as npt
 
 from modefront.fem.dofs import DIRECTIONS
-from modefront.fem.material import Material
-from modefront.fem.section import Section
+from modefront.fem.section import Material, Section
 
 Direction = str | Sequence[float]
 Quantity = Literal["E", "density", "thickness", "spring", "mass"]
@@ -27,17 +26,12 @@ class Beams:
 
     Attributes
     ----------
-    name
-        Of the group; several blocks may share it.
-    cells
-        Nodes (elements, 2).
-    material, section
-        Of all elements.
-    orientation
-        Vector in the plane of the axis and local y; needed unless the section is the same in
-        y and z.
-    offsets
-        Vectors (2, 3) from the first and second node to the flexible part's ends.
+    name : of the group; several blocks may share it
+    cells : nodes (elements, 2)
+    material, section : of all elements
+    orientation : vector in the plane of the axis and local y; needed unless the section is the same
+        in y and z
+    offsets : vectors (2, 3) from the first and second node to the flexible part's ends
     """
 
     name: str
@@ -54,14 +48,10 @@ class Shells:
 
     Attributes
     ----------
-    name
-        Of the group; several blocks may share it.
-    cells
-        Nodes (elements, 3) or (elements, 4), counter-clockwise about the normal.
-    material, thickness
-        Of all elements.
-    offset
-        Distance of the mid-surface from the nodes along the normal.
+    name : of the group; several blocks may share it
+    cells : nodes (elements, 3) or (elements, 4), counter-clockwise about the normal
+    material, thickness : of all elements
+    offset : distance of the mid-surface from the nodes along the normal
     """
 
     name: str
@@ -77,12 +67,9 @@ class Solids:
 
     Attributes
     ----------
-    name
-        Of the group; several blocks may share it.
-    cells
-        Nodes of bricks (elements, 8) or of tetrahedra (elements, 10), in the order of VTK.
-    material
-        Of all elements.
+    name : of the group; several blocks may share it
+    cells : nodes of bricks (elements, 8) or of tetrahedra (elements, 10), in the order of VTK
+    material : of all elements
     """
 
     name: str
@@ -96,10 +83,8 @@ class Support:
 
     Attributes
     ----------
-    nodes
-        A node, or (nodes,), counted from 0.
-    directions
-        Of x, y, z, rx, ry, rz; all of them unless given.
+    nodes : a node, or (nodes,), counted from 0
+    directions : of x, y, z, rx, ry, rz; all of them unless given
     """
 
     nodes: npt.ArrayLike
@@ -112,18 +97,13 @@ class Spring:
 
     Attributes
     ----------
-    name
-        Of the springs, for parameters.
-    nodes
-        One spring at each.
-    stiffness
-        Force per length, or moment per angle for rotations.
-    direction
-        One of x, y, z, rx, ry, rz, or a vector of displacement; None is along the line to the
-        partner. Between distant nodes a spring on displacements has to act along that line:
-        any other would resist a rotation of the whole.
-    to
-        Partner of each node; None is the ground.
+    name : of the springs, for parameters
+    nodes : one spring at each
+    stiffness : force per length, or moment per angle for rotations
+    direction : one of x, y, z, rx, ry, rz, or a vector of displacement; None is along the line to
+        the partner. Between distant nodes a spring on displacements has to act along that line: any
+        other would resist a rotation of the whole.
+    to : partner of each node; None is the ground
     """
 
     name: str
@@ -139,16 +119,11 @@ class Mass:
 
     Attributes
     ----------
-    name
-        Of the masses, for parameters.
-    nodes
-        One mass at each.
-    mass
-        Of each.
-    inertia
-        About the mass's centre, global axes: (3,) principal or (3, 3).
-    offset
-        Of the centre from the node, (3,).
+    name : of the masses, for parameters
+    nodes : one mass at each
+    mass : of each
+    inertia : about the mass's centre, global axes: (3,) principal or (3, 3)
+    offset : of the centre from the node, (3,)
     """
 
     name: str
@@ -164,12 +139,9 @@ class Link:
 
     Attributes
     ----------
-    master
-        Node, counted from 0.
-    slaves
-        A node, or (nodes,).
-    directions
-        Of x, y, z, rx, ry, rz; all of them unless given.
+    master : node, counted from 0
+    slaves : a node, or (nodes,)
+    directions : of x, y, z, rx, ry, rz; all of them unless given
     """
 
     master: int
@@ -183,15 +155,12 @@ class Sensor:
 
     Attributes
     ----------
-    name
-        As in the modal data.
-    at
-        Node, or coordinates (3,).
-    direction
-        x, y, z, rx, ry, rz, with a minus sign before it for the opposite, or a vector of
-        displacement (it is normalised).
-    tolerance
-        Largest distance of the coordinates from a node; None is 1e-6 of the model's diagonal.
+    name : as in the modal data
+    at : node, or coordinates (3,)
+    direction : x, y, z, rx, ry, rz, with a minus sign before it for the opposite, or a vector of
+        displacement (it is normalised)
+    tolerance : largest distance of the coordinates from a node; None is 1e-6 of the model's
+        diagonal
     """
 
     name: str
@@ -206,12 +175,9 @@ class Parameter:
 
     Attributes
     ----------
-    name
-        As in the study; `modefront.Parameter` has its bounds.
-    quantity
-        "E", "density" or "thickness" of groups, "spring" stiffness, or "mass".
-    of
-        Names of groups, springs or masses.
+    name : as in the study; `modefront.Parameter` has its bounds
+    quantity : "E", "density" or "thickness" of groups, "spring" stiffness, or "mass"
+    of : names of groups, springs or masses
     """
 
     name: str
@@ -225,16 +191,11 @@ class Structure:
 
     Attributes
     ----------
-    nodes
-        Coordinates (nodes, 3).
-    groups
-        Beams, shells and solids.
-    supports, springs, masses, links
-        At nodes.
-    sensors
-        In the order of the measured shapes.
-    parameters
-        Factors that are updated.
+    nodes : coordinates (nodes, 3)
+    groups : beams, shells and solids
+    supports, springs, masses, links : at nodes
+    sensors : in the order of the measured shapes
+    parameters : factors that are updated
     """
 
     nodes: npt.ArrayLike

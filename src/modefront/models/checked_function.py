@@ -24,7 +24,7 @@ import scipy.sparse
 from numpy.exceptions import ComplexWarning
 from numpy.typing import NDArray
 
-from modefront._typing import Floats, Ints32
+from modefront._typing import Floats
 from modefront.errors import InputError, ModelError, wrong
 from modefront.models.matrices import DENSE
 from modefront.rounding import LARGEST, SYMMETRY
@@ -248,7 +248,7 @@ def _wrong_entry(A: Any, slope: Any, difference: Any, span: float) -> str:
     if not off.nnz:
         return ""
     rows, columns = off.row, off.col
-    given, expected = (_entries(each, rows, columns) for each in (slope, difference))
+    given, expected = (np.asarray(x[rows, columns]).ravel() for x in (slope, difference))
     diagonal = np.sqrt(np.abs(A.diagonal()))
     allowed = RELATIVE * np.maximum(np.abs(given), np.abs(expected))
     allowed += NEGLIGIBLE * diagonal[rows] * diagonal[columns] / span
@@ -259,8 +259,3 @@ def _wrong_entry(A: Any, slope: Any, difference: Any, span: float) -> str:
         f"{given[k]:.6g} in row {rows[k]}, column {columns[k]} (from 0) where the difference of "
         f"two matrices is {expected[k]:.6g}"
     )
-
-
-def _entries(A: Any, rows: Ints32, columns: Ints32) -> Floats:
-    """Return some entries of a dense or sparse matrix."""
-    return np.asarray(A[rows, columns]).ravel()

@@ -12,10 +12,9 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.complete import ended_column
 from modefront.errors import Fault, InputError, reason
 from modefront.fem.dofs import DIRECTIONS
-from modefront.inputs import file_size
+from modefront.inputs import ended_column, file_size
 from modefront.outputs import write_table
 from modefront.rounding import ACCUMULATED
 

@@ -1,44 +1,70 @@
-"""Matrices from files of any format: real, symmetric and without entries that overflow."""
+"""Matrices from files of any format: real, symmetric and without entries that overflow.
+
+The readers of other packages do not believe what a file announces, or end with it: they have a
+process of their own, with limits on time and memory (`modefront.isolated`).
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import zipfile
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TypeVar
+from typing import Any
 
 import numpy as np
+import scipy.io
 import scipy.sparse
 
 from modefront._typing import Bools
-from modefront.errors import InputError, reason
-from modefront.inputs import file_size
-from modefront.models.formats import FORMATS
-from modefront.models.formats.base import MatrixFormat, check_header, wrong
+from modefront.errors import Fault, InputError, suggestion
+from modefront.inputs import available_memory, counted, ended, file_size, first_repeated, is_hdf5
+from modefront.isolated import IsolatedError, Read, isolated
 from modefront.rounding import LARGEST, SYMMETRY
 
-R = TypeVar("R")
+NAMED = (".mat",)
+"""Endings of files that hold several matrices with names."""
+
+NUMERIC = b"0123456789+-.eEdDnNaAiIfFtTyY \t\r\n"
+"""Bytes of numbers, of nan and infinity among them, and of what separates them."""
+
+RATIO, LARGE = 200, 64 * 10**6
+"""Growth of compressed content, and the size in bytes, beyond which both are too much."""
+
+MOST = 2**31 - 1
+"""Degrees of freedom, as many as indices of 32 bits can count."""
+
+PER_ENTRY = 64
+"""Bytes that a matrix takes an entry and a row while it is read and made symmetric."""
+
+LONGEST, COMMENTS, CHUNK = 2**16, 10**5, 2**24
+"""Characters of a line of the header, lines of comments, and bytes that are checked at once."""
 
 
-def matrix_size(path: Path | str, name: str | None = None) -> int:
-    """Return the number of rows of the square matrix that a file announces, without reading it.
+def read_entries(
+    path: Path, name: str | None = None, *, square: bool = True, form: str | None = None
+) -> scipy.sparse.coo_array:
+    """Return the entries of a matrix of real numbers as its file lists them.
 
-    Parameters
-    ----------
-    path, name
-        As `read_matrix` has them.
-
-    Raises
-    ------
-    InputError
-        If there is no such file, or it announces what cannot be: more than it holds, than fits
-        into the memory, or another matrix than a square one.
+    Arguments and errors are those of `read_matrix`, but it need not be symmetric, nor ``square``.
+    ``form`` is the ending of the format of a file that has another one.
     """
-    path = Path(path)
-    kind = _format(path, name)
+    form = form or path.suffix
+    if form not in READERS:
+        raise _wrong(path, f"a name that ends in {', '.join(READERS)}", f"'{path.name}'")
+    if name is not None and form not in NAMED:
+        expected = "a .mat file, as only these have names for matrices"
+        raise _wrong(path, expected, f"'{path.name}'")
     file_size(path, "a matrix")
-    header = _tried(path, name, kind.header)
-    check_header(path, header)
-    return header.shape[0]
+    arguments = (form, name or "", "square" if square else "")
+    try:
+        arrays, said = isolated(f"{__name__}:entries", path, arguments=arguments)
+    except IsolatedError as error:
+        raise _wrong(path, "a readable matrix", str(error)) from None
+    if not arrays:
+        place, expected, found = said
+        raise _wrong(path, expected, found, place)
+    places = arrays["row"], arrays["column"]
+    return scipy.sparse.coo_array((arrays["data"], places), shape=tuple(said))
 
 
 def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_array:
@@ -58,14 +84,7 @@ def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_a
         If the file cannot be read, or the matrix is not square, finite, real and symmetric.
     """
     path = Path(path)
-    size = matrix_size(path, name)
-    matrix = _tried(path, name, _format(path, name).read)
-    if tuple(matrix.shape) != (size, size):
-        raise wrong(path, "a readable matrix", "another shape than it announces")
-    if matrix.dtype.kind not in "biuf":
-        raise wrong(path, "real numbers", f"{matrix.dtype}")
-    with np.errstate(over="ignore"):  # what is infinite is refused below
-        A = scipy.sparse.coo_array(matrix.astype(float))
+    A = read_entries(path, name)
     A.sum_duplicates()
     _check_entries(path, A, ~np.isfinite(A.data), "finite numbers")
     _check_entries(path, A, np.abs(A.data) > LARGEST, f"numbers up to {LARGEST:g}")
@@ -74,7 +93,7 @@ def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_a
         worst = int(np.argmax(np.abs(difference.data)))
         i, j = int(difference.row[worst]), int(difference.col[worst])
         rows = A.tocsr()
-        raise wrong(
+        raise _wrong(
             path,
             "a symmetric matrix",
             f"{rows[i, j]:.6g}, and {rows[j, i]:.6g} across the diagonal",
@@ -85,32 +104,157 @@ def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_a
     return symmetric
 
 
-def _format(path: Path, name: str | None) -> MatrixFormat:
-    """Return the format of a file by its ending; one with names, where a name is given."""
-    kind = {each.suffix: each for each in FORMATS}.get(path.suffix)
-    if kind is None:
-        suffixes = ", ".join(each.suffix for each in FORMATS)
-        raise wrong(path, f"a name that ends in {suffixes}", f"'{path.name}'")
-    if name is not None and not kind.has_names:
-        named = " or ".join(each.suffix for each in FORMATS if each.has_names)
-        expected = f"a {named} file, as only these have names for matrices"
-        raise wrong(path, expected, f"'{path.name}'")
-    return kind
-
-
-def _tried(path: Path, name: str | None, read: Callable[[Path, str | None], R]) -> R:
-    """Return the matrix that a format reads from a file; raises InputError for a damaged one."""
-    try:
-        return read(path, name)
-    except InputError:
-        raise
-    except Exception as error:  # what the readers raise for a damaged file is not documented
-        raise wrong(path, "a readable matrix", reason(error)) from None
-
-
 def _check_entries(path: Path, A: scipy.sparse.coo_array, refused: Bools, expected: str) -> None:
     """Refuse a matrix of which some entries are refused, naming the first of them."""
     if refused.any():
         first = int(np.argmax(refused))
         place = f"row {A.row[first]}, column {A.col[first]} (from 0)"
-        raise wrong(path, expected, f"{A.data[first]:g}", place)
+        raise _wrong(path, expected, f"{A.data[first]:g}", place)
+
+
+def _wrong(path: Path, expected: str, found: str, place: str = "file") -> InputError:
+    return InputError(Fault(str(path), place, expected, found))
+
+
+# In the process that reads files
+
+
+def entries(path: Path, form: str, name: str, square: str) -> Read:
+    """Return row, column and data of the entries of a matrix, and its numbers of rows and columns.
+
+    ``form`` is the ending of its format, and ``name`` that of a matrix in the file, empty for the
+    only one; a ``square`` one is expected unless that is empty. What is wrong comes in place of
+    both: place, expected and found.
+    """
+    try:
+        matrix = READERS[form](path, name)
+        _check_shape(path, matrix.shape, square)
+        if matrix.dtype.kind not in "biufc":
+            raise ValueError(f"'{name}' is no matrix of numbers: {matrix.dtype}")
+        if matrix.dtype.kind == "c":
+            raise InputError(Fault(str(path), "file", "real numbers", str(matrix.dtype)))
+        if isinstance(matrix, np.ndarray):
+            matrix = matrix.astype(float)  # of any order and precision
+        A = scipy.sparse.coo_array(matrix)
+        need, free = PER_ENTRY * (A.nnz + A.shape[0]), available_memory()
+        if need > free:
+            expected = f"a matrix that fits into the {free / 1e9:.3g} GB of memory that are free"
+            found = f"{A.nnz} entries in {A.shape[0]} rows, which take {need / 1e9:.3g} GB"
+            raise InputError(Fault(str(path), "file", expected, found))
+    except InputError as error:
+        (fault,) = error.faults
+        return {}, [fault.place, fault.expected, fault.found]
+    return {"row": A.row, "column": A.col, "data": A.data.astype(float)}, list(A.shape)
+
+
+def _check_shape(path: Path, shape: tuple[int, ...], square: str = "square") -> None:
+    """Raise InputError for other than matrices, and for such as cannot be solved."""
+    if len(shape) != 2 or (square and shape[0] != shape[1]) or 0 in shape:
+        found = " x ".join(map(str, shape)) or "a single number"
+        raise InputError(Fault(str(path), "file", "a square matrix", found))
+    if shape[0] > MOST:
+        raise ValueError(f"{shape[0]} rows, more than {MOST}")
+
+
+def _matrix_market(path: Path, _: str) -> Any:
+    """Return the matrix of a Matrix Market file, whole to its end, with each entry once."""
+    with path.open("rb") as stream:
+        header = [stream.readline(LONGEST)]
+        if not header[0].startswith(b"%%MatrixMarket"):
+            raise ValueError("no line '%%MatrixMarket matrix ...'")
+        ended(path)
+        while len(header) < COMMENTS and (header[-1][:1] == b"%" or not header[-1].strip()):
+            header.append(stream.readline(LONGEST))
+            if not header[-1]:
+                raise ValueError("the end of the file in its header")
+        words, before = 0, b" "
+        while chunk := stream.read(CHUNK):
+            words += len(chunk.split()) - (len((before + chunk[:1]).strip()) == 2)
+            before = chunk[-1:]
+            if other := chunk.translate(None, NUMERIC):
+                raise ValueError(f"the byte {other[:1]!r} among the entries")
+    rows, columns, _, layout, numbers, symmetry = scipy.io.mminfo(path)
+    _check_shape(path, (rows, columns), "")
+    if layout == "array":  # of which the reader takes a triangle that is cut off
+        triangle = rows * (rows - 1 if symmetry == "skew-symmetric" else rows + 1) // 2
+        stored = rows * columns if symmetry == "general" else triangle
+        counted(path, "file", "values", stored * (1 + (numbers == "complex")), words)
+    matrix = scipy.io.mmread(path, spmatrix=False)
+    if isinstance(matrix, np.ndarray):
+        return matrix
+    again = first_repeated(matrix.row, matrix.col, matrix.shape[1])
+    if again is not None:
+        place = f"row {matrix.row[again] + 1}, column {matrix.col[again] + 1}"
+        expected = "a readable matrix: each entry once"
+        raise InputError(Fault(str(path), place, expected, "it again"))
+    return matrix
+
+
+def _numpy_npy(path: Path, _: str) -> Any:
+    """Return the array of a file of NumPy."""
+    with path.open("rb") as stream:
+        try:
+            array = np.lib.format.read_array(stream, allow_pickle=False)
+        except ValueError as error:
+            if "Object arrays" in str(error):
+                raise ValueError("Object arrays cannot be loaded: they could run code") from None
+            raise ValueError("no array of NumPy, or one that is cut off") from None
+        counted(path, "file", "bytes of values", stream.tell(), path.stat().st_size)
+    if array.dtype.kind not in "biufc":
+        raise InputError(Fault(str(path), "file", "real numbers", str(array.dtype)))
+    return array
+
+
+def _scipy_npz(path: Path, _: str) -> Any:
+    """Return a sparse matrix that `scipy.sparse.save_npz` has written."""
+    with zipfile.ZipFile(path) as file:
+        for part in file.infolist():
+            if part.file_size > max(LARGE, RATIO * part.compress_size):
+                raise ValueError(f"'{part.filename}' with {part.file_size / 1e6:.4g} MB compressed")
+    A = scipy.sparse.load_npz(path)
+    if hasattr(A, "check_format"):
+        _check_shape(path, A.shape, "")
+        A.check_format(full_check=True)  # wrong indices would be followed out of the array
+        if (np.diff(A.indptr) < 0).any():  # not seen above where the last is 0
+            raise ValueError("beginnings of rows or columns that fall")
+    return A
+
+
+def _matlab(path: Path, name: str) -> Any:
+    """Return a variable of a file of MATLAB, of version 5 to 7.2, or of 7.3, which is HDF5."""
+    if is_hdf5(path):
+        from modefront import hdf5  # takes time to import
+
+        return hdf5.variable(path, _chosen(path, name, hdf5.variables(path)))
+    known = {each: shape for each, shape, _ in scipy.io.whosmat(path)}
+    chosen = _chosen(path, name, known)
+    found = scipy.io.loadmat(path, variable_names=[chosen], chars_as_strings=False)
+    A = found[chosen]
+    if A.dtype.kind not in "biufc":
+        raise ValueError(f"'{chosen}' is no matrix of numbers")
+    if scipy.sparse.issparse(A):
+        A.check_format(full_check=True)
+    return A
+
+
+def _chosen(path: Path, name: str, shapes: Mapping[str, tuple[int, ...]]) -> str:
+    """Return the name of a variable that is there; without a name, of the only matrix."""
+    if not name:
+        matrices = [key for key, shape in shapes.items() if len(shape) == 2 and min(shape) > 1]
+        if len(matrices) != 1:
+            expected = 'one matrix, or { file = "...", name = "..." } to say which'
+            raise InputError(Fault(str(path), "file", expected, ", ".join(matrices) or "none"))
+        name = matrices[0]
+    if name not in shapes:
+        expected = "the name of a variable in it"
+        raise InputError(Fault(str(path), "file", expected, suggestion(name, list(shapes))))
+    return name
+
+
+READERS: Mapping[str, Callable[[Path, str], Any]] = {
+    ".mtx": _matrix_market,
+    ".npz": _scipy_npz,
+    ".npy": _numpy_npy,
+    ".mat": _matlab,
+}
+"""Reader of each format, by the ending of its files: a new one is named here, nowhere else."""

@@ -28,12 +28,17 @@ class Shapes:
     Phi: Floats | None
 
 
+def full_of(model: Model) -> Model:
+    """Return the model of which a reduced one is; any other one is that itself."""
+    return model.full if isinstance(model, ReducedModel) else model
+
+
 def matrices_at(model: Model, theta: Floats) -> MatrixModel | None:
     """Return the model with the matrices, and their derivatives, that a model has at ``theta``.
 
     A reduced model has those of the full one; None for a model that has no matrices.
     """
-    full = model.full if isinstance(model, ReducedModel) else model
+    full = full_of(model)
     if isinstance(full, FunctionModel):
         return full.at(theta)
     return full if isinstance(full, MatrixModel) else None
@@ -41,7 +46,7 @@ def matrices_at(model: Model, theta: Floats) -> MatrixModel | None:
 
 def geometry_of(model: Model) -> Geometry | None:
     """Return where the degrees of freedom of a model are; None where that is not known."""
-    full = model.full if isinstance(model, ReducedModel) else model
+    full = full_of(model)
     return full.geometry if isinstance(full, MatrixModel) else None
 
 

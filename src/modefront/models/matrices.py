@@ -22,8 +22,7 @@ from modefront.linalg.products import gram
 from modefront.models.geometry import Geometry
 from modefront.models.load_case import LoadCase, NamedWeights, Transfer
 from modefront.models.terms import BASE, above_zero, exponents_of, form_of, term_exponents
-from modefront.modes.eigensolvers import Eigensolver, eigensolver
-from modefront.modes.full import FullModes
+from modefront.modes.eigensolvers import Eigensolver, FullModes, eigensolver
 from modefront.modes.result import Modes
 from modefront.work.costs import Costs, spend
 from modefront.work.transfer import shared

@@ -48,11 +48,45 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import ModelError
+from modefront.linalg.factorisation import Factorisation
 from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, gram, times
 from modefront.modes.second_derivatives import Solved
-from modefront.modes.spectrum import Shifted, Spectrum
 from modefront.rounding import TINY
+
+
+@dataclass(frozen=True)
+class Shifted:
+    """The factor of K - sigma M."""
+
+    sigma: float
+    factor: Factorisation
+
+
+@dataclass(frozen=True)
+class Spectrum:
+    """The lowest modes at one theta.
+
+    Attributes
+    ----------
+    lam : (modes,) eigenvalues, ascending
+    Phi, MPhi : (N, modes) mass-normalised modes, and M times them
+    M : the mass matrix
+    noise : (modes,) rounding to be expected in ``lam``
+    beyond : estimate of the next eigenvalue; infinite where there is none
+    proved : how many modes were proved to be the lowest ones
+    factors : the factors of K - sigma M below all modes and above the proved ones
+    """
+
+    lam: Floats
+    Phi: Floats
+    MPhi: Floats
+    M: scipy.sparse.csr_array
+    noise: Floats
+    beyond: float
+    proved: int
+    factors: tuple[Shifted, Shifted]
+
 
 COINCIDENT = 1e-6
 """Relative error of a quotient, as bounded by rounding in its gap, above which it is left out.

@@ -41,10 +41,10 @@ from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, gram, times
 from modefront.modes import dense
 from modefront.modes import derivatives as exact
+from modefront.modes.derivatives import Shifted, Spectrum
 from modefront.modes.lanczos import greatest
 from modefront.modes.result import ModeDerivatives, Modes
 from modefront.modes.second_derivatives import SecondDerivatives
-from modefront.modes.spectrum import Shifted, Spectrum
 
 BLOCK = 8
 """Columns of a block: greatest multiplicity of an eigenvalue that is found at once."""
@@ -152,7 +152,7 @@ def lowest(pencil: Pencil, theta: Floats, count: int) -> Spectrum:
                 )
                 if refined is not None:
                     beyond = lam[refined[0].size] if finite > refined[0].size else np.inf
-                    noise = _noise(K, refined[1])
+                    noise = np.asarray(np.finfo(float).eps * (K.diagonal() @ refined[1] ** 2))
                     return Spectrum(*refined, M, noise, beyond, lower, (below, above))
         needed, block = 2 * needed, 2 * block
     if lost:
@@ -184,11 +184,6 @@ def _finite(
     except SingularMatrixError:
         return lam.size
     return lam.size if factor.negative is None else factor.negative
-
-
-def _noise(K: scipy.sparse.csr_array, Phi: Floats) -> Floats:
-    """Return the rounding to be expected in the eigenvalues of modes (N, modes)."""
-    return np.asarray(np.finfo(float).eps * (K.diagonal() @ Phi**2))
 
 
 def is_singular(pencil: Pencil, theta: Floats) -> bool:
@@ -330,3 +325,25 @@ def _refined(
         Phi = X - length * (before - combine(X, known))
         MPhi = MX - length * (Mbefore - combine(MX, known))
     return None
+
+
+LOST = 1e-10
+"""Square of what a normalised direction adds to a space below which it is left out."""
+
+
+def orthonormal(
+    K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, sigma: float, S: Floats, Z: Floats
+) -> Floats:
+    """Return the part of columns Z (N, m) outside S, orthonormal like S in K - sigma M."""
+
+    def product(X: Floats) -> Floats:
+        return times(K, X) - times(M, X) * sigma
+
+    for _ in range(2):
+        square = np.einsum("nc,nc->c", Z, product(Z))
+        Z = Z * np.divide(1.0, np.sqrt(np.maximum(square, 0)), out=0 * square, where=square > 0)
+        if S.shape[1]:
+            Z = Z - combine(S, gram(S, product(Z)))
+    squares, U = np.linalg.eigh(gram(Z, product(Z)))
+    new = squares > LOST
+    return combine(Z, U[:, new] / np.sqrt(squares[new])) if new.any() else Z[:, :0]

@@ -56,7 +56,7 @@ from modefront.optim.qp import QuadraticProgramme
 from modefront.optim.scalarisation import Scalarisation
 from modefront.optim.secant import learned_from
 from modefront.work.codec import record
-from modefront.work.steps import note_iteration
+from modefront.work.progress import note_iteration
 
 TAKEN, POOR, GOOD = 1e-4, 0.25, 0.7
 """Actual over predicted reduction from which a step is taken, below which the next one is shorter,

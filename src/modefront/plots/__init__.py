@@ -5,7 +5,7 @@ matplotlib, an extra, is imported when a picture is drawn.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from importlib import import_module
@@ -101,43 +101,37 @@ class Plots:
 
     def _draw(self, name: str, **options: Any) -> Picture:
         with _drawing():
-            missing = MISSING.get(name, _nothing)(self.data)
-            if missing:
+            if missing := _missing(self.data, name):
                 raise InputError(Fault("", f"plot of {name}", *missing))
             return import_module(f"modefront.plots.{name}").draw(self.data, **options)
 
 
-def _nothing(_: xr.Dataset) -> None:
-    return None
-
-
-def _no_predictions(data: xr.Dataset) -> tuple[str, str] | None:
-    return None if "range" in data.sizes else ("results with predictions", "none")
-
-
-def _no_uncertainty(data: xr.Dataset) -> tuple[str, str] | None:
-    if "theta_std" in data or "posterior_std" in data:
-        return None
-    return "results with errors of the data or a posterior", "none"
-
-
-def _no_shapes(data: xr.Dataset) -> tuple[str, str] | None:
-    return None if "shape" in data else ("results with mode shapes", "none: run the study again")
-
-
-MISSING: Mapping[str, Callable[[xr.Dataset], tuple[str, str] | None]] = {
-    "predictions": _no_predictions,
-    "uncertainty": _no_uncertainty,
-    "modes": _no_shapes,
+NEEDED: Mapping[str, tuple[tuple[str, ...], str, str]] = {
+    "predictions": (("range",), "results with predictions", "none"),
+    "uncertainty": (
+        ("theta_std", "posterior_std"),
+        "results with errors of the data or a posterior",
+        "none",
+    ),
+    "modes": (("shape",), "results with mode shapes", "none: run the study again"),
 }
-"""Functions that return what is expected and found where results lack what a picture shows."""
+"""Variables or dimensions, one of which a picture shows, and what is expected and found without."""
+
+
+def _missing(data: xr.Dataset, name: str) -> tuple[str, str] | None:
+    """Return what is expected and found where results lack what a picture shows."""
+    if name not in NEEDED:
+        return None
+    variables, expected, found = NEEDED[name]
+    known = any(each in data.variables or each in data.sizes for each in variables)
+    return None if known else (expected, found)
 
 
 def pictures(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
     """Yield name and figure of everything that the results hold, each prediction by itself."""
     plots = Plots(data)
     for name in PLOTS:
-        if MISSING.get(name, _nothing)(data) is None:
+        if _missing(data, name) is None:
             yield name, getattr(plots, name)()
         if name == "predictions" and "range" in data.sizes:
             with _drawing():

@@ -5,10 +5,9 @@ from __future__ import annotations
 import numpy as np
 import xarray as xr
 
-from modefront.plots.along import Along, titled
-from modefront.plots.canvas import Picture, panels, picture
+from modefront.plots.along import Along, across, titled
+from modefront.plots.canvas import Picture, panels
 from modefront.plots.models import is_path
-from modefront.plots.parallel import key, parallel
 from modefront.plots.style import COLUMNS
 
 
@@ -17,13 +16,8 @@ def draw(data: xr.Dataset) -> Picture:
     f, measured = data["frequency"].values, data["measured_frequency"].values
     names = [f"mode {r}" for r in data["mode"].values]
     if not is_path(data):
-        figure = picture(max(5.2, 0.4 * len(names)), 3.4)
-        axes = figure.add_subplot()
-        parallel(axes, data, 100 * (f / measured - 1), names)
-        axes.axhline(0, color="k", ls="--", lw=1, zorder=0)
-        axes.set_ylabel("error of the frequency, %")
-        key(axes, data)
-        return figure
+        error = 100 * (f / measured - 1)
+        return across(data, error, names, "error of the frequency, %", line=0)
     along = Along(data)
     std = data.get("posterior_frequency_std")
     figure, grid = panels(len(names))

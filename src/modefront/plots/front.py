@@ -10,9 +10,9 @@ from matplotlib.axes import Axes
 
 from modefront._typing import Bools, Floats
 from modefront.front.methods import METHODS
+from modefront.plots.along import key, parallel
 from modefront.plots.canvas import Picture, picture
 from modefront.plots.models import branches, is_path, series, shown
-from modefront.plots.parallel import key, parallel
 from modefront.plots.style import COLOURS, plain, short
 
 FAR = 2.5

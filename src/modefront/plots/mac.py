@@ -4,10 +4,9 @@ from __future__ import annotations
 
 import xarray as xr
 
-from modefront.plots.along import Along, titled
-from modefront.plots.canvas import Picture, panels, picture
+from modefront.plots.along import Along, across, titled
+from modefront.plots.canvas import Picture, panels
 from modefront.plots.models import is_path
-from modefront.plots.parallel import key, parallel
 from modefront.plots.style import COLUMNS
 
 
@@ -16,13 +15,7 @@ def draw(data: xr.Dataset) -> Picture:
     mac = data["mac"].values
     names = [f"mode {r}" for r in data["mode"].values]
     if not is_path(data):
-        figure = picture(max(5.2, 0.4 * len(names)), 3.4)
-        axes = figure.add_subplot()
-        parallel(axes, data, mac, names)
-        axes.axhline(1, color="k", ls="--", lw=1, zorder=0)
-        axes.set_ylabel("MAC")
-        key(axes, data)
-        return figure
+        return across(data, mac, names, "MAC", line=1)
     along = Along(data)
     std = data.get("posterior_mac_std")
     figure, grid = panels(len(names))

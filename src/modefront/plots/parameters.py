@@ -6,10 +6,9 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats
-from modefront.plots.along import Along, Bar, titled
-from modefront.plots.canvas import Picture, panels, picture
+from modefront.plots.along import Along, Bar, across, titled
+from modefront.plots.canvas import Picture, panels
 from modefront.plots.models import is_path
-from modefront.plots.parallel import key, parallel
 from modefront.plots.style import COLUMNS
 
 
@@ -21,7 +20,8 @@ def draw(data: xr.Dataset) -> Picture:
     theta, std = data["theta"].values, parameter_std(data)
     names = [str(name) for name in data["parameter"].values]
     if not is_path(data):
-        return _across(data, theta, names)
+        unit, title = unit_of(data)
+        return across(data, theta / unit, names, title, width=0.45)
     along = Along(data)
     figure, grid = panels(len(names))
     bounds = data["bounds"].values
@@ -55,13 +55,3 @@ def unit_of(data: xr.Dataset) -> tuple[Floats, str]:
     if len(nominal) and (nominal[0] > 0).all():
         return nominal[0], "parameter over its nominal value"
     return np.ones(data.sizes["parameter"]), "parameter"
-
-
-def _across(data: xr.Dataset, theta: Floats, names: list[str]) -> Picture:
-    figure = picture(max(5.2, 0.45 * len(names)), 3.4)
-    axes = figure.add_subplot()
-    unit, title = unit_of(data)
-    parallel(axes, data, theta / unit, names)
-    axes.set_ylabel(title)
-    key(axes, data)
-    return figure

@@ -10,10 +10,9 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from modefront._typing import Floats
-from modefront.plots.along import Along, titled
+from modefront.plots.along import Along, key, parallel, titled
 from modefront.plots.canvas import Picture, panels, picture
 from modefront.plots.models import is_path, reference_of, shown
-from modefront.plots.parallel import key, parallel
 from modefront.plots.style import COLOURS, COLUMNS, plain, short
 from modefront.predictions import KINDS, Kind, ResultVariable
 

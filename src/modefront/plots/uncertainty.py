@@ -17,11 +17,6 @@ HOW_MANY = 20
 """Parameters up to which the correlations are written as numbers."""
 
 
-def is_known(data: xr.Dataset) -> bool:
-    """Return whether the results hold any scatter."""
-    return "theta_std" in data or "posterior_std" in data
-
-
 def draw(data: xr.Dataset) -> Picture:
     """Return parameters with deviations, their correlation, and the front with its scatter."""
     p = data.sizes["parameter"]

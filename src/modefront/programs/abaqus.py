@@ -23,6 +23,7 @@ from modefront.programs.base import (
     Job,
     JobOptions,
     Program,
+    columns,
     existing,
     kept,
     refuse_mass_alone,
@@ -31,16 +32,12 @@ from modefront.programs.base import (
 )
 from modefront.programs.inp import read_deck
 from modefront.programs.mesh import ProgramMesh
-from modefront.programs.text import columns
 
 HELD = 0.9e36
 """Diagonal entries from which a degree of freedom is a support."""
 
 SLOTS = 32
 """More than the greatest number of a direction."""
-
-SPARSE = 10**8
-"""Slots beyond the number of entries from which on numbers of nodes have great gaps."""
 
 ADVICE = "*MATRIX GENERATE, STIFFNESS, MASS with *MATRIX OUTPUT, STIFFNESS, MASS writes them"
 
@@ -110,33 +107,19 @@ def _common(
     stiffness: tuple[Ints, ...], mass: tuple[Ints, ...]
 ) -> tuple[DofTable, list[tuple[Ints, Ints]]]:
     """Return the table of all labels, nodes made by the program last, and rows and columns."""
-    number = [[part[0], part[2]] for part in (stiffness, mass)]
-    lowest = min(int(node.min()) for pair in number for node in pair)
-    highest = max(int(node.max()) for pair in number for node in pair)
-    names: Ints | None = None
-    if (highest - lowest) * SLOTS > SPARSE + sum(node.size for pair in number for node in pair):
-        # Numbers with great gaps: nodes are counted instead.
-        names = np.unique(np.concatenate([np.unique(node) for pair in number for node in pair]))
-        number = [[np.searchsorted(names, node) for node in pair] for pair in number]
-        lowest, highest = 0, names.size - 1
     keys = [
-        [
-            (node.astype(np.int64) - lowest) * SLOTS + direction
-            for node, direction in zip(pair, (part[1], part[3]), strict=True)
-        ]
-        for pair, part in zip(number, (stiffness, mass), strict=True)
+        [part[k].astype(np.int64) * SLOTS + part[k + 1] for k in (0, 2)]
+        for part in (stiffness, mass)
     ]
-    present = np.zeros((highest - lowest + 1) * SLOTS, bool)
-    for pair in keys:
-        for key in pair:
-            present[key] = True
-    used = np.flatnonzero(present)
-    node = used // SLOTS + lowest if names is None else names[used // SLOTS]
-    order = np.argsort(node <= 0, kind="stable")
-    used, node, direction = used[order], node[order], (used % SLOTS)[order]
-    place = np.zeros(present.size, np.int32)
-    place[used] = np.arange(used.size)
-    tables = [(place[row], place[column]) for row, column in keys]
+    used = np.unique(np.concatenate([np.unique(key) for pair in keys for key in pair]))
+    order = np.argsort(used < SLOTS, kind="stable")  # nodes made by the program are below 1
+    place = np.empty(used.size, np.intp)
+    place[order] = np.arange(used.size)
+    tables: list[tuple[Ints, Ints]] = [
+        (place[np.searchsorted(used, row)], place[np.searchsorted(used, column)])
+        for row, column in keys
+    ]
+    node, direction = used[order] // SLOTS, used[order] % SLOTS
     return DofTable(node, direction, (node > 0).astype(float)), tables
 
 

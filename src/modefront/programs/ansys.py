@@ -29,8 +29,9 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
-from modefront.complete import counted
+from modefront.inputs import counted
 from modefront.models.dofs import DofTable, read_dofs
+from modefront.models.files import read_entries
 from modefront.programs.base import (
     DOUBLE,
     Entries,
@@ -42,7 +43,6 @@ from modefront.programs.base import (
     upper,
     wrong,
 )
-from modefront.programs.text import matrix_market
 
 INTEGERS = 0x80
 """Bit of the flags (their highest byte) for integers."""
@@ -176,7 +176,7 @@ def _from_market(path: Path, options: JobOptions) -> Job:
     for what, endings in MATRICES.items():
         names = [path.with_name(path.name + end + suffix) for end in endings for suffix in SUFFIXES]
         file = next((name for name in names if name.is_file()), names[0])
-        matrices[what] = matrix_market(existing(file, f"the {what} of Ansys", ADVICE))
+        matrices[what] = read_entries(existing(file, f"the {what} of Ansys", ADVICE), form=".mtx")
     size = matrices["stiffness"].shape[0]
     if matrices["mass"].shape[0] != size:
         raise wrong(path, f"a mass matrix of {size} rows", str(matrices["mass"].shape[0]))
@@ -222,11 +222,11 @@ def _mapping(path: Path) -> DofTable:
 
 def _maps(nod2bcs: Path, back: Path) -> DofTable:
     """Return the table of the maps NOD2BCS (equations, nodal values) and BACK (nodes)."""
-    listed = matrix_market(back, square=False)
+    listed = read_entries(back, square=False, form=".mtx")
     if listed.nnz < np.prod(listed.shape, dtype=float):
         raise wrong(back, "a node in every row", f"{listed.nnz} in {listed.shape}")
     nodes: Ints = listed.toarray().ravel().astype(np.intp)
-    picked = matrix_market(nod2bcs, square=False)
+    picked = read_entries(nod2bcs, square=False, form=".mtx")
     per_node = picked.shape[1] // max(nodes.size, 1)
     if picked.shape[1] != per_node * nodes.size or picked.nnz < picked.shape[0]:
         raise wrong(nod2bcs, f"a whole number of columns for {nodes.size} nodes", str(picked.shape))

@@ -10,6 +10,7 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from itertools import chain
 from pathlib import Path
 
@@ -53,51 +54,25 @@ FLAT = 1e-8
 Dof = tuple[int, int]
 
 
+# 17 fields: one for each kind of entry of a deck.
 @dataclass
 class Bulk:
-    """Nodes, elements and constraints of a deck.
+    """Nodes, elements and constraints of a deck, as they are collected while it is read.
 
     Attributes
     ----------
-    mesh : nodes and elements; nodes with coordinates in another than the basic system are left out
+    nodes : coordinates by number; NaN for those in another than the basic system
     scalar : scalar points
+    cells : corners of elements by the type of the cell; ``elements``, ``shells`` and ``rods`` nodes
+    stiff : stiffness of the translations and rotations of nodes, but for shells and rods
     held : supports that the case control chooses, node and component
+    supports, constraints, added : sets of SPC and MPC by number, and the sets of which others are
     followers : dependent degrees of freedom
-    omitted : OMIT; kept : ASET, None for all
+    omitted : OMIT; kept : ASET, empty for all
     singular : components that no element makes stiff
     turned : nodes whose directions are those of a system of their own
     links : nodes that an element or a spring joins
     """
-
-    mesh: ProgramMesh
-    scalar: tuple[int, ...]
-    held: set[Dof]
-    followers: set[Dof]
-    omitted: set[Dof]
-    kept: set[Dof] | None
-    singular: set[Dof]
-    turned: set[int]
-    links: list[tuple[int, ...]]
-
-    def dofs(self, *, reduced: bool, singular: bool) -> list[Dof]:
-        """Return nodes and components in the order of matrices: of the a-set, or of all nodes.
-
-        ``singular`` says whether components that nothing makes stiff are among them.
-        """
-        points = [(int(n), c) for n in self.mesh.number for c in range(1, 7)]
-        every = sorted([*points, *((n, 0) for n in self.scalar)])
-        if not reduced:
-            return every
-        gone = self.held | self.followers | self.omitted
-        gone |= set() if singular else self.singular
-        kept = self.kept
-        return [dof for dof in every if dof not in gone and (kept is None or dof in kept)]
-
-
-# 16 fields: one for each kind of entry of a deck.
-@dataclass
-class _Content:
-    """Entries collected while a deck is read."""
 
     nodes: dict[int, Floats] = field(default_factory=dict)
     scalar: set[int] = field(default_factory=set)
@@ -115,6 +90,25 @@ class _Content:
     links: list[tuple[int, ...]] = field(default_factory=list)
     shells: list[tuple[str, list[int]]] = field(default_factory=list)
     rods: list[list[int]] = field(default_factory=list)
+    singular: set[Dof] = field(default_factory=set)
+
+    @cached_property
+    def mesh(self) -> ProgramMesh:
+        """Nodes and elements."""
+        return mesh_of(self.nodes, self.cells)
+
+    def dofs(self, *, reduced: bool, singular: bool) -> list[Dof]:
+        """Return nodes and components in the order of matrices: of the a-set, or of all nodes.
+
+        ``singular`` says whether components that nothing makes stiff are among them.
+        """
+        points = [(n, c) for n in self.nodes for c in range(1, 7)]
+        every = sorted([*points, *((n, 0) for n in self.scalar)])
+        if not reduced:
+            return every
+        gone = self.held | self.followers | self.omitted
+        gone |= set() if singular else self.singular
+        return [dof for dof in every if dof not in gone and (not self.kept or dof in self.kept)]
 
 
 def read_bulk(path: Path) -> Bulk:
@@ -127,7 +121,7 @@ def read_bulk(path: Path) -> Bulk:
         raise FileNotFoundError(f"no file {path.name}")
     text = path.read_text(encoding="utf-8", errors="replace")
     control, bulk = _parted(text)
-    content = _Content()
+    content = Bulk()
     default = ["", "", "", ""]
     if bulk != text and not re.search(r"^\s*ENDDATA", bulk, re.MULTILINE | re.IGNORECASE):
         raise wrong(path, "a line ENDDATA at the end", "none: is the file cut off?")
@@ -147,18 +141,10 @@ def read_bulk(path: Path) -> Bulk:
             raise wrong(path, "entries GRID of nodes", "none")
         known = content.nodes.keys() | content.scalar
         refuse_unknown_nodes(path, known, chain.from_iterable(content.elements.values()))
-    chosen = {key: _chosen(control, key) for key in ("SPC", "MPC")}
-    return Bulk(
-        mesh_of(content.nodes, content.cells),
-        tuple(sorted(content.scalar)),
-        content.held | _sets(content.supports, content.added, chosen["SPC"]),
-        content.followers | _sets(content.constraints, content.added, chosen["MPC"]),
-        content.omitted,
-        content.kept or None,
-        _singular(content),
-        content.turned,
-        content.links,
-    )
+    content.held |= _sets(content.supports, content.added, _chosen(control, "SPC"))
+    content.followers |= _sets(content.constraints, content.added, _chosen(control, "MPC"))
+    content.singular = _singular(content)
+    return content
 
 
 def _parted(text: str) -> tuple[str, str]:
@@ -235,7 +221,7 @@ def _listed(fields: Iterable[str]) -> list[int]:
     return out
 
 
-def _take(content: _Content, card: list[str], default: list[str]) -> None:
+def _take(content: Bulk, card: list[str], default: list[str]) -> None:
     """Take one entry."""
     name = card[0]
     if name.startswith("="):
@@ -263,7 +249,7 @@ def _take(content: _Content, card: list[str], default: list[str]) -> None:
                     target.update((int(card[k]), c) for c in _components(card[k + 1] or "0"))
 
 
-def _grid(content: _Content, card: list[str], default: list[str]) -> None:
+def _grid(content: Bulk, card: list[str], default: list[str]) -> None:
     number = int(card[1])
     if number in content.nodes:
         raise ValueError(f"node {number} again")
@@ -278,7 +264,7 @@ def _grid(content: _Content, card: list[str], default: list[str]) -> None:
     content.nodes[number] = np.array(point if system == 0 else [np.nan] * 3)
 
 
-def _element(content: _Content, card: list[str]) -> None:
+def _element(content: Bulk, card: list[str]) -> None:
     name = card[0]
     first, corners, kind = _ELEMENTS[name]
     count = _SOLID_NODES.get(name, corners + _SHELL_EXTRA.get(name, 0))
@@ -303,12 +289,12 @@ def _element(content: _Content, card: list[str]) -> None:
         content.shells.append((name, nodes))
 
 
-def _stiffen(content: _Content, node: int, u: Floats, r: Floats) -> None:
+def _stiffen(content: Bulk, node: int, u: Floats, r: Floats) -> None:
     block = content.stiff.setdefault(node, np.zeros((2, 3, 3)))
     block += np.array([u, r])
 
 
-def _spring(content: _Content, card: list[str]) -> None:
+def _spring(content: Bulk, card: list[str]) -> None:
     """Take CELAS1 to CELAS4: ends are a node and a component, or scalar points."""
     if card[0].endswith(("3", "4")):
         ends = [(_whole(_at(card, 3)), 0), (_whole(_at(card, 4)), 0)]
@@ -326,7 +312,7 @@ def _spring(content: _Content, card: list[str]) -> None:
             _stiffen(content, node, blocks[0], blocks[1])
 
 
-def _rigid(content: _Content, card: list[str]) -> None:
+def _rigid(content: Bulk, card: list[str]) -> None:
     """Take RBE2, RBE3 and RBAR: which degrees of freedom follow others."""
     if card[0] == "RBE2":
         nodes = _listed(x for x in card[4:] if "." not in x)
@@ -347,7 +333,7 @@ def _rigid(content: _Content, card: list[str]) -> None:
             content.followers.update((node, c) for c in some)
 
 
-def _support(content: _Content, card: list[str]) -> None:
+def _support(content: Bulk, card: list[str]) -> None:
     number = int(card[1])
     if card[0] in ("SPCADD", "MPCADD"):
         content.added.setdefault(number, []).extend(_listed(card[2:]))
@@ -374,7 +360,7 @@ def _sets(table: dict[int, set[Dof]], added: dict[int, list[int]], chosen: int |
     return set().union(*(table.get(name, set()) for name in names))
 
 
-def _singular(content: _Content) -> set[Dof]:
+def _singular(content: Bulk) -> set[Dof]:
     """Return the components that no element makes stiff, as AUTOSPC finds them."""
     for _, nodes in content.shells:
         corners = [content.nodes.get(n) for n in nodes[:4]]

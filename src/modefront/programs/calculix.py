@@ -23,9 +23,18 @@ import numpy as np
 from modefront._typing import Ints
 from modefront.errors import reason
 from modefront.models.dofs import DofTable
-from modefront.programs.base import Entries, Job, JobOptions, Program, existing, upper, wrong
+from modefront.programs.base import (
+    Entries,
+    Job,
+    JobOptions,
+    Program,
+    columns,
+    coordinates,
+    existing,
+    upper,
+    wrong,
+)
 from modefront.programs.inp import Deck, read_deck
-from modefront.programs.text import columns, coordinates
 
 SUFFIXES = (".inp", ".sti", ".mas", ".dof", ".dat", ".frd")
 
@@ -47,11 +56,12 @@ def read(path: Path, options: JobOptions) -> Job:
     labels = columns(files[".dof"], ".", "ii", comment="#")
     node, direction = (column.astype(np.intp) for column in labels)
     plain = DofTable(node, direction, np.ones(node.size))
-    entries = {suffix: coordinates(files[suffix], node.size) for suffix in (".sti", ".mas")}
+    entries = {suffix: coordinates(files[suffix]) for suffix in (".sti", ".mas")}
     _refuse_cut_off(files, entries, node.size)
     notes: list[str] = []
-    deck = _deck(options.deck or job.with_name(job.name + ".inp"), notes)
-    if deck is not None and _is_newer(job, files[".sti"]):
+    own = job.with_name(job.name + ".inp")
+    deck = _deck(options.deck or own, notes)
+    if deck is not None and own.is_file() and own.stat().st_mtime > files[".sti"].stat().st_mtime:
         notes.append(f"{job.name}.inp is newer than {job.name}.sti: was it run since?")
     dofs = _table(plain, deck)
     _describe(dofs, notes)
@@ -92,11 +102,6 @@ def _deck(path: Path, notes: list[str]) -> Deck | None:
         )
         notes[-1] += " shells and beams cannot be told from others"
         return None
-
-
-def _is_newer(job: Path, matrix: Path) -> bool:
-    deck = job.with_name(job.name + ".inp")
-    return deck.is_file() and deck.stat().st_mtime > matrix.stat().st_mtime
 
 
 def _table(labels: DofTable, deck: Deck | None) -> DofTable:

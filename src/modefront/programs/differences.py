@@ -367,24 +367,9 @@ def _cleaned(changed: Matrix, A: Matrix) -> Matrix:
 def _above(D: Matrix, A: Matrix, noise: float) -> Matrix:
     """Return the entries of D that are above the rounding of those of A at the same places."""
     entries = scipy.sparse.coo_array(D)
-    limit = noise * np.abs(_at(A, entries))
-    return _with(entries, (np.abs(entries.data) > limit) & (entries.data != 0))
-
-
-def _at(A: Matrix, places: scipy.sparse.coo_array) -> Floats:
-    """Return the entries of A at the places of another matrix, 0 where it has none."""
-    if places.nnz == 0:
-        return np.zeros(0)
     A.sum_duplicates()
-    n = A.shape[1]
-    entries = scipy.sparse.coo_array(A)
-    keys = entries.row.astype(np.int64) * n + entries.col
-    requested = places.row.astype(np.int64) * n + places.col
-    position = np.searchsorted(keys, requested)
-    position = np.minimum(position, max(keys.size - 1, 0))
-    present: Bools = keys[position] == requested if keys.size else np.zeros(requested.size, bool)
-    out: Floats = np.where(present, entries.data[position] if keys.size else 0.0, 0.0)
-    return out
+    limit = noise * np.abs(np.asarray(A[entries.row, entries.col]).ravel())
+    return _with(entries, (np.abs(entries.data) > limit) & (entries.data != 0))
 
 
 def _beyond(E: Matrix, A: Matrix, noise: float) -> Matrix:

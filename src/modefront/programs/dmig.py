@@ -8,20 +8,16 @@ is a scalar point.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.complete import ended
 from modefront.errors import reason
+from modefront.inputs import ended
 from modefront.programs.base import wrong
-from modefront.programs.text import fixed_width
-
-FIELD = 16
-"""Characters of a large field."""
 
 COMPLEX = (3, 4)
 """Types of complex numbers in the header."""
@@ -49,116 +45,53 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
 
     Raises InputError for a file without any, with complex numbers, or cut off.
     """
-    data = np.fromfile(path, dtype=np.uint8)
     ended(path)
-    end = np.flatnonzero(data == ord("\n"))
-    start = np.append(0, end[:-1] + 1)
-    end = end - ((end > start) & (data[np.maximum(end - 1, 0)] == ord("\r")))
-    first = data[np.minimum(start, max(data.size - 1, 0))]
-    is_entry = (first == ord("*")) & (end > start)
-    is_column = _begins(data, start, end, b"DMIG*")
-    _refuse_complex(path, data, start, end)
-    columns = np.flatnonzero(is_column)
-    if columns.size == 0:
+    rows: dict[str, list[tuple[int, int, int, int]]] = {}
+    texts: dict[str, list[str]] = {}
+    header: str | None = None
+    column: tuple[int, int] | None = None
+    name = ""
+    with path.open(encoding="latin-1") as stream:
+        for number, line in enumerate(stream, start=1):
+            place = f"line {number}"
+            if line.startswith("DMIG "):
+                header, column = line[8:16].strip(), None
+                kind = line[32:40].strip()
+                if kind.isdigit() and int(kind) in COMPLEX:
+                    raise wrong(path, "real numbers", f"type {int(kind)} (complex)", place)
+            elif line.startswith("DMIG*"):
+                name = line[8:24].strip()
+                if header not in (None, name):
+                    expected = f"a header 'DMIG {name}' before its columns"
+                    raise wrong(path, expected, repr(header), place)
+                column = _label(path, place, line[24:40], line[40:56])
+                rows.setdefault(name.upper(), [])
+                texts.setdefault(name.upper(), [])
+            elif line.startswith("*") and line.strip() != "*" and (rows or header is not None):
+                if column is None:
+                    raise wrong(path, "a column ('DMIG*') before its entries", "none", place)
+                label = _label(path, place, line[8:24], line[24:40])
+                rows[name.upper()].append((*label, *column))
+                texts[name.upper()].append(line[40:56])
+    if not rows:
         raise wrong(path, "DMIG entries in large fields ('DMIG*')", "none")
-    entries = np.flatnonzero(is_entry & (np.cumsum(is_column) > 0))
-    owner = np.cumsum(is_column)[entries] - 1
-    names = [_cut(data, start[k] + 8, end[k]).decode("latin-1").strip() for k in columns.tolist()]
-    _check_headers(path, data, (start, end), (columns, entries), names)
-    labels = _whole(path, _fields(data, start, end, columns, (1, 2)))
-    rows = _whole(path, _fields(data, start, end, entries, (0, 1)))
-    texts = _fields(data, start, end, entries, (2,))
-    try:
-        values = _numbers(texts)
-    except ValueError as error:
-        raise wrong(path, "numbers in the fourth field", reason(error)) from None
-    precision = 10.0 ** -_digits(texts)
-    numbers = {name: k for k, name in enumerate(dict.fromkeys(names))}
-    kind = np.array([numbers[name] for name in names])[owner]
-    return {
-        name.upper(): DmigMatrix(
-            rows[kind == k], labels[owner[kind == k]], values[kind == k], precision
-        )
-        for name, k in numbers.items()
-    }
-
-
-def _check_headers(
-    path: Path,
-    data: np.ndarray,
-    extent: tuple[Ints, Ints],
-    lines: tuple[Ints, Ints],
-    names: list[str],
-) -> None:
-    """Refuse columns of another name than the header before them, and entries without a column."""
-    is_header = _begins(data, *extent, b"DMIG ")
-    headers, before = np.flatnonzero(is_header), np.cumsum(is_header)
-    if not headers.size:
-        return
-    columns, entries = lines
-    of_headers = [
-        "",
-        *(data[extent[0][k] + 8 :][:8].tobytes().decode("latin-1").strip() for k in headers),
-    ]
-    for k, name in zip(columns.tolist(), names, strict=True):
-        if (found := of_headers[before[k]]) != name:
-            raise wrong(
-                path, f"a header 'DMIG {name}' before its columns", repr(found), f"line {k + 1}"
-            )
-    alone = entries[before[entries] != before[columns[np.searchsorted(columns, entries) - 1]]]
-    if alone.size:
-        raise wrong(path, "a column ('DMIG*') before its entries", "none", f"line {alone[0] + 1}")
-
-
-def _begins(data: np.ndarray, start: Ints, end: Ints, text: bytes) -> np.ndarray:
-    out = end - start >= len(text)
-    for k, character in enumerate(text):
-        out &= data[np.minimum(start + k, data.size - 1)] == character
+    out: dict[str, DmigMatrix] = {}
+    precision = 10.0 ** -_digits([text for each in texts.values() for text in each[: 10**4]])
+    for each, labels in rows.items():
+        try:
+            values = np.array([real(text) for text in texts[each]])
+        except ValueError as error:
+            raise wrong(path, "numbers in the fourth field", reason(error)) from None
+        table = np.array(labels, dtype=np.intp).reshape(-1, 4)
+        out[each] = DmigMatrix(table[:, :2], table[:, 2:], values, precision)
     return out
 
 
-def _refuse_complex(path: Path, data: np.ndarray, start: Ints, end: Ints) -> None:
-    """Refuse matrices whose header, ``DMIG NAME 0 form type``, says complex numbers."""
-    for k in np.flatnonzero(_begins(data, start, end, b"DMIG ")).tolist():
-        line = data[start[k] : end[k]].tobytes()
-        kind = line[32:40].strip() or b"2"
-        if kind.isdigit() and int(kind) in COMPLEX:
-            raise wrong(path, "real numbers", f"type {int(kind)} (complex)", f"line {k + 1}")
-
-
-def _cut(data: np.ndarray, first: int, last: int) -> bytes:
-    return data[first : min(first + FIELD, last)].tobytes()
-
-
-def _fields(
-    data: np.ndarray, start: Ints, end: Ints, lines: Ints, fields: tuple[int, ...]
-) -> list[np.ndarray]:
-    """Return the bytes (lines, 16) of some fields, filled up with spaces."""
-    out = []
-    for field in fields:
-        index = start[lines][:, None] + 8 + FIELD * field + np.arange(FIELD)
-        text = data[np.minimum(index, data.size - 1)]
-        text[index >= end[lines][:, None]] = ord(" ")
-        out.append(text)
-    return out
-
-
-def _whole(path: Path, fields: list[np.ndarray]) -> Ints:
+def _label(path: Path, place: str, node: str, component: str) -> tuple[int, int]:
     try:
-        numbers = [fixed_width(text.tobytes(), FIELD) for text in fields]
+        return int(node), int(component)
     except ValueError as error:
-        raise wrong(path, "nodes and components in fields of 16", reason(error)) from None
-    return np.column_stack(numbers).astype(np.intp)
-
-
-def _numbers(texts: list[np.ndarray]) -> Floats:
-    """Return real numbers, also those that Nastran writes without the E of the exponent."""
-    text = texts[0].tobytes()
-    try:
-        return fixed_width(text, FIELD)
-    except ValueError:
-        parts = (text[k : k + FIELD] for k in range(0, len(text), FIELD))
-        return np.array([real(part.decode("latin-1")) for part in parts])
+        raise wrong(path, "nodes and components in fields of 16", reason(error), place) from None
 
 
 def real(text: str) -> float:
@@ -171,10 +104,8 @@ def real(text: str) -> float:
     return float(text)
 
 
-def _digits(texts: list[np.ndarray]) -> int:
+def _digits(texts: Sequence[str]) -> int:
     """Return the digits behind the point that most numbers have."""
-    if not len(texts[0]):
-        return 15
-    shown = texts[0][: 10**4].tobytes().decode("latin-1").upper().replace("D", "E")
-    parts = [shown[k : k + FIELD].split("E")[0].strip() for k in range(0, len(shown), FIELD)]
-    return max(len(part.partition(".")[2].split("+")[0].split("-")[0]) for part in parts)
+    parts = [text.upper().replace("D", "E").split("E")[0].strip() for text in texts]
+    found = (len(part.partition(".")[2].split("+")[0].split("-")[0]) for part in parts)
+    return max(found, default=15)

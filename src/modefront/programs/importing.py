@@ -310,7 +310,7 @@ def _study(imported: Imported, program: str, names: dict[Quantity, dict[str, str
     lines = [
         f"# Imported from {program}: {Path(imported.nominal.name).name}. Parameters are factors of "
         "the nominal values.",
-        *(f"# - {_comment(note)}" for note in imported.notes),
+        *(f"# - {' '.join(note.split())}" for note in imported.notes),
         "",
         "[study]",
         f"name = {_quoted(Path(imported.nominal.name).stem)}",
@@ -362,10 +362,6 @@ def _inline(files: Mapping[str, str]) -> str:
 def _quoted(text: str) -> str:
     """Return a text as TOML has it, for which JSON's form is right."""
     return json.dumps(text, ensure_ascii=False)
-
-
-def _comment(text: str) -> str:
-    return " ".join(text.split())
 
 
 def describe(term: Term) -> str:

@@ -10,8 +10,8 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.complete import ended
 from modefront.errors import reason
+from modefront.inputs import ended
 from modefront.programs.base import wrong
 from modefront.programs.mesh import CORNERS, ProgramMesh, mesh_of, refuse_unknown_nodes
 

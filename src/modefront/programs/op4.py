@@ -15,24 +15,18 @@ fields of 8 characters and values in the format that the first line names, such 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
-from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 
-from modefront._typing import Bools, Floats, Ints
-from modefront.complete import counted
 from modefront.errors import reason
-from modefront.programs.base import Entries, wrong
-from modefront.programs.text import fixed_width
+from modefront.inputs import counted
+from modefront.programs.base import Entries, fixed_width, wrong
 
 STRING = 65536
 """Unit of the length in the header of a string."""
-
-CHUNK = 2**20
-"""Lines of text that are converted at once."""
 
 PRECISIONS = {1: 6e-8, 2: 1e-15}
 """Relative errors of the types of numbers: single and double; others are complex."""
@@ -62,236 +56,127 @@ def read_op4(path: Path) -> Mapping[str, Op4Matrix]:
 
     Raises InputError for a file that is none of OUTPUT4, is cut off or holds complex numbers.
     """
-    data = np.fromfile(path, dtype=np.uint8)
-    if data.size < 8:
-        raise wrong(path, EXPECTED, f"{data.size} bytes")
-    layout = _Layout.of(data)
-    return dict(_text(path, data) if layout is None else _binary(path, data, layout))
+    data = path.read_bytes()
+    if len(data) < 8:
+        raise wrong(path, EXPECTED, f"{len(data)} bytes")
+    for order in "<>":
+        length = int(np.frombuffer(data, order + "i4", 1)[0])
+        if length in (24, 48):
+            return dict(_binary(path, data, order, length // 6))
+    return dict(_text(path, data))
+
+
+class _Pieces:
+    """Values in consecutive rows of the columns of a matrix, in the order of a file."""
+
+    def __init__(self, path: Path, name: str, kind: int, rows: int, columns: int) -> None:
+        if kind not in PRECISIONS:
+            raise wrong(path, "real numbers", f"numbers of type {kind} (complex) in '{name}'")
+        if rows == 0:
+            raise wrong(path, "matrices with rows", f"none in '{name}'")
+        self.path, self.name, self.precision = path, name, PRECISIONS[kind]
+        self.rows, self.columns, self.big, self.column = abs(rows), columns, rows < 0, 0
+        self._places: list[tuple[int, int, int]] = []
+
+    def begin(self, column: int) -> bool:
+        """Begin a column; return whether it is not the one beyond the last, which ends all."""
+        if not self.column < column <= self.columns + 1:
+            expected = f"columns of '{self.name}' once, from 1 to {self.columns + 1}"
+            raise wrong(self.path, expected, f"{column} behind {self.column}")
+        self.column = column
+        return column <= self.columns
+
+    def add(self, first: int, length: int) -> None:
+        """Add so many values from a row on to the column."""
+        self._places.append((self.column, first, length))
+
+    def matrix(self, values: np.ndarray, precision: float = 0.0) -> Op4Matrix:
+        """Return the matrix with the values of all pieces, one behind the other."""
+        column, first, length = np.array(self._places, dtype=np.intp).reshape(-1, 3).T
+        start = first - 1 - (np.cumsum(length) - length)
+        row = (np.repeat(start, length) + np.arange(values.size)).astype(np.int32)
+        column = np.repeat(column - 1, length).astype(np.int32)
+        used = values != 0
+        entries = Entries(row[used], column[used], values[used].astype(float))
+        return Op4Matrix(self.rows, self.columns, max(self.precision, precision), entries)
 
 
 # Binary files
 
 
-@dataclass(frozen=True)
-class _Layout:
-    """Layout of a binary file: byte order, and the bytes of a word."""
-
-    order: str
-    word: int
-
-    @staticmethod
-    def of(data: np.ndarray) -> _Layout | None:
-        """Return the layout that the length of the first record tells; None for text."""
-        for order in "<>":
-            length = int(data[:4].view(order + "i4")[0])
-            if length in (24, 48):
-                return _Layout(order, length // 6)
-        return None
-
-
-def _binary(path: Path, data: np.ndarray, layout: _Layout) -> Iterator[tuple[str, Op4Matrix]]:
-    pad = np.zeros(-data.size % 4, np.uint8)
-    lengths = np.concatenate([data, pad]).view(layout.order + "i4")
-    position = 0
-    while position < data.size:
-        head, position = _record(path, data, lengths, position)
-        if head.size != 6 * layout.word:
-            raise wrong(path, "the header of a matrix", f"a record of {head.size} bytes")
-        integers = head[: 4 * layout.word].view(f"{layout.order}i{layout.word}").tolist()
-        name = head[4 * layout.word :].tobytes().decode("latin-1").strip().upper()
-        columns, rows, _, kind = integers
-        precision = _precision(path, name, kind, rows)
-        contents = _Columns(layout, kind, rows < 0)
+def _binary(path: Path, data: bytes, order: str, word: int) -> Iterator[tuple[str, Op4Matrix]]:
+    """Yield the matrices of a file of this byte order, with words of so many bytes."""
+    position, integer = 0, f"{order}i{word}"
+    while position < len(data):
+        head, position = _record(path, data, order, position)
+        if len(head) != 6 * word:
+            raise wrong(path, "the header of a matrix", f"a record of {len(head)} bytes")
+        columns, rows, _, kind = np.frombuffer(head, integer, 4).tolist()
+        name = head[4 * word :].decode("latin-1").strip().upper()
+        pieces, values = _Pieces(path, name, kind, rows, columns), [np.zeros(0)]
+        real = np.dtype(f"{order}f{8 if word == 8 or kind == 2 else 4}")
         while True:
-            column, position = _record(path, data, lengths, position)
-            if not contents.add(path, name, column, columns):
+            record, position = _record(path, data, order, position)
+            if len(record) < 3 * word:
+                found = f"a record of {len(record)} bytes in '{name}'"
+                raise wrong(path, "columns of a matrix", found)
+            column, row, count = np.frombuffer(record, integer, 3).tolist()
+            if not pieces.begin(column):
                 break
-        yield name, Op4Matrix(abs(rows), columns, precision, contents.entries())
+            body = record[3 * word :]
+            counted(path, f"column {column} of '{name}'", "words", count, len(body) / word)
+            if row > 0:
+                values.append(np.frombuffer(body, real))
+                pieces.add(row, values[-1].size)
+            else:
+                values.append(_strings(pieces, np.frombuffer(body, integer), real))
+        yield name, pieces.matrix(np.concatenate(values))
 
 
-def _record(
-    path: Path, data: np.ndarray, lengths: np.ndarray, position: int
-) -> tuple[np.ndarray, int]:
-    """Return the record at a position, and the position of the next one."""
-    end = position + 4 + (int(lengths[position // 4]) if position + 4 <= data.size else 0)
-    if position + 4 > data.size or end < position + 4 or end + 4 > data.size or position % 4:
+def _record(path: Path, data: bytes, order: str, position: int) -> tuple[bytes, int]:
+    """Return the record of Fortran at a position, and the position of the next one."""
+    ends = [np.frombuffer(data[position : position + 4], order + "i4")]
+    end = position + 4 + (int(ends[0][0]) if ends[0].size else 0)
+    ends.append(np.frombuffer(data[end : end + 4], order + "i4") if end > position else ends[0][:0])
+    if not all(each.size for each in ends) or end < position + 4:
         raise wrong(path, "whole matrices, each with its end", "a file that is cut off")
-    if lengths[end // 4] != lengths[position // 4]:
+    if ends[0][0] != ends[1][0]:
         raise wrong(path, f"records of Fortran ({EXPECTED})", "lengths that differ")
     return data[position + 4 : end], end + 4
 
 
-def _precision(path: Path, name: str, kind: int, rows: int) -> float:
-    if kind not in PRECISIONS:
-        raise wrong(path, "real numbers", f"numbers of type {kind} (complex) in '{name}'")
-    if rows == 0:
-        raise wrong(path, "matrices with rows", f"none in '{name}'")
-    return PRECISIONS[kind]
-
-
-def _check_order(path: Path, name: str, listed: Sequence[int], columns: int) -> None:
-    """Raise InputError where numbers of columns do not ascend to the one beyond the last."""
-    for before, column in pairwise(listed):
-        if not before < column <= columns + 1:
-            expected = f"columns of '{name}' once, from 1 to {columns + 1}"
-            raise wrong(path, expected, f"{column} behind {before}")
-
-
-class _Columns:
-    """Columns of a matrix of a binary file, gathered one after the other."""
-
-    def __init__(self, layout: _Layout, kind: int, big: bool) -> None:
-        self._integer = f"{layout.order}i{layout.word}"
-        size = 8 if layout.word == 8 or kind == 2 else 4
-        self._real = f"{layout.order}f{size}"
-        self._per_value = size // layout.word or 1
-        self._word, self._big, self._last = layout.word, big, 0
-        self._column: list[int] = []
-        self._first: list[int] = []
-        self._length: list[int] = []
-        self._values: list[np.ndarray] = []
-
-    def add(self, path: Path, name: str, record: np.ndarray, columns: int) -> bool:
-        """Take a column; return whether it is not the one beyond the last, which ends all."""
-        words = record[: 3 * self._word].view(self._integer).tolist()
-        if len(words) < 3:
-            raise wrong(path, "columns of a matrix", f"a record of {record.size} bytes in '{name}'")
-        column, row, count = words
-        _check_order(path, name, [self._last, column], columns)
-        self._last = column
-        if column > columns:
-            return False
-        body = record[3 * self._word :]
-        counted(path, f"column {column} of '{name}'", "words", count, body.size / self._word)
-        if row > 0:
-            values = body.view(self._real)
-            self._take(column, row, values.size)
-            self._values.append(values)
-            return True
-        strings = self._strings(body)
-        if strings is None:
-            raise wrong(
-                path, "strings that fill a column", f"others in column {column} of '{name}'"
-            )
-        self._values.append(strings)
-        self._column += [column] * (len(self._length) - len(self._column))
-        return True
-
-    def _take(self, column: int, row: int, length: int) -> None:
-        self._column.append(column)
-        self._first.append(row)
-        self._length.append(length)
-
-    def _strings(self, body: np.ndarray) -> np.ndarray | None:
-        """Return the values of all strings of a column; None where they do not fill it."""
-        native = body.view(self._integer).astype(f"=i{self._word}")
-        words = native.data  # its items are Python's integers, made only where needed
-        position, end = 0, len(words)
-        header = 2 if self._big else 1
-        headers: list[int] = []
-        while position < end:
-            if self._big and position + 1 < end:
-                length, row = words[position] - 1, words[position + 1]
-            else:
-                length = words[position] // STRING - 1
-                row = words[position] - STRING * (length + 1)
-            if (
-                length <= 0
-                or row <= 0
-                or position + header + length > end
-                or length % self._per_value
-            ):
-                return None
-            headers.append(position)
-            self._first.append(row)
-            self._length.append(length // self._per_value)
-            position += header + length
-        keep = np.ones(len(words), bool)
-        for k in range(header):
-            keep[np.array(headers, dtype=np.intp) + k] = False
-        return body.reshape(-1, self._word)[keep].reshape(-1).view(self._real)
-
-    def entries(self) -> Entries:
-        """Return rows, columns and values of all columns."""
-        values = np.concatenate(self._values) if self._values else np.zeros(0)
-        length = np.array(self._length, dtype=np.intp)
-        row = _runs(np.array(self._first, dtype=np.intp) - 1, length)
-        column = np.repeat(np.array(self._column, dtype=np.int32) - 1, length)
-        return _without_zeros(row, column, values.astype(float))
-
-
-def _runs(first: Ints, length: Ints) -> np.ndarray:
-    """Return first, first + 1, … for every run of a length, one run after the other."""
-    starts = np.cumsum(length) - length
-    total = int(length.sum())
-    kind = np.int32 if total < 2**31 else np.int64
-    out: np.ndarray = np.repeat((first - starts).astype(kind), length)
-    out += np.arange(total, dtype=kind)
-    return out
-
-
-def _without_zeros(row: np.ndarray, column: np.ndarray, values: Floats) -> Entries:
-    used = values != 0
-    return Entries(row[used], column[used], values[used])
+def _strings(pieces: _Pieces, body: np.ndarray, real: np.dtype[np.floating]) -> np.ndarray:
+    """Return the values of all strings of a column, given as words; they have to fill it."""
+    words = body.astype(body.dtype.newbyteorder("=")).data  # Python's integers only where needed
+    position, header, per_value = 0, 1 + pieces.big, max(real.itemsize // body.itemsize, 1)
+    keep = np.ones(body.size, bool)
+    while position < body.size:
+        if pieces.big and position + 1 < body.size:
+            length, row = words[position] - 1, words[position + 1]
+        else:
+            length, row = words[position] // STRING - 1, words[position] % STRING
+        after = position + header + length
+        if length <= 0 or row <= 0 or after > body.size or length % per_value:
+            found = f"others in column {pieces.column} of '{pieces.name}'"
+            raise wrong(pieces.path, "strings that fill a column", found)
+        keep[position : position + header] = False
+        pieces.add(row, length // per_value)
+        position = after
+    return body[keep].view(real)
 
 
 # Text
 
 
-@dataclass(frozen=True, eq=False)
-class _Lines:
-    """Lines of a text: where they begin and end, and which hold values."""
-
-    data: np.ndarray
-    start: Ints
-    end: Ints
-
-    def line(self, k: int) -> bytes:
-        return self.data[self.start[k] : self.end[k]].tobytes()
-
-
-def _text(path: Path, data: np.ndarray) -> Iterator[tuple[str, Op4Matrix]]:
-    lines = _lines(data)
-    count, position = lines.start.size, 0
-    while position < count:
-        if not lines.line(position).strip():
+def _text(path: Path, data: bytes) -> Iterator[tuple[str, Op4Matrix]]:
+    """Yield the matrices of a text; lines of values are those with a point."""
+    lines = [line.rstrip() for line in data.split(b"\n")]
+    position = 0
+    while position < len(lines):
+        if not lines[position]:
             position += 1
             continue
-        head = _Head.of(path, lines.line(position))
-        is_data = _hold_values(lines, position + 1)
-        stop = _end_of(path, lines, position + 1, is_data, head)
-        if not is_data[stop + 1 : stop + 2].any():
-            raise wrong(path, f"a value behind the last column of '{head.name}'", "none")
-        yield head.name, _matrix(path, lines, (position + 1, stop), is_data, head)
-        position = stop + 2  # the column beyond the last, and its value
-
-
-def _lines(data: np.ndarray) -> _Lines:
-    parts = [
-        np.flatnonzero(data[k : k + 2**26] == ord("\n")) + k for k in range(0, data.size, 2**26)
-    ]
-    end = np.concatenate(parts)
-    if end.size == 0 or end[-1] != data.size - 1:
-        end = np.append(end, data.size)
-    start = np.append(0, end[:-1] + 1)
-    returns = (end > start) & (data[np.maximum(end - 1, 0)] == ord("\r"))
-    return _Lines(data, start, end - returns)
-
-
-@dataclass(frozen=True)
-class _Head:
-    """Header of a matrix in a text file."""
-
-    name: str
-    rows: int
-    columns: int
-    big: bool
-    width: int
-    precision: float
-
-    @staticmethod
-    def of(path: Path, line: bytes) -> _Head:
-        text = line.decode("latin-1")
+        text = lines[position].decode("latin-1")
         try:
             columns, rows, _, kind = (int(text[k : k + 8]) for k in range(0, 32, 8))
         except ValueError:
@@ -299,100 +184,77 @@ class _Head:
         form = re.search(r"\d+[EDG](\d+)\.(\d+)", text[40:].upper())
         if form is None:
             raise wrong(path, f"{EXPECTED} with its format, such as 1P,3E23.16", repr(text[:60]))
-        name = text[32:40].strip().upper()
-        precision = max(_precision(path, name, kind, rows), 10.0 ** -int(form[2]))
-        return _Head(name, abs(rows), columns, rows < 0, int(form[1]), precision)
+        pieces = _Pieces(path, text[32:40].strip().upper(), kind, rows, columns)
+        values, position = _columns(pieces, lines, position + 1, int(form[1]))
+        yield pieces.name, pieces.matrix(values, 10.0 ** -int(form[2]))
 
 
-def _hold_values(lines: _Lines, first: int) -> Bools:
-    """Return which lines from ``first`` on hold values: those with a point where these have it."""
-    out = np.zeros(lines.start.size, bool)
-    length = lines.end - lines.start
-    offset = None
-    for k in range(first, min(first + 10, lines.start.size)):
-        text = lines.line(k)
-        if b"." in text:
-            offset = text.index(b".")
+def _columns(
+    pieces: _Pieces, lines: list[bytes], position: int, width: int
+) -> tuple[np.ndarray, int]:
+    """Return the values of all columns from a line on, and the line behind the matrix.
+
+    Headers count words: of a double either two, or one. They count those of headers of strings,
+    or not.
+    """
+    texts: list[bytes] = []
+    sizes = {1, 2}
+    path, name = pieces.path, pieces.name
+
+    def take(row: int, words: int) -> None:
+        """Take the lines of values from the present one on, so many words in all."""
+        nonlocal position
+        count = 0
+        while position < len(lines) and b"." in lines[position]:
+            fields = -(-len(lines[position]) // width)
+            texts.append(lines[position].ljust(fields * width))
+            count, position = count + fields, position + 1
+        sizes.intersection_update(size for size in (1, 2) if words == size * count)
+        if not sizes:
+            expected = f"as many values in every column of '{name}' as its headers say"
+            raise wrong(path, expected, f"{count} values in {words} words")
+        pieces.add(row, count)
+
+    headers = {0, 1}
+    while True:
+        if position >= len(lines) or not lines[position]:
+            expected = f"all columns of '{name}', and its end"
+            raise wrong(path, expected, "a file that is cut off")
+        line = lines[position]
+        column, row, words = _whole(pieces, line[:8], line[8:16], line[16:])
+        position += 1
+        if not pieces.begin(column):
             break
-    if offset is not None:
-        long = length > offset
-        out[long] = lines.data[lines.start[long] + offset] == ord(".")
-    out[:first] = False
-    return out
-
-
-def _end_of(path: Path, lines: _Lines, first: int, is_data: Bools, head: _Head) -> int:
-    """Return the line of the column beyond the last one."""
-    mark = b"%8d" % (head.columns + 1)
-    for k in np.flatnonzero(~is_data[first:]) + first:
-        text = lines.line(int(k))
-        if text[:8] == mark and len(text.rstrip()) > 16:
-            return int(k)
-    raise wrong(path, f"all columns of '{head.name}', and its end", "a file that is cut off")
-
-
-def _matrix(
-    path: Path, lines: _Lines, extent: tuple[int, int], is_data: Bools, head: _Head
-) -> Op4Matrix:
-    first, stop = extent
-    chosen = is_data[first:stop]
-    headers = np.flatnonzero(~chosen)
-    column = np.zeros(headers.size, np.int32)
-    row = np.zeros(headers.size, np.int32)
-    words = np.zeros(headers.size, np.int64)
-    place = np.zeros(headers.size, np.intp)
-    is_string = np.zeros(headers.size, bool)
-    listed, of_strings = [0], [0]
-    current = 0
-    try:
-        for n, k in enumerate((headers + first).tolist()):
-            text = lines.line(k).rstrip()
-            if len(text) > 16:
-                current, row[n] = int(text[:8]), int(text[8:16])
-                words[n] = int(text[16:]) if row[n] else 0
-                of_strings.append(0 if row[n] else int(text[16:]))
-                listed.append(current)
-            elif head.big:
-                words[n], row[n] = int(text[:8]) - 1, int(text[8:])
+        if row:
+            take(row, words)
+            continue
+        strings = count = 0
+        while position < len(lines) and len(lines[position]) <= 16 and lines[position]:
+            line, position = lines[position], position + 1
+            if pieces.big:
+                length, first = _whole(pieces, line[:8], line[8:])
             else:
-                words[n], row[n] = int(text) // STRING - 1, int(text) % STRING
-            column[n], place[n], is_string[n] = current, len(listed) - 1, len(text) <= 16
-    except (ValueError, OverflowError):
-        raise wrong(path, f"headers of columns in '{head.name}'", repr(text[:40])) from None
-    belongs = np.cumsum(~chosen)[chosen] - 1
-    if belongs.size and belongs.min() < 0:
-        raise wrong(path, f"the header of a column in '{head.name}'", "values")
-    positions = np.flatnonzero(chosen) + first
-    per_line = (lines.end[positions] - lines.start[positions] + head.width - 1) // head.width
-    values = _values(path, lines, positions, per_line, head.width)
-    length = np.bincount(belongs, weights=per_line, minlength=headers.size).astype(np.intp)
-    _check_order(path, head.name, listed, head.columns)
-    strings = np.bincount(place, np.where(is_string, words, 0), len(listed))
-    of_headers = (2 if head.big else 1) * np.bincount(place, is_string, len(listed))
-    whole = any((strings + k * of_headers == of_strings).all() for k in (0, 1))
-    if not whole or all((words != size * length).any() for size in (1, 2)):
-        expected = f"as many values in every column of '{head.name}' as its headers say"
-        raise wrong(path, expected, f"{int(length.sum())} values in {int(words.sum())} words")
-    rows = _runs(row.astype(np.intp) - 1, length)
-    columns = np.repeat(column - 1, length)
-    return Op4Matrix(head.rows, head.columns, head.precision, _without_zeros(rows, columns, values))
+                (word,) = _whole(pieces, line)
+                length, first = divmod(word, STRING)
+            length -= 1
+            take(first, length)
+            strings, count = strings + length, count + 1 + pieces.big
+        headers.intersection_update(k for k in (0, 1) if strings + k * count == words)
+        if not headers:
+            expected = f"as many words in column {column} of '{name}' as its header says"
+            raise wrong(path, expected, str(words))
+    if position >= len(lines) or b"." not in lines[position]:
+        raise wrong(path, f"a value behind the last column of '{name}'", "none")
+    try:
+        return fixed_width(b"".join(texts), width), position + 1
+    except ValueError as error:
+        raise wrong(path, f"numbers of {width} characters", reason(error)) from None
 
 
-def _values(path: Path, lines: _Lines, positions: Ints, per_line: Ints, width: int) -> Floats:
-    """Return the numbers of the lines at ``positions``, ``per_line`` in each of them."""
-    out = np.zeros(int(per_line.sum()))
-    place = np.cumsum(per_line) - per_line
-    for count in np.unique(per_line).tolist():
-        chosen = np.flatnonzero(per_line == count)
-        for k in range(0, chosen.size, CHUNK):
-            part = chosen[k : k + CHUNK]
-            index = lines.start[positions[part]][:, None] + np.arange(count * width)
-            text = np.minimum(index, lines.data.size - 1)
-            text = lines.data[text]
-            text[index >= lines.end[positions[part]][:, None]] = ord(" ")
-            try:
-                numbers = fixed_width(text.tobytes(), width)
-            except ValueError as error:
-                raise wrong(path, f"numbers of {width} characters", reason(error)) from None
-            out[place[part][:, None] + np.arange(count)] = numbers.reshape(-1, count)
-    return out
+def _whole(pieces: _Pieces, *fields: bytes) -> list[int]:
+    """Return the whole numbers in fields of a header."""
+    try:
+        return [int(field) for field in fields]
+    except ValueError:
+        found = repr(b"".join(fields).decode("latin-1")[:40])
+        raise wrong(pieces.path, f"headers of columns in '{pieces.name}'", found) from None

@@ -12,12 +12,11 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import scipy.sparse
 
-from modefront.complete import ended, once
-from modefront.errors import InputError, reason
+from modefront.errors import reason
+from modefront.inputs import ended, once
 from modefront.models.dofs import read_dofs
-from modefront.models.formats.scipy_npz import SCIPY_NPZ
+from modefront.models.files import read_entries
 from modefront.programs.base import (
     DOUBLE,
     Entries,
@@ -29,7 +28,6 @@ from modefront.programs.base import (
     wrong,
 )
 from modefront.programs.mesh import ProgramMesh, mesh_of, refuse_unknown_nodes
-from modefront.programs.text import matrix_market
 
 ADVICE = "the snippet in docs/import.md writes it"
 CELLS = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
@@ -44,29 +42,14 @@ def read(path: Path, options: JobOptions) -> Job:
         file = path.with_name(f"{path.name}_{letter}.npz")
         if not file.is_file():
             file = path.with_name(f"{path.name}_{letter}.mtx")
-        matrix = _matrix(existing(file, "a matrix of OpenSees", ADVICE))
+        matrix = read_entries(existing(file, "a matrix of OpenSees", ADVICE))
+        matrix.sum_duplicates()  # what a sum of elements is kept as
         if matrix.shape != (dofs.size, dofs.size):
             expected = f"{dofs.size} rows and columns, as '{table.name}' has rows"
             raise wrong(file, expected, " x ".join(map(str, matrix.shape)))
         entries = Entries(matrix.row, matrix.col, matrix.data)
         matrices.append(upper(file, dofs.size, entries, dofs))
     return Job(str(path), matrices[0], matrices[1], dofs, DOUBLE, mesh=_mesh(path))
-
-
-def _matrix(path: Path) -> scipy.sparse.coo_array:
-    if path.suffix == ".mtx":
-        return matrix_market(path)
-    try:
-        matrix = SCIPY_NPZ.read(path, None)
-    except InputError:
-        raise
-    except Exception as error:  # what is raised for a damaged file is not documented
-        raise wrong(path, "a sparse matrix of SciPy", reason(error)) from None
-    if matrix.dtype.kind not in "biuf":
-        raise wrong(path, "real numbers", str(matrix.dtype))
-    out = scipy.sparse.coo_array(matrix).astype(float)
-    out.sum_duplicates()  # what a sum of elements is kept as
-    return out
 
 
 def _mesh(path: Path) -> ProgramMesh | None:

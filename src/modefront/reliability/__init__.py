@@ -5,11 +5,10 @@ from typing import Final
 
 from modefront.reliability.additive import additive_rules
 from modefront.reliability.directional import directional_importance_sampling
-from modefront.reliability.estimate import Estimate, Estimator
+from modefront.reliability.estimate import Estimate, Estimator, StepEffect, step_effect
 from modefront.reliability.importance import importance_sampling
 from modefront.reliability.monte_carlo import monte_carlo
 from modefront.reliability.problem import FirstPassage, KanaiTajimi, Sided, StepError, WhiteNoise
-from modefront.reliability.step_effect import StepEffect, step_effect
 
 METHODS: Final = MappingProxyType(
     {

@@ -23,28 +23,10 @@ doi:10.1016/j.probengmech.2004.07.003, for the rules; the estimator is as derive
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from modefront.reliability.conditional import conditional
-from modefront.reliability.elementary import Failed
-from modefront.reliability.estimate import Estimate, estimate
-from modefront.reliability.problem import FirstPassage
-from modefront.response.checks import FloatArray
-
-
-def additive_rules(
-    problem: FirstPassage,
-    levels: ArrayLike,
-    samples: int,
-    seed: np.random.SeedSequence,
-    workers: int = 1,
-) -> tuple[Estimate, ...]:
-    """Estimate the first-passage probability at each of (n_levels,) barriers.
-
-    See `modefront.reliability.estimate.estimate` for errors.
-    """
-    prepare = conditional(_share)
-    return estimate("additive rules", prepare, problem, levels, samples, seed, workers)
+from modefront.reliability.elementary import Failed, conditional
+from modefront.reliability.estimate import Estimator
+from modefront.response.system import FloatArray
 
 
 def _share(failed: Failed, level: float, magnitudes: Iterator[FloatArray]) -> FloatArray:
@@ -55,3 +37,6 @@ def _share(failed: Failed, level: float, magnitudes: Iterator[FloatArray]) -> Fl
         end = failed.step + (output < failed.output)
         first &= ~np.any((x > level) & (steps < end[:, None]), axis=1)
     return first.astype(np.float64)
+
+
+additive_rules = Estimator("additive rules", conditional(_share))

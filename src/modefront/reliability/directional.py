@@ -19,33 +19,14 @@ Syst. Signal Process. 142 (2020) 106621, doi:10.1016/j.ymssp.2020.106621.
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike
 from scipy.special import gammaincc, gammainccinv
 
-from modefront.reliability.conditional import conditional
-from modefront.reliability.elementary import Failed
-from modefront.reliability.estimate import Estimate, estimate
-from modefront.reliability.problem import FirstPassage
-from modefront.response.checks import FloatArray
+from modefront.reliability.elementary import Failed, conditional
+from modefront.reliability.estimate import Estimator
+from modefront.response.system import FloatArray
 
 NEGLIGIBLE = 1e-22
 """The Q(ρ_oj) left out, relative to the largest: even millions of them are below rounding."""
-
-
-def directional_importance_sampling(
-    problem: FirstPassage,
-    levels: ArrayLike,
-    samples: int,
-    seed: np.random.SeedSequence,
-    workers: int = 1,
-) -> tuple[Estimate, ...]:
-    """Estimate the first-passage probability at each of (n_levels,) barriers.
-
-    See `modefront.reliability.estimate.estimate` for errors.
-    """
-    prepare = conditional(_share)
-    name = "directional importance sampling"
-    return estimate(name, prepare, problem, levels, samples, seed, workers)
 
 
 def _share(failed: Failed, level: float, magnitudes: Iterator[FloatArray]) -> FloatArray:
@@ -67,3 +48,6 @@ def _share(failed: Failed, level: float, magnitudes: Iterator[FloatArray]) -> Fl
         total += np.bincount(sample, gammaincc(half_nu, y), count)
     shortest = gammaincc(half_nu, energy * (level / largest) ** 2)
     return np.asarray(shortest / total, dtype=np.float64)
+
+
+directional_importance_sampling = Estimator("directional importance sampling", conditional(_share))

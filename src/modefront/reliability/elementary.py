@@ -15,13 +15,15 @@ The elementary failure itself is drawn with probability P_oj/ΣP. Nothing that i
 changes with its sign, so x_oj > b stands for both sides. z is the same for all levels.
 """
 
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 
 import numpy as np
 from scipy.special import log_ndtr, ndtr, ndtri_exp
 
-from modefront.reliability.gaussian import GaussianResponse, IndexArray
-from modefront.response.checks import FloatArray
+from modefront.reliability.estimate import Prepare, Weigh
+from modefront.reliability.gaussian import Convolution, GaussianResponse, IndexArray
+from modefront.response.system import FloatArray
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,13 +32,9 @@ class ElementaryFailures:
 
     Attributes
     ----------
-    response
-        The map from z to x.
-    level
-        Barrier b.
-    cumulative
-        (n_outputs · n,) sums of P_oj over the steps of one output after another.
-
+    response : the map from z to x
+    level : barrier b
+    cumulative : (n_outputs · n,) sums of P_oj over the steps of one output after another
     """
 
     response: GaussianResponse
@@ -55,11 +53,9 @@ class Failed:
 
     Attributes
     ----------
-    z
-        (samples, n_inputs, n) z*.
-    output, step
-        (samples,) o and j, counted from 0, of the elementary failure that each sample was given.
-
+    z : (samples, n_inputs, n) z*
+    output, step : (samples,) o and j, counted from 0, of the elementary failure that each sample
+        was given
     """
 
     z: FloatArray
@@ -80,13 +76,10 @@ def given_failure(failures: ElementaryFailures, z: FloatArray, uniform: FloatArr
 
     Parameters
     ----------
-    failures
-        The elementary failures, of which one at least has a probability above zero.
-    z
-        (samples, n_inputs, n) standard normal numbers.
-    uniform
-        (2, samples) uniform numbers in [0, 1): the choice of the elementary failure, and 1 - v.
-
+    failures : the elementary failures, of which one at least has a probability above zero
+    z : (samples, n_inputs, n) standard normal numbers
+    uniform : (2, samples) uniform numbers in [0, 1): the choice of the elementary failure, and 1 -
+        v
     """
     response, cumulative = failures.response, failures.cumulative
     # The last failure of non-zero probability is meant by a number that rounding brings to ΣP.
@@ -100,3 +93,31 @@ def given_failure(failures: ElementaryFailures, z: FloatArray, uniform: FloatArr
     a *= ((r - u) / sigma)[:, None, None]
     a += z
     return Failed(a, output, step)
+
+
+Share = Callable[[Failed, float, Iterator[FloatArray]], FloatArray]
+"""(samples, level, |x| by output) → the part of ΣP that each sample stands for, (samples,)."""
+
+
+def conditional(share: Share) -> Prepare:
+    """Return the weights ΣP · share, with the same normal numbers at every level."""
+
+    def prepare(response: GaussianResponse, levels: FloatArray) -> Weigh:
+        everywhere = [elementary_failures(response, level) for level in levels.tolist()]
+
+        def weigh(convolution: Convolution, rng: np.random.Generator, count: int) -> FloatArray:
+            z = rng.standard_normal((count, response.n_inputs, response.n_steps))
+            uniform = rng.random((2, count))
+            weights = np.zeros((levels.size, count))
+            for row, failures in zip(weights, everywhere, strict=True):
+                # At a barrier so high that P is below the smallest float, the estimate is zero;
+                # its coefficient of variation, infinite, says that there were no samples.
+                if failures.total > 0:
+                    failed = given_failure(failures, z, uniform)
+                    magnitudes = convolution.magnitudes(failed.z)
+                    row[:] = failures.total * share(failed, failures.level, magnitudes)
+            return weights
+
+        return weigh
+
+    return prepare

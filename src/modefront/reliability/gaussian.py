@@ -30,7 +30,7 @@ from scipy.fft import next_fast_len
 
 from modefront.reliability.problem import FirstPassage
 from modefront.reliability.pulse import pulse_response
-from modefront.response.checks import FloatArray
+from modefront.response.system import FloatArray
 
 IndexArray = NDArray[np.intp]
 
@@ -41,16 +41,12 @@ class GaussianResponse:
 
     Attributes
     ----------
-    modulation
-        (n,) q.
-    spectrum
-        (n_outputs, n_inputs, n_frequencies) transform of h, padded so that nothing wraps round.
-    backwards
-        (n_outputs, n_inputs, 2n - 1) h backwards in time, then zeros: the window of length n at
-        n - 1 - j is h_oi[j - k], k = 0 … n-1.
-    deviation
-        (n_outputs, n) σ.
-
+    modulation : (n,) q
+    spectrum : (n_outputs, n_inputs, n_frequencies) transform of h, padded so that nothing wraps
+        round
+    backwards : (n_outputs, n_inputs, 2n - 1) h backwards in time, then zeros: the window of length
+        n at n - 1 - j is h_oi[j - k], k = 0 … n-1
+    deviation : (n_outputs, n) σ
     """
 
     modulation: FloatArray
@@ -85,11 +81,8 @@ class Convolution:
 
     Parameters
     ----------
-    response
-        The map from z to x.
-    samples
-        The largest number of samples at once.
-
+    response : the map from z to x
+    samples : the largest number of samples at once
     """
 
     def __init__(self, response: GaussianResponse, samples: int) -> None:

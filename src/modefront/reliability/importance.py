@@ -16,28 +16,10 @@ eqs. 25-29.
 from collections.abc import Iterator
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from modefront.reliability.conditional import conditional
-from modefront.reliability.elementary import Failed
-from modefront.reliability.estimate import Estimate, estimate
-from modefront.reliability.problem import FirstPassage
-from modefront.response.checks import FloatArray
-
-
-def importance_sampling(
-    problem: FirstPassage,
-    levels: ArrayLike,
-    samples: int,
-    seed: np.random.SeedSequence,
-    workers: int = 1,
-) -> tuple[Estimate, ...]:
-    """Estimate the first-passage probability at each of (n_levels,) barriers.
-
-    See `modefront.reliability.estimate.estimate` for errors.
-    """
-    prepare = conditional(_share)
-    return estimate("importance sampling", prepare, problem, levels, samples, seed, workers)
+from modefront.reliability.elementary import Failed, conditional
+from modefront.reliability.estimate import Estimator
+from modefront.response.system import FloatArray
 
 
 def _share(failed: Failed, level: float, magnitudes: Iterator[FloatArray]) -> FloatArray:
@@ -46,3 +28,6 @@ def _share(failed: Failed, level: float, magnitudes: Iterator[FloatArray]) -> Fl
         exceedances += np.count_nonzero(x > level, axis=1)
     # The failure that was drawn is one of them, even where rounding leaves it on the barrier.
     return 1 / np.maximum(exceedances, 1)
+
+
+importance_sampling = Estimator("importance sampling", conditional(_share))

@@ -5,26 +5,10 @@ variation is sqrt((1 - P)/P). For checking the other methods where P is not smal
 """
 
 import numpy as np
-from numpy.typing import ArrayLike
 
-from modefront.reliability.estimate import Estimate, Weigh, estimate
+from modefront.reliability.estimate import Estimator, Weigh
 from modefront.reliability.gaussian import Convolution, GaussianResponse
-from modefront.reliability.problem import FirstPassage
-from modefront.response.checks import FloatArray
-
-
-def monte_carlo(
-    problem: FirstPassage,
-    levels: ArrayLike,
-    samples: int,
-    seed: np.random.SeedSequence,
-    workers: int = 1,
-) -> tuple[Estimate, ...]:
-    """Estimate the first-passage probability at each of (n_levels,) barriers by counting.
-
-    See `modefront.reliability.estimate.estimate` for errors.
-    """
-    return estimate("Monte Carlo", _prepare, problem, levels, samples, seed, workers)
+from modefront.response.system import FloatArray
 
 
 def _prepare(response: GaussianResponse, levels: FloatArray) -> Weigh:
@@ -36,3 +20,6 @@ def _prepare(response: GaussianResponse, levels: FloatArray) -> Weigh:
         return (largest > levels[:, None]).astype(np.float64)
 
     return weigh
+
+
+monte_carlo = Estimator("Monte Carlo", _prepare)

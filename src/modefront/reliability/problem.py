@@ -28,8 +28,7 @@ from enum import Enum
 import numpy as np
 
 from modefront.errors import Fault, InputError, wrong
-from modefront.response.checks import FloatArray, positive, real_array
-from modefront.response.system import ModalSystem
+from modefront.response.system import FloatArray, ModalSystem, positive, real_array
 from modefront.rounding import ACCUMULATED
 
 WHOLE = 1e-6
@@ -65,11 +64,8 @@ class WhiteNoise:
 
     Attributes
     ----------
-    density
-        Spectral density in (unit of load)²/(rad/s), positive.
-    sided
-        One- or two-sided.
-
+    density : spectral density in (unit of load)²/(rad/s), positive
+    sided : one- or two-sided
     """
 
     density: float
@@ -93,11 +89,8 @@ class KanaiTajimi:
 
     Attributes
     ----------
-    omega
-        ω_g, circular frequency of the soil in rad/s, positive.
-    zeta
-        ζ_g, its damping ratio, positive.
-
+    omega : ω_g, circular frequency of the soil in rad/s, positive
+    zeta : ζ_g, its damping ratio, positive
     """
 
     omega: float
@@ -119,24 +112,17 @@ class FirstPassage:
 
     Attributes
     ----------
-    system
-        The structure, with n_inputs loads and n_outputs responses.
-    noise
-        The white noise at its inputs.
-    duration
-        T in s, a whole number of time steps.
-    time_step
-        Δt in s, at most a quarter of the shortest period of a mode or of the filter.
-    filter
-        What the noise passes on its way to every input, or None.
-    modulation
-        q, mapping an (n,) array of times in s to (n,) factors; None for a constant 1.
+    system : the structure, with n_inputs loads and n_outputs responses
+    noise : the white noise at its inputs
+    duration : T in s, a whole number of time steps
+    time_step : δt in s, at most a quarter of the shortest period of a mode or of the filter
+    filter : what the noise passes on its way to every input, or None
+    modulation : q, mapping an (n,) array of times in s to (n,) factors; None for a constant 1
 
     Raises
     ------
     InputError
         For durations or steps that are not positive, do not fit, or are too long.
-
     """
 
     system: ModalSystem

@@ -18,8 +18,7 @@ import numpy as np
 from scipy.linalg import expm
 
 from modefront.reliability.problem import FirstPassage, KanaiTajimi
-from modefront.response.checks import FloatArray
-from modefront.response.system import ModalSystem
+from modefront.response.system import FloatArray, ModalSystem
 
 
 def pulse_response(problem: FirstPassage) -> FloatArray:

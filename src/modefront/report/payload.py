@@ -122,7 +122,9 @@ def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
         "kind": kinds,
         "pareto": data["pareto"].values.astype(bool).tolist(),
         "converged": data["converged"].values.astype(bool).tolist(),
-        "piece": _branch(data),
+        "piece": (
+            [int(x) for x in data["piece"].values] if "piece" in data else [1] * data.sizes["point"]
+        ),
         "order": front or [i for i, kind in enumerate(kinds) if kind != "nominal"] or [0],
         **{name: plain(data[name].values) for name in POINTS},
         **{key: _optional(data, name) for key, name in OPTIONAL.items()},
@@ -165,12 +167,6 @@ def _texts(data: xr.Dataset, name: str) -> list[str]:
 
 def _optional(data: xr.Dataset, name: str) -> Any:
     return plain(data[name].values) if name in data else None
-
-
-def _branch(data: xr.Dataset) -> list[int]:
-    if "piece" in data:
-        return [int(x) for x in data["piece"].values]
-    return [1] * data.sizes["point"]
 
 
 def _measured_std(data: xr.Dataset) -> Floats:

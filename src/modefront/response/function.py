@@ -1,4 +1,4 @@
-"""Frequency response functions by modal superposition with a static correction.
+r"""Frequency response functions by modal superposition with a static correction.
 
 With p(t) = e^{iωt} in the equations of `modefront.response.system`, the receptance between an
 output and an input is (Ewins, *Modal Testing*, 2nd ed., eq. 2.65; the last term, for the modes
@@ -19,16 +19,23 @@ absolute accelerance   2   Y_b   absolute acceleration (the transmissibility); b
 =====================  ==  ====  ===========================================================
 
 T is analytic in ω, so its derivatives are exact as well; the peaks rest on them.
+
+The slope of |T(ω)|², whose zeros are the peaks, and its accuracy.
+
+    g = d|T|²/dω = 2 Re(T* T'),        g' = 2 (|T'|² + Re(T* T'')),
+
+with T of `modefront.response.function`. What rounding leaves uncertain of g is bounded by the
+same sums with every term taken by its absolute value, and by g' times the spacing of floats at ω.
 """
 
+from dataclasses import dataclass
 from enum import Enum
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
 from modefront.errors import wrong
-from modefront.response.checks import no_negative, real_array
-from modefront.response.system import ModalSystem
+from modefront.response.system import FloatArray, ModalSystem, no_negative, real_array
 
 ComplexArray = NDArray[np.complex128]
 
@@ -54,12 +61,9 @@ def frequency_response(
 
     Parameters
     ----------
-    system
-        The structure, with m modes, n_inputs loads and n_outputs responses.
-    omega
-        (n,) circular frequencies in rad/s, none negative.
-    quantity
-        What is set against the load.
+    system : the structure, with m modes, n_inputs loads and n_outputs responses
+    omega : (n,) circular frequencies in rad/s, none negative
+    quantity : what is set against the load
 
     Returns
     -------
@@ -70,7 +74,6 @@ def frequency_response(
     InputError
         For frequencies that are negative, or meet an undamped mode; for absolute acceleration of
         a system that does not say how its outputs move with the base.
-
     """
     lines = no_negative("omega", real_array("omega", omega, (None,), "frequencies"), "frequency")
     return derivatives(system, lines.astype(np.complex128), quantity)[0]
@@ -113,3 +116,37 @@ def _rigid(system: ModalSystem, quantity: ResponseQuantity) -> NDArray[np.float6
         expected = "the motion of the outputs with the base for absolute accelerance"
         raise wrong("rigid", expected, None)
     return system.rigid
+
+
+@dataclass(frozen=True, eq=False)
+class Slope:
+    """g between the one output and the one input of `pair`, and the error by rounding."""
+
+    pair: ModalSystem
+    quantity: ResponseQuantity
+
+    def both(self, omega: FloatArray) -> tuple[FloatArray, FloatArray]:
+        """Return g and g'."""
+        s = omega.astype(np.complex128)
+        t, t1, t2 = (value[:, 0, 0] for value in derivatives(self.pair, s, self.quantity))
+        return 2 * (t.conj() * t1).real, 2 * (abs(t1) ** 2 + (t.conj() * t2).real)
+
+    def rounding(self, omega: FloatArray, g1: FloatArray) -> FloatArray:
+        """Return the bound of the error of g by rounding of the terms of T and of ω.
+
+        Modes that cancel leave a small T that is no more accurate than they are.
+        """
+        pair = self.pair
+        load = np.concatenate([abs(pair.input), abs(pair.residual_flexibility())])[:, 0]
+        shape = np.append(abs(pair.output[0]), 1.0)
+        w = omega[:, None]
+        d = (pair.omega - w) * (pair.omega + w) + 2j * pair.zeta * pair.omega * w
+        inverse = np.hstack([1 / abs(d), np.ones_like(w)])
+        inverse1 = np.hstack([2 * (w + pair.zeta * pair.omega) / abs(d) ** 2, np.zeros_like(w)])
+        alpha, alpha1 = inverse @ (shape * load), inverse1 @ (shape * load)
+        s = self.quantity.order
+        rigid = 0.0 if pair.rigid is None else abs(pair.rigid[0, 0])
+        t = omega**s * alpha + rigid
+        t1 = omega**s * alpha1 + s * omega ** max(s - 1, 0) * alpha
+        size: FloatArray = 8 * np.finfo(float).eps * (t * t1 + omega * abs(g1))
+        return size

@@ -28,10 +28,8 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from modefront.errors import wrong
-from modefront.response.checks import FloatArray
-from modefront.response.function import ResponseQuantity, derivatives
-from modefront.response.slope import Slope
-from modefront.response.system import ModalSystem
+from modefront.response.function import ResponseQuantity, Slope, derivatives
+from modefront.response.system import FloatArray, ModalSystem
 
 DEGREE = 24
 """Degree of the series; twice as many intervals with half of it cost about the same."""
@@ -59,13 +57,9 @@ class Peak:
 
     Attributes
     ----------
-    omega
-        Where it is, rad/s.
-    amplitude
-        |T| there, in units of output per unit load.
-    phase
-        arg T there, rad.
-
+    omega : where it is, rad/s
+    amplitude : |T| there, in units of output per unit load
+    phase : arg T there, rad
     """
 
     omega: float
@@ -90,14 +84,10 @@ def peaks(
 
     Parameters
     ----------
-    system
-        The structure; every mode in the band damped and above 0 Hz.
-    quantity
-        What is set against the load.
-    output, input
-        Which response and which load, counted from 0.
-    band
-        Lowest and highest circular frequency, rad/s; None for 0 to twice the highest mode's. The
+    system : the structure; every mode in the band damped and above 0 Hz
+    quantity : what is set against the load
+    output, input : which response and which load, counted from 0
+    band : lowest and highest circular frequency, rad/s; None for 0 to twice the highest mode's. The
         ends are no peaks, however large |T| is there.
 
     Raises
@@ -105,7 +95,6 @@ def peaks(
     InputError
         For undamped modes in the band (their peaks are infinite), an unknown output or input, an
         empty band.
-
     """
     pair = _pair(system, output, input)
     low, high = (0.0, 2 * float(pair.omega.max())) if band is None else band

@@ -20,12 +20,60 @@ Y_b         motion of the outputs with the base, output · r    ``rigid``
 ==========  =================================================  ===========
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
 
 from modefront.errors import wrong
-from modefront.response.checks import FloatArray, no_negative, real_array
+
+FloatArray = NDArray[np.float64]
+
+
+def real_array(
+    name: str, value: ArrayLike, shape: Sequence[int | None], meaning: str
+) -> FloatArray:
+    """Return `value` as a read-only array of finite floats of the given shape.
+
+    `shape` has one entry a dimension, None where any size of at least one is right; `meaning`
+    says in words what the dimensions are.
+    """
+    array = np.array(value, dtype=np.float64)
+    fits = array.ndim == len(shape) and all(
+        size == required or (required is None and size > 0)
+        for size, required in zip(array.shape, shape, strict=True)
+    )
+    if not fits:
+        sizes = ", ".join("n" if size is None else str(size) for size in shape)
+        raise wrong(name, f"shape ({sizes}) ({meaning})", array.shape)
+    if not np.all(np.isfinite(array)):
+        index = tuple(int(i) for i in np.argwhere(~np.isfinite(array))[0])
+        raise wrong(name, "finite numbers", f"{array[index]} at index {index}")
+    array.setflags(write=False)
+    return array
+
+
+def positive(name: str, value: float, unit: str) -> float:
+    """Return `value` if it is a finite number above zero."""
+    if not (np.isfinite(value) and value > 0):
+        raise wrong(name, f"a positive number ({unit})", value)
+    return float(value)
+
+
+def positive_count(name: str, value: int) -> int:
+    """Return `value` if it is a whole number above zero."""
+    if not (np.isfinite(value) and value >= 1 and int(value) == value):
+        raise wrong(name, "a whole number of at least 1", value)
+    return int(value)
+
+
+def no_negative(name: str, array: FloatArray, meaning: str) -> FloatArray:
+    """Return `array` if none of its elements is below zero."""
+    if np.any(array < 0):
+        index = tuple(int(i) for i in np.argwhere(array < 0)[0])
+        raise wrong(name, f"no negative {meaning}", f"{array[index]} at index {index}")
+    return array
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,27 +82,20 @@ class ModalSystem:
 
     Attributes
     ----------
-    omega
-        (m,) natural circular frequencies in rad/s; zero for a rigid-body mode.
-    zeta
-        (m,) damping ratios, none negative.
-    input
-        (m, n_inputs) modal loads: φᵀf for forces, -φᵀM r for base acceleration.
-    output
-        (n_outputs, m) mode shapes at the outputs.
-    static
-        (n_outputs, n_inputs) full static response to the loads, or None where the modes are all
-        there is: its excess over the static response of the modes given is the correction for
+    omega : (m,) natural circular frequencies in rad/s; zero for a rigid-body mode
+    zeta : (m,) damping ratios, none negative
+    input : (m, n_inputs) modal loads: φᵀf for forces, -φᵀM r for base acceleration
+    output : (n_outputs, m) mode shapes at the outputs
+    static : (n_outputs, n_inputs) full static response to the loads, or None where the modes are
+        all there is: its excess over the static response of the modes given is the correction for
         those cut off. With rigid-body modes there is no static response.
-    rigid
-        (n_outputs, n_inputs) displacement of the outputs for a unit displacement of the base, or
-        None where the load is a force; needed for absolute acceleration only.
+    rigid : (n_outputs, n_inputs) displacement of the outputs for a unit displacement of the base,
+        or None where the load is a force; needed for absolute acceleration only
 
     Raises
     ------
     InputError
         For wrong shapes, numbers that are not finite, negative frequencies or damping.
-
     """
 
     omega: FloatArray

@@ -8,13 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront.diagnosis.comparison import COMPARED, Comparison, compare
-from modefront.diagnosis.damping import DampingInPercent
 from modefront.diagnosis.diagnose import diagnose
-from modefront.diagnosis.groups import UnusedGroup
 from modefront.diagnosis.pairs import BeyondCandidates, DistantPair, UnseenMode
+from modefront.diagnosis.places import UnusedGroup
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
 from modefront.diagnosis.sets import SetFactor
-from modefront.diagnosis.units import FrequencyFactor, OtherQuantity
+from modefront.diagnosis.units import DampingInPercent, FrequencyFactor, OtherQuantity
 from modefront.diagnosis.words import Mistake
 from modefront.diagnosis.words import in_words as mistake_in_words
 from modefront.errors import Fault, InputError, ModelError

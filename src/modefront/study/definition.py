@@ -8,8 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
-from modefront.diagnosis.groups import UnusedGroup
-from modefront.diagnosis.places import DataDirection
+from modefront.diagnosis.places import DataDirection, UnusedGroup
 from modefront.errors import Fault, InputError, refuse
 from modefront.front.given import Weighted, label_faults
 from modefront.front.options import Pareto

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from contextlib import AbstractContextManager
 
-from modefront.work.backend import Backend
+from modefront.work.task import Backend
 from modefront.work.workers import backend
 
 WARM = "modefront.front.pareto", "modefront.analysis.front"

@@ -42,12 +42,10 @@ from modefront.study.processes import processes
 from modefront.study.whereabouts import note_study
 from modefront.uncertainty.noise import noise_floor
 from modefront.uncertainty.options import Uncertainty
-from modefront.work.backend import Backend
-from modefront.work.lock import locked
 from modefront.work.progress import Progress
 from modefront.work.run import Run
-from modefront.work.store import FOLDER, Store
-from modefront.work.task import Task
+from modefront.work.store import FOLDER, Store, locked
+from modefront.work.task import Backend, Task
 
 if TYPE_CHECKING:
     import xarray as xr

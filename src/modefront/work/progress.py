@@ -10,7 +10,9 @@ without a plan they take as long as all tasks.
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
+from contextlib import contextmanager
+from contextvars import ContextVar
 from dataclasses import dataclass, field
 
 from modefront.work.costs import Costs
@@ -125,3 +127,36 @@ class Progress:
 
     def _met(self, stage: str) -> int:
         return self._done.get(stage, 0) + self._running.get(stage, 0)
+
+
+ITERATION = "iteration "
+"""What a note begins with that is a detail of the one before it."""
+
+Listener = Callable[[str], None]
+
+
+def _ignore(_: str) -> None:
+    """Ignore a note."""
+
+
+_LISTENER: ContextVar[Listener] = ContextVar("listener", default=_ignore)
+
+
+def note(text: str) -> None:
+    """Tell the listener the present step of the running task."""
+    _LISTENER.get()(text)
+
+
+def note_iteration(number: int) -> None:
+    """Tell the listener which iteration the search at work has come to."""
+    note(f"{ITERATION}{number}")
+
+
+@contextmanager
+def listening(listener: Listener) -> Iterator[None]:
+    """Send notes to a listener until the context ends."""
+    before = _LISTENER.set(listener)
+    try:
+        yield
+    finally:
+        _LISTENER.reset(before)

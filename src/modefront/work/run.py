@@ -6,11 +6,10 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import Any
 
-from modefront.work.backend import Backend, Done, InTurn, computed
 from modefront.work.costs import Costs, total
 from modefront.work.progress import Progress
 from modefront.work.store import Store
-from modefront.work.task import R, Task
+from modefront.work.task import Backend, Done, InTurn, R, Task, computed
 
 
 @dataclass

@@ -10,13 +10,21 @@ from __future__ import annotations
 import hashlib
 import io
 import json
+import os
+import socket
+import warnings
+from collections.abc import Iterator
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
 import numpy as np
+from filelock import FileLock, SoftFileLock, Timeout
 
-from modefront.outputs import write_bytes
+from modefront.errors import Fault, InputError, reason
+from modefront.outputs import write_bytes, write_text
+from modefront.text import NAME, clean
 from modefront.work.codec import decode, encode
 from modefront.work.costs import Costs
 from modefront.work.task import Task
@@ -87,3 +95,62 @@ def _file_name(task: Task[Any]) -> str:
 def hash_text(text: str) -> str:
     """Return a short hash that does not change between runs."""
     return hashlib.sha256(text.encode()).hexdigest()[:16]
+
+
+FILE = "lock"
+"""File that is locked; it stays, since a lock on a file that is removed keeps nobody out."""
+
+HOLDER = "lock-holder"
+"""File that says which process holds the lock."""
+
+PATIENCE = 0.5
+"""Seconds in which a run that is just ending may still let go."""
+
+LONGEST_HOLDER = 400
+"""Bytes that say who holds a lock, at most."""
+
+
+@contextmanager
+def locked(folder: Path) -> Iterator[None]:
+    """Hold the lock of a folder of results while a run works in it; its tasks have a folder.
+
+    It is the operating system's lock on a file, which ends with the process that holds it, however
+    that ends. On drives without such locks the file itself is the lock; `filelock` takes it from a
+    process that has certainly ended, one of the same machine and namespace, and never for its age.
+
+    Raises InputError where another run holds it, and where the folder cannot be written to.
+    """
+    path, holder = folder / FOLDER / FILE, folder / FOLDER / HOLDER
+    lock = FileLock(path, timeout=PATIENCE)
+    try:
+        with warnings.catch_warnings(action="ignore"):  # of drives without locks
+            lock.acquire()
+        write_text(holder, f"process {os.getpid()} on {socket.gethostname()}")
+    except Timeout:
+        found = f"{_run(holder)}: wait until it has ended, or choose another folder with -o"
+        if isinstance(lock, SoftFileLock):
+            found += f"; if it was killed, remove '{path}', as this drive has no locks"
+        raise InputError(Fault(str(folder), "folder", "no other run in it", found)) from None
+    except OSError as error:
+        lock.release()
+        expected = "a folder that can be written to"
+        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
+    try:
+        yield
+    finally:
+        with suppress(OSError):  # the folder may have been taken away
+            holder.unlink()
+        lock.release()
+
+
+def _run(holder: Path) -> str:
+    """Return which run holds a lock."""
+    try:
+        if holder.is_file():  # a pipe in its place would be waited for
+            with holder.open("rb") as stream:
+                return clean(
+                    f"the run of {stream.read(LONGEST_HOLDER).decode('utf-8', 'replace')}", NAME
+                )
+    except OSError:
+        pass
+    return "another run"

@@ -8,12 +8,15 @@ task with a seed passes a generator of its own to its function.
 
 from __future__ import annotations
 
+import time
 import zlib
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Generic, Protocol, TypeVar
 
 import numpy as np
+
+from modefront.work.costs import Costs, counted
 
 Part = str | int | tuple[int, ...]
 
@@ -123,3 +126,48 @@ class Within:
 def seed_sequence(seed: int, *parts: Part) -> np.random.SeedSequence:
     """Return the seed of the random numbers that belong to a part of a run with this seed."""
     return np.random.SeedSequence([seed, zlib.crc32("-".join(map(str, parts)).encode())])
+
+
+@dataclass(frozen=True)
+class Done:
+    """The result of a task, what it cost, and the seconds that it took."""
+
+    result: Any
+    costs: Costs
+    seconds: float
+
+
+class Backend(Protocol):
+    """Computes tasks."""
+
+    @property
+    def workers(self) -> int:
+        """Number of tasks that are computed at the same time."""
+
+    def compute(
+        self, tasks: Sequence[Task[Any]], begun: Callable[[int], None], /
+    ) -> Iterator[tuple[int, Done]]:
+        """Yield positions and results of tasks as they end; ``begun`` is called at their start."""
+
+
+def computed(task: Task[Any]) -> Done:
+    """Return the result of a task, computed here and now."""
+    began = time.perf_counter()
+    with counted() as costs:
+        result = task()
+    return Done(result, costs, time.perf_counter() - began)
+
+
+@dataclass(frozen=True)
+class InTurn:
+    """Computes one task after another in the calling process."""
+
+    workers: int = 1
+
+    def compute(
+        self, tasks: Sequence[Task[Any]], begun: Callable[[int], None], /
+    ) -> Iterator[tuple[int, Done]]:
+        """Yield the results in the order of the tasks, each as it is wanted."""
+        for k, task in enumerate(tasks):
+            begun(k)
+            yield k, computed(task)

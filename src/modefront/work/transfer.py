@@ -17,8 +17,7 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol, TypeGuard, TypeVar
 from weakref import ref
 
-from modefront.work.backend import Done, computed
-from modefront.work.task import Task
+from modefront.work.task import Done, Task, computed
 
 KNOWN = 3
 """Shared objects that a process keeps at most: those used last."""

@@ -15,15 +15,14 @@ from concurrent.futures import FIRST_COMPLETED, Future, wait
 from contextlib import contextmanager
 from dataclasses import dataclass, field, replace
 from math import ceil
-from pathlib import Path
 from pickle import PicklingError
 from typing import Any
 
 from modefront.errors import Fault, InputError, UnfinishedError, wrong
-from modefront.work.backend import Backend, Done, InTurn, computed
+from modefront.inputs import available_memory
 from modefront.work.costs import spend
 from modefront.work.pools import Cluster, LocalPool, Loss, Pool
-from modefront.work.task import Key, Task
+from modefront.work.task import Backend, Done, InTurn, Key, Task, computed
 from modefront.work.transfer import Message, Reply, Sender
 
 SHORT = 0.02
@@ -265,17 +264,6 @@ def _kind(task: Task[Any]) -> str:
     """Return the kind of a task: tasks of one kind take about as long."""
     functions = [task.function, *(x for x in task.arguments[:1] if callable(x))]
     return " ".join([task.stage, *(function.__qualname__ for function in functions)])
-
-
-def available_memory() -> float:
-    """Return the bytes of memory that are free on this machine, as far as is known."""
-    try:
-        for line in Path("/proc/meminfo").read_text().splitlines():
-            if line.startswith("MemAvailable:"):
-                return 1024.0 * int(line.split()[1])
-    except OSError:  # not on every system
-        pass
-    return float("inf")
 
 
 @contextmanager

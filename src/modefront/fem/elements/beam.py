@@ -31,8 +31,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.fem.elements.common import ElementMatrices, Part, attachment, congruence
-from modefront.fem.material import Material
-from modefront.fem.section import Section
+from modefront.fem.section import Material, Section
 
 AXIAL = np.array([0, 6])
 TORSION = np.array([3, 9])
@@ -100,15 +99,12 @@ def beam(
 
     Parameters
     ----------
-    X
-        Nodes (elements, 2, 3).
-    material, section
-        The same for all elements.
-    orientation
-        Vectors (elements, 3), not parallel to the beams; local y is their part across the axis.
-    r
-        Offsets (2, 3) of the flexible part's ends from the nodes, global. Along the axis it is
-        a rigid end zone (without mass), across it an eccentricity.
+    X : nodes (elements, 2, 3)
+    material, section : the same for all elements
+    orientation : vectors (elements, 3), not parallel to the beams; local y is their part across the
+        axis
+    r : offsets (2, 3) of the flexible part's ends from the nodes, global. Along the axis it is a
+        rigid end zone (without mass), across it an eccentricity.
     """
     ends = X + r
     R = axes(ends, orientation)

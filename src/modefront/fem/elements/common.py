@@ -32,10 +32,8 @@ class Part:
 
     Attributes
     ----------
-    power
-        Exponent of the thickness; 0 where there is none.
-    matrices
-        (elements, dof, dof), symmetric, in global axes; DOFs node by node.
+    power : exponent of the thickness; 0 where there is none
+    matrices : (elements, dof, dof), symmetric, in global axes; DOFs node by node
     """
 
     power: int
@@ -81,10 +79,8 @@ def attachment(R: Floats, r: Floats) -> Floats:
 
     Parameters
     ----------
-    R
-        Local axes, rows, (elements, 3, 3).
-    r
-        Offsets of the element's points from its nodes, global, (elements, nodes, 3).
+    R : local axes, rows, (elements, 3, 3)
+    r : offsets of the element's points from its nodes, global, (elements, nodes, 3)
     """
     count, nodes = r.shape[:2]
     A = np.zeros((count, nodes, 6, nodes, 6))
@@ -111,10 +107,8 @@ def solid_stiffness(g: Floats, weight: Floats, E: float, nu: float) -> Floats:
 
     Parameters
     ----------
-    g, weight
-        Gradients of the shape functions (elements, points, 3, nodes); w det J.
-    E, nu
-        Young's modulus and Poisson's ratio.
+    g, weight : gradients of the shape functions (elements, points, 3, nodes); w det J
+    E, nu : Young's modulus and Poisson's ratio
     """
     count, points, _, nodes = g.shape
     lam, G = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
@@ -133,8 +127,7 @@ def solid_mass(N: Floats, weight: Floats) -> Floats:
 
     Parameters
     ----------
-    N, weight
-        Shape functions (points, nodes) and w det J (elements, points).
+    N, weight : shape functions (points, nodes) and w det J (elements, points)
     """
     count, nodes = len(weight), N.shape[1]
     products = (N[:, :, None] * N[:, None, :]).reshape(len(N), -1)

@@ -19,12 +19,9 @@ def spring(axis: Floats, stiffness: float, ends: int) -> ElementMatrices:
 
     Parameters
     ----------
-    axis
-        Components of one unit vector a spring in the DOFs that it acts on.
-    stiffness
-        Force per length, or moment per angle.
-    ends
-        1 to the ground, 2 between nodes.
+    axis : components of one unit vector a spring in the DOFs that it acts on
+    stiffness : force per length, or moment per angle
+    ends : 1 to the ground, 2 between nodes
     """
     s = np.concatenate([axis, -axis][:ends], axis=1)
     K = stiffness * (s[:, :, None] * s[:, None, :])
@@ -38,14 +35,10 @@ def lumped_mass(
 
     Parameters
     ----------
-    m, inertia
-        Mass and inertia about the centre, global axes.
-    c
-        Offset (3,) of the centre from the node.
-    count
-        How many.
-    directions
-        d: 3 for the displacements only, 6 with the rotations.
+    m, inertia : mass and inertia about the centre, global axes
+    c : offset (3,) of the centre from the node
+    count : how many
+    directions : d: 3 for the displacements only, 6 with the rotations
     """
     C = cross_matrix(c)
     M = np.zeros((6, 6))

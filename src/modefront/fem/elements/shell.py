@@ -31,7 +31,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.fem.elements import membrane, plate
 from modefront.fem.elements.common import ElementMatrices, Part, attachment, congruence
-from modefront.fem.material import Material
+from modefront.fem.section import Material
 
 IN_PLANE = (0, 1, 5)
 OUT_OF_PLANE = (2, 3, 4)
@@ -61,12 +61,9 @@ def shell(X: Floats, material: Material, thickness: float, offset: float) -> Ele
 
     Parameters
     ----------
-    X
-        Nodes (elements, 3 or 4, 3), counter-clockwise about the normal.
-    material, thickness
-        Isotropic; thickness in units of length.
-    offset
-        Distance of the mid-surface from the nodes along the normal.
+    X : nodes (elements, 3 or 4, 3), counter-clockwise about the normal
+    material, thickness : isotropic; thickness in units of length
+    offset : distance of the mid-surface from the nodes along the normal
     """
     R = axes(X)
     x, height = project(X, R)

@@ -34,8 +34,8 @@ from modefront.linalg.affine import DenseAffine
 from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, combine_all, gram
 from modefront.models.reduced import completeness
+from modefront.modes.derivatives import Shifted
 from modefront.modes.sparse import lowest
-from modefront.modes.spectrum import Shifted
 
 UNSOUND = 0.1
 """Energy of a direction that should have the energy 1, below which it is rounding."""

@@ -55,8 +55,8 @@ from modefront.linalg.products import combine, gram, times
 from modefront.models.reduced.basis import Basis, residuals
 from modefront.models.reduced.corrections import Factor
 from modefront.modes import dense
-from modefront.modes.spectrum import Shifted
-from modefront.modes.subspace import orthonormal
+from modefront.modes.derivatives import Shifted
+from modefront.modes.sparse import orthonormal
 from modefront.modes.tridiagonal import LowestModes
 
 FOUND = 1 / 3

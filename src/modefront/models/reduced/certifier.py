@@ -24,7 +24,7 @@ from modefront.models.reduced.certificate import (
 )
 from modefront.models.reduced.corrections import Factor, together
 from modefront.modes import dense
-from modefront.modes.spectrum import Shifted
+from modefront.modes.derivatives import Shifted
 from modefront.work.costs import Costs, spend, uncounted
 from modefront.work.transfer import shared
 

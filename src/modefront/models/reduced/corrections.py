@@ -38,7 +38,7 @@ from modefront._typing import Floats, Ints
 from modefront.linalg.pencil import Pencil
 from modefront.models.reduced.basis import Basis, extended, joined, residuals, trimmed
 from modefront.modes import dense
-from modefront.modes.spectrum import Shifted
+from modefront.modes.derivatives import Shifted
 
 SLOWEST = 0.5
 """Ratio of steps at most that what is left is extrapolated with."""

@@ -19,7 +19,7 @@ from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, gram, times
 from modefront.models.reduced.basis import Basis
 from modefront.models.reduced.corrections import Factor
-from modefront.modes.subspace import orthonormal
+from modefront.modes.sparse import orthonormal
 
 COLUMNS = 3
 """Eigenvectors that are sought together, and random directions."""

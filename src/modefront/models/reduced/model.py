@@ -28,9 +28,9 @@ from modefront.models.reduced.corrections import (
 )
 from modefront.models.reduced.instability import unstable
 from modefront.modes import dense
-from modefront.modes.full import FullModes
+from modefront.modes.derivatives import Shifted
+from modefront.modes.eigensolvers import FullModes
 from modefront.modes.result import Modes
-from modefront.modes.spectrum import Shifted
 from modefront.work.costs import Costs, counted, spend, uncounted
 from modefront.work.transfer import shared
 

@@ -7,8 +7,7 @@ from collections.abc import Sequence
 from modefront.errors import suggestion
 from modefront.models.base import Model
 from modefront.models.chain import chain
-from modefront.study.kinds.base import ModelKind
-from modefront.study.kinds.sensors import read_outputs, read_sensors
+from modefront.study.kinds.sensors import ModelKind, read_outputs, read_sensors
 from modefront.toml import Table
 
 

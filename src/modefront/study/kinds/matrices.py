@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, replace
-from pathlib import Path
+from dataclasses import replace
 
 import numpy as np
 import scipy.sparse
@@ -12,24 +11,22 @@ import scipy.sparse
 from modefront.errors import InputError, suggestion
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs
-from modefront.models.files import matrix_size, read_matrix
+from modefront.models.files import read_matrix
 from modefront.models.geometry import Cells, Geometry
 from modefront.models.matrices import matrices
 from modefront.models.terms import BASE, exponents_of, form_of
 from modefront.programs.mesh import ProgramMesh, read_mesh
-from modefront.study.kinds.base import ModelKind
-from modefront.study.kinds.sensors import read_base, read_outputs, read_sensors
+from modefront.study.kinds.sensors import ModelKind, read_base, read_outputs, read_sensors
 from modefront.toml import Table
 
 
 def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     """Return the model that a ``[model]`` table describes, or None where it has faults."""
     before = len(table.faults)
-    files = {key: _terms(table, key, parameters) for key in ("stiffness", "mass")}
-    size = _common_size(table, files)
-    stiffness, mass = (_matrices(terms, size) for terms in files.values())
+    terms = {key: _terms(table, key, parameters) for key in ("stiffness", "mass")}
+    size = _common_size(table, terms)
     if size is not None:
-        _check_entries(table, {"stiffness": stiffness, "mass": mass}, size)
+        _check_entries(table, terms, size)
     dofs, mesh = _dofs(table, size), _mesh(table)
     sensors = read_sensors(table, size, dofs=dofs)
     floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
@@ -38,37 +35,11 @@ def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     if len(table.faults) > before or sensors is None:
         return None
     model = matrices(
-        parameters, stiffness, mass, sensors, floating=floating, outputs=outputs, base=base
+        parameters, **terms, sensors=sensors, floating=floating, outputs=outputs, base=base
     )
     if dofs is None or mesh is None:
         return model
     return replace(model, geometry=_geometry(dofs, mesh, model.selection))
-
-
-@dataclass(frozen=True)
-class _Term:
-    """A term of an affine matrix: the table that names it, its file, and what that announces.
-
-    Attributes
-    ----------
-    table, key : where the file is named
-    path, name : the file, and the name of the matrix in it, None for the only one
-    size : number of rows that the file announces
-    """
-
-    table: Table
-    key: str
-    path: Path
-    name: str | None
-    size: int
-
-    def matrix(self) -> scipy.sparse.coo_array | None:
-        """Return the matrix; None with a fault where it cannot be read."""
-        try:
-            return read_matrix(self.path, self.name)
-        except InputError as error:
-            _note(self.table, self.key, error)
-            return None
 
 
 def _note(table: Table, key: str, error: InputError) -> None:
@@ -78,17 +49,11 @@ def _note(table: Table, key: str, error: InputError) -> None:
     ]
 
 
-def _matrices(terms: Mapping[str, _Term], size: int | None) -> dict[str, scipy.sparse.coo_array]:
-    """Return the matrices that can be read; none of them is opened that has another size."""
-    chosen = {name: term.matrix() for name, term in terms.items() if term.size == size}
-    return {name: A for name, A in chosen.items() if A is not None}
-
-
-def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, _Term]:
-    """Return the terms of one table, each with the size that its file announces."""
+def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy.sparse.coo_array]:
+    """Return the matrices of one table that can be read, by their names."""
     expected = f"a table of files, {BASE} = ... and one a parameter"
     table = model.table(key, expected)
-    out: dict[str, _Term] = {}
+    out: dict[str, scipy.sparse.coo_array] = {}
     if table is None:
         return out
     if not table.values:
@@ -101,8 +66,7 @@ def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, _Term
         if file is None:
             continue
         try:
-            path = table.path(file[0])
-            out[name] = _Term(table, name, path, file[1], matrix_size(path, file[1]))
+            out[name] = read_matrix(table.path(file[0]), file[1])
         except InputError as error:
             _note(table, name, error)
     return out
@@ -173,20 +137,20 @@ def _file(table: Table, key: str) -> tuple[str, str | None] | None:
     return None if file is None or len(table.faults) > before else (file, variable)
 
 
-def _common_size(model: Table, files: Mapping[str, Mapping[str, _Term]]) -> int | None:
-    """Return the N of most N x N matrices; a fault names the ones that differ from it."""
-    matrices = {
-        f"{key} {name}": term for key, terms in files.items() for name, term in terms.items()
-    }
-    if not matrices:
+def _common_size(
+    model: Table, terms: Mapping[str, dict[str, scipy.sparse.coo_array]]
+) -> int | None:
+    """Return the N of most N x N matrices; a fault names those that differ, which are left out."""
+    counts = [A.shape[0] for known in terms.values() for A in known.values()]
+    if not counts:
         return None
-    sizes = {place: term.size for place, term in matrices.items()}
-    counts = list(sizes.values())
     common = max(set(counts), key=lambda size: (counts.count(size), size))
-    for place, size in sizes.items():
-        if size != common:
-            others = f"{common} x {common}, as the other matrices"
-            model.fault(place, others, f"{size} x {size}")
+    for key, known in terms.items():
+        for name, A in list(known.items()):
+            if A.shape[0] != common:
+                others, size = f"{common} x {common}, as the other matrices", A.shape[0]
+                model.fault(f"{key} {name}", others, f"{size} x {size}")
+                del known[name]
     return common
 
 

@@ -8,15 +8,14 @@ from typing import Any, get_args
 
 from modefront import fem
 from modefront.data.csv import is_reserved
-from modefront.diagnosis.groups import unused_groups
+from modefront.diagnosis.places import unused_groups
 from modefront.errors import suggestion
 from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Quantity
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
-from modefront.study.kinds.axes import in_axes, read_axes
-from modefront.study.kinds.base import ModelKind
-from modefront.toml import Table, is_number
+from modefront.study.kinds.sensors import ModelKind, is_dof, read_direction, read_directions
+from modefront.toml import Table
 
 _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
     "rectangle": (fem.rectangle, ("b_y", "b_z")),
@@ -85,12 +84,7 @@ def _structure(table: Table, parameters: Sequence[str], mesh: Mesh) -> fem.Struc
     return fem.Structure(
         mesh.nodes,
         _groups(table, mesh, materials),
-        [
-            fem.Support(nodes, directions)
-            for support in table.tables("support", required=False)
-            for nodes, directions in [(_nodes(support, "nodes", mesh), _directions(support))]
-            if _closed(support) and nodes is not None
-        ],
+        _supports(table, mesh),
         _springs(table, mesh),
         _masses(table, mesh),
         _links(table, mesh),
@@ -112,11 +106,6 @@ def _named_nodes(model: Table) -> set[str]:
 
 def _listed(value: object) -> list[Any]:
     return value if isinstance(value, list) else [value]
-
-
-def _closed(table: Table) -> bool:
-    table.close()
-    return True
 
 
 def _materials(model: Table) -> dict[str, fem.Material]:
@@ -220,11 +209,7 @@ def _nodes(table: Table, key: str, mesh: Mesh, default: Any = ...) -> list[int] 
 
 
 def _is_place(value: object) -> bool:
-    return isinstance(value, str) or _is_node(value)
-
-
-def _is_node(value: object) -> bool:
-    return isinstance(value, int) and not isinstance(value, bool) and value >= 0
+    return isinstance(value, str) or is_dof(value)
 
 
 def _directions(table: Table) -> list[str]:
@@ -238,18 +223,14 @@ def _directions(table: Table) -> list[str]:
     return list(value)
 
 
-def _direction(table: Table, key: str, default: Any = ...) -> Any:
-    known = [sign + name for name in fem.DIRECTIONS for sign in ("", "-")]
-    return table.take(
-        key,
-        "one of " + ", ".join(known) + ", or a vector of 3 numbers",
-        lambda x: (
-            x in known
-            if isinstance(x, str)
-            else isinstance(x, list) and len(x) == 3 and all(map(is_number, x)) and any(x)
-        ),
-        default,
-    )
+def _supports(model: Table, mesh: Mesh) -> list[fem.Support]:
+    out = []
+    for support in model.tables("support", required=False):
+        nodes, directions = _nodes(support, "nodes", mesh), _directions(support)
+        support.close()
+        if nodes is not None:
+            out.append(fem.Support(nodes, directions))
+    return out
 
 
 def _springs(model: Table, mesh: Mesh) -> list[fem.Spring]:
@@ -259,7 +240,7 @@ def _springs(model: Table, mesh: Mesh) -> list[fem.Spring]:
         nodes = _nodes(spring, "nodes", mesh)
         to = _nodes(spring, "to", mesh, default=None)
         stiffness = spring.number("stiffness", "a stiffness above 0", lambda x: x > 0)
-        direction = _direction(spring, "direction", default=None)
+        direction = read_direction(spring, default=None)
         spring.close()
         if name is not None and nodes is not None and stiffness is not None:
             out.append(fem.Spring(name, nodes, stiffness, direction, to))
@@ -330,8 +311,7 @@ def _places(table: Table) -> list[fem.Sensor]:
             continue
         node = place.integer("node", 0, 10**9, default=None)
         coordinates = place.numbers("at", "3 coordinates", lambda x: len(x) == 3, default=None)
-        directions = _sensor_directions(place)
-        axes = read_axes(place)
+        directions = read_directions(place)
         tolerance = place.number("tolerance", "a distance above 0", lambda x: x > 0, default=None)
         place.close()
         if (node is None) == (coordinates is None):
@@ -339,26 +319,8 @@ def _places(table: Table) -> list[fem.Sensor]:
             continue
         position = node if coordinates is None else coordinates
         for ending, direction in directions:
-            turned = in_axes(place, direction, axes)
-            if turned is not None:
-                out.append(fem.Sensor(name + ending, position, turned, tolerance))
+            out.append(fem.Sensor(name + ending, position, direction, tolerance))
     return out
-
-
-def _sensor_directions(place: Table) -> list[tuple[str, Any]]:
-    """Return the directions of a sensor, each with what it adds to the name."""
-    value = place.values.get("direction")
-    if not (isinstance(value, list) and any(isinstance(x, str) for x in value)):
-        direction = _direction(place, "direction")
-        return [] if direction is None else [("", direction)]
-    known = [sign + name for name in fem.DIRECTIONS for sign in ("", "-")]
-    several = place.take(
-        "direction",
-        "a list of different ones of " + ", ".join(known),
-        lambda x: all(y in known for y in x) and len({y.removeprefix("-") for y in x}) == len(x),
-        ...,
-    )
-    return [(direction.removeprefix("-"), direction) for direction in several or ()]
 
 
 def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:

@@ -2,15 +2,116 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Sequence
+from dataclasses import dataclass
 from typing import Any
 
+import numpy as np
+
+from modefront._typing import Floats
 from modefront.data.csv import is_reserved
 from modefront.fem.dofs import DIRECTIONS
+from modefront.models.base import Model
 from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
-from modefront.study.kinds.axes import in_axes, read_axes
 from modefront.toml import Table, describe, is_name, is_number
+
+
+@dataclass(frozen=True)
+class ModelKind:
+    """A kind of model that a study file can name.
+
+    Attributes
+    ----------
+    name : value of ``kind`` in the table ``[model]``
+    read : returns the model of that table, given the names of the parameters, or None where the
+        table has faults; files are opened by `modefront.toml.Table.path`, so that they are known
+    is_reducible : whether a model may be large enough for a reduced basis
+    """
+
+    name: str
+    read: Callable[[Table, Sequence[str]], Model | None]
+    is_reducible: bool = True
+
+
+PARALLEL = 1e-9
+"""Sine of the angle of two axes below which they are one."""
+
+
+def read_axes(place: Table) -> Floats | None:
+    """Return local axes (3, 3), x, y and z in rows; None for those of the model."""
+    expected = "two vectors [[...], [...]]: the local x axis, and one in the local x-y plane"
+    rows = place.take(
+        "axes",
+        expected,
+        lambda x: (
+            isinstance(x, list)
+            and len(x) == 2
+            and all(isinstance(v, list) and len(v) == 3 and all(map(is_number, v)) for v in x)
+            and float(np.linalg.norm(np.cross(*x)))
+            > PARALLEL * float(np.prod(np.linalg.norm(x, axis=1)))
+        ),
+        None,
+    )
+    if rows is None:
+        return None
+    first, second = np.asarray(rows, dtype=float)
+    x, z = first / np.linalg.norm(first), np.cross(first, second)
+    z /= np.linalg.norm(z)
+    return np.stack([x, np.cross(z, x), z])
+
+
+NAMED = [sign + name for name in DIRECTIONS for sign in ("", "-")]
+"""Directions by their names."""
+
+
+def read_direction(place: Table, default: Any = ...) -> Any:
+    """Return a direction: its name, or a vector."""
+    return place.take(
+        "direction",
+        "one of " + ", ".join(NAMED) + ", or a vector of 3 numbers",
+        lambda x: x in NAMED if isinstance(x, str) else is_direction(x),
+        default,
+    )
+
+
+def read_directions(place: Table) -> list[tuple[str, Any]]:
+    """Return the directions of a sensor in the axes of the model, with what each adds to its name.
+
+    A list of named directions makes as many sensors: NAMEx, NAMEy and so on. With ``axes`` they are
+    local.
+    """
+    value = place.values.get("direction")
+    if isinstance(value, list) and any(isinstance(x, str) for x in value):
+        several = place.take(
+            "direction",
+            "a list of different ones of " + ", ".join(NAMED),
+            lambda x: (
+                all(y in NAMED for y in x) and len({y.removeprefix("-") for y in x}) == len(x)
+            ),
+            ...,
+        )
+        found = [(direction.removeprefix("-"), direction) for direction in several or ()]
+    else:
+        direction = read_direction(place)
+        found = [] if direction is None else [("", direction)]
+    axes = read_axes(place)
+    turned = [(ending, in_axes(place, direction, axes)) for ending, direction in found]
+    return [(ending, direction) for ending, direction in turned if direction is not None]
+
+
+def in_axes(place: Table, direction: Any, axes: Floats | None) -> Any:
+    """Return a direction in the axes of the model, None where it has none there."""
+    if axes is None:
+        return direction
+    if isinstance(direction, str):
+        axis = direction.removeprefix("-")
+        if axis not in DIRECTIONS[:3]:
+            place.fault("direction", "x, y or z where axes are given", f"'{direction}'")
+            return None
+        row = axes[DIRECTIONS.index(axis)]
+        return (-row if direction != axis else row).tolist()
+    return (np.asarray(direction, dtype=float) @ axes).tolist()
 
 
 def read_sensors(
@@ -55,7 +156,7 @@ def read_base(
     if table is None:
         return {}
     for name, value in table.values.items():
-        if isinstance(value, list) and all(map(_is_dof, value)):
+        if isinstance(value, list) and all(map(is_dof, value)):
             table.values[name] = [[dof, 1.0] for dof in value]
         elif dofs is not None and isinstance(value, dict) and value.get("direction") in DIRECTIONS:
             table.values[name] = [list(pair) for pair in dofs.of_direction(value["direction"])]
@@ -78,7 +179,7 @@ def _read(
                 else:
                     table.fault(name, "a name that a column of the data can have", repr(sensor))
             continue
-        pairs = [[value, 1.0]] if _is_dof(value) else value
+        pairs = [[value, 1.0]] if is_dof(value) else value
         if not _is_weighted(pairs):
             expected = "a degree of freedom from 0, or a list [[degree of freedom, weight], ...]"
             table.fault(name, expected, describe(value))
@@ -108,35 +209,17 @@ def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, Sensor
     if place is None:
         return {}
     node = place.integer("node", 1, 2**62)
-    expected = f"one of {', '.join(DIRECTIONS)}, with or without a minus sign, a list of different "
-    expected += "ones, or a vector"
-    value = place.take("direction", expected, lambda x: is_direction(x) or _are_directions(x), ...)
-    axes = read_axes(place)
+    directions = read_directions(place)
     place.close()
-    if node is None or value is None:
+    if node is None:
         return {}
-    several = value if _are_directions(value) else ()
-    named = {name + axis.removeprefix("-"): axis for axis in several} or {name: value}
     out: dict[str, SensorSpec] = {}
-    for sensor, direction in named.items():
-        turned = in_axes(place, direction, axes)
-        if turned is None:
-            continue
+    for ending, direction in directions:
         try:
-            out[sensor] = dofs.sensor(node, turned)
+            out[name + ending] = dofs.sensor(node, direction)
         except LookupError as error:
             place.fault("", *error.args)
     return out
-
-
-def _are_directions(value: object) -> bool:
-    """Return whether a value is a list of different directions by name."""
-    return (
-        isinstance(value, list)
-        and bool(value)
-        and all(isinstance(direction, str) and is_direction(direction) for direction in value)
-        and len({direction.removeprefix("-") for direction in value}) == len(value)
-    )
 
 
 def _selects(pairs: Iterable[Any]) -> bool:
@@ -147,7 +230,8 @@ def _selects(pairs: Iterable[Any]) -> bool:
     return any(total.values())
 
 
-def _is_dof(value: object) -> bool:
+def is_dof(value: object) -> bool:
+    """Return whether a value is a whole number from 0."""
     return isinstance(value, int) and not isinstance(value, bool) and value >= 0
 
 
@@ -156,7 +240,7 @@ def _is_weighted(value: object) -> bool:
         isinstance(value, list)
         and bool(value)
         and all(
-            isinstance(pair, list) and len(pair) == 2 and _is_dof(pair[0]) and is_number(pair[1])
+            isinstance(pair, list) and len(pair) == 2 and is_dof(pair[0]) and is_number(pair[1])
             for pair in value
         )
     )

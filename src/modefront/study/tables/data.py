@@ -13,7 +13,7 @@ from modefront.data.uff55 import NodalModes, is_universal, read_uff55
 from modefront.diagnosis.places import DataDirection, axis_name
 from modefront.errors import InputError, suggestion
 from modefront.fem.check import unit_vector
-from modefront.fem.errors import FemError
+from modefront.fem.section import FemError
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel

@@ -7,7 +7,7 @@ from typing import Any
 
 from modefront.models.reduced.options import Reduction
 from modefront.options import options
-from modefront.study.kinds.base import ModelKind
+from modefront.study.kinds.sensors import ModelKind
 from modefront.study.tables.options import note
 from modefront.toml import Table
 
