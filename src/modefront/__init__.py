@@ -49,6 +49,7 @@ if TYPE_CHECKING:
     from modefront.study.session import run as run
     from modefront.study.session import solve as solve
     from modefront.uncertainty.options import Uncertainty as Uncertainty
+    from modefront.uncertainty.prior import NoisePrior as NoisePrior
 
 _HOMES = {
     "Group": "residuals.groups",
@@ -56,6 +57,7 @@ _HOMES = {
     "InputError": "errors",
     "ModalData": "data.modal",
     "ModelError": "errors",
+    "NoisePrior": "uncertainty.prior",
     "Pairing": "pairing.match",
     "Parameter": "models.parameters",
     "Pareto": "front.options",
@@ -97,6 +99,7 @@ __all__ = [
     "InputError",
     "ModalData",
     "ModelError",
+    "NoisePrior",
     "Pairing",
     "Parameter",
     "Pareto",

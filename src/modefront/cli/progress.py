@@ -31,7 +31,7 @@ TITLES: Mapping[str, str] = {
     "front": "front",
     "gap": "gaps of the front",
     "optimal-weights": "optimal weights",
-    "bounded-weights": "bounded weights",
+    "most-probable": "most probable model",
     "iterated-weights": "iteration of the weights",
     "identifiable": "identifiable part",
     "manifold": "equivalent models",

@@ -164,7 +164,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
         slopes = analysis.slopes.get(name)
         if slopes is not None:
             for quantity, values in predicted.items():
-                values[i] = np.sqrt(np.diag(linear(scatter.covariance, slopes[quantity])))
+                values[i] = _roots(linear(scatter.covariance, slopes[quantity]))
     return {
         "theta_std": theta_std,
         "theta_covariance": theta,
@@ -195,11 +195,14 @@ def _posterior(front: Front, analysis: FrontAnalysis) -> Values:
     return {
         "posterior_std": _std(posterior.covariance, posterior.free),
         "posterior_covariance": posterior.covariance,
-        "posterior_frequency_std": np.sqrt(
-            np.diag(linear(posterior.covariance, slopes["frequency"]))
-        ),
-        "posterior_mac_std": np.sqrt(np.diag(linear(posterior.covariance, slopes["mac"]))),
+        "posterior_frequency_std": _roots(linear(posterior.covariance, slopes["frequency"])),
+        "posterior_mac_std": _roots(linear(posterior.covariance, slopes["mac"])),
     }
+
+
+def _roots(covariance: Floats) -> Floats:
+    """Return standard deviations; rounding may leave a variance below 0."""
+    return np.sqrt(np.maximum(np.diag(covariance), 0.0))
 
 
 def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:

@@ -19,7 +19,15 @@ from modefront.text import NAME, clean
 UNIQUE = ("label", "parameter", "group", "mode")
 """Variables and coordinates whose values do not repeat."""
 
-SIZES = {"bound": 2, "range": 3, "statistic": 5, "line_end": 2, "corner": 4, "axis": 3}
+SIZES = {
+    "bound": 2,
+    "range": 3,
+    "statistic": 5,
+    "quantile": 3,
+    "line_end": 2,
+    "corner": 4,
+    "axis": 3,
+}
 """Sizes of dimensions that are always the same."""
 
 LARGEST = 1e9
