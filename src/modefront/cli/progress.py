@@ -32,6 +32,8 @@ TITLES: Mapping[str, str] = {
     "gap": "gaps of the front",
     "optimal-weights": "optimal weights",
     "most-probable": "most probable model",
+    "sample-posterior": "draws of the posterior",
+    "posterior": "posterior",
     "iterated-weights": "iteration of the weights",
     "identifiable": "identifiable part",
     "manifold": "equivalent models",

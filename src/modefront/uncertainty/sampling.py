@@ -9,9 +9,9 @@ Each draw is the model that fits data with other errors, and is nearest to a mod
 with :math:`\delta` so small that it decides only where the data say nothing (Kitanidis 1995,
 doi:10.1029/94WR02740; Oliver, He & Reynolds 1996). Where residuals are linear and bounds far these
 are independent draws from the posterior. It is an approximation elsewhere, which follows curved
-sets of equivalent models, reaches all minima, and holds the bounds; its intervals are measured by
-``benchmarks/calibration.py``. Markov chains take a hundred times as many models where the data
-leave much open.
+sets of equivalent models and reaches all minima; draws that would be beyond a bound lie at it, so
+that intervals are rather too wide there. ``benchmarks/calibration.py`` measures them. Markov chains
+take a hundred times as many models where the data leave much open.
 
 The variances are drawn from their marginal distribution with the parameters linearised about the
 most probable model, at which :math:`q_i` counts the directions that group i determines,
