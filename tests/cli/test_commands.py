@@ -168,7 +168,7 @@ def test_results_lie_where_they_are_wanted(modefront_: Run, study: Path, done: P
     assert data.attrs["seed"] == 3
     labels = [f"nbi-{i + 1}" for i in range(3)]
     labels += ["edge-frequencies", "edge-shapes", "mine", "equal-weights", "optimal-weights"]
-    labels.append("nominal")
+    labels += ["most-probable", "nominal"]
     assert data["label"].values.tolist() == labels
     mine = data.isel(point=labels.index("mine"))
     assert mine["weight"].values.tolist() == [2.0, 1.0]
@@ -202,7 +202,7 @@ def test_show_prints_tables_and_json_without_nan(modefront_: Run, whole: Path) -
 def test_compare_prints_tables_and_json(modefront_: Run, whole: Path) -> None:
     status, out, err = modefront_("compare", whole, whole)
     assert (status, err) == (0, "")
-    for text in ("Studies side by side", "frequency 2", "k1, k2", "optimal-weights"):
+    for text in ("Studies side by side", "frequency 2", "k1, k2", "reference"):
         assert text in out
     status, out, err = modefront_("compare", whole, whole, "--format", "json")
     assert (status, err) == (0, "")

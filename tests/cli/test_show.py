@@ -80,7 +80,7 @@ def test_the_first_screen_sets_the_nominal_model_beside_the_reference_and_the_ed
     out = capsys.readouterr().out
     row = next(line for line in out.splitlines() if line.startswith("  k1"))
     best = two["label"].values.tolist().index(two.attrs["reference"])
-    std = two["theta_std"].values[best, 0]
+    std = two["sample_theta"].values[:, 0].std(ddof=1)
     assert row.split()[1] == "1.000"
     assert f"{two['theta'].values[best, 0]:#.4g} ± {std:.2g}" in row
     mode = next(line for line in out.splitlines() if line.startswith("  1: "))

@@ -46,7 +46,7 @@ CONTRADICTIONS = [
         ('"mine"', f'"{label}"', f"name: expected another name than ... , found '{label}'")
         for label in (
             *("nbi-3", "weights-12", "spea2-1", "nsga2-40", "edge-shapes", "edge-frequencies"),
-            *("equal-weights", "optimal-weights", "bounded-weights", "iterated-weights"),
+            *("equal-weights", "optimal-weights", "most-probable", "iterated-weights"),
             *("identifiable-1", "identifiable-edge-shapes", "nominal"),
         )
     ),

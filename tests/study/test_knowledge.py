@@ -41,7 +41,12 @@ def problem_of(*, sets: int = 1, std: float = 0.0, seed: int = 0) -> mf.Updating
 def results(source: str) -> xr.Dataset:
     problem = problem_of(sets=8) if source == "sets" else problem_of(std=0.002)
     return mf.solve(
-        problem, points=2, seed=1, search=SEARCH, uncertainty=mf.Uncertainty("auto", bootstrap=100)
+        problem,
+        points=2,
+        seed=1,
+        search=SEARCH,
+        uncertainty=mf.Uncertainty("auto", bootstrap=100),
+        noise=mf.NoisePrior(weight=0),
     ).dataset
 
 
@@ -241,6 +246,9 @@ step = 0.2
 [uncertainty]
 source = "sets"
 bootstrap = 2
+
+[noise]
+weight = 0
 """
 )
 

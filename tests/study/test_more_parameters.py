@@ -16,7 +16,6 @@ from modefront.front.front import Front
 from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
 from modefront.study import session
-from modefront.uncertainty.noise import noise_floor
 
 NAMES = tuple(f"k{i + 1}" for i in range(6))
 SEARCH = Search(doubt=0.5)
@@ -70,47 +69,36 @@ def row(data: xr.Dataset, label: str) -> xr.Dataset:
     return data.isel(point=data["label"].values.tolist().index(label))
 
 
-@pytest.mark.xfail(
-    reason="at the model that is found, all combinations are determined by a little", strict=False
-)
-def test_with_standard_deviations_bounded_weights_are_preferred() -> None:
-    data, _ = solved(std=True)
-    labels = data["label"].values.tolist()
-    assert "optimal-weights" not in labels
-    assert data.attrs["reference"] == "bounded-weights"
-    bounded, a = row(data, "bounded-weights"), data["properties"].values
-    b = noise_floor(problem(std=True), "std")
-    J = bounded["objective"].values
-    assert bounded["weight"].values == pytest.approx(a / (J + b))
-    assert bool(bounded["pareto"])
-    value = a @ np.log(J + b)
-    assert (data["objective"].values + b > 0).all()
-    assert value <= (np.log(data["objective"].values + b) @ a).min() + 1e-6 * a.sum()
-    assert np.isfinite(data["posterior_covariance"].values).all()
-    chosen = (data["combination_at"] == "bounded-weights") & (data["combination_of"] == "all data")
-    undetermined = data["combination_direction"].values[chosen & (data["combination_share"] == 0)]
-    assert len(undetermined) == 1, "six values, of which five tell something of the stiffnesses"
-    std = data["posterior_std"].values
-    assert np.isinf(std).tolist() == (np.abs(undetermined[0]) > 1e-6).tolist()
-    assert (std > 0).all()
-    (message,) = [text for text in data["finding"].values if "no optimal-weights" in text]
-    assert "the model can fit frequencies and shapes exactly" in message
-    assert "bounded-weights takes the place of optimal-weights" in message
-    assert set(data["combination_at"].values) == {
-        *("bounded-weights", "edge-frequencies", "edge-shapes")
-    }
+@pytest.mark.parametrize("std", [True, False])
+def test_the_most_probable_model_is_preferred_where_all_is_fitted_exactly(std: bool) -> None:
+    data, _ = solved(std=std)
+    assert data.attrs["reference"] == "most-probable"
+    best = row(data, "most-probable")
+    assert bool(best["converged"])
+    assert (best["error"].values < [0.005, 0.03]).all(), "six values, and as many parameters"
+    low, _, high = data["interval"].values.T
+    assert ((low <= TRUTH) & (TRUTH <= high)).sum() >= 5
+    assert (data["trust"].values != "determined").any()
+    assert "most-probable" in set(data["combination_at"].values)
 
 
-def test_without_them_equal_weights_are_and_what_to_do_is_said() -> None:
-    data, _ = solved(std=False)
-    labels = data["label"].values.tolist()
-    assert not {"optimal-weights", "bounded-weights"} & set(labels)
-    assert data.attrs["reference"] == "equal-weights"
-    assert "posterior_std" not in data
-    (message,) = [text for text in data["finding"].values if "no optimal-weights" in text]
-    assert "equal-weights takes the place of optimal-weights" in message
-    assert "standard deviations" in message
-    assert "several data sets" in message
+def test_without_expectation_equal_weights_are_and_what_to_do_is_said() -> None:
+    data = mf.solve(
+        problem(std=False),
+        points=3,
+        search=SEARCH,
+        identifiability=Identifiability(models=0),
+        noise=mf.NoisePrior(weight=0),
+    ).dataset
+    assert "most-probable" not in data["label"].values
+    assert "interval" not in data
+    if "optimal-weights" in data["label"].values:
+        assert data.attrs["reference"] == "optimal-weights"
+    else:
+        assert data.attrs["reference"] == "equal-weights"
+        (message,) = [text for text in data["finding"].values if "no optimal-weights" in text]
+        assert "equal-weights takes the place of optimal-weights" in message
+        assert "a weight in [noise]" in message
 
 
 def dominated(J: Floats, known: Floats, scale: Floats) -> bool:
@@ -198,7 +186,7 @@ def test_a_run_that_is_interrupted_goes_on_to_the_same_digits(
     (tmp_path / "study.toml").write_text(STUDY)
     study = mf.load(tmp_path / "study.toml")
     whole = mf.run(study, tmp_path / "whole").dataset
-    assert whole.attrs["reference"] == "bounded-weights"
+    assert whole.attrs["reference"] == "most-probable"
     # As many values as parameters: all are fitted, and no model is better by more than rounding.
     assert whole.attrs["front_is_a_point"]
     assert (whole["pareto"].values == (whole["kind"].values != "nominal")).all()

@@ -49,6 +49,7 @@ def solved(
         points=2,
         search=mf.Search(doubt=0.5),
         uncertainty=mf.Uncertainty("none", draws=draws),
+        noise=mf.NoisePrior(weight=0),
         predictions=predictions,
     ).dataset
 

@@ -277,7 +277,12 @@ def test_in_memory_and_from_a_file_are_the_same(
     study = mf.load(write_study(tmp_path, FRF + QUICK))
     assert [prediction.name for prediction in study.predictions][-1] == "drifts"
     data = mf.solve(
-        study.problem, points=3, seed=3, search=study.search, predictions=study.predictions
+        *(study.problem,),
+        points=3,
+        seed=3,
+        search=study.search,
+        predictions=study.predictions,
+        noise=study.noise,
     ).dataset
     for name in quick[1].variables:
         np.testing.assert_array_equal(data[name], quick[1][name])

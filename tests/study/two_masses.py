@@ -47,6 +47,9 @@ method = "order"
 
 [search]
 doubt = 0.5
+
+[noise]
+weight = 0
 """
 )
 

@@ -9,7 +9,7 @@ import modefront as mf
 from modefront.data.modal import ModalData
 from modefront.optim.problem import Evaluation
 from modefront.residuals.base import Scale
-from modefront.uncertainty.noise import Source, available, noise, noise_floor
+from modefront.uncertainty.noise import available, noise
 
 NAMES = ("k1", "k2", "k3")
 THETA = np.array([1.1, 0.9, 1.2])
@@ -119,40 +119,3 @@ def drawn(rng: np.random.Generator, sets: int) -> ModalData:
         frequency_std=np.broadcast_to(f_std, f.shape),
         shape_std=np.abs(scale) * share,
     )
-
-
-@pytest.mark.parametrize("scale", ["measured", "std"])
-@pytest.mark.parametrize("source", ["std", "sets"])
-def test_the_floor_is_the_mean_of_the_objectives_of_a_perfect_model(
-    scale: Scale, source: Source
-) -> None:
-    rng = np.random.default_rng(4)
-    away = []
-    for _ in range(120):
-        problem = problem_of(drawn(rng, 3), scale)
-        J = problem.evaluate(np.ones(3), derivatives=False).J
-        away.append(noise_floor(problem, source) - J)
-    difference = np.array(away)
-    error = difference.std(axis=0) / np.sqrt(len(difference))
-    assert (np.abs(difference.mean(axis=0)) < 4 * error).all()
-
-
-def test_the_floor_of_standard_deviations_in_numbers() -> None:
-    """Per frequency (std / f)^2, or 1; per shape over its standard deviations sensors - 1."""
-    data = drawn(np.random.default_rng(0), 1)
-    chosen = noise_floor(problem_of(data, "measured"), "std")
-    f = (data.frequency_std / data.frequency) ** 2
-    assert chosen[0] == pytest.approx(f.sum())
-    assert noise_floor(problem_of(data, "std"), "std") == pytest.approx([3.0, 6.0, 3.0])
-    psi, std = data.shape[0], data.shape_std[0]
-    across = [(s**2) @ (1 - x**2 / (x @ x)) * 3 / (x @ x) for x, s in zip(psi, std, strict=True)]
-    assert chosen[1:] == pytest.approx([sum(across), f[0, 0] + across[0]])
-
-
-def test_there_is_no_floor_of_errors_that_are_not_known() -> None:
-    data = drawn(np.random.default_rng(0), 1)
-    bare = replace(data, shape_std=np.nan * data.shape)
-    floor = noise_floor(problem_of(bare, "measured"), "std")
-    assert floor[1] == 0
-    assert (floor[[0, 2]] > 0).all()
-    assert not noise_floor(problem_of(data, "measured"), "sets").any()

@@ -30,6 +30,7 @@ from modefront.uncertainty.linear import Local, front_scatter, with_neighbours
 from modefront.uncertainty.noise import Noise, Source, noise
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.points import Role, SolvedPoint, edge_weights, solve_again
+from modefront.uncertainty.prior import NoiseModel
 from modefront.uncertainty.scatter import Scatter
 from modefront.work.task import Executor, Task, seed_sequence
 
@@ -72,12 +73,15 @@ class AnalysisOptions:
     pareto : options with which the front was found
     identifiability, uncertainty : of the study
     seed : of the run
+    noise : model of the errors, of which the reference is the most probable model; None without
+        expectations of them
     """
 
     pareto: Pareto
     identifiability: Identifiability
     uncertainty: Uncertainty
     seed: int
+    noise: NoiseModel | None = None
 
 
 def analyse_front(
@@ -96,9 +100,8 @@ def analyse_front(
         solved = _solved_points(problem, front, points, part, options)
     known = _locals(problem, solved, sizes, source, work)
     posterior = None
-    if reference.kind in (Kind.OPTIMAL, Kind.BOUNDED) and reference.label in known:
-        floor = 0.0 if front.floor is None else front.floor
-        posterior = laplace(problem, known[reference.label].evaluation, a, floor)
+    if reference.label in known:
+        posterior = _posterior(problem, reference, known[reference.label], options.noise, work)
     scatter: Mapping[str, Scatter] = {}
     replicates: list[Mapping[str, Solution]] = []
     if source is not None and sizes is not None:
@@ -253,7 +256,7 @@ def _solved_points(
         match point.kind:
             case Kind.OPTIMAL:
                 role = Role("optimal")
-            case Kind.GIVEN | Kind.EQUAL | Kind.BOUNDED:
+            case Kind.GIVEN | Kind.EQUAL | Kind.MOST_PROBABLE:
                 role = Role("weights")
             case Kind.FRONT if along == "boundary":
                 role = _between(point.solution, whole, solutions, front.target, equations)
@@ -320,6 +323,29 @@ def _local(
     if source is not None:
         errors = noise(problem, modes, pairs, source)
     return Local(point, errors, problem.slopes_at(modes, pairs))
+
+
+def _posterior(
+    problem: UpdatingProblem,
+    reference: Point,
+    local: Local,
+    noise: NoiseModel | None,
+    work: Executor,
+) -> Posterior | None:
+    """Return the posterior around the reference; None where it has no maximum there."""
+    if noise is not None:
+        arguments = (noise.problem, reference.solution.evaluation)
+        (point,) = work.run([Task(("posterior",), _second_order, arguments)])
+        logs = noise.programme.logs
+        return None if point is None else laplace(noise.problem, point, logs.a, logs.floor)
+    if reference.kind is not Kind.OPTIMAL:
+        return None
+    return laplace(problem, local.evaluation, problem.properties)
+
+
+def _second_order(problem: UpdatingProblem, evaluation: Evaluation) -> Evaluation | None:
+    """Return an evaluation with second derivatives, of a problem with other units."""
+    return with_second_order(problem, problem.evaluate(evaluation.theta, second=True))
 
 
 def _replicates(

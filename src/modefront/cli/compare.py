@@ -13,8 +13,6 @@ from modefront.cli.layout import Screen
 from modefront.cli.show import as_plain
 from modefront.results.compare import Comparison, Spread, short_names
 
-OPTIMAL = "optimal-weights"
-
 SHOWN = 6
 """Parameters, and predictions, that are printed unless all are asked for."""
 
@@ -38,10 +36,8 @@ def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
     )
     screen.table("", columns, _fronts(comparison))
     for summary in fronts:
-        if summary.reference != OPTIMAL:
-            screen.say(
-                f"{summary.name} has no {OPTIMAL}: its reference model is {summary.reference}"
-            )
+        if summary.reference != fronts[0].reference:
+            screen.say(f"the reference of {summary.name} is {summary.reference}")
     most = None if every else SHOWN
     _print_ranges(screen, "parameters", columns, [x.parameters for x in fronts], most)
     _print_ranges(screen, "predictions", columns, [x.predictions for x in fronts], most)

@@ -255,6 +255,11 @@ def standard_deviations(data: xr.Dataset) -> tuple[Floats, list[str]]:
         explained.append(
             f"±: one standard deviation of the posterior around {data.attrs['reference']}"
         )
+    if "sample_theta" in data:
+        (best,) = np.flatnonzero(data["label"].values == data.attrs["reference"])
+        std[best] = data["sample_theta"].values.std(axis=0, ddof=1)
+        explained = explained if "theta_std" in data else []
+        explained.append(f"± of {data.attrs['reference']}: standard deviation of the posterior")
     if np.isinf(std).any():
         explained.append("± inf: the data do not determine the parameter")
     if not explained:

@@ -48,10 +48,17 @@ def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
     """Print what a run has found and what this run of it has cost, in a few lines."""
     screen = Screen.of_output()
     screen.say(f"{data.attrs.get('study', '')}: results in {folder}")
+    for line in _verdict(data):
+        screen.say(line)
     findings = digest(headlines(data), f"modefront show --findings {folder}")
     for line in [*_front(data), *findings, *cost_lines(costs)]:
         screen.say(line, start="  ")
     screen.say(f"next: modefront show {folder}")
+
+
+def _verdict(data: xr.Dataset) -> list[str]:
+    """Return the sentences of the first answer."""
+    return str(data.attrs.get("verdict", "")).splitlines()
 
 
 def _front(data: xr.Dataset) -> list[str]:
@@ -80,7 +87,8 @@ def print_results(data: xr.Dataset, lists: Sequence[str] = ()) -> None:
         print_lists(screen, data, lists)
         return
     predicted = "range" in data.sizes
-    lines = [*title, BLANK, *models_in(screen, data, SHORTER if predicted else LONGER)]
+    said = [line for text in _verdict(data) for line in screen.sentence(text)]
+    lines = [*title, *said, BLANK, *models_in(screen, data, SHORTER if predicted else LONGER)]
     if predicted:
         lines += [BLANK, *predictions_in(screen, *first_predictions(data), PREDICTIONS)]
     options = [f"--{name}" for name in LISTS if name != "predictions" or predicted]
@@ -113,9 +121,8 @@ def as_json(data: xr.Dataset) -> str:
     }
     attributes = {str(key): as_plain(np.asarray(value)) for key, value in data.attrs.items()}
     remarked = remarks(data)
-    return json.dumps(
-        {"attributes": attributes, "variables": variables, "remarks": remarked}, indent=1
-    )
+    sections = {"verdict": _verdict(data), "attributes": attributes, "variables": variables}
+    return json.dumps({**sections, "remarks": remarked}, indent=1)
 
 
 def as_plain(values: Any) -> Any:

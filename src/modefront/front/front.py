@@ -22,7 +22,7 @@ class Edge:
     minima: Sequence[Solution]
 
 
-# 13 fields: everything that a search leaves, which tasks keep as one record.
+# 12 fields: everything that a search leaves, which tasks keep as one record.
 @dataclass(frozen=True)
 class Front:
     """A Pareto front with its edges, its weighted models and its gaps.
@@ -42,7 +42,6 @@ class Front:
     lattice : (places, n) lattice points of normal-boundary intersection
     places : (places,) the point of the front, from 0, to which each of them led; -1 for none
     known : (models, n) objectives of evaluated models that no evaluated model dominates
-    floor : (n,) bounds b of J in the bounded weights; None where there is no such model
     sizes : (n,) typical sizes of the objectives, of random models; empty where not known
     """
 
@@ -57,12 +56,11 @@ class Front:
     lattice: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     places: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     known: Floats = field(default_factory=lambda: np.zeros((0, 0)))
-    floor: Floats | None = None
     sizes: Floats = field(default_factory=lambda: np.zeros(0))
 
     @property
     def reference(self) -> Point:
-        """The model that the data prefer: of optimal, else bounded, else equal weights."""
+        """The model that the data prefer: most probable, else of optimal, else equal weights."""
         return reference(self.points)
 
     @property

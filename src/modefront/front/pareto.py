@@ -65,7 +65,7 @@ TURNS = 4
 """Fronts that are searched at most, each between edges that the search of the one before moved."""
 
 
-# 9 arguments: the problem, and each group of options of a search.
+# 8 arguments: the problem, and each group of options of a search.
 def pareto_front(
     problem: Problem,
     a: Floats,
@@ -74,27 +74,23 @@ def pareto_front(
     seed: int = 0,
     search: Search | None = None,
     given: Sequence[tuple[str, Floats]] = (),
-    floor: Floats | None = None,
     work: Executor = IMMEDIATE,
     known: Front | None = None,
 ) -> Front:
     """Return the edges, the weighted models, the front by a method, and its gaps.
 
-    ``a`` (n,) counts the measured properties of each objective; ``given`` are named weights (n,);
-    ``floor`` (n,) is the part of each objective that errors of the data alone explain, for bounded
-    weights. With a ``known`` front of nearly the same problem, its models are solved for again, and
-    nothing else is sought. Raises UnfinishedError where no edge can be found.
+    ``a`` (n,) counts the measured properties of each objective; ``given`` are named weights (n,).
+    With a ``known`` front of nearly the same problem, its models are solved for again, and nothing
+    else is sought. Raises UnfinishedError where no edge can be found.
     """
-    run = _Run(
-        problem, a, options or Pareto(), seed, search or Search(), tuple(given), floor, work, known
-    )
+    run = _Run(problem, a, options or Pareto(), seed, search or Search(), tuple(given), work, known)
     return run.front()
 
 
 class _Run:
     """A search for a front; see `pareto_front`."""
 
-    # 9 arguments: those of `pareto_front`.
+    # 8 arguments: those of `pareto_front`.
     def __init__(
         self,
         problem: Problem,
@@ -103,12 +99,11 @@ class _Run:
         seed: int,
         search: Search,
         given: tuple[tuple[str, Floats], ...],
-        floor: Floats | None,
         work: Executor,
         known: Front | None,
     ) -> None:
         self.problem, self.a, self.options, self.given = problem, a, options, given
-        self.floor, self.work, self.known, self.seed = floor, work, known, seed
+        self.work, self.known, self.seed = work, known, seed
         self.n = len(problem.objectives)
         self.state = State(problem, search.tolerance, Archive(problem.lower.size, self.n))
         self._swept: dict[Key, Floats] = {}
@@ -139,8 +134,8 @@ class _Run:
         points, places, beta = self._points(target, bests)
         if METHODS[self.options.method].programme is None and target is not None:
             points = self._evolved()
-        optimal, more = self._optimal(weighted, bests, points, target, sizes)
-        weighted += more
+        optimal = self._optimal(weighted, bests, points, sizes)
+        weighted += [Point(Kind.OPTIMAL, x) for x in optimal[:1]]
         iterated = self._iterated(weighted, bests, sizes)
         return Front(
             self.options.method,
@@ -161,7 +156,6 @@ class _Run:
             beta,
             places,
             self.state.archive.J.copy(),
-            self.floor if of_kind(weighted, Kind.BOUNDED) else None,
             sizes,
         )
 
@@ -471,44 +465,26 @@ class _Run:
         models: Sequence[Point],
         bests: Sequence[Solution],
         points: Sequence[Solution],
-        target: Payoff | None,
         sizes: Floats,
-    ) -> tuple[list[Solution], list[Point]]:
-        """Return accepted minima of the optimally weighted residuals, and the model to report.
-
-        Bounded weights take the place of optimal ones where no minimum is accepted.
-        """
-        weighted_models = [model.solution for model in models]
-        near = least_along(points, self.a, sizes)
-        starts = [*weighted_models, *bests, *near]
-        minima = self._minima("optimal-weights", starts, sizes, 0.0)
-        scale = target.scale if target else sizes
-        rivals = [*weighted_models, *points]
-        optimal = accepted(minima, self.a, sizes, rivals, self.state.archive.J, scale)
-        if optimal:
-            return optimal, [Point(Kind.OPTIMAL, optimal[0])]
-        if self.floor is None:
-            return [], []
-        bounded = self._minima("bounded-weights", starts, sizes, self.floor)
-        return [], [Point(Kind.BOUNDED, x) for x in bounded[:1]]
-
-    def _minima(
-        self, stage: str, starts: Sequence[Solution], sizes: Floats, floor: Floats | float
     ) -> list[Solution]:
-        """Return the distinct minima of I below some starts, best first."""
+        """Return the regular minima of the optimally weighted residuals, each once, best first."""
+        starts = [*(x.solution for x in models), *bests, *least_along(points, self.a, sizes)]
         tasks = [
-            Task((stage, k + 1), recorded, (optimal_minimum, self.problem, self.a, sizes, floor, x))
+            Task(
+                ("optimal-weights", k + 1),
+                recorded,
+                (optimal_minimum, self.problem, self.a, sizes, x),
+            )
             for k, x in enumerate(starts)
         ]
-        out: list[Solution] = []
+        minima: list[Solution] = []
         for seen in self.work.run(tasks):
             self.state.evaluations += seen.evaluations
             x: Solution = seen.result
-            apart = [np.abs((x.theta - y.theta) / self.state.span).max() > DISTINCT for y in out]
+            apart = [np.abs((x.theta - y.theta) / self.state.span).max() > DISTINCT for y in minima]
             if x.converged and all(apart):
-                out.append(x)
-        shift = np.asarray(floor)
-        return sorted(out, key=lambda x: float(self.a @ np.log(np.maximum(x.J + shift, 1e-300))))
+                minima.append(x)
+        return accepted(self.problem, minima, self.a, sizes)
 
     def _iterated(
         self, models: Sequence[Point], bests: Sequence[Solution], sizes: Floats

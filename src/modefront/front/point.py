@@ -20,15 +20,15 @@ class Kind(Enum):
     GIVEN = "given-weights"
     EQUAL = "equal-weights"
     OPTIMAL = "optimal-weights"
-    BOUNDED = "bounded-weights"
+    MOST_PROBABLE = "most-probable"
     IDENTIFIABLE = "identifiable-part"
     IDENTIFIABLE_EDGE = "identifiable-edge"
 
 
-WEIGHTED = (Kind.GIVEN, Kind.EQUAL, Kind.OPTIMAL, Kind.BOUNDED)
-"""Kinds of models that minimise weighted residuals."""
+WEIGHTED = (Kind.GIVEN, Kind.EQUAL, Kind.MOST_PROBABLE)
+"""Kinds of models of which the solution has the weights that were used."""
 
-REFERENCES = (Kind.OPTIMAL, Kind.BOUNDED, Kind.EQUAL)
+REFERENCES = (Kind.MOST_PROBABLE, Kind.OPTIMAL, Kind.EQUAL)
 """Kinds that the data prefer, the first of them that there is."""
 
 
@@ -82,5 +82,5 @@ def of_kind(points: Iterable[Point], *kinds: Kind) -> list[Point]:
 
 
 def reference(points: Sequence[Point]) -> Point:
-    """Return the model that the data prefer: of optimal, else bounded, else equal weights."""
+    """Return the model that the data prefer: most probable, else of optimal, else equal weights."""
     return next(point for kind in REFERENCES for point in points if point.kind is kind)

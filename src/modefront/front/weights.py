@@ -4,20 +4,18 @@ Optimal weights minimise :math:`I(\theta) = \sum_i a_i \ln J_i(\theta)`, equatio
 :math:`a_i` counts the measured properties of a group; the model then minimises
 :math:`\sum_i w_i J_i` with :math:`w_i = a_i / J_i`. Where a group can be fitted exactly, I falls to
 minus infinity there, which says nothing about the model: the minimum that is meant is the regular
-one, at which every :math:`J_i` is positive. There may be none worth the name. A minimum is accepted
-only if
+one, at which every :math:`J_i` is positive. A minimum is accepted if it is regular itself, whatever
+is known of other models:
 
-* no objective vanishes at it,
-* no known model dominates it, and
-* I is nowhere less among the known regular models, which lie on the front or minimise the equally
-  weighted residuals.
+* no objective vanishes at it, and
+* the second derivatives of I are positive in all directions in which residuals change and no bound
+  holds it,
 
-With more parameters than data, I often falls all the way along the front to the edge at which a
-group is fitted exactly. Noise puts an end to that: a group cannot be known better than its data.
-With :math:`b_i`, the objective that the errors of the data alone would cause, **bounded weights**
-minimise
+.. math:: \nabla^2 I = \sum_i \frac{a_i}{J_i} H_i - \sum_i \frac{a_i}{J_i^2} \partial J_i
+    \partial J_i^T .
 
-.. math:: \sum_i a_i \ln (J_i + b_i), \qquad w_i = \frac{a_i}{J_i + b_i} \le \frac{a_i}{b_i} .
+With more parameters than data there may be none: I falls all the way to the edge at which a group
+is fitted exactly. An expectation of the noise puts an end to that (`modefront.uncertainty.prior`).
 
 The iteration :math:`w_i \leftarrow a_i / J_i(\arg\min \sum w_i J_i)` has the same stationary points
 as I and serves as a check.
@@ -31,14 +29,16 @@ from dataclasses import replace
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.front.dominance import undominated
-from modefront.optim.lexicographic import EXACT, TIE
-from modefront.optim.problem import Problem
+from modefront.optim.lexicographic import EXACT
+from modefront.optim.problem import AT_BOUND, Evaluation, Problem
 from modefront.optim.scalarisation import LogSum, weighted
 from modefront.optim.sqp import Options, Solution, Status, solve
 
 WITHIN = 0.1
 """Tolerance of a model of the iteration of weights, over the length of the step before it."""
+
+FLAT = 1e-12
+"""Eigenvalue over the greatest one below which a direction changes no residual."""
 
 _TIGHT = Options(reduction=1e-17)
 """Steps end at the tolerance of the parameters, whatever f: a sum of logarithms has any size."""
@@ -49,42 +49,40 @@ def regular(J: Floats, sizes: Floats) -> bool:
     return bool((EXACT * sizes < J).all())
 
 
-def optimal_minimum(
-    problem: Problem, a: Floats, sizes: Floats, floor: Floats | float, start: Solution
-) -> Solution:
+def optimal_minimum(problem: Problem, a: Floats, sizes: Floats, start: Solution) -> Solution:
     """Return the minimum of I below a start, or where an objective vanishes on the way.
 
     ``a`` (n,) counts the measured properties of each group, ``sizes`` (n,) are typical sizes of
-    the objectives. With a ``floor`` b (n,) the weights are bounded.
+    the objectives.
     """
-    bounded = bool(np.any(np.asarray(floor) > 0))
-    return solve(problem, LogSum(a, floor, 0.0 if bounded else EXACT * sizes), start, _TIGHT)
+    return solve(problem, LogSum(a, vanishing=EXACT * sizes), start, _TIGHT)
 
 
 def accepted(
-    minima: Sequence[Solution],
-    a: Floats,
-    sizes: Floats,
-    rivals: Sequence[Solution],
-    known: Floats,
-    scale: Floats,
+    problem: Problem, minima: Sequence[Solution], a: Floats, sizes: Floats
 ) -> list[Solution]:
-    """Return the minima of I that are regular and worth the name, best first; see the module.
+    """Return the minima of I that are regular, best first; see the module."""
+    out = [x for x in minima if regular(x.J, sizes) and is_minimum(problem, x.evaluation, a)]
+    return sorted(out, key=lambda minimum: LogSum(a).value(minimum.J))
 
-    ``rivals`` are models of the front and of weighted residuals, ``known`` (models, n) objectives
-    of all models that were evaluated, ``scale`` (n,) the ranges of the objectives.
+
+def is_minimum(problem: Problem, evaluation: Evaluation, a: Floats) -> bool:
+    """Return whether I has positive second derivatives in all directions that residuals determine.
+
+    ``evaluation`` has second derivatives; where only a part of these is known, that is not tested.
     """
-    programme = LogSum(a)
-    values = [programme.value(rival.J) for rival in rivals if regular(rival.J, sizes)]
-    least = min(values, default=np.inf)
-    out = [
-        minimum
-        for minimum in minima
-        if regular(minimum.J, sizes)
-        and programme.value(minimum.J) <= least + TIE * a.sum()
-        and undominated(minimum.J[None], known, scale)[0]
-    ]
-    return sorted(out, key=lambda minimum: programme.value(minimum.J))
+    if not evaluation.exact:
+        return True
+    span = problem.upper - problem.lower
+    u = (evaluation.theta - problem.lower) / span
+    within = np.diag(span)[:, (u > AT_BOUND) & (u < 1 - AT_BOUND)]
+    w = a / evaluation.J
+    lam, V = np.linalg.eigh(within.T @ np.tensordot(w, evaluation.gauss_newton, axes=1) @ within)
+    Q = within @ V[:, lam > FLAT * lam.max(initial=0.0)]
+    second = np.tensordot(w, evaluation.H, axes=1) - evaluation.dJ.T @ (
+        (a / evaluation.J**2)[:, None] * evaluation.dJ
+    )
+    return bool((np.linalg.eigvalsh(Q.T @ second @ Q) > 0).all())
 
 
 def least_along(points: Sequence[Solution], a: Floats, sizes: Floats) -> list[Solution]:

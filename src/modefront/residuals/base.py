@@ -107,13 +107,11 @@ class Member(Protocol):
         A value without a standard deviation counts as exact.
         """
 
-    def floor_of_std(self) -> float:
-        """Return the mean of J of a perfect model, from standard deviations of the data."""
+    def independent(self) -> tuple[float, float, float]:
+        """Return a, S and d of residuals that are summed over the data sets.
 
-    def floor_of_sets(self) -> float:
-        """Return the mean of J of a perfect model, from the variance of the data sets.
-
-        It is 0 for a property measured in one data set only.
+        The count a of independent errors that a model can explain, the part S of the sum of their
+        squares that none explains, since data sets differ, and the degrees of freedom d of S.
         """
 
 

@@ -90,15 +90,11 @@ class FrequencyResiduals:
             number = value_numbers(self.data, k, self.mode)[:1]
             yield Sensitivity(number, np.array([J * h]), (dJ * h)[None])
 
-    def floor_of_std(self) -> float:
-        """Return the sum of the variances of the residuals."""
-        return float(((self.weight * known_std(self.std)) ** 2).sum())
-
-    def floor_of_sets(self) -> float:
-        """Return the same for the variance of the data sets about their mean."""
-        if self.sets.size < 2:
-            return 0.0
-        return float((self.weight**2).sum() * self.measured.var(ddof=1))
+    def independent(self) -> tuple[float, float, float]:
+        """Return counts and scatter: all sets have one frequency, at best their weighted mean."""
+        w, f = self.weight**2, self.measured
+        mean = (w @ f) / w.sum()
+        return 1.0, float(w @ (f - mean) ** 2), float(f.size - 1)
 
 
 @dataclass(frozen=True, eq=False)

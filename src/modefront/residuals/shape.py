@@ -176,33 +176,21 @@ class ShapeResiduals:
                 -2 * w * (dprojection - np.outer(psi, ds)) / unit[:, None] * step[:, None],
             )
 
-    def floor_of_std(self) -> float:
-        """Return the sum of the variances of the residuals.
+    def independent(self) -> tuple[float, float, float]:
+        """Return counts and scatter: each set has a factor of its own, fitted.
 
-        Errors along the shape count as its scale: no residual has them.
+        Sets with the same sensors and standard deviations in proportion have one shape, at best the
+        first singular vector; all others count as independent of each other.
         """
-        out = 0.0
-        for part in self.shapes:
-            std = known_std(self.data.shape_std[part.k, self.mode, part.sensors])
-            out += float((part.weight * std) ** 2 @ (1 - part.psi**2 / (part.psi @ part.psi)))
-        return out
-
-    def floor_of_sets(self) -> float:
-        """Return the same for the variance of the data sets, at sensors that all of them have."""
-        sets = [part.k for part in self.shapes]
-        common = np.asarray(self._measured[sets].all(axis=0))
-        if len(sets) < 2 or common.sum() < 2:
-            return 0.0
-        # Shapes of any scale and sign: each is brought to the first by least squares.
-        values = self.data.shape[sets, self.mode][:, common]
-        factor = (values @ values[0]) / (values**2).sum(axis=1)
-        mean = factor @ values
-        out = 0.0
-        for part in self.shapes:
-            psi, chi = part.psi[common[part.sensors]], part.weight[common[part.sensors]] * mean
-            away = psi - (psi @ chi) / (chi @ chi) * chi
-            out += float((away @ away) * (part.psi @ part.psi) / (psi @ psi))
-        return out * len(sets) / (len(sets) - 1)
+        x = self.components
+        total, K = float(x.sizes.sum() - x.sizes.size), x.sizes.size
+        if K > 1 and np.ptp(x.sizes) == 0:
+            psi, weight, sensors = (v.reshape(K, -1) for v in (x.psi, x.weight, x.sensors))
+            share = weight / weight[:, :1]
+            if (sensors == sensors[0]).all() and np.ptp(share / share[0]) <= NEGLIGIBLE:
+                S = float((np.linalg.svd(psi, compute_uv=False)[1:] ** 2).sum())
+                return float(x.sizes[0] - 1), S, total - float(x.sizes[0] - 1)
+        return total, 0.0, 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -196,11 +196,14 @@ def _posterior(front: Front, analysis: FrontAnalysis) -> Values:
     return {
         "posterior_std": _std(posterior.covariance, posterior.free),
         "posterior_covariance": posterior.covariance,
-        "posterior_frequency_std": np.sqrt(
-            np.diag(linear(posterior.covariance, slopes["frequency"]))
-        ),
-        "posterior_mac_std": np.sqrt(np.diag(linear(posterior.covariance, slopes["mac"]))),
+        "posterior_frequency_std": _roots(linear(posterior.covariance, slopes["frequency"])),
+        "posterior_mac_std": _roots(linear(posterior.covariance, slopes["mac"])),
     }
+
+
+def _roots(covariance: Floats) -> Floats:
+    """Return standard deviations; rounding may leave a variance below 0."""
+    return np.sqrt(np.maximum(np.diag(covariance), 0.0))
 
 
 def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:

@@ -169,8 +169,6 @@ def _weights(front: Front, J: Floats, a: Floats) -> Floats:
     for i, point in enumerate(front.points):
         if point.kind is Kind.OPTIMAL:
             out[i] = a / J[i]
-        elif point.kind is Kind.BOUNDED and front.floor is not None:
-            out[i] = a / (J[i] + front.floor)
         elif point.kind in WEIGHTED or (point.kind is Kind.FRONT and swept):
             out[i] = point.solution.weights
     return out

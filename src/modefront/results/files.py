@@ -109,5 +109,10 @@ def _plain(data: xr.Dataset) -> xr.Dataset:
                 changed[str(name)] = xr.Variable(variable.dims, values, variable.attrs)
     out = data.assign(changed)
     attributes = data.attrs.items()
-    out.attrs = {k: clean(value) if isinstance(value, str) else value for k, value in attributes}
+    out.attrs = {k: _lines(value) if isinstance(value, str) else value for k, value in attributes}
     return out
+
+
+def _lines(text: str) -> str:
+    """Return a text of one or more lines without orders to a terminal."""
+    return "\n".join(map(clean, text.split("\n")))

@@ -76,26 +76,22 @@ def findings(
 
 def _weights(problem: UpdatingProblem, front: Front) -> list[Finding]:
     """Return why there is no optimally weighted model, where there is none."""
-    if front.reference.kind is Kind.OPTIMAL:
+    if front.optimal:
         return []
     exact = [name for name, fits in zip(problem.objectives, front.exact, strict=True) if fits]
     if exact:
         why = (
             f"the model can fit {enumeration(exact)} exactly, where the optimal weights are not "
-            "defined, and no regular minimum of sum a ln J is better than the models of the front"
+            "defined, and sum a ln J has no regular minimum"
         )
     else:
-        why = "no minimum of sum a ln J was found that is better than the models of the front"
-    if front.reference.kind is Kind.BOUNDED:
-        then = (
-            f"{label(Kind.BOUNDED)} takes the place of {label(Kind.OPTIMAL)}: no group counts as "
-            "known better than the errors of its data allow"
-        )
+        why = "no regular minimum of sum a ln J was found"
+    if front.reference.kind is Kind.MOST_PROBABLE:
+        then = f"use {label(Kind.MOST_PROBABLE)}"
     else:
         then = (
-            f"{label(Kind.EQUAL)} takes the place of {label(Kind.OPTIMAL)}; standard deviations "
-            "of the data of every group, or several data sets, give "
-            f"{label(Kind.BOUNDED)}, which are better"
+            f"{label(Kind.EQUAL)} takes the place of {label(Kind.OPTIMAL)}; a weight in [noise] "
+            f"gives {label(Kind.MOST_PROBABLE)}, which is better"
         )
     return [(Rank.WEIGHTS, f"there is no {label(Kind.OPTIMAL)}: {why}. {then}")]
 

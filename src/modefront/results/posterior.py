@@ -47,13 +47,24 @@ class PosteriorModels:
 
 
 def posterior_models(
-    data: xr.Dataset, runner: PredictionRunner, posterior: Posterior | None, draws: int
+    data: xr.Dataset,
+    runner: PredictionRunner,
+    posterior: Posterior | None,
+    draws: int,
+    drawn: Floats | None = None,
 ) -> PosteriorModels:
-    """Return the models around the reference at which predictions are evaluated."""
+    """Return the models around the reference at which predictions are evaluated.
+
+    ``drawn`` (draws or more, p) are models of the posterior; they are drawn around the reference
+    where it is None.
+    """
     problem = runner.problem
     none = np.empty((0, problem.start.size))
     if not runner.predictions:
         return PosteriorModels(None, none, [])
+    samples = none if drawn is None else drawn[:draws]
+    if posterior is None and len(samples):
+        return PosteriorModels(None, samples, [])
     if posterior is None:
         missing = "there is no posterior: no models are drawn from it"
         return PosteriorModels(None, none, [missing] if draws else [])
@@ -69,8 +80,7 @@ def posterior_models(
     differences = stencil(theta, posterior.axes, problem.lower, problem.upper)
     if differences is None:
         messages.append(f"{reference} has no room for differences between bounds: see draws")
-    samples = none
-    if draws:
+    if draws and drawn is None:
         rng = np.random.default_rng(seed_sequence(runner.seed, "posterior"))
         bounds = problem.lower, problem.upper
         try:

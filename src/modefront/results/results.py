@@ -29,7 +29,7 @@ from modefront.results.vtu import write_vtu
 if TYPE_CHECKING:
     import pandas as pd
 
-SHOWN = (Kind.NOMINAL, Kind.OPTIMAL, Kind.BOUNDED, Kind.EQUAL, Kind.EDGE)
+SHOWN = (Kind.NOMINAL, Kind.MOST_PROBABLE, Kind.OPTIMAL, Kind.EQUAL, Kind.EDGE)
 """Kinds of models in the short representation, in its order."""
 
 
@@ -172,8 +172,13 @@ class Results:
 
     @property
     def reference(self) -> ReportedModel:
-        """The model that the data prefer: of optimal, else bounded, else equal weights."""
+        """The model that the data prefer: most probable, else of optimal, else equal weights."""
         return self.model(str(self.attrs["reference"]))
+
+    @property
+    def verdict(self) -> list[str]:
+        """The first answer: which model to use, how sure it is, and what the front says."""
+        return str(self.attrs.get("verdict", "")).splitlines()
 
     @property
     def optimal(self) -> ReportedModel | None:

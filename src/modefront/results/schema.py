@@ -64,7 +64,9 @@ DIMENSIONS: Mapping[str, str] = {
     "group_other": "groups again",
     "range": "`minimum`, `maximum`, `spread` over the Pareto-optimal models; the spread is the "
     "ratio of greatest to least",
-    "draw": "models drawn from the posterior",
+    "draw": "models drawn from the posterior, for predictions",
+    "sample": "models drawn from the posterior",
+    "quantile": "0.05, 0.5, 0.95",
     "set": "data sets, by name",
     "sensor": "sensors, by name",
     "model_mode": "modes of the model, from the lowest",
@@ -94,7 +96,7 @@ def _models() -> Iterator[Variable]:
         "kind",
         ("point",),
         "why the model is reported: front, edge, given-weights, equal-weights, optimal-weights, "
-        "bounded-weights, identifiable-part, identifiable-edge or nominal",
+        "most-probable, identifiable-part, identifiable-edge or nominal",
         "text",
         required=True,
         since=2,
@@ -335,7 +337,7 @@ def _open() -> Iterator[Variable]:
     yield Variable("equal_objective", ("equal", "group"), "J_i", unit="1")
 
 
-# 65 lines: a table, one entry a variable.
+# 84 lines: a table, one entry a variable.
 def _errors() -> Iterator[Variable]:
     by = "by errors of the data, linearised"
     yield Variable(
@@ -390,6 +392,25 @@ def _errors() -> Iterator[Variable]:
     )
     yield Variable(
         "posterior_mac_std", ("mode",), "standard deviation of the MAC likewise", unit="1"
+    )
+    yield Variable(
+        "interval",
+        ("parameter", "quantile"),
+        "quantiles of theta by the posterior, of models drawn from it",
+    )
+    yield Variable(
+        "trust",
+        ("parameter",),
+        "determined, partly or not determined: width of the 90 % interval of the posterior beside "
+        "that of the prior, below a third, between, above 0.8",
+        "text",
+    )
+    yield Variable("sample_theta", ("sample", "parameter"), "models drawn from the posterior")
+    yield Variable(
+        "misfit",
+        ("group",),
+        "root mean square error of the reference over the one that is expected",
+        unit="1",
     )
     again = "with the data drawn again; NaN where it did not converge"
     over = "over the data drawn again"
@@ -527,6 +548,7 @@ TOGETHER: Mapping[str, tuple[str, ...]] = {
         "posterior_frequency_std",
         "posterior_mac_std",
     ),
+    "samples": ("interval", "trust", "sample_theta", "misfit"),
     "modes of points": (
         "set_frequency",
         "set_frequency_std",
@@ -593,6 +615,8 @@ ATTRIBUTES: Mapping[str, Attribute] = {
             "text",
             since=2,
         ),
+        Attribute("assumed", "which errors of the data are assumed, and how great", "text"),
+        Attribute("verdict", "sentences of the first screen, one a line", "text"),
         Attribute("remark", "why a requested option is not in use", "text"),
         Attribute("seed", "seed of all random numbers", required=True),
         Attribute("method", "method by which the front was found", "text", required=True),
@@ -709,7 +733,7 @@ def missing(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
         if present and missing:
             yield f"variable '{missing[0]}'", f"it, as there is '{present[0]}'", "nothing"
     kinds = [prediction.kind.dimension for prediction in KINDS]
-    for name in ("range", "statistic", "set", "sensor", *kinds):
+    for name in ("range", "statistic", "quantile", "set", "sensor", *kinds):
         if name in data.dims and name not in data.coords:
             yield f"coordinate '{name}'", DIMENSIONS.get(name, "names of its places"), "nothing"
     if any(name in data.dims for name in kinds):

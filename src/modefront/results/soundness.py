@@ -26,7 +26,15 @@ FINITE = (
 UNIQUE = ("label", "parameter", "group", "mode")
 """Variables and coordinates whose values do not repeat."""
 
-SIZES = {"bound": 2, "range": 3, "statistic": 5, "line_end": 2, "corner": 4, "axis": 3}
+SIZES = {
+    "bound": 2,
+    "range": 3,
+    "statistic": 5,
+    "quantile": 3,
+    "line_end": 2,
+    "corner": 4,
+    "axis": 3,
+}
 """Sizes of dimensions that are always the same."""
 
 LARGEST = 1e9

@@ -20,6 +20,7 @@ from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.labels import labels_of
 from modefront.uncertainty.options import Uncertainty
+from modefront.uncertainty.prior import NoisePrior
 
 if TYPE_CHECKING:
     from modefront.results.results import Results
@@ -47,6 +48,7 @@ class Origin:
     notes: tuple[UnusedGroup | DataDirection, ...] = ()
 
 
+# 11 fields: the problem, where it was read, and each table of options.
 @dataclass(frozen=True)
 class Study:
     """A problem with the options of its solution.
@@ -64,6 +66,7 @@ class Study:
     identifiability : limits of flat parts and of manifolds of equivalent models
     uncertainty : source of the errors of the data, and samples
     predictions : predictions of all models
+    noise : what is expected of the errors of the data and the model
     origin : where the study was read; None for one that was made in Python
     """
 
@@ -76,6 +79,7 @@ class Study:
     identifiability: Identifiability = field(default_factory=Identifiability)
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
     predictions: Sequence[Prediction] = ()
+    noise: NoisePrior = field(default_factory=NoisePrior)
     origin: Origin | None = None
 
     def __post_init__(self) -> None:
@@ -124,7 +128,10 @@ class Study:
             return ""
         pareto = replace(self.pareto, refined=None)
         uncertainty = replace(self.uncertainty, draws=0)
-        options = (self.seed, pareto, self.weighted, self.search, self.identifiability, uncertainty)
+        options = (
+            *(self.seed, pareto, self.weighted, self.search, self.identifiability, uncertainty),
+            self.noise,
+        )
         return hashlib.sha256(f"{self.origin.work} {options}".encode()).hexdigest()
 
     @property

@@ -23,6 +23,8 @@ from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.predictions import extent
 from modefront.study.definition import Study
+from modefront.uncertainty.most_probable import STARTS as MAXIMA
+from modefront.uncertainty.sampling import BATCH, DRAWS
 from modefront.work.costs import uncounted
 
 STARTS = 12
@@ -145,6 +147,8 @@ def expected_tasks(study: Study) -> dict[str, int]:
         "nominal": 1,
         "shapes": 1,
     }
+    if study.noise.weight:
+        out |= {"most-probable": MAXIMA, "sample-posterior": DRAWS // BATCH, "posterior": 1}
     if n > 1:
         generations = max(pareto.evaluations // pareto.population, 1)
         searched = 2 * (_points(study) + STARTS)
@@ -205,6 +209,9 @@ def _parts(study: Study, each: float, step: float) -> Iterator[Part]:
         both * min((n + 1) * STARTS * (8 + p / 2), search.evaluations),
         f"fewer evaluations of the search ([search] evaluations, now {search.evaluations})",
     )
+    if study.noise.weight:
+        yield Part("most-probable", both * MAXIMA * (8 + p / 2))
+        yield Part("sample-posterior", both * DRAWS * (8 + p / 2))
     points = _points(study)
     point = 4 + p / 2
     if pareto.method in ("nbi", "weights"):

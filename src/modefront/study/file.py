@@ -35,6 +35,7 @@ from modefront.study.tables.predict import complete, read_predictions
 from modefront.study.tables.weighted import read_weights
 from modefront.toml import Table
 from modefront.uncertainty.options import Uncertainty
+from modefront.uncertainty.prior import NoisePrior
 
 
 def load(path: Path | str) -> Study:
@@ -66,6 +67,7 @@ def load(path: Path | str) -> Study:
     search = read_options(root, "search", Search)
     identifiability = read_options(root, "identifiability", Identifiability)
     uncertainty = _read_uncertainty(root, data)
+    noise = read_options(root, "noise", NoisePrior)
     pairing = read_options(root, "pairing", Pairing)
     drafts = read_predictions(root, model, data)
     note(_place(root, "[pareto]"), pareto.faults(len(groups)))
@@ -96,7 +98,7 @@ def load(path: Path | str) -> Study:
     )
     return Study(
         *(problem, title, seed, pareto, weighted, search, identifiability, uncertainty),
-        *(predictions, origin),
+        *(predictions, noise, origin),
     )
 
 

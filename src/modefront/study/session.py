@@ -10,6 +10,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
+import numpy as np
 from threadpoolctl import threadpool_limits
 
 from modefront._typing import Floats
@@ -40,12 +41,14 @@ from modefront.study.definition import Study
 from modefront.study.estimate import expected_tasks
 from modefront.study.processes import processes
 from modefront.study.whereabouts import note_study
-from modefront.uncertainty.noise import noise_floor
+from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.options import Uncertainty
+from modefront.uncertainty.prior import NoisePrior
+from modefront.uncertainty.sampling import DRAWS, draw_models
 from modefront.work.progress import Progress
 from modefront.work.run import Run
 from modefront.work.store import FOLDER, Store, locked
-from modefront.work.task import Backend, Task
+from modefront.work.task import Backend, Task, Within
 
 if TYPE_CHECKING:
     import xarray as xr
@@ -53,7 +56,7 @@ if TYPE_CHECKING:
     from modefront.results.results import Results
 
 
-# 8 arguments: the problem, and each record of options by keyword.
+# 9 arguments: the problem, and each record of options by keyword.
 def solve(
     problem: UpdatingProblem,
     *,
@@ -64,6 +67,7 @@ def solve(
     identifiability: Identifiability | None = None,
     uncertainty: Uncertainty | None = None,
     predictions: Sequence[Prediction] = (),
+    noise: NoisePrior | None = None,
     **front: Unpack[ParetoOptions],
 ) -> Results:
     """Return the Pareto-optimal models, the edges and the weighted models of a problem.
@@ -86,6 +90,8 @@ def solve(
         Source of the errors of the data, and samples of data and models.
     predictions
         Predictions of all models, such as `PeakResponse` and `Passage`.
+    noise
+        What is expected of the errors of the data and the model.
     front
         Fields of ``pareto`` as keywords, ``method="weights", points=10``, in place of its own.
 
@@ -105,6 +111,7 @@ def solve(
         identifiability=identifiability or Identifiability(),
         uncertainty=uncertainty or Uncertainty(),
         predictions=tuple(predictions),
+        noise=noise or NoisePrior(),
     )
     return in_memory(study)
 
@@ -241,8 +248,10 @@ class _Session:
 
     def _results(self) -> xr.Dataset:
         from modefront.results.assemble import dataset
+        from modefront.results.intervals import with_intervals
         from modefront.results.posterior import posterior_models, with_posterior
         from modefront.results.predictions import extent, with_predictions
+        from modefront.results.verdict import verdict
 
         study, work = self.study, self.work
         problem = study.problem
@@ -254,19 +263,33 @@ class _Session:
             seed=study.seed,
             search=study.search,
             given=[(each.name, each.of(problem.objectives)) for each in study.weighted],
-            floor=self._noise_floor(),
         )
         front = certified_front(problem, search, work)
+        noise = study.noise.of(problem, study.uncertainty.of(problem.data))
+        samples, misfit = None, np.empty(0)
+        if noise is not None:
+            (best, *_) = most_probable(problem, noise, _known(front), work)
+            points = certified_points(
+                problem, [Point(Kind.MOST_PROBABLE, best)], Within(work, ("most-probable",))
+            )
+            front = replace(front, points=[*front.points, *points])
+            count = max(DRAWS, study.uncertainty.draws)
+            samples = draw_models(noise, best.theta, count, study.seed, work)
+            (misfit,) = work.run([Task(("most-probable", "misfit"), noise.misfit, (best.theta,))])
         options = AnalysisOptions(
-            study.pareto, study.identifiability, study.uncertainty, study.seed
+            study.pareto, study.identifiability, study.uncertainty, study.seed, noise
         )
         analysis = analyse_front(problem, front, options, work)
         (nominal,) = work.run([Task(("nominal",), _nominal, (problem,))])
         extra = [*analysis.points, Point(Kind.NOMINAL, nominal)]
         analysis = replace(analysis, points=certified_points(problem, extra, work))
         data = self._with_shapes(dataset(problem, front, analysis))
+        if noise is not None and samples is not None:
+            data = with_intervals(data, samples, misfit, noise.assumed)
+            data = data.assign_attrs(verdict="\n".join(verdict(data)))
         runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file)
-        models = posterior_models(data, runner, analysis.posterior, study.uncertainty.draws)
+        draws = study.uncertainty.draws
+        models = posterior_models(data, runner, analysis.posterior, draws, samples)
         work.expect(extent(study.predictions, data.sizes["point"] + models.count))
         data = with_posterior(with_predictions(data, runner), runner, models)
         data.attrs |= self._attributes(front)
@@ -282,15 +305,6 @@ class _Session:
         mark = hashlib.sha256(theta.tobytes() + paired.tobytes()).hexdigest()[:16]
         (shapes,) = self.work.run([Task(("shapes", mark), mode_shapes, (problem, theta, paired))])
         return with_mode_shapes(data, problem, shapes)
-
-    def _noise_floor(self) -> Floats | None:
-        """Return the objectives that errors of the data explain; None where one is not known."""
-        problem = self.study.problem
-        source = self.study.uncertainty.of(problem.data)
-        if source is None:
-            return None
-        floor = noise_floor(problem, source)
-        return floor if (floor > 0).all() else None
 
     def _attributes(self, front: Front) -> dict[str, str | int | float]:
         """Return version, seed, costs, and the coverage of the front."""
@@ -320,6 +334,12 @@ class _Session:
             **coverage(front),
         }
         return out | certificate_attributes(self.study.problem)
+
+
+def _known(front: Front) -> list[Floats]:
+    """Return the parameters (p,) of the models of a front and of all minima that it knows."""
+    minima = [x for edge in front.edges for x in edge.minima]
+    return [x.theta for x in (*(point.solution for point in front.points), *minima)]
 
 
 def _nominal(problem: UpdatingProblem) -> Solution:

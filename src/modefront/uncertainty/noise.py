@@ -60,20 +60,6 @@ def noise(problem: UpdatingProblem, modes: Modes, pairs: Pairs, source: Source) 
     return (_from_std if source == "std" else _from_sets)(problem, modes, pairs)
 
 
-def noise_floor(problem: UpdatingProblem, source: Source) -> Floats:
-    r"""Return the objectives (n,) that errors of the data alone would cause, of a perfect model.
-
-    They are sums of the variances of the residuals: :math:`\sigma^2` over the same units, or, from
-    several data sets, the variance of single sets about their mean. A group of which no error is
-    known has 0.
-    """
-    floors = [
-        [x.floor_of_std() if source == "std" else x.floor_of_sets() for x in row]
-        for row in problem.members
-    ]
-    return np.array([sum(row) for row in floors])
-
-
 def _from_std(problem: UpdatingProblem, modes: Modes, pairs: Pairs) -> Noise:
     K, R, S = problem.data.shape.shape
     n, p = len(problem.groups), len(problem.model.parameters)

@@ -1,0 +1,238 @@
+"""How often 90 % intervals of parameters hold the truth, in random simulated tests.
+
+    python benchmarks/calibration.py --seeds 1000:1100 [--draws 100] [--wrong] [--quiet]
+
+Seeds 1000 to 1999 are for development. Seeds from 9000 on are for judgement: nobody tunes
+anything on them, and ``--quiet`` prints their rates only.
+
+Each seed is a chain with springs to the ground, a sway frame or a lattice, of 2 to 20 stiffness
+parameters, with 2 to 8 modes at 2 to 12 sensors in 1 to 4 data sets; frequencies have errors of 0.2
+to 3 %, shapes of 1 to 5 % of their greatest component. The errors that are expected are the true
+ones, twice or half of these, in columns ``_std`` or in ``[noise]``. With ``--wrong`` the members of
+a parameter vary by 5 to 10 % about its true value, or springs are missing in the model.
+
+``held`` is the share of parameters of which the interval holds the truth, ``old`` that of Laplace's
+approximation about optimal weights, where these exist. ``far`` are the parameters that are called
+determined and are off by more than 5 standard deviations, ``worst`` is the farthest of these.
+"""
+
+from __future__ import annotations
+
+import argparse
+import time
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+import modefront as mf
+from modefront._typing import Floats
+from modefront.analysis.curvature import with_second_order
+from modefront.front.weights import accepted, optimal_minimum
+from modefront.optim.sqp import begin
+from modefront.results.intervals import DETERMINED
+from modefront.uncertainty.laplace import laplace
+from modefront.uncertainty.most_probable import most_probable
+from modefront.uncertainty.prior import NoisePrior
+from modefront.uncertainty.sampling import draw_models
+from modefront.work.task import IMMEDIATE
+
+BOUNDS = (0.3, 3.0)
+STARTS = 6
+
+
+@dataclass(frozen=True)
+class Verdict:
+    """What is known of a parameter: its classes, and how far its truth is."""
+
+    classes: tuple[str, ...]
+    held: bool
+    old: bool | None
+    away: float
+    determined: bool
+
+
+def spring(N: int, i: int, j: int = -1) -> Floats:
+    """Return the stiffness of a spring of 1 between degrees of freedom, or to the ground."""
+    v = np.zeros(N)
+    v[i] = 1.0
+    if j >= 0:
+        v[j] = -1.0
+    return np.outer(v, v)
+
+
+def members(kind: str, rng: np.random.Generator) -> tuple[int, list[Floats]]:
+    """Return the degrees of freedom of a structure and its members, those near each other first."""
+    if kind == "chain":
+        N = int(rng.integers(6, 25))
+        out = [spring(N, i, i - 1) for i in range(N)]
+        return N, [K * rng.uniform(0.7, 1.4) for K in out] + [0.1 * spring(N, N - 1)]
+    if kind == "frame":  # stories of two columns and a floor with a rotation each
+        n = int(rng.integers(3, 9))
+        N = 2 * n
+        out = []
+        for k in range(n):
+            for side in (0.8, 1.2):
+                v = np.zeros((2, N))
+                v[0, 2 * k], v[0, 2 * k + 1] = 1.0, 0.5
+                v[1, 2 * k + 1] = 1.0
+                if k:
+                    v[0, 2 * k - 2], v[0, 2 * k - 1] = -1.0, 0.5
+                    v[1, 2 * k - 1] = -1.0
+                out.append(side * (12 * np.outer(v[0], v[0]) + np.outer(v[1], v[1])))
+            out.append(3 * spring(N, 2 * k + 1))
+        return N, out
+    a, b = (int(x) for x in rng.integers(3, 6, 2))
+    N = a * b
+    out = []
+    for i in range(a):
+        for j in range(b):
+            here = i * b + j
+            out += [spring(N, here, here + 1)] if j + 1 < b else [spring(N, here)]
+            out += [1.5 * spring(N, here, here + b)] if i + 1 < a else [0.7 * spring(N, here)]
+    return N, out
+
+
+# 62 lines: one choice after the other.
+def case(seed: int, wrong: bool) -> tuple[mf.UpdatingProblem, NoisePrior, Floats, tuple[str, ...]]:
+    """Return a simulated test, what is expected of its errors, the truth and its classes."""
+    rng = np.random.default_rng(seed)
+    kind = str(rng.choice(["chain", "frame", "lattice"]))
+    N, parts = members(kind, rng)
+    p = min(int(rng.integers(2, 21)), len(parts))
+    owner = np.sort(np.append(np.arange(p), rng.integers(0, p, len(parts) - p)))
+    names = tuple(f"k{j}" for j in range(p))
+    truth = rng.uniform(0.6, 1.6, p)
+    factors = truth[owner]
+    if wrong and rng.random() < 0.7:
+        share = rng.uniform(0.05, 0.1)
+        for j in range(p):
+            own = owner == j
+            vary = rng.normal(size=own.sum())
+            factors[own] *= 1 + share * (vary - vary.mean())
+    scale, mass = 1e4, rng.uniform(0.8, 1.2, N)
+    K = scale * sum(f * part for f, part in zip(factors, parts, strict=True))
+    if wrong and rng.random() < 0.4:
+        K = K + 0.03 * scale * spring(N, int(rng.integers(N)))
+    stiffness = {
+        name: scale * sum(part for part, o in zip(parts, owner, strict=True) if o == j)
+        for j, name in enumerate(names)
+    }
+    sensors = rng.choice(N, min(int(rng.integers(2, 13)), N), replace=False)
+    places = {f"s{i}": int(i) for i in np.sort(sensors)}
+    model = mf.matrices(names, stiffness, {"base": np.diag(mass)}, places)
+    modes = min(int(rng.integers(2, 9)), N - 1)
+    true = mf.matrices(["x"], {"x": K}, {"base": np.diag(mass)}, places).modes(np.ones(1), modes)
+    sets = int(rng.integers(1, 5))
+    sf, ss = np.exp(rng.uniform(np.log(0.002), np.log(0.03))), rng.uniform(0.01, 0.05)
+    f = true.frequency * (1 + sf * rng.normal(size=(sets, modes)))
+    clean = true.phi.T
+    top = np.abs(clean).max(axis=1)[:, None]
+    phi = clean + ss * top * rng.normal(size=(sets, *clean.shape))
+    factor = float(rng.choice([0.5, 1.0, 2.0]))
+    std = bool(rng.random() < 0.5)
+    data = mf.modal_data(
+        f,
+        phi,
+        model.sensors,
+        frequency_std=factor * sf * f if std else None,
+        shape_std=np.broadcast_to(factor * ss * top, phi.shape) if std else None,
+    )
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    parameters = [mf.Parameter(name, nominal=1.0, bounds=BOUNDS) for name in names]
+    problem = mf.updating_problem(model, data, groups, parameters=parameters)
+    prior = NoisePrior() if std else NoisePrior(frequency=factor * sf, shape=factor * ss)
+    count = modes * len(places)
+    size = "p < modes" if p < modes else "p < data" if p < count else "p >= data"
+    classes = (
+        *("all", kind, size, f"{sets} set{'s' * (sets > 1)}", "std" if std else "no std"),
+        f"expected x {factor:g}",
+    )
+    return problem, prior, truth, classes
+
+
+def judge(seed: int, draws: int, wrong: bool) -> list[Verdict]:
+    """Return the verdicts of a simulated test."""
+    problem, prior, truth, classes = case(seed, wrong)
+    source = mf.Uncertainty().of(problem.data)
+    noise = prior.of(problem, source)
+    assert noise is not None
+    rng = np.random.default_rng([seed, 1])
+    known = list(rng.uniform(0.6, 1.6, (STARTS, truth.size)))
+    best = most_probable(problem, noise, known, IMMEDIATE)[0]
+    samples = draw_models(noise, best.theta, draws, seed, IMMEDIATE)
+    low, middle, high = np.quantile(samples, (0.05, 0.5, 0.95), axis=0, method="weibull")
+    std = np.maximum((high - low) / (2 * 1.645), 1e-12)
+    determined = high - low < DETERMINED * 0.9 * (BOUNDS[1] - BOUNDS[0])
+    old = jeffreys(problem, [problem.start, best.theta, *known])
+    return [
+        Verdict(
+            classes,
+            bool(low[j] - 1e-9 <= truth[j] <= high[j] + 1e-9),
+            None if old is None else bool(abs(truth[j] - old[0][j]) <= 1.645 * old[1][j]),
+            float(abs(truth[j] - middle[j]) / std[j]),
+            bool(determined[j]),
+        )
+        for j in range(truth.size)
+    ]
+
+
+def jeffreys(problem: mf.UpdatingProblem, starts: Sequence[Floats]) -> tuple[Floats, Floats] | None:
+    """Return the model of optimal weights and standard deviations about it; None without one."""
+    a, sizes = problem.properties, problem.evaluate(problem.start).J
+    minima = [
+        optimal_minimum(problem, a, sizes, begin(problem.evaluate(theta, second=True)))
+        for theta in starts
+    ]
+    for minimum in accepted(problem, [x for x in minima if x.converged], a, sizes):
+        point = with_second_order(problem, minimum.evaluation)
+        found = None if point is None else laplace(problem, point, a)
+        if found is not None:
+            return minimum.theta, np.sqrt(np.diag(found.covariance))
+    return None
+
+
+def table(verdicts: Sequence[Verdict]) -> str:
+    """Return rates by class."""
+    names = dict.fromkeys(name for verdict in verdicts for name in verdict.classes)
+    order = ["all", *sorted(name for name in names if name != "all")]
+    lines = [
+        f"{'class':14} {'parameters':>10} {'held':>6} {'old':>6} {'determined':>10} {'worst':>6}"
+    ]
+    for name in order:
+        own = [x for x in verdicts if name in x.classes]
+        old = [x.old for x in own if x.old is not None]
+        sure = [x.away for x in own if x.determined]
+        lines.append(
+            f"{name:14} {len(own):10d} {100 * np.mean([x.held for x in own]):5.0f} % "
+            + (f"{100 * np.mean(old):4.0f} %" if old else f"{'none':>6}")
+            + f" {len(sure):10d} {max(sure, default=0):6.1f}"
+        )
+    far = sum(x.determined and x.away > 5 for x in verdicts)
+    return "\n".join([*lines, f"determined and off by more than 5 standard deviations: {far}"])
+
+
+def main() -> None:
+    """Print the rates over some seeds."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--seeds", default="1000:1040")
+    parser.add_argument("--draws", type=int, default=100)
+    parser.add_argument("--wrong", action="store_true")
+    parser.add_argument("--quiet", action="store_true")
+    options = parser.parse_args()
+    verdicts = []
+    for seed in range(*map(int, options.seeds.split(":"))):
+        began = time.process_time()
+        found = judge(seed, options.draws, options.wrong)
+        verdicts += found
+        if not options.quiet:
+            held = sum(x.held for x in found)
+            away = max(x.away for x in found)
+            spent = time.process_time() - began
+            text = ", ".join(found[0].classes[1:])
+            print(f"{seed}: {held} of {len(found)}, worst {away:.1f}, {spent:.1f} s: {text}")
+    print(table(verdicts))
+
+
+if __name__ == "__main__":
+    main()

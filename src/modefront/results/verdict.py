@@ -1,0 +1,123 @@
+"""The first answer: which model to use and why, how sure it is, and what the front says."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+import numpy as np
+import xarray as xr
+
+from modefront.front.point import Kind
+from modefront.identifiability.words import enumeration
+from modefront.results.intervals import TRUST
+from modefront.results.selection import front_points
+
+FAR = 10.0
+"""Errors over those expected, from which no model is advised: far above what is called noise."""
+
+LARGE = 2.0
+"""Errors over those expected, from which they are said to be larger."""
+
+WORSE = 1.1
+"""Error of a group over that of the nominal model, from which the nominal one is better there."""
+
+SMALL = 0.5
+"""Change of errors along a front, over those expected, below which the compromise hardly counts."""
+
+NAMED = 3
+"""Parameters of a kind that are named."""
+
+
+def verdict(data: xr.Dataset) -> list[str]:
+    """Return the sentences, at most eight; none of results without expectations of the errors."""
+    if "misfit" not in data:
+        return []
+    return [*_advice(data), *_parameters(data), *_front(data)]
+
+
+def _advice(data: xr.Dataset) -> Iterator[str]:
+    """Yield whether the reference can be used, and why."""
+    label, groups = str(data.attrs["reference"]), data["group"].values
+    best, nominal = (_row(data, kind) for kind in (Kind.MOST_PROBABLE, Kind.NOMINAL))
+    misfit, error = data["misfit"].values, best["error"].values
+    with np.errstate(divide="ignore", invalid="ignore"):
+        worse = (error > WORSE * nominal["error"].values) & (misfit > LARGE)
+    far = misfit > FAR
+    at_bound = best["at_bound"].values
+    held = [
+        f"{name} is at its {'upper' if side > 0 else 'lower'} bound {value:.4g}"
+        for name, side, value in zip(
+            data["parameter"].values, at_bound, best["theta"].values, strict=True
+        )
+        if side
+    ]
+    if far.any() or worse.any():
+        much = [
+            f"errors of {groups[i]} are {misfit[i]:.2g} times those expected"
+            for i in np.flatnonzero(far)
+        ]
+        less = [
+            f"{groups[i]} fits worse than at the nominal model"
+            for i in np.flatnonzero(worse & ~far)
+        ]
+        yield f"Do not use any of these models: {enumeration([*much, *less])}."
+    else:
+        size = ", ".join(f"{x:.2g} ({name})" for x, name in zip(misfit, groups, strict=True))
+        larger = " They are larger than noise: the model lacks something." * bool(
+            (misfit > LARGE).any()
+        )
+        yield f"Use {label}: its errors over those expected are {size}.{larger}"
+    if held:
+        more = f" and {len(held) - NAMED} more" * (len(held) > NAMED)
+        yield f"{enumeration(held[:NAMED])}{more}: widen it, or ask what the model lacks."
+    if data.attrs.get("assumed"):
+        yield f"Assumed: {data.attrs['assumed']}; say yours in [noise]."
+
+
+def _parameters(data: xr.Dataset) -> Iterator[str]:
+    """Yield values and 90 % intervals of the parameters, of which the data determine most first."""
+    theta = _row(data, Kind.MOST_PROBABLE)["theta"].values
+    low, _, high = data["interval"].values.T
+    for trust in TRUST:
+        own = np.flatnonzero(data["trust"].values == trust).tolist()
+        parts = [
+            f"{data['parameter'].values[j]} {theta[j]:.4g} ({low[j]:.3g} to {high[j]:.3g})"
+            for j in own[:NAMED]
+        ]
+        if own:
+            yield f"{trust.capitalize()} (90 %): {_some(parts, len(own))}."
+
+
+def _some(parts: Sequence[str], count: int) -> str:
+    return ", ".join(parts) + f" and {count - len(parts)} more" * (count > len(parts))
+
+
+def _front(data: xr.Dataset) -> Iterator[str]:
+    """Yield whether the front is a compromise, or its errors change less than noise."""
+    along = front_points(data)
+    if along.size < 2:
+        return
+    best, misfit = _row(data, Kind.MOST_PROBABLE), data["misfit"].values
+    error = data["error"].values[along]
+    with np.errstate(divide="ignore", invalid="ignore"):
+        expected = np.where(misfit > 0, best["error"].values / misfit, np.inf)
+    change = np.ptp(error, axis=0) / expected
+    if (change < SMALL).any():
+        i = int(np.argmin(change))
+        name = data["group"].values[i]
+        yield (
+            f"Along the front errors of {name} change by {change[i]:.2g} of those expected: the "
+            "compromise hardly matters."
+        )
+    else:
+        i = int(np.argmax(change))
+        name = data["group"].values[i]
+        yield (
+            f"The front is a compromise: along it errors of {name} change by {change[i]:.2g} times "
+            "those expected."
+        )
+
+
+def _row(data: xr.Dataset, kind: Kind) -> xr.Dataset:
+    """Return the first model of a kind."""
+    return data.isel(point=data["kind"].values.tolist().index(kind.value))

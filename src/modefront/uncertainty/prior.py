@@ -1,0 +1,219 @@
+r"""What is expected of the errors of the data and the model, before the data are fitted.
+
+The residuals of group i, in units of their expected standard deviations :math:`\tau`, are Gaussian
+with an unknown variance :math:`s_i` of scaled inverse chi-square prior: :math:`\nu` degrees of
+freedom, about :math:`m_i`. With :math:`J_i'` the sum of their squares over all data sets, of which
+:math:`S_i` no model can explain (the scatter of the sets about their mean), the variance is
+integrated out,
+
+.. math:: -\ln p(\theta \mid D) = \tfrac12 \sum_i (a_i + \nu) \ln (J_i' - S_i + \nu m_i)
+    + \text{const} .
+
+The weights of the most probable model are bounded, :math:`w_i = (a_i + \nu) / (J_i' - S_i + \nu
+m_i)`. Without a prior, :math:`\nu = 0`, it is the optimally weighted one, equation (8); the greater
+:math:`\nu`, the closer it comes to weights that are known.
+
+The count :math:`a_i` is that of independent errors which a model can explain, so that :math:`J_i' -
+S_i` of the true model has the mean :math:`a_i`: one a frequency; of a shape one less than its
+components, since its factor is fitted. Repeated data sets count once: errors of the model are the
+same in all of them, and only those of measurement become less in their mean.
+
+Expected standard deviations are those of the data, else :math:`\tau` that are assumed. The scatter
+of S, of d degrees of freedom, corrects these to :math:`m_i = (\nu + S_i) / (\nu + d_i)`.
+
+The prior of the parameters is uniform within their bounds, and where neither data nor bounds say
+anything a parameter is nearest to its nominal value: :math:`-2 \ln p` has the further term
+:math:`\varepsilon \sum_j (\theta_j - \theta_{0 j})^2 / range_j^2`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from typing import Annotated
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.data.modal import ModalData
+from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual, Wrapped
+from modefront.optim.scalarisation import LogSum, Rows, no_rows
+from modefront.options import check_fields, number
+from modefront.residuals.base import NEGLIGIBLE
+from modefront.residuals.groups import Group
+from modefront.residuals.problem import UpdatingProblem
+from modefront.residuals.shape import without_negligible
+from modefront.uncertainty.noise import Source
+
+PULL = 1e-6
+"""Weight of the distance from the nominal model: a normal prior of a thousand ranges."""
+
+
+@dataclass(frozen=True)
+class NoisePrior:
+    """What is expected of the errors of measurement and model together.
+
+    Raises InputError for values that are not possible.
+
+    Attributes
+    ----------
+    frequency : relative standard deviation of a frequency, where the data have none
+    shape : of a component of a shape, over the greatest one, on average over the shapes
+    weight : how many data this expectation is worth; 0 for none, and optimal weights
+    """
+
+    frequency: Annotated[float, number("a number above 0", lambda x: x > 0)] = 0.005
+    shape: Annotated[float, number("a number above 0", lambda x: x > 0)] = 0.03
+    weight: Annotated[float, number("a number of 0 or more", lambda x: x >= 0)] = 4.0
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+    def of(self, problem: UpdatingProblem, source: Source | None) -> NoiseModel | None:
+        """Return the model of the errors of a problem; None without weight.
+
+        ``source`` says where errors are taken from; assumed ones where it is None or silent.
+        """
+        if self.weight == 0:
+            return None
+        data, assumed = expected(problem.data, self, source)
+        groups = tuple(
+            Group(each.name, scale="std", **dict(each.chosen)) for each in problem.groups
+        )
+        scaled = replace(problem, data=data, groups=groups)
+        parts = [[member.independent() for member in row] for row in scaled.members]
+        a, S, d = np.array([np.sum(row, axis=0) for row in parts]).T
+        level = np.ones(a.size)
+        if source == "sets":
+            level = (self.weight + S) / (self.weight + d)
+        sizes = {"frequency": f"frequencies known to {100 * self.frequency:g} %"}
+        sizes["shape"] = f"shapes to {100 * self.shape:g} %"
+        words = ", ".join(sizes[kind] for kind in assumed)
+        return NoiseModel(scaled, a, S, level, self.weight, words)
+
+
+@dataclass(frozen=True)
+class NoiseModel:
+    """Residuals in units of their expected standard deviations, and the prior of their variances.
+
+    Attributes
+    ----------
+    problem : with these residuals, summed over the data sets
+    a : (n,) counts of independent errors
+    S : (n,) the part of J' that no model explains
+    level : (n,) expected variance m
+    weight : degrees of freedom nu of the prior
+    assumed : in words, which errors are assumed; empty for none
+    """
+
+    problem: UpdatingProblem
+    a: Floats
+    S: Floats
+    level: Floats
+    weight: float
+    assumed: str
+
+    @property
+    def programme(self) -> NegativeLogPosterior:
+        """What the most probable model minimises: -2 ln p as a function of J'."""
+        return NegativeLogPosterior(LogSum(self.a + self.weight, self.weight * self.level - self.S))
+
+    @property
+    def target(self) -> Problem:
+        """The problem with the distance from the nominal model as a further objective."""
+        names = (*self.problem.objectives, "distance from the nominal model")
+        return Wrapped(self.problem, _with_distance, names)
+
+    def misfit(self, theta: Floats) -> Floats:
+        """Return the root mean square errors (n,) of a model over those expected."""
+        J = self.problem.evaluate(theta, derivatives=False).J
+        return np.sqrt(np.maximum(J - self.S, 0.0) / (np.maximum(self.a, 1.0) * self.level))
+
+
+@dataclass(frozen=True)
+class NegativeLogPosterior:
+    """-2 ln p of J' (n,) and of the distance from the nominal model; see the module."""
+
+    logs: LogSum
+
+    @property
+    def constraints(self) -> Rows:
+        """No constraints."""
+        return no_rows(self.logs.a.size + 1)
+
+    @property
+    def maximised(self) -> Rows:
+        """No maximum."""
+        return no_rows(self.logs.a.size + 1)
+
+    def value(self, J: Floats) -> float:
+        """Return -2 ln p."""
+        return self.logs.value(J[:-1]) + PULL * float(J[-1])
+
+    def gradient(self, J: Floats) -> Floats:
+        """Return its derivatives with respect to the objectives."""
+        return np.append(self.logs.gradient(J[:-1]), PULL)
+
+    def hessian(self, J: Floats) -> Floats:
+        """Return its second derivatives."""
+        out = np.zeros((J.size, J.size))
+        out[:-1, :-1] = self.logs.hessian(J[:-1])
+        return out
+
+
+def _with_distance(problem: Problem, theta: Floats, derivatives: bool, second: bool) -> Evaluation:
+    """Return an evaluation with the distance from the nominal model as the last objective."""
+    found = problem.evaluate(theta, derivatives=derivatives, second=second)
+    span = problem.upper - problem.lower
+    r = (theta - problem.start) / span
+    J = np.append(found.J, r @ r if found.feasible else np.inf)
+    if found.derivatives is None:
+        return replace(found, J=J)
+    slopes = ObjectiveDerivatives(
+        np.vstack([found.dJ, 2 * r / span]),
+        np.concatenate([found.H, 2 * np.diag(1 / span**2)[None]]),
+        found.exact,
+    )
+    residuals = (*found.residuals, Residual(r, np.diag(1 / span)))
+    return replace(found, J=J, derivatives=slopes, residuals=residuals)
+
+
+def expected(
+    data: ModalData, prior: NoisePrior, source: Source | None
+) -> tuple[ModalData, tuple[str, ...]]:
+    """Return data with expected standard deviations, and the kinds of which some are assumed.
+
+    They are such that means over the data sets become sums.
+    """
+    known = source == "std"
+    there = np.asarray(np.isfinite(data.frequency))
+    std = data.frequency_std if known else np.full(data.frequency.shape, np.nan)
+    given = np.asarray(std > NEGLIGIBLE * np.where(there, data.frequency, 1.0))
+    sets = np.maximum(there.sum(axis=0), 1)
+    frequency = np.where(given, std, prior.frequency * data.frequency) / np.sqrt(sets)
+    assumed = ["frequency"] if (there & ~given).any() else []
+
+    measured = np.asarray(np.isfinite(data.shape).any(axis=2))
+    ratios = [
+        np.abs(x).max() / np.sqrt((x**2).mean())
+        for k, r in np.argwhere(measured)
+        if (x := _components(data.shape[k, r])).any()
+    ]
+    ratio = float(np.sqrt(np.mean(np.square(ratios)))) if ratios else 1.0
+    shape = np.full(data.shape.shape, np.nan)
+    for k, r in np.argwhere(measured):
+        here = np.isfinite(data.shape[k, r])
+        std = np.where(data.shape_std[k, r, here] > 0, data.shape_std[k, r, here], 0.0)
+        if known and std.any():
+            size = without_negligible(std)
+        else:
+            assumed += ["shape"]
+            rms = np.sqrt((data.shape[k, r, here] ** 2).mean())
+            size = np.full(here.sum(), prior.shape * ratio * rms)
+        shape[k, r, here] = size / np.sqrt(measured[:, r].sum())
+    changed = replace(data, frequency_std=frequency, shape_std=shape)
+    return changed, tuple(dict.fromkeys(assumed))
+
+
+def _components(shape: Floats) -> Floats:
+    out: Floats = shape[np.isfinite(shape)]
+    return out

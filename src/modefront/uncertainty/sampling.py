@@ -1,0 +1,150 @@
+r"""Models drawn from the posterior: randomised maximum likelihood.
+
+Each draw is the model that fits data with other errors, and is nearest to a model of the prior:
+
+.. math:: \theta = \arg\min \sum_i \frac{\|r_i(\theta) + \varepsilon_i\|^2}{s_i}
+    + \delta \sum_j \frac{(\theta_j - \vartheta_j)^2}{range_j^2}, \qquad
+    \varepsilon_i \sim N(0, s_i), \quad \vartheta \sim U(bounds),
+
+with :math:`\delta` so small that it decides only where the data say nothing (Kitanidis 1995,
+doi:10.1029/94WR02740; Oliver, He & Reynolds 1996). Where residuals are linear and bounds far these
+are independent draws from the posterior. It is an approximation elsewhere, which follows curved
+sets of equivalent models and reaches all minima; draws that would be beyond a bound lie at it, so
+that intervals are rather too wide there. ``benchmarks/calibration.py`` measures them. Markov chains
+take a hundred times as many models where the data leave much open.
+
+The variances are drawn from their marginal distribution with the parameters linearised about the
+most probable model, at which :math:`q_i` counts the directions that group i determines,
+
+.. math:: s_i \sim \frac{J_i' - S_i + \nu m_i}{\chi^2_{a_i + \nu - q_i}}, \qquad
+    q_i = \mathrm{tr} \Big[\Big(\sum_k w_k G_k + \delta\Big)^{-1} w_i G_i\Big],
+
+with :math:`G_i = \partial r_i^T \partial r_i` and w the weights. Of one group of linear residuals
+this gives Student's distribution with :math:`a + \nu - p` degrees of freedom, exactly.
+
+The problem is solved from the model of the prior and from the most probable one; the better
+solution is taken.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual, Wrapped
+from modefront.optim.scalarisation import weighted
+from modefront.optim.sqp import Options, begin, solve
+from modefront.uncertainty.prior import NoiseModel
+from modefront.work.task import Executor, Task, seed_sequence
+
+PRIOR = 2.5e-3
+"""Weight of the distance from the model of the prior: a normal prior of twenty ranges."""
+
+BATCH = 10
+"""Draws of a task."""
+
+DRAWS = 100
+"""Draws for intervals: the 5 % quantile has an error of a sixth of a standard deviation."""
+
+_LOOSE = Options(step=1e-4, reduction=1e-8, iterations=40)
+"""Draws need a hundredth of their scatter, and no more."""
+
+
+@dataclass(frozen=True)
+class Variances:
+    """The distribution of the variances s (n,): ``scale`` / chi-square of ``dof``."""
+
+    scale: Floats
+    dof: Floats
+
+    def draw(self, rng: np.random.Generator) -> Floats:
+        """Return variances (n,)."""
+        out: Floats = self.scale / rng.chisquare(self.dof)
+        return out
+
+
+def variances(noise: NoiseModel, evaluation: Evaluation) -> Variances:
+    """Return the distribution of the variances; ``evaluation`` is of the most probable model."""
+    logs = noise.programme.logs
+    span = noise.problem.upper - noise.problem.lower
+    w = logs.gradient(evaluation.J)
+    G = np.array([x.dr.T @ x.dr for x in evaluation.residuals]) * np.outer(span, span)
+    inverse = np.linalg.inv(np.tensordot(w, G, axes=1) + PRIOR * np.eye(span.size))
+    q = w * np.einsum("jk,ikj->i", inverse, G)
+    return Variances(evaluation.J + logs.floor, np.maximum(logs.a - q, noise.weight))
+
+
+def draw_models(noise: NoiseModel, theta: Floats, count: int, seed: int, work: Executor) -> Floats:
+    """Return models (count, p) drawn from the posterior, with its maximum at theta (p,)."""
+    tasks = [
+        Task(
+            ("sample-posterior", k + 1),
+            _drawn,
+            (noise, theta, BATCH),
+            seed_sequence(seed, "sample-posterior", k + 1),
+        )
+        for k in range(-(-count // BATCH))
+    ]
+    return np.concatenate(work.run(tasks))[:count]
+
+
+def _drawn(noise: NoiseModel, theta: Floats, count: int, *, rng: np.random.Generator) -> Floats:
+    """Return draws (count, p)."""
+    problem = noise.problem
+    best = problem.evaluate(theta)
+    of, w = variances(noise, best), np.array([1.0, PRIOR])
+    out = []
+    for _ in range(count):
+        s = of.draw(rng)
+        prior = rng.uniform(problem.lower, problem.upper)
+        errors = [
+            np.sqrt(v) * rng.normal(size=x.r.size) for v, x in zip(s, best.residuals, strict=True)
+        ]
+        disturbed = _Disturbed(s, errors, prior)
+        target = Wrapped(problem, disturbed.evaluate, ("misfit", "distance from the prior"))
+        starts = [target.evaluate(prior), disturbed.of(problem, best)]
+        found = [solve(target, weighted(w), begin(x), _LOOSE) for x in starts if x.feasible]
+        out.append(min(found, key=lambda x: float(w @ x.J)).theta)
+    return np.array(out)
+
+
+@dataclass(frozen=True)
+class _Disturbed:
+    """Residuals with other errors, over their standard deviations, and a model of the prior."""
+
+    s: Floats
+    errors: Sequence[Floats]
+    prior: Floats
+
+    def evaluate(
+        self, problem: Problem, theta: Floats, derivatives: bool, second: bool
+    ) -> Evaluation:
+        """Return the misfit and the distance; residuals take derivatives, whether asked or not."""
+        del derivatives
+        return self.of(problem, problem.evaluate(theta, second=second))
+
+    def of(self, problem: Problem, found: Evaluation) -> Evaluation:
+        """Return them from an evaluation of the problem."""
+        if not found.feasible:
+            return replace(found, J=np.full(2, np.inf))
+        span = problem.upper - problem.lower
+        parts = [
+            Residual((x.r + e) / np.sqrt(v), x.dr / np.sqrt(v))
+            for x, e, v in zip(found.residuals, self.errors, self.s, strict=True)
+        ]
+        misfit = Residual(np.concatenate([x.r for x in parts]), np.vstack([x.dr for x in parts]))
+        distance = Residual((found.theta - self.prior) / span, np.diag(1 / span))
+        both = (misfit, distance)
+        slopes = ObjectiveDerivatives(
+            np.array([2 * x.r @ x.dr for x in both]), np.array([2 * x.dr.T @ x.dr for x in both])
+        )
+        return Evaluation(
+            found.theta,
+            np.array([x.r @ x.r for x in both]),
+            slopes,
+            residuals=both,
+            branch=found.branch,
+        )

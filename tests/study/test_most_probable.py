@@ -1,0 +1,155 @@
+"""The most probable model, intervals and the verdict of a study, from its file to the terminal."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+import xarray as xr
+from refusals import command
+from two_masses import STUDY
+
+import modefront as mf
+from modefront.cli.show import as_json
+from modefront.study.examples import write_example
+
+DATA = """set,mode,frequency,damping,low,high
+a,1,4.586,0.02,0.613,1.0
+a,2,9.615,,0.843,-0.98
+"""
+
+
+def study(folder: Path, *, noise: str = "", bounds: str = "", data: str = DATA) -> Path:
+    text = STUDY.replace("[noise]\nweight = 0\n", noise)
+    if bounds:
+        text = text.replace("bounds = [0.2, 5.0]", bounds)
+    (folder / "modes.csv").write_text(data)
+    (folder / "study.toml").write_text(text)
+    return folder / "study.toml"
+
+
+@pytest.fixture(scope="module")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, xr.Dataset]:
+    folder = tmp_path_factory.mktemp("whole")
+    return folder, mf.run(mf.load(study(folder)), folder / "results").dataset
+
+
+def test_the_reference_is_the_most_probable_model_with_intervals(
+    whole: tuple[Path, xr.Dataset],
+) -> None:
+    _, data = whole
+    assert data.attrs["reference"] == "most-probable"
+    labels = data["label"].values.tolist()
+    assert labels.count("most-probable") == 1
+    best = data.isel(point=labels.index("most-probable"))
+    assert bool(best["converged"])
+    low, middle, high = data["interval"].values.T
+    assert (low < middle).all()
+    assert (middle < high).all()
+    assert (low < best["theta"].values).all()
+    assert (best["theta"].values < high).all()
+    assert data["sample_theta"].shape == (100, 2)
+    assert data["quantile"].values.tolist() == [0.05, 0.5, 0.95]
+    assert set(data["trust"].values) <= {"determined", "partly", "not determined"}
+    lower, upper = data["bounds"].values.T
+    assert (data["sample_theta"].values >= lower).all()
+    assert (data["sample_theta"].values <= upper).all()
+
+
+def test_kept_tasks_and_other_processes_lead_to_the_same_digits(
+    whole: tuple[Path, xr.Dataset],
+) -> None:
+    folder, data = whole
+    tasks = folder / "results" / "tasks"
+    kept = [*tasks.rglob("sample-posterior-*.npz"), *tasks.rglob("most-probable-*.npz")]
+    assert len(kept) > 11
+    for file in kept[::2]:
+        file.unlink()
+    again = mf.run(mf.load(folder / "study.toml"), folder / "results").dataset
+    assert again.identical(data)
+    other = mf.run(mf.load(folder / "study.toml"), folder / "other", workers=2).dataset
+    assert other.identical(data)
+
+
+def test_points_and_seed_change_nothing(whole: tuple[Path, xr.Dataset]) -> None:
+    folder, data = whole
+    reference = data.attrs["reference"]
+    theta = data["theta"].values[data["label"].values == reference]
+    problem = mf.load(folder / "study.toml").problem
+    pairing = mf.Search(doubt=0.5)
+    for points, seed in ((3, 5), (7, 1)):
+        other = mf.solve(problem, points=points, seed=seed, search=pairing).dataset
+        assert other["theta"].values[other["label"].values == reference] == pytest.approx(
+            theta, abs=1e-6
+        )
+
+
+def test_the_verdict_is_first_everywhere(
+    whole: tuple[Path, xr.Dataset], capsys: pytest.CaptureFixture[str]
+) -> None:
+    folder, data = whole
+    said = data.attrs["verdict"].splitlines()
+    assert said[0].startswith("Use most-probable: its errors over those expected are ")
+    assert any("frequencies known to 0.5 %, shapes to 3 %" in text for text in said)
+    assert any(text.startswith("Determined (90 %): k1 ") for text in said)
+    assert json.loads(as_json(data))["verdict"] == said
+    assert mf.read_results(folder / "results").verdict == said
+    assert command("show", folder / "results") == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert lines[2].startswith("Use most-probable")
+    first = lines[2 : lines.index("", 2)]
+    assert len(first) <= 12
+    assert all(len(line) <= 80 for line in first)
+
+
+def test_expected_errors_are_those_of_the_study(tmp_path: Path) -> None:
+    data = mf.run(
+        mf.load(study(tmp_path, noise="[noise]\nfrequency = 0.02\nshape = 0.1\n")), tmp_path / "r"
+    ).dataset
+    assert "frequencies known to 2 %, shapes to 10 %" in data.attrs["assumed"]
+
+
+def test_no_model_is_advised_where_errors_are_far_above_those_expected(tmp_path: Path) -> None:
+    wrong = DATA.replace("9.615", "30.0")
+    data = mf.run(mf.load(study(tmp_path, data=wrong)), tmp_path / "r").dataset
+    first = data.attrs["verdict"].splitlines()[0]
+    assert first.startswith("Do not use any of these models: errors of ")
+    assert "times those expected" in first
+
+
+def test_a_bound_that_holds_the_model_is_named(tmp_path: Path) -> None:
+    data = mf.run(mf.load(study(tmp_path, bounds="bounds = [1.0, 1.005]")), tmp_path / "r").dataset
+    best = data.isel(point=data["label"].values.tolist().index("most-probable"))
+    side = best["at_bound"].values
+    assert side.any()
+    for name, at in zip(data["parameter"].values, side, strict=True):
+        text = f"{name} is at its {'upper' if at > 0 else 'lower'} bound"
+        assert (text in data.attrs["verdict"]) == bool(at)
+
+
+def test_the_published_posterior_is_that_without_expectation(tmp_path: Path) -> None:
+    write_example("three-story-c0", tmp_path)
+    assert "weight = 0" in (tmp_path / "study.toml").read_text()
+    faulty = (tmp_path / "study.toml").read_text().replace("weight = 0", "weight = -1")
+    (tmp_path / "study.toml").write_text(faulty)
+    with pytest.raises(mf.InputError, match="weight"):
+        mf.load(tmp_path / "study.toml")
+
+
+def test_a_parameter_without_effect_stays_nominal_and_is_not_determined() -> None:
+    """The third spring is between masses that no measured mode moves."""
+    K = {"k1": np.diag([4000.0, 0.0, 0.0]), "k2": np.diag([0.0, 9000.0, 0.0])}
+    K["idle"] = np.diag([0.0, 0.0, 1e6])
+    model = mf.matrices(tuple(K), K, {"base": np.eye(3)}, {"a": 0, "b": 1})
+    f = np.sqrt([4400.0, 8500.0]) / (2 * np.pi)
+    data = mf.modal_data(f, np.eye(2), model.sensors)
+    parameters = [mf.Parameter(name, nominal=1.1, bounds=(0.5, 2.0)) for name in K]
+    groups = [mf.Group("frequencies", frequency="all")]
+    problem = mf.updating_problem(model, data, groups, parameters=parameters)
+    results = mf.solve(problem, points=3, search=mf.Search(doubt=0.5)).dataset
+    best = results.isel(point=results["label"].values.tolist().index("most-probable"))
+    assert best["theta"].values == pytest.approx([1.1, 8500 / 9000, 1.1], abs=1e-5)
+    assert best["theta"].values[2] == 1.1
+    assert results["trust"].values.tolist() == ["determined", "determined", "not determined"]

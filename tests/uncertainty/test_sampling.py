@@ -1,0 +1,102 @@
+"""Models drawn from the posterior against closed forms and numerical integration."""
+
+from collections.abc import Callable
+from typing import cast
+
+import numpy as np
+import pytest
+import scipy.stats
+from exact import Residuals, squares
+
+from modefront._typing import Floats
+from modefront.residuals.problem import UpdatingProblem
+from modefront.uncertainty.most_probable import log_values, maximum
+from modefront.uncertainty.prior import NoiseModel
+from modefront.uncertainty.sampling import draw_models, variances
+from modefront.work.task import IMMEDIATE
+
+NU = 4.0
+
+
+def noise_of(
+    function: Callable[[Floats], Residuals], lower: list[float], upper: list[float], a: list[float]
+) -> NoiseModel:
+    """Return residuals in units of expected errors, one group after the other."""
+    problem = squares(function, lower, upper, len(a))
+    n = len(a)
+    return NoiseModel(cast(UpdatingProblem, problem), np.array(a), np.zeros(n), np.ones(n), NU, "")
+
+
+def test_one_group_of_linear_residuals_has_students_distribution() -> None:
+    """t about least squares, a + nu - p degrees of freedom, scale^2 = (J + nu) / dof (A^T A)^-1."""
+    rng = np.random.default_rng(0)
+    A = 20 * rng.normal(size=(6, 2))
+    y = A @ [0.5, -0.3] + rng.normal(size=6)
+    noise = noise_of(lambda theta: [(A @ theta - y, A)], [-3, -3], [3, 3], [6.0])
+    best = maximum(noise, np.zeros(2))
+    exact, (J,), *_ = np.linalg.lstsq(A, y)
+    assert best.theta == pytest.approx(exact, abs=1e-5)
+    of = variances(noise, noise.problem.evaluate(best.theta))
+    assert of.dof == pytest.approx([6 + NU - 2], rel=1e-4)
+    assert of.scale == pytest.approx([J + NU])
+    draws = draw_models(noise, best.theta, 800, 1, IMMEDIATE)
+    size = np.sqrt(np.diag(np.linalg.inv(A.T @ A)) * (J + NU) / 8)
+    for x, middle, scale in zip(draws.T, exact, size, strict=True):
+        p = scipy.stats.kstest((x - middle) / scale, scipy.stats.t(8).cdf).pvalue
+        assert p > 0.01
+
+
+def grid_quantiles(noise: NoiseModel, n: int, q: list[float]) -> Floats:
+    """Return quantiles (p, q) of both parameters by integration over a grid."""
+    lower, upper = noise.problem.lower, noise.problem.upper
+    axes = [np.linspace(a, b, n) for a, b in zip(lower, upper, strict=True)]
+    grid = np.stack(np.meshgrid(*axes, indexing="ij"), axis=-1).reshape(-1, 2)
+    values = log_values(noise, grid).reshape(n, n)
+    density = np.exp(-(values - values.min()) / 2)
+    out = []
+    for axis, other in ((0, 1), (1, 0)):
+        total = np.cumsum(density.sum(axis=other))
+        out.append(np.interp(q, total / total[-1], axes[axis]))
+    return np.array(out)
+
+
+def banana(theta: Floats) -> Residuals:
+    x, y = theta
+    r = np.array([(y - x**2) / 0.1, (x - 0.3) / 0.25])
+    return [(r, np.array([[-20 * x, 10], [4, 0 * x]]))]
+
+
+def basins(theta: Floats) -> Residuals:
+    x, y = theta
+    r = np.array([(x**2 - 1) / 0.3, (y - 0.2 * x) / 0.2])
+    return [(r, np.array([[2 * x / 0.3, 0 * x], [0 * x - 1, 0 * x + 5]]))]
+
+
+def flat(theta: Floats) -> Residuals:
+    x, y = theta
+    return [(np.array([(x - 0.4) / 0.2]), np.array([[5 + 0 * x, 0 * y]]))]
+
+
+@pytest.mark.parametrize(
+    ("function", "a"), [(banana, 2.0), (basins, 2.0), (flat, 1.0)], ids=lambda x: str(x)[:20]
+)
+def test_intervals_are_those_of_integration(
+    function: Callable[[Floats], Residuals], a: float
+) -> None:
+    """A curved valley, two basins and a parameter without effect: to a tenth of the interval."""
+    noise = noise_of(function, [-2, -2], [2, 3], [a])
+    best = maximum(noise, np.array([0.9, 0.3]))
+    draws = draw_models(noise, best.theta, 400, 2, IMMEDIATE)
+    expected = grid_quantiles(noise, 201, [0.05, 0.95])
+    found = np.quantile(draws, [0.05, 0.95], axis=0).T
+    width = np.ptp(expected, axis=1)[:, None]
+    assert (np.abs(found - expected) < 0.12 * width).all()
+
+
+def test_draws_are_those_of_the_seed_and_more_add_to_them() -> None:
+    noise = noise_of(banana, [-2, -2], [2, 3], [2.0])
+    theta = maximum(noise, np.array([0.3, 0.1])).theta
+    few, more = (draw_models(noise, theta, n, 3, IMMEDIATE) for n in (15, 30))
+    assert few.shape == (15, 2)
+    assert few.tolist() == more[:15].tolist()
+    assert few.tolist() != draw_models(noise, theta, 15, 4, IMMEDIATE).tolist()
