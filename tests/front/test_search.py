@@ -403,6 +403,24 @@ def test_starts_find_all_minima_and_then_stop() -> None:
     assert starts.unseen == unseen(starts.rates[state.places[0].subproblem.key].tries, 3)
 
 
+def test_an_edge_that_hardly_any_start_leads_to_is_doubtful() -> None:
+    def rugged(theta: Floats) -> Derivatives:
+        """A bowl with waves of random phases, all over it, beside a smooth one."""
+        phase = np.array([1.0, 2.5, 4.1, 0.3])
+        waves, k = np.sin(23 * theta + phase), 23.0
+        J = np.array([9 + theta @ theta / 8 + 2 * waves.sum(), 1 + theta @ theta])
+        dJ = np.array([theta / 4 + 2 * k * np.cos(k * theta + phase), 2 * theta])
+        H = np.array([np.diag(0.25 - 2 * k**2 * waves), 2 * np.eye(4)])
+        return J, dJ, H
+
+    problem = box(rugged, [-1.0] * 4, [1.0] * 4)
+    rough, smooth = pareto_front(problem, ONES, Pareto(points=2), seed=1).edges
+    assert rough.doubtful
+    assert rough.found > rough.starts / 2
+    assert not smooth.doubtful
+    assert smooth.found == 1
+
+
 @given(st.integers(0, 2**31))
 def test_children_lie_within_the_bounds(seed: int) -> None:
     problem = box(circles, [-0.1, -2.0], [1.0, 0.1])

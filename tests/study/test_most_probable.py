@@ -117,6 +117,7 @@ def test_no_model_is_advised_where_errors_are_far_above_those_expected(tmp_path:
     first = data.attrs["verdict"].splitlines()[0]
     assert first.startswith("Do not use any of these models: errors of ")
     assert "times those expected" in first
+    assert "etermined" not in data.attrs["verdict"], "nothing is said of its parameters"
 
 
 def test_a_bound_that_holds_the_model_is_named(tmp_path: Path) -> None:

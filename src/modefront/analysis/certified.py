@@ -22,7 +22,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
-from modefront.front.front import Edge, Front
+from modefront.front.front import Front
 from modefront.front.point import Point
 from modefront.models.reduced.certificate import FOUND, Certificate
 from modefront.models.reduced.certifier import Certifier
@@ -315,7 +315,10 @@ def _with_errors(
     return replace(
         front,
         points=[replace(point, solution=known(point.solution)) for point in front.points],
-        edges=[Edge(known(edge.best), list(map(known, edge.minima))) for edge in front.edges],
+        edges=[
+            replace(edge, best=known(edge.best), minima=list(map(known, edge.minima)))
+            for edge in front.edges
+        ],
         optimal=list(map(known, front.optimal)),
         iterated=known(front.iterated) if front.iterated else None,
         gaps=[

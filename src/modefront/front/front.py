@@ -16,10 +16,21 @@ from modefront.optim.sqp import Solution
 
 @dataclass(frozen=True)
 class Edge:
-    """The edge of one objective, and all other minima of that objective."""
+    """The edge of one objective, and all other minima of that objective.
+
+    Attributes
+    ----------
+    best, minima : the edge, and all minima with it
+    starts : number of random models from which the least objective was sought
+    found : number of different minima to which they led
+    doubtful : whether fewer than two of them led to the edge, and unseen minima are likely
+    """
 
     best: Solution
     minima: Sequence[Solution]
+    starts: int = 0
+    found: int = 0
+    doubtful: bool = False
 
 
 # 12 fields: everything that a search leaves, which tasks keep as one record.

@@ -23,7 +23,7 @@ from modefront.front.proposers.base import Proposer, Rate
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.rivals import Rivals
-from modefront.front.proposers.starts import Starts
+from modefront.front.proposers.starts import Starts, unseen
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import (
     Payoff,
@@ -60,6 +60,9 @@ FINEST = 7
 
 FINE = 10_000
 """Divisions of the lattice on which points are added at known models."""
+
+SURE = 2
+"""Random starts that lead to an edge, from which it is hardly a matter of chance."""
 
 TURNS = 4
 """Fronts that are searched at most, each between edges that the search of the one before moved."""
@@ -393,7 +396,9 @@ class _Run:
             for solution in sorted(ends, key=lambda x: float(x.J[k])):
                 if all(np.abs((solution.theta - x.theta) / span).max() > DISTINCT for x in minima):
                     minima.append(solution)
-            out.append(Edge(best, minima))
+            tries, found, hits = self.starts.record(place, best, self.state.tolerance)
+            doubtful = hits < SURE and unseen(tries, found) > self.loop.search.doubt
+            out.append(Edge(best, minima, tries, found, doubtful and self.known is None))
         return out
 
     def _points(

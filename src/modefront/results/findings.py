@@ -62,6 +62,7 @@ def findings(
     """Return the sentences; ``front`` holds all points, those of ``analysis`` too."""
     out = [
         *_weights(problem, front),
+        *_doubtful(problem, front),
         *_unknown_ends(front),
         *_identifiability(problem, determinations[0]),
         *_flat(problem, front, analysis),
@@ -94,6 +95,18 @@ def _weights(problem: UpdatingProblem, front: Front) -> list[Finding]:
             f"gives {label(Kind.MOST_PROBABLE)}, which is better"
         )
     return [(Rank.WEIGHTS, f"there is no {label(Kind.OPTIMAL)}: {why}. {then}")]
+
+
+def _doubtful(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
+    """Yield which edges may not be the best there are."""
+    for name, edge in zip(problem.objectives, front.edges, strict=True):
+        if edge.doubtful:
+            yield (
+                Rank.WEIGHTS,
+                f"the edge of {name} may not be the best: {edge.starts} random starts led to "
+                f"{edge.found} different minima, and at most one of them to it. Ask for more with "
+                "[search] doubt = 0.01, or choose a pairing that changes less",
+            )
 
 
 def _unknown_ends(front: Front) -> list[Finding]:

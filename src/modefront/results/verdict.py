@@ -29,47 +29,67 @@ NAMED = 3
 
 
 def verdict(data: xr.Dataset) -> list[str]:
-    """Return the sentences, at most eight; none of results without expectations of the errors."""
+    """Return the sentences, at most eight; none of results without expectations of the errors.
+
+    Where no model can be used, nothing is said of parameters and of the front.
+    """
     if "misfit" not in data:
         return []
-    return [*_advice(data), *_parameters(data), *_front(data)]
+    refused = _refused(data)
+    context = [*_at_bounds(data), *_assumed(data)]
+    if refused:
+        return [f"Do not use any of these models: {enumeration(refused)}.", *context]
+    return [_use(data), *context, *_parameters(data), *_front(data)]
 
 
-def _advice(data: xr.Dataset) -> Iterator[str]:
-    """Yield whether the reference can be used, and why."""
-    label, groups = str(data.attrs["reference"]), data["group"].values
-    best, nominal = (_row(data, kind) for kind in (Kind.MOST_PROBABLE, Kind.NOMINAL))
-    misfit, error = data["misfit"].values, best["error"].values
-    with np.errstate(divide="ignore", invalid="ignore"):
-        worse = (error > WORSE * nominal["error"].values) & (misfit > LARGE)
-    far = misfit > FAR
-    at_bound = best["at_bound"].values
-    held = [
-        f"{name} is at its {'upper' if side > 0 else 'lower'} bound {value:.4g}"
-        for name, side, value in zip(
-            data["parameter"].values, at_bound, best["theta"].values, strict=True
-        )
-        if side
-    ]
-    if far.any() or worse.any():
-        much = [
+def _refused(data: xr.Dataset) -> list[str]:
+    """Return why no model can be used; nothing where the reference can be."""
+    groups, misfit = data["group"].values, data["misfit"].values
+    best, nominal = (
+        _row(data, kind)["error"].values for kind in (Kind.MOST_PROBABLE, Kind.NOMINAL)
+    )
+    far, worse = misfit > FAR, (best > WORSE * nominal) & (misfit > LARGE)
+    return [
+        *(
             f"errors of {groups[i]} are {misfit[i]:.2g} times those expected"
             for i in np.flatnonzero(far)
-        ]
-        less = [
+        ),
+        *(
             f"{groups[i]} fits worse than at the nominal model"
             for i in np.flatnonzero(worse & ~far)
-        ]
-        yield f"Do not use any of these models: {enumeration([*much, *less])}."
-    else:
-        size = ", ".join(f"{x:.2g} ({name})" for x, name in zip(misfit, groups, strict=True))
-        larger = " They are larger than noise: the model lacks something." * bool(
-            (misfit > LARGE).any()
-        )
-        yield f"Use {label}: its errors over those expected are {size}.{larger}"
+        ),
+    ]
+
+
+def _use(data: xr.Dataset) -> str:
+    """Return that the reference can be used, and how well it fits."""
+    misfit = data["misfit"].values
+    parts = zip(misfit, data["group"].values, strict=True)
+    size = ", ".join(f"{x:.2g} ({name})" for x, name in parts)
+    larger = " They are larger than noise: the model lacks something."
+    return (
+        f"Use {data.attrs['reference']}: its errors over those expected are {size}."
+        + larger * bool((misfit > LARGE).any())
+    )
+
+
+def _at_bounds(data: xr.Dataset) -> Iterator[str]:
+    """Yield which bounds hold parameters of the reference."""
+    best = _row(data, Kind.MOST_PROBABLE)
+    sides, values = best["at_bound"].values, best["theta"].values
+    held = [
+        f"{name} is at its {'upper' if side > 0 else 'lower'} bound {value:.4g}"
+        for name, side, value in zip(data["parameter"].values, sides, values, strict=True)
+        if side
+    ]
     if held:
         more = f" and {len(held) - NAMED} more" * (len(held) > NAMED)
-        yield f"{enumeration(held[:NAMED])}{more}: widen it, or ask what the model lacks."
+        which = "it" if len(held) == 1 else "them"
+        yield f"{enumeration(held[:NAMED])}{more}: widen {which}, or ask what the model lacks."
+
+
+def _assumed(data: xr.Dataset) -> Iterator[str]:
+    """Yield which errors are assumed."""
     if data.attrs.get("assumed"):
         yield f"Assumed: {data.attrs['assumed']}; say yours in [noise]."
 

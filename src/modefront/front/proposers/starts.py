@@ -21,7 +21,7 @@ from modefront._typing import Floats
 from modefront.front.archive import Outcome
 from modefront.front.proposers.base import STEPS, Offer, Rate, approach_from, at, solve_from
 from modefront.front.proposers.prediction import promised
-from modefront.front.state import State
+from modefront.front.state import Place, State
 from modefront.front.subproblems import Least, Point, Subproblem, Weights, is_along
 from modefront.optim.lexicographic import EXACT
 from modefront.optim.sqp import Solution
@@ -140,6 +140,19 @@ class Starts:
         """Greatest part of the box from which unseen minima of a subproblem are reached."""
         parts = (unseen(self.rates[key].tries, len(x)) for key, x in self.ends.items())
         return max(parts, default=1.0)
+
+    def record(self, place: Place, best: Solution, tolerance: float) -> tuple[int, int, int]:
+        """Return how many starts a subproblem had, different minima, and starts that led to best.
+
+        Minima count as the best where neither is better by more than the tolerance.
+        """
+        key = place.subproblem.key
+        hits = [
+            max(place.subproblem.gain(best.J, x), place.subproblem.gain(x.J, best)) <= tolerance
+            for x in self.ties.get(key, ())
+        ]
+        tries = self.rates[key].tries if key in self.rates else 0
+        return tries, len(self.ends.get(key, ())), sum(hits)
 
     def _next(self, state: State) -> Floats:
         """Return random parameters, spread evenly over each range block by block."""
