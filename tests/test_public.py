@@ -18,7 +18,7 @@ import modefront as mf
 @pytest.mark.parametrize("name", mf.__all__)
 def test_every_public_name_is_there_and_documented(name: str) -> None:
     value = getattr(mf, name)
-    assert name in dir(mf)
+    assert dir(mf) == mf.__all__
     assert inspect.getdoc(value), name
     if is_dataclass(value):
         assert_documented(name, value, [field.name for field in fields(value) if field.init])

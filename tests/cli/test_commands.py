@@ -151,12 +151,30 @@ def test_from_nothing_to_results(modefront_: Run, tmp_path: Path) -> None:
     status, out, _ = modefront_("init", folder)
     assert status == 0
     assert f"wrote {folder / 'study.toml'}" in out
-    assert f"modefront run {folder / 'study.toml'}" in out
+    assert f"next: modefront check {folder / 'study.toml'}" in out
     status, out, err = modefront_("check", folder / "study.toml")
     assert (status, err) == (0, "")
+    assert out.endswith(f"next: modefront run {folder / 'study.toml'}\n")
     assert "derivatives agree with finite differences" in out
     assert "no warnings" in out
     assert sorted(path.name for path in folder.iterdir()) == ["modes.csv", "study.toml"]
+
+
+def test_alone_the_command_prints_its_help_once(modefront_: Run) -> None:
+    status, out, err = modefront_()
+    assert (status, err) == (0, "")
+    assert out.count("Usage:") == 1
+    assert "  check " in out
+
+
+def test_fronts_are_compared_by_text_or_path_and_a_study_is_shown_in_a_line(
+    study: Path, done: Path
+) -> None:
+    assert modefront.compare([str(done), str(done)]) == modefront.compare([done, done])
+    loaded = modefront.load(study)
+    assert len(repr(loaded)) < 300
+    assert "two masses" in repr(loaded)
+    assert repr(modefront.check(loaded)).count("\n") < 20
 
 
 def test_results_lie_where_they_are_wanted(modefront_: Run, study: Path, done: Path) -> None:

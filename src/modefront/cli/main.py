@@ -34,10 +34,13 @@ OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 """Exit statuses; 130 is that of shells for an interrupt."""
 
 
-@click.group(context_settings={"help_option_names": ["-h", "--help"]})
+@click.group(invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="modefront")
-def cli() -> None:
+@click.pass_context
+def cli(context: click.Context) -> None:
     """Find all models of a structure that are Pareto optimal in its measured modes."""
+    if context.invoked_subcommand is None:
+        click.echo(context.get_help())
 
 
 @cli.command()
@@ -49,7 +52,7 @@ def init(directory: Path, example: str) -> None:
 
     for path in write_example(example, directory):
         say(f"wrote {path}")
-    say(f"next: modefront run {directory / 'study.toml'}")
+    say(f"next: modefront check {directory / 'study.toml'}")
 
 
 @cli.command()
@@ -74,6 +77,7 @@ def check(study: Path, every: bool) -> None:
     if not findings.sound:
         cause = findings.derivative_cause
         raise UnfinishedError(f"the derivatives differ from finite differences {cause}")
+    say(f"next: modefront run {study}")
 
 
 @cli.command()

@@ -63,6 +63,15 @@ class UpdatingProblem:
         members = tuple(tuple(group.members(self.data)) for group in self.groups)
         object.__setattr__(self, "members", members)
 
+    def __repr__(self) -> str:
+        """Return a line with the sizes of model and data."""
+        data, p = self.data, len(self.model.parameters)
+        sets = f"{len(data.sets)} data set{'s' * (len(data.sets) > 1)}"
+        return (
+            f"UpdatingProblem({p} parameters, {len(data.modes)} modes at {len(data.sensors)} "
+            f"sensors in {sets}, groups {', '.join(self.objectives)})"
+        )
+
     @cached_property
     def _stacks(self) -> tuple[tuple[Stack, ...], ...]:
         """The members of each group, those of a kind together."""

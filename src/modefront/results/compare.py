@@ -118,7 +118,7 @@ class Comparison:
     pairs: tuple[Apart, ...]
 
 
-def compare(folders: Sequence[Path]) -> Comparison:
+def compare(folders: Sequence[str | Path]) -> Comparison:
     """Return the comparison of the results in folders.
 
     Parameters
@@ -137,7 +137,7 @@ def compare(folders: Sequence[Path]) -> Comparison:
     InputError
         Where there are no results, or their groups are not the same, or no model is Pareto optimal.
     """
-    results = read_together(folders, whole=False)
+    results = read_together([Path(folder) for folder in folders], whole=False)
     for folder, (_, data) in zip(folders, results, strict=True):
         if not _best(data).sizes["point"]:
             expected = "at least one Pareto-optimal model"

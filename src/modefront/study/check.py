@@ -82,6 +82,14 @@ class Findings:
     beside: Comparison
     sensitivities: Sensitivities
 
+    def __repr__(self) -> str:
+        """Return the first warnings, one a line."""
+        agree = "agree with" if self.sound else "DIFFER FROM"
+        count = len(self.warnings)
+        more = [f"and {count - SHOWN} more: see warnings"] * (count > SHOWN)
+        first = f"Findings: derivatives {agree} finite differences; {count or 'no'} warnings"
+        return "\n".join([first, *self.warnings[:SHOWN], *more])
+
     @property
     def sound(self) -> bool:
         """Whether the derivatives agree with finite differences."""

@@ -88,6 +88,10 @@ class Study:
         object.__setattr__(self, "predictions", tuple(self.predictions))
         refuse(self._contradictions())
 
+    def __repr__(self) -> str:
+        """Return a line with the sizes of the problem."""
+        return f"Study({self.name!r}, {self.problem}, method={self.pareto.method!r})"
+
     def _contradictions(self) -> Iterator[Fault]:
         try:
             _ = self.parameters
