@@ -83,14 +83,14 @@ def test_the_results_say_so_too(frame: mf.UpdatingProblem) -> None:
     ).dataset
     share = data["combination_share"].values
     position, of = data["combination_at"].values, data["combination_of"].values
-    for place in ("optimal-weights", "edge-shapes"):
+    for place in ("most-probable", "edge-shapes"):
         counts = [
             int((share[(position == place) & (of == name)] > NONE).sum())
             for name in ("frequencies", "shapes", "all data")
         ]
         assert counts == [2, 10, 12]
     assert any(
-        text.startswith("at optimal-weights: all data determine 12 of 18 combinations")
+        text.startswith("at most-probable: all data determine 12 of 18 combinations")
         for text in data["finding"].values
     )
     # What the data leave open the bounds decide: at least six parameters lie at one.

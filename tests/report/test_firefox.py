@@ -180,8 +180,10 @@ async def walk(address: str, file: Path, markup: Path, downloads: Path) -> None:
     assert await bidi.evaluate(status) == labels[4]
 
     x, y, width, height = await bidi.box("[aria-label=MAC] .brush .overlay")
-    await bidi.pointer((x + 1, y + 5), (x + width / 4, y + 30), (x + width / 2, y + 60))
-    half = f"{len(labels) // 2} of {len(labels)} selected"
+    count = len(labels) // 2
+    end = x + width * count / len(labels)
+    await bidi.pointer((x + 1, y + 5), (x + width / 4, y + 30), (end, y + 60))
+    half = f"{count} of {len(labels)} selected"
     assert half in await bidi.evaluate("document.querySelector('.brushed').textContent")
     assert await bidi.evaluate("document.querySelectorAll('[aria-label=front] .dimmed').length") > 0
     await bidi.keys("\ue00c")  # Escape
