@@ -20,7 +20,7 @@ c(theta)  coefficients of the terms
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
@@ -101,6 +101,23 @@ class Monomials:
         np.add.at(out.transpose(1, 2, 0), (i, k), values.T)
         return out
 
+    def held(self, fixed: Mapping[int, float], tied: Mapping[int, int]) -> tuple[Monomials, Floats]:
+        """Return the coefficients of the other parameters, and a factor (terms,) for each term.
+
+        ``fixed`` parameters have one value, and ``tied`` ones that of another parameter.
+        """
+        e, factors = self.exponents.copy(), np.ones(len(self.exponents))
+        origin = np.zeros(e.shape[1]) if self.origin is None else self.origin
+        for j, value in fixed.items():
+            factors *= (value - origin[j]) ** e[:, j]
+        for j, i in tied.items():
+            if origin[j] != origin[i]:
+                raise ValueError("expected tied parameters of one origin, found two")
+            e[:, i] += e[:, j]
+        free = [j for j in range(e.shape[1]) if j not in fixed and j not in tied]
+        rest = None if self.origin is None else self.origin[free]
+        return Monomials(e[:, free], rest), factors
+
     @cached_property
     def _constant(self) -> Floats:
         return np.asarray(1.0 - self.exponents.any(axis=1))
@@ -180,6 +197,11 @@ class DenseAffine:
         products = (self.terms @ right).reshape(len(self.terms), -1)
         return self.coefficients.second_derivatives(theta, left.reshape(len(left), -1) @ products.T)
 
+    def held(self, fixed: Mapping[int, float], tied: Mapping[int, int]) -> DenseAffine:
+        """Return A as a function of the other parameters; see `Monomials.held`."""
+        coefficients, factors = self.coefficients.held(fixed, tied)
+        return DenseAffine(self.terms * factors[:, None, None], coefficients)
+
     def sparse(self) -> SparseAffine:
         """Return the same matrix with sparse terms."""
         terms = [scipy.sparse.coo_array(term) for term in self.terms]
@@ -213,6 +235,12 @@ class SparseAffine:
         """Which parameters the matrix depends on, shape (parameters,)."""
         nonzero = np.diff(self.terms.indptr) > 0
         return np.asarray(self.coefficients.exponents[nonzero].any(axis=0))
+
+    def held(self, fixed: Mapping[int, float], tied: Mapping[int, int]) -> SparseAffine:
+        """Return A as a function of the other parameters; see `Monomials.held`."""
+        coefficients, factors = self.coefficients.held(fixed, tied)
+        terms = scipy.sparse.csc_array(self.terms * factors[None])
+        return SparseAffine(self.indptr, self.indices, terms, coefficients)
 
     def has_pattern_of(self, other: SparseAffine) -> bool:
         """Return whether both matrices have the same pattern."""

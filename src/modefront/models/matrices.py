@@ -198,6 +198,22 @@ class MatrixModel:
                 vars(out)["pencil"] = replace(known, K=stiffness, M=mass)
         return out
 
+    def held(self, fixed: Mapping[str, float], tied: Mapping[str, str]) -> MatrixModel:
+        """Return the model as a function of the other parameters.
+
+        ``fixed`` parameters have one value, and ``tied`` ones that of another parameter, which is
+        neither. Raises KeyError for a name that is no parameter.
+        """
+        index = {name: j for j, name in enumerate(self.parameters)}
+        values = {index[name]: value for name, value in fixed.items()}
+        others = {index[name]: index[other] for name, other in tied.items()}
+        return replace(
+            self,
+            parameters=tuple(x for x in self.parameters if x not in fixed and x not in tied),
+            stiffness=self.stiffness.held(values, others),
+            mass=self.mass.held(values, others),
+        )
+
     def sparse(self) -> MatrixModel:
         """Return the same model with sparse matrices."""
         if self.is_sparse:

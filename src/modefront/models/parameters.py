@@ -7,7 +7,15 @@ from dataclasses import dataclass, replace
 from typing import Annotated
 
 from modefront.errors import Fault, InputError, refuse, wrong
-from modefront.options import check_fields, each_once, number, numbers, text
+from modefront.options import (
+    TRUE_OR_FALSE,
+    Requirement,
+    check_fields,
+    each_once,
+    number,
+    numbers,
+    text,
+)
 
 BOUNDS = numbers(
     "[lower, upper], two finite numbers with lower < upper",
@@ -26,17 +34,28 @@ class Parameter:
     name : name of the parameter in the model
     nominal : nominal value, at which the search starts, in the unit of the model
     bounds : lower and upper bound, finite, in the same unit
+    fixed : whether it stays at its nominal value
+    tie : name of the parameter whose value it has; empty for a value of its own
     """
 
     name: Annotated[str, text("the name of the parameter")]
     nominal: Annotated[float, number("a finite number")]
     bounds: Annotated[tuple[float, float], BOUNDS]
+    fixed: Annotated[bool, TRUE_OR_FALSE] = False
+    tie: Annotated[str, Requirement("the name of a parameter", lambda x: isinstance(x, str))] = ""
 
     def __post_init__(self) -> None:
         check_fields(self)
         if not self.lower <= self.nominal <= self.upper:
             inside = f"a value within its bounds, {self.lower:g} to {self.upper:g}"
             raise wrong("nominal", inside, f"{self.nominal:g}")
+        if self.fixed and self.tie:
+            raise wrong("tie", "no 'tie' of a parameter that is fixed", f"'{self.tie}'")
+
+    @property
+    def free(self) -> bool:
+        """Whether it has a value of its own, which is sought."""
+        return not (self.fixed or self.tie)
 
     @property
     def lower(self) -> float:

@@ -58,6 +58,10 @@ def load(path: Path | str) -> Study:
     header = root.table("study", "a table [study]")
     names, parameters = read_parameters(root)
     model, reduction = read_model(root, header, names)
+    if isinstance(model, MatrixModel) and not faults:
+        fixed = {each.name: each.nominal for each in parameters if each.fixed}
+        model = model.held(fixed, {each.name: each.tie for each in parameters if each.tie})
+    parameters = tuple(each for each in parameters if each.free)
     title, seed = _read_header(header)
     data = read_data(root, model)
     groups = read_groups(root, data)

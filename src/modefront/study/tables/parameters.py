@@ -18,4 +18,12 @@ def read_parameters(root: Table) -> tuple[list[str], tuple[Parameter, ...]]:
         out.append(read_record(table, Parameter))
     names = [table.values["name"] for table in tables if has_name(table)]
     note(root, each_once("[[parameter]]", names))
-    return names, tuple(parameter for parameter in out if parameter is not None)
+    known = tuple(parameter for parameter in out if parameter is not None)
+    free = {parameter.name for parameter in known if parameter.free}
+    for parameter in known:
+        if parameter.tie and parameter.tie not in free:
+            expected = "the name of a parameter that is neither fixed nor tied"
+            root.fault(f"[[parameter]] '{parameter.name}' tie", expected, f"'{parameter.tie}'")
+    if known and not free:
+        root.fault("[[parameter]]", "one that is neither fixed nor tied", "none")
+    return names, known
