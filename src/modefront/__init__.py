@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from modefront.models.matrices import matrices as matrices
     from modefront.models.mesh import mesh_model as mesh_model
     from modefront.models.parameters import Parameter as Parameter
+    from modefront.models.parameters import Prior as Prior
     from modefront.models.reduced.options import Reduction as Reduction
     from modefront.pairing.mac import mac as mac
     from modefront.pairing.match import Pairing as Pairing

@@ -19,8 +19,10 @@ from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse
 from modefront.linalg.factorisation import Factorisation, Symbolic
 from modefront.linalg.pencil import Pencil, pencil
 from modefront.linalg.products import gram
+from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.load_case import LoadCase, NamedWeights, Transfer
+from modefront.models.parameters import Parameter
 from modefront.models.terms import BASE, above_zero, exponents_of, form_of, term_exponents
 from modefront.modes.eigensolvers import Eigensolver, FullModes, eigensolver
 from modefront.modes.result import Modes
@@ -239,6 +241,21 @@ class MatrixModel:
             raise TypeError("stiffness and mass have to be both dense or both sparse")
         whole = pencil(self.stiffness, self.mass)
         return replace(whole, symbolic=_Counted(whole.symbolic))
+
+
+def of_free(model: Model, parameters: Sequence[Parameter]) -> tuple[Model, tuple[Parameter, ...]]:
+    """Return a model as a function of the free ones of its parameters, and these.
+
+    Raises InputError where others are held and the model is not one of matrices.
+    """
+    fixed = {each.name: each.nominal for each in parameters if each.fixed}
+    tied = {each.name: each.tie for each in parameters if each.tie}
+    if not fixed and not tied:
+        return model, tuple(parameters)
+    if not isinstance(model, MatrixModel):
+        expected = "parameters of their own: only models of matrices have fixed or tied ones"
+        raise wrong("parameters", expected, ", ".join([*fixed, *tied]))
+    return model.held(fixed, tied), tuple(each for each in parameters if each.free)
 
 
 # 7 arguments: the matrices and places of a model, the optional ones by keyword.

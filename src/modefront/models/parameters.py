@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated
+from typing import Annotated, Literal
 
 from modefront.errors import Fault, InputError, refuse, wrong
 from modefront.options import (
@@ -12,6 +12,7 @@ from modefront.options import (
     Requirement,
     check_fields,
     each_once,
+    nested,
     number,
     numbers,
     text,
@@ -21,6 +22,23 @@ BOUNDS = numbers(
     "[lower, upper], two finite numbers with lower < upper",
     lambda x: len(x) == 2 and x[0] < x[1],
 )
+
+
+@dataclass(frozen=True)
+class Prior:
+    """What is expected of a parameter before the data are seen: it lies about its nominal value.
+
+    Attributes
+    ----------
+    kind : the distribution of the parameter is normal, or lognormal, that of its logarithm
+    std : standard deviation, in the unit of the parameter; of the logarithm where it is lognormal
+    """
+
+    kind: Literal["normal", "lognormal"] = "normal"
+    std: Annotated[float, number("a number above 0", lambda x: x > 0)] = 0.2
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
 
 @dataclass(frozen=True)
@@ -34,6 +52,7 @@ class Parameter:
     name : name of the parameter in the model
     nominal : nominal value, at which the search starts, in the unit of the model
     bounds : lower and upper bound, finite, in the same unit
+    prior : what is expected of it; None for any value within the bounds
     fixed : whether it stays at its nominal value
     tie : name of the parameter whose value it has; empty for a value of its own
     """
@@ -41,6 +60,7 @@ class Parameter:
     name: Annotated[str, text("the name of the parameter")]
     nominal: Annotated[float, number("a finite number")]
     bounds: Annotated[tuple[float, float], BOUNDS]
+    prior: Annotated[Prior, nested("a table of kind and std", Prior)] | None = None
     fixed: Annotated[bool, TRUE_OR_FALSE] = False
     tie: Annotated[str, Requirement("the name of a parameter", lambda x: isinstance(x, str))] = ""
 
@@ -49,6 +69,8 @@ class Parameter:
         if not self.lower <= self.nominal <= self.upper:
             inside = f"a value within its bounds, {self.lower:g} to {self.upper:g}"
             raise wrong("nominal", inside, f"{self.nominal:g}")
+        if self.prior and self.prior.kind == "lognormal" and self.lower <= 0:
+            raise wrong("bounds", "a lower bound above 0, as the prior is lognormal", self.lower)
         if self.fixed and self.tie:
             raise wrong("tie", "no 'tie' of a parameter that is fixed", f"'{self.tie}'")
 

@@ -19,7 +19,8 @@ from modefront._typing import Floats
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.base import Model
-from modefront.models.parameters import Parameter, in_order, parameters_of
+from modefront.models.matrices import of_free
+from modefront.models.parameters import Parameter, Prior, in_order, parameters_of
 from modefront.models.reduced.options import Reduction
 from modefront.modes.result import Modes
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
@@ -46,6 +47,7 @@ class UpdatingProblem:
     pairing : how measured modes and model modes are paired
     pairs : model modes, from 0, that are paired with the measured ones whatever their MAC is; None
         where they are matched
+    priors : what is expected of each parameter; none of any unless given
     """
 
     model: Model
@@ -56,6 +58,7 @@ class UpdatingProblem:
     start: Floats
     pairing: Pairing = field(default_factory=Pairing)
     pairs: tuple[int, ...] | None = None
+    priors: tuple[Prior | None, ...] = ()
     members: tuple[tuple[Member, ...], ...] = field(init=False, repr=False, compare=False)
     """The members of each group."""
 
@@ -243,7 +246,7 @@ def updating_problem(
     if data.sensors != model.sensors:
         raise ValueError(f"expected data at sensors {model.sensors}, found {data.sensors}")
     given = parameters or parameters_of(bounds or {}, nominal or {})
-    chosen = in_order(given, model.parameters)
+    model, chosen = of_free(model, in_order(given, model.parameters))
     if reduction is not None:
         model = reduction.of(model, data, pairing or Pairing(), chosen)
     return UpdatingProblem(
@@ -254,4 +257,5 @@ def updating_problem(
         np.array([each.upper for each in chosen]),
         np.array([each.nominal for each in chosen]),
         pairing or Pairing(),
+        priors=tuple(each.prior for each in chosen),
     )

@@ -20,14 +20,17 @@ TRUST = ("determined", "partly", "not determined")
 """What the data say of a parameter."""
 
 
-def with_intervals(data: xr.Dataset, samples: Floats, misfit: Floats, assumed: str) -> xr.Dataset:
+def with_intervals(
+    data: xr.Dataset, samples: Floats, misfit: Floats, assumed: str, widths: Floats
+) -> xr.Dataset:
     """Return results with quantiles of models (samples, p) that were drawn from the posterior.
 
     A quantile is such that the next draw is below it with its probability. ``misfit`` (n,) are the
-    errors of the groups over those expected, ``assumed`` says which of these are assumed.
+    errors of the groups over those expected, ``assumed`` says which of these are assumed, and
+    ``widths`` (p,) are those of the 90 % intervals of the priors.
     """
     interval = np.quantile(samples, QUANTILES, axis=0, method="weibull").T
-    share = (interval[:, 2] - interval[:, 0]) / (0.9 * np.diff(data["bounds"].values)[:, 0])
+    share = (interval[:, 2] - interval[:, 0]) / widths
     place = np.where(share < DETERMINED, 0, np.where(share > OPEN, 2, 1))
     values = {
         "sample_theta": samples,

@@ -20,7 +20,7 @@ from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
 from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.models.base import Model
-from modefront.models.matrices import MatrixModel
+from modefront.models.matrices import MatrixModel, of_free
 from modefront.models.reduced.model import ReducedModel
 from modefront.pairing.match import Pairing
 from modefront.residuals.problem import UpdatingProblem
@@ -58,10 +58,8 @@ def load(path: Path | str) -> Study:
     header = root.table("study", "a table [study]")
     names, parameters = read_parameters(root)
     model, reduction = read_model(root, header, names)
-    if isinstance(model, MatrixModel) and not faults:
-        fixed = {each.name: each.nominal for each in parameters if each.fixed}
-        model = model.held(fixed, {each.name: each.tie for each in parameters if each.tie})
-    parameters = tuple(each for each in parameters if each.free)
+    if model is not None and not faults:
+        model, parameters = of_free(model, parameters)
     title, seed = _read_header(header)
     data = read_data(root, model)
     groups = read_groups(root, data)
@@ -86,6 +84,7 @@ def load(path: Path | str) -> Study:
         np.array([each.upper for each in parameters]),
         np.array([each.nominal for each in parameters]),
         pairing,
+        priors=tuple(each.prior for each in parameters),
     )
     _try_model(root, problem)
     predictions = complete(drafts, problem) if not faults else ()

@@ -43,7 +43,7 @@ from modefront.study.processes import processes
 from modefront.study.whereabouts import note_study
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.options import Uncertainty
-from modefront.uncertainty.prior import NoisePrior
+from modefront.uncertainty.prior import NoisePrior, prior_widths
 from modefront.uncertainty.sampling import DRAWS, draw_models
 from modefront.work.progress import Progress
 from modefront.work.run import Run
@@ -285,7 +285,7 @@ class _Session:
         analysis = replace(analysis, points=certified_points(problem, extra, work))
         data = self._with_shapes(dataset(problem, front, analysis))
         if noise is not None and samples is not None:
-            data = with_intervals(data, samples, misfit, noise.assumed)
+            data = with_intervals(data, samples, misfit, noise.assumed, prior_widths(problem))
             data = data.assign_attrs(verdict="\n".join(verdict(data)))
         runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file)
         draws = study.uncertainty.draws

@@ -23,7 +23,9 @@ of S, of d degrees of freedom, corrects these to :math:`m_i = (\nu + S_i) / (\nu
 
 The prior of the parameters is uniform within their bounds, and where neither data nor bounds say
 anything a parameter is nearest to its nominal value: :math:`-2 \ln p` has the further term
-:math:`\varepsilon \sum_j (\theta_j - \theta_{0 j})^2 / range_j^2`.
+:math:`\varepsilon \sum_j (\theta_j - \theta_{0 j})^2 / range_j^2`. For a parameter of normal prior
+that term is :math:`(\theta_j - \theta_{0 j})^2 / \sigma_j^2`, and of lognormal prior
+:math:`\ln^2 (\theta_j / \theta_{0 j}) / \sigma_j^2`.
 """
 
 from __future__ import annotations
@@ -46,6 +48,10 @@ from modefront.uncertainty.noise import Source
 
 PULL = 1e-6
 """Weight of the distance from the nominal model: a normal prior of a thousand ranges."""
+
+
+NINETY = 1.6449
+"""Half the 90 % interval of a normal distribution, over its standard deviation."""
 
 
 @dataclass(frozen=True)
@@ -121,7 +127,8 @@ class NoiseModel:
     def target(self) -> Problem:
         """The problem with the distance from the nominal model as a further objective."""
         names = (*self.problem.objectives, "distance from the nominal model")
-        return Wrapped(self.problem, _with_distance, names)
+        distance = Distance(self.problem, self.problem.start, PULL)
+        return Wrapped(self.problem, distance.evaluation, names)
 
     def misfit(self, theta: Floats) -> Floats:
         """Return the root mean square errors (n,) of a model over those expected."""
@@ -147,11 +154,11 @@ class NegativeLogPosterior:
 
     def value(self, J: Floats) -> float:
         """Return -2 ln p."""
-        return self.logs.value(J[:-1]) + PULL * float(J[-1])
+        return self.logs.value(J[:-1]) + float(J[-1])
 
     def gradient(self, J: Floats) -> Floats:
         """Return its derivatives with respect to the objectives."""
-        return np.append(self.logs.gradient(J[:-1]), PULL)
+        return np.append(self.logs.gradient(J[:-1]), 1.0)
 
     def hessian(self, J: Floats) -> Floats:
         """Return its second derivatives."""
@@ -160,21 +167,73 @@ class NegativeLogPosterior:
         return out
 
 
-def _with_distance(problem: Problem, theta: Floats, derivatives: bool, second: bool) -> Evaluation:
-    """Return an evaluation with the distance from the nominal model as the last objective."""
-    found = problem.evaluate(theta, derivatives=derivatives, second=second)
-    span = problem.upper - problem.lower
-    r = (theta - problem.start) / span
-    J = np.append(found.J, r @ r if found.feasible else np.inf)
-    if found.derivatives is None:
-        return replace(found, J=J)
-    slopes = ObjectiveDerivatives(
-        np.vstack([found.dJ, 2 * r / span]),
-        np.concatenate([found.H, 2 * np.diag(1 / span**2)[None]]),
-        found.exact,
-    )
-    residuals = (*found.residuals, Residual(r, np.diag(1 / span)))
-    return replace(found, J=J, derivatives=slopes, residuals=residuals)
+@dataclass(frozen=True)
+class Distance:
+    """Distance of parameters from others, in the units of their priors.
+
+    Attributes
+    ----------
+    problem : with bounds and priors
+    centre : (p,) parameters from which it is
+    weight : of a distance of one range, for parameters of uniform prior
+    """
+
+    problem: UpdatingProblem
+    centre: Floats
+    weight: float
+
+    def residuals(self, theta: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return the distances (p,) and their first and second derivatives."""
+        unit = np.sqrt(self.weight) / (self.problem.upper - self.problem.lower)
+        r, dr, d2r = unit * (theta - self.centre), unit.copy(), np.zeros(unit.size)
+        for j, prior in enumerate(self.problem.priors):
+            if prior and prior.kind == "normal":
+                r[j], dr[j] = (theta[j] - self.centre[j]) / prior.std, 1 / prior.std
+            elif prior:
+                r[j] = np.log(theta[j] / self.centre[j]) / prior.std
+                dr[j], d2r[j] = 1 / (theta[j] * prior.std), -1 / (theta[j] ** 2 * prior.std)
+        return r, dr, d2r
+
+    def evaluation(
+        self, problem: Problem, theta: Floats, derivatives: bool, second: bool
+    ) -> Evaluation:
+        """Return the evaluation of a problem with the square of the distance as last objective."""
+        found = problem.evaluate(theta, derivatives=derivatives, second=second)
+        r, dr, d2r = self.residuals(theta)
+        J = np.append(found.J, r @ r if found.feasible else np.inf)
+        if found.derivatives is None:
+            return replace(found, J=J)
+        curved = dr**2 + r * d2r if found.exact else dr**2
+        slopes = ObjectiveDerivatives(
+            np.vstack([found.dJ, 2 * r * dr]),
+            np.concatenate([found.H, 2 * np.diag(curved)[None]]),
+            found.exact,
+        )
+        residuals = (*found.residuals, Residual(r, np.diag(dr)))
+        return replace(found, J=J, derivatives=slopes, residuals=residuals)
+
+
+def drawn_prior(problem: UpdatingProblem, rng: np.random.Generator) -> Floats:
+    """Return parameters (p,) drawn from their prior; those beyond the bounds lie at them."""
+    theta = rng.uniform(problem.lower, problem.upper)
+    for j, prior in enumerate(problem.priors):
+        if prior:
+            z = prior.std * rng.normal()
+            nominal = problem.start[j]
+            theta[j] = nominal + z if prior.kind == "normal" else nominal * np.exp(z)
+    return np.clip(theta, problem.lower, problem.upper)
+
+
+def prior_widths(problem: UpdatingProblem) -> Floats:
+    """Return the widths (p,) of the 90 % intervals of the priors."""
+    out = 0.9 * (problem.upper - problem.lower)
+    for j, prior in enumerate(problem.priors):
+        if prior:
+            far = NINETY * prior.std
+            nominal = problem.start[j]
+            width = far if prior.kind == "normal" else abs(nominal) * np.sinh(far)
+            out[j] = min(out[j], 2 * width)
+    return out
 
 
 def expected(

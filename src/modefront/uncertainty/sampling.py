@@ -37,7 +37,7 @@ from modefront._typing import Floats
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual, Wrapped
 from modefront.optim.scalarisation import weighted
 from modefront.optim.sqp import Options, begin, solve
-from modefront.uncertainty.prior import NoiseModel
+from modefront.uncertainty.prior import Distance, NoiseModel, drawn_prior
 from modefront.work.task import Executor, Task, seed_sequence
 
 PRIOR = 2.5e-3
@@ -70,9 +70,10 @@ def variances(noise: NoiseModel, evaluation: Evaluation) -> Variances:
     """Return the distribution of the variances; ``evaluation`` is of the most probable model."""
     logs = noise.programme.logs
     span = noise.problem.upper - noise.problem.lower
+    slope = Distance(noise.problem, noise.problem.start, PRIOR).residuals(evaluation.theta)[1]
     w = logs.gradient(evaluation.J)
     G = np.array([x.dr.T @ x.dr for x in evaluation.residuals]) * np.outer(span, span)
-    inverse = np.linalg.inv(np.tensordot(w, G, axes=1) + PRIOR * np.eye(span.size))
+    inverse = np.linalg.inv(np.tensordot(w, G, axes=1) + np.diag((slope * span) ** 2))
     q = w * np.einsum("jk,ikj->i", inverse, G)
     return Variances(evaluation.J + logs.floor, np.maximum(logs.a - q, noise.weight))
 
@@ -95,17 +96,17 @@ def _drawn(noise: NoiseModel, theta: Floats, count: int, *, rng: np.random.Gener
     """Return draws (count, p)."""
     problem = noise.problem
     best = problem.evaluate(theta)
-    of, w = variances(noise, best), np.array([1.0, PRIOR])
+    of, w = variances(noise, best), np.ones(2)
     out = []
     for _ in range(count):
         s = of.draw(rng)
-        prior = rng.uniform(problem.lower, problem.upper)
+        prior = drawn_prior(problem, rng)
         errors = [
             np.sqrt(v) * rng.normal(size=x.r.size) for v, x in zip(s, best.residuals, strict=True)
         ]
-        disturbed = _Disturbed(s, errors, prior)
+        disturbed = _Disturbed(s, errors, Distance(problem, prior, PRIOR))
         target = Wrapped(problem, disturbed.evaluate, ("misfit", "distance from the prior"))
-        starts = [target.evaluate(prior), disturbed.of(problem, best)]
+        starts = [target.evaluate(prior), disturbed.of(best)]
         found = [solve(target, weighted(w), begin(x), _LOOSE) for x in starts if x.feasible]
         out.append(min(found, key=lambda x: float(w @ x.J)).theta)
     return np.array(out)
@@ -117,26 +118,26 @@ class _Disturbed:
 
     s: Floats
     errors: Sequence[Floats]
-    prior: Floats
+    prior: Distance
 
     def evaluate(
         self, problem: Problem, theta: Floats, derivatives: bool, second: bool
     ) -> Evaluation:
         """Return the misfit and the distance; residuals take derivatives, whether asked or not."""
         del derivatives
-        return self.of(problem, problem.evaluate(theta, second=second))
+        return self.of(problem.evaluate(theta, second=second))
 
-    def of(self, problem: Problem, found: Evaluation) -> Evaluation:
-        """Return them from an evaluation of the problem."""
+    def of(self, found: Evaluation) -> Evaluation:
+        """Return them from an evaluation."""
         if not found.feasible:
             return replace(found, J=np.full(2, np.inf))
-        span = problem.upper - problem.lower
         parts = [
             Residual((x.r + e) / np.sqrt(v), x.dr / np.sqrt(v))
             for x, e, v in zip(found.residuals, self.errors, self.s, strict=True)
         ]
         misfit = Residual(np.concatenate([x.r for x in parts]), np.vstack([x.dr for x in parts]))
-        distance = Residual((found.theta - self.prior) / span, np.diag(1 / span))
+        r, dr, _ = self.prior.residuals(found.theta)
+        distance = Residual(r, np.diag(dr))
         both = (misfit, distance)
         slopes = ObjectiveDerivatives(
             np.array([2 * x.r @ x.dr for x in both]), np.array([2 * x.dr.T @ x.dr for x in both])
