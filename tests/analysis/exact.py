@@ -28,6 +28,11 @@ class Squares:
     objectives: tuple[str, ...]
     exact: bool = True
 
+    @property
+    def priors(self) -> tuple[()]:
+        """None of any parameter."""
+        return ()
+
     def evaluate(
         self, theta: Floats, *, derivatives: bool = True, second: bool = False
     ) -> Evaluation:
