@@ -56,6 +56,9 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
             place = f"line {number}"
             if line.startswith("DMIG "):
                 header, column = line[8:16].strip(), None
+                if header.upper() in rows:
+                    expected = f"the header 'DMIG {header}' once, before its columns"
+                    raise wrong(path, expected, "one after them", place)
                 kind = line[32:40].strip()
                 if kind.isdigit() and int(kind) in COMPLEX:
                     raise wrong(path, "real numbers", f"type {int(kind)} (complex)", place)
