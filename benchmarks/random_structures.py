@@ -38,6 +38,7 @@ import json
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -319,14 +320,17 @@ def _seeds(
 # ---- rates -----------------------------------------------------------------------------------
 
 
+def _is_of(kind: str, verdict: Verdict) -> bool:
+    return verdict.problem.kind == kind
+
+
 def table(runs: dict[str, list[Verdict]]) -> str:
     """Return the rates of failures by class and in total, one line a run; then the costs."""
     first = next(iter(runs.values()))
     head = f"{'':14s} {'':8s} {'problems':>8s} {'not done':>8s} {'any':>5s}"
     rows = [head + "".join(f"{what:>15s}" for what in COUNTED) + f"{'switch':>8s}{'behind':>8s}"]
     chosen: list[tuple[str, Callable[[Verdict], bool]]] = [
-        (kind, lambda v, kind=kind: v.problem.kind == kind)  # type: ignore[misc]
-        for kind in dict.fromkeys(v.problem.kind for v in first)
+        (kind, partial(_is_of, kind)) for kind in dict.fromkeys(v.problem.kind for v in first)
     ]
     chosen += [
         ("right class", lambda v: not v.problem.wrong),

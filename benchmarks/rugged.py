@@ -74,10 +74,6 @@ class Case:
         J, dJ, H = self.function(theta)
         return Evaluation(theta, J, ObjectiveDerivatives(dJ, H) if derivatives else None)
 
-    def on_branch(self, branch: tuple[int, ...]) -> Case:
-        """Return the problem itself: where its objectives jump is not told."""
-        return self
-
 
 # ---- problems ----------------------------------------------------------------------------------
 

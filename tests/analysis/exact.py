@@ -53,9 +53,6 @@ class Squares:
         slopes = ObjectiveDerivatives(dJ, H, is_exact)
         return Evaluation(theta, J, slopes, residuals=residuals)
 
-    def on_branch(self, branch: tuple[int, ...]) -> Squares:
-        return self
-
 
 def _sums(residuals: Residuals) -> tuple[Floats, Floats]:
     return np.array([r @ r for r, _ in residuals]), np.array([2 * r @ dr for r, dr in residuals])

@@ -35,9 +35,6 @@ class Known:
             return infeasible(theta, len(self.objectives))
         return Evaluation(theta, J, ObjectiveDerivatives(dJ, H) if derivatives else None)
 
-    def on_branch(self, branch: tuple[int, ...]) -> Known:
-        return self
-
 
 def box(
     function: Callable[[Floats], Derivatives], lower: list[float], upper: list[float], n: int = 2

@@ -9,11 +9,11 @@ from interruptions import interrupt_after
 from problems import box, circles, disconnected
 
 from modefront._typing import Floats
-from modefront.front.archive import Archive, Recorded, recorded
+from modefront.front.archive import Archive, Recorder, recorded
 from modefront.front.front import Front
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
-from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.problem import Evaluation, Problem, Wrapped
 from modefront.work.costs import Costs
 from modefront.work.run import Run
 from modefront.work.store import Store
@@ -49,11 +49,12 @@ def test_it_holds_the_nondominated_models_of_all(n: int) -> None:
 def test_of_a_problem_that_is_recorded_all_evaluations_are_counted_and_the_best_kept(
     costs: Costs,
 ) -> None:
-    problem = Recorded(box(circles, [-1, -1], [2, 2]))
+    recorder = Recorder(Archive(2, 2))
+    problem = Wrapped(box(circles, [-1, -1], [2, 2]), recorder.evaluation)
     for theta in ([0.5, 1.0], [0.5, 0.5], [0.0, 0.0]):
         problem.evaluate(np.array(theta), derivatives=False)
-    assert problem.archive.theta.tolist() == [[0.5, 0.5], [0.0, 0.0]]
-    assert problem.evaluations == costs.eigenproblems == 3
+    assert recorder.archive.theta.tolist() == [[0.5, 0.5], [0.0, 0.0]]
+    assert recorder.evaluations == costs.eigenproblems == 3
 
 
 def middle(problem: Problem, share: float) -> Evaluation:

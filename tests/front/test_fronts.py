@@ -301,10 +301,7 @@ class Switching:
         J, dJ = c * (x - centre) ** 2 + floor, 2 * c * (x - centre)
         H = np.full((1, 1, 1), 2 * c)
         slopes = ObjectiveDerivatives(np.array([[dJ]]), H)
-        return Evaluation(theta, np.array([J]), slopes, branch=(piece,))
-
-    def on_branch(self, branch: tuple[int, ...]) -> "Switching":
-        return self
+        return Evaluation(theta, np.array([J]), slopes)
 
 
 def test_the_least_of_one_objective_behind_a_jump_is_found() -> None:

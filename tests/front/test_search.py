@@ -212,11 +212,17 @@ def test_at_its_budget_a_search_ends_and_says_what_did_not_converge(budget: int)
 
 
 @pytest.mark.parametrize(
-    "wrong", [{"evaluations": 0}, {"tolerance": 0.0}, {"doubt": 1.0}, {"tolerance": -1.0}]
+    "wrong",
+    [
+        lambda: Search(evaluations=0),
+        lambda: Search(tolerance=0.0),
+        lambda: Search(doubt=1.0),
+        lambda: Search(tolerance=-1.0),
+    ],
 )
-def test_options_that_are_not_possible_are_refused(wrong: dict[str, float]) -> None:
+def test_options_that_are_not_possible_are_refused(wrong: Callable[[], Search]) -> None:
     with pytest.raises(InputError):
-        Search(**wrong)  # type: ignore[arg-type]
+        wrong()
 
 
 # ---- equations and bounds --------------------------------------------------------------------

@@ -18,11 +18,10 @@ def test_a_wrapped_problem_differs_in_its_evaluations_alone() -> None:
     problem = box(circles, [-2.0, -1.0], [2.0, 3.0])
     wrapped: Problem = Wrapped(problem, doubled)
     theta = np.array([0.5, 1.0])
-    for each in (wrapped, wrapped.on_branch((0, 1))):
-        assert each.objectives == problem.objectives
-        assert each.lower.tolist() == [-2.0, -1.0]
-        assert each.upper.tolist() == [2.0, 3.0]
-        assert each.start.tolist() == problem.start.tolist()
-        assert each.evaluate(theta).J.tolist() == (2 * problem.evaluate(theta).J).tolist()
-        assert each.evaluate(theta, derivatives=False).derivatives is None
+    assert wrapped.objectives == problem.objectives
+    assert wrapped.lower.tolist() == [-2.0, -1.0]
+    assert wrapped.upper.tolist() == [2.0, 3.0]
+    assert wrapped.start.tolist() == problem.start.tolist()
+    assert wrapped.evaluate(theta).J.tolist() == (2 * problem.evaluate(theta).J).tolist()
+    assert wrapped.evaluate(theta, derivatives=False).derivatives is None
     assert Wrapped(problem, doubled, ("a", "b")).objectives == ("a", "b")

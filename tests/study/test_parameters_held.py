@@ -31,8 +31,10 @@ def solved(modes: int, *parameters: mf.Parameter) -> mf.Results:
     return mf.solve(problem, points=3, seed=1, search=SEARCH, identifiability=without)
 
 
-def parameter(name: str, nominal: float = 1.0, **how: object) -> mf.Parameter:
-    return mf.Parameter(name, nominal, BOUNDS, **how)  # type: ignore[arg-type]
+def parameter(
+    name: str, nominal: float = 1.0, prior: mf.Prior | None = None, tie: str = ""
+) -> mf.Parameter:
+    return mf.Parameter(name, nominal, BOUNDS, prior, tie=tie)
 
 
 @pytest.mark.parametrize("sparse", [False, True])
@@ -53,7 +55,7 @@ def test_a_model_with_held_parameters_is_the_model_with_these_values(sparse: boo
 
 
 def test_others_are_found_where_one_is_fixed_and_one_tied() -> None:
-    fixed = parameter("k2", 0.9, fixed=True)
+    fixed = mf.Parameter("k2", 0.9, BOUNDS, fixed=True)
     results = solved(3, parameter("k1"), fixed, parameter("k3"))
     assert results.dataset["parameter"].values.tolist() == ["k1", "k3"]
     assert results.reference.theta == pytest.approx({"k1": 1.2, "k3": 1.1}, abs=1e-3)
@@ -61,10 +63,9 @@ def test_others_are_found_where_one_is_fixed_and_one_tied() -> None:
     assert tied.dataset["parameter"].values.tolist() == ["k1", "k3"]
 
 
-@pytest.mark.parametrize("kind", ["normal", "lognormal"])
-def test_what_data_leave_open_a_prior_decides(kind: str) -> None:
+@pytest.mark.parametrize("prior", [mf.Prior("normal", 0.01), mf.Prior("lognormal", 0.01)])
+def test_what_data_leave_open_a_prior_decides(prior: mf.Prior) -> None:
     """One mode of three storeys: a narrow prior holds a parameter, and the others follow."""
-    prior = mf.Prior(kind, 0.01)  # type: ignore[arg-type]
     with_it = solved(1, parameter("k1", 1.2, prior=prior), parameter("k2"), parameter("k3")).dataset
     assert with_it["interval"].sel(parameter="k1").values == pytest.approx(
         [1.18, 1.2, 1.22], abs=0.015

@@ -52,10 +52,6 @@ class Bowls:
         J, dJ, H = on_a_line(theta)
         return Evaluation(theta, J, ObjectiveDerivatives(dJ, H))
 
-    def on_branch(self, branch: tuple[int, ...]) -> "Bowls":
-        del branch
-        return self
-
 
 SEARCH = Search(doubt=0.5)
 

@@ -15,8 +15,8 @@ from hypothesis import strategies as st
 from problems import Known, box, circles
 
 from modefront._typing import Floats
-from modefront.front.archive import Archive, Outcome, Recorded, recorded
-from modefront.optim.problem import Problem
+from modefront.front.archive import Archive, Outcome, Recorder, recorded
+from modefront.optim.problem import Problem, Wrapped
 from modefront.work.costs import Costs, counted, spend, total, uncounted
 from modefront.work.progress import Progress, State
 from modefront.work.run import Run
@@ -204,8 +204,9 @@ class Backwards:
 def test_the_archive_is_that_of_one_evaluation_after_another(seed: int) -> None:
     problem = box(circles, [-1, -1], [2, 2])
     tasks = tasks_on(problem, seed)
-    straight = Recorded(problem)
-    sums = [visited(straight, task.arguments[2]) for task in tasks]
+    straight = Recorder(Archive(2, 2))
+    known = Wrapped(problem, straight.evaluation)
+    sums = [visited(known, task.arguments[2]) for task in tasks]
     for work in (IMMEDIATE, Run(), Backwards(), Within(Run(), turn=("again", 1))):
         outcomes = work.run(tasks)
         assert [x.result for x in outcomes] == sums

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.optim.problem import Evaluation, Problem
+from modefront.optim.problem import Evaluation, Problem, Wrapped
 from modefront.work.codec import record
 
 ROOM = 64
@@ -59,48 +59,20 @@ class Archive:
 
 
 @dataclass
-class Recorded:
-    """A problem that counts its evaluations, and archives the nondominated ones."""
+class Recorder:
+    """Counts the evaluations of a problem, and archives the nondominated ones."""
 
-    problem: Problem
-    archive: Archive = field(init=False)
+    archive: Archive
     evaluations: int = 0
 
-    def __post_init__(self) -> None:
-        self.archive = Archive(self.lower.size, len(self.objectives))
-
-    @property
-    def objectives(self) -> tuple[str, ...]:
-        """Names of the objectives."""
-        return self.problem.objectives
-
-    @property
-    def lower(self) -> Floats:
-        """Lower bounds, shape (p,)."""
-        return self.problem.lower
-
-    @property
-    def upper(self) -> Floats:
-        """Upper bounds, shape (p,)."""
-        return self.problem.upper
-
-    @property
-    def start(self) -> Floats:
-        """A first guess, shape (p,)."""
-        return self.problem.start
-
-    def evaluate(
-        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    def evaluation(
+        self, problem: Problem, theta: Floats, derivatives: bool, second: bool
     ) -> Evaluation:
-        """Return the objectives at ``theta``, and remember them."""
-        evaluation = self.problem.evaluate(theta, derivatives=derivatives, second=second)
+        """Return the evaluation of a problem at ``theta``, and remember it."""
+        evaluation = problem.evaluate(theta, derivatives=derivatives, second=second)
         self.evaluations += 1
         self.archive.add(evaluation.theta, evaluation.J)
         return evaluation
-
-    def on_branch(self, branch: tuple[int, ...]) -> Problem:
-        """Return the problem of one smooth piece; its evaluations are not remembered."""
-        return self.problem.on_branch(branch)
 
 
 @record
@@ -125,6 +97,6 @@ def recorded(
     function: Callable[..., Any], problem: Problem, *arguments: Any, **options: Any
 ) -> Outcome:
     """Return the result of a function of a problem, with the models that it evaluates."""
-    seen = Recorded(problem)
-    result = function(seen, *arguments, **options)
+    seen = Recorder(Archive(problem.lower.size, len(problem.objectives)))
+    result = function(Wrapped(problem, seen.evaluation), *arguments, **options)
     return Outcome(result, seen.archive.theta, seen.archive.J, seen.evaluations)

@@ -15,7 +15,7 @@ H         (n, p, p)  their second derivatives, exact; or, unless these are reque
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from math import isfinite
 from typing import Protocol
 
@@ -56,8 +56,7 @@ class Evaluation:
     ``derivatives`` is None where they were not requested, or the objectives are not defined.
     ``quantities`` are what the problem wants kept with it; ``residuals`` are the vectors r_i, one
     an objective, of objectives that are sums of squares, :math:`J_i = \|r_i\|^2`. They are empty
-    where the objectives are no such sums, or no derivatives were asked for. ``branch`` tells the
-    smooth piece of the objectives on which the point lies, where they jump from one to another.
+    where the objectives are no such sums, or no derivatives were asked for.
     """
 
     theta: Floats
@@ -65,7 +64,6 @@ class Evaluation:
     derivatives: ObjectiveDerivatives | None = None
     quantities: Mapping[str, Floats] = field(default_factory=dict)
     residuals: Sequence[Residual] = ()
-    branch: tuple[int, ...] = ()
 
     @property
     def feasible(self) -> bool:
@@ -133,9 +131,6 @@ class Problem(Protocol):
         ``second`` requests exact second derivatives too, where the problem has them.
         """
 
-    def on_branch(self, branch: tuple[int, ...]) -> Problem:
-        """Return the problem of one smooth piece of the objectives, wherever it is evaluated."""
-
 
 @dataclass(frozen=True)
 class Wrapped:
@@ -178,7 +173,3 @@ class Wrapped:
     ) -> Evaluation:
         """Return the objectives at ``theta``."""
         return self.evaluation(self.problem, theta, derivatives, second)
-
-    def on_branch(self, branch: tuple[int, ...]) -> Problem:
-        """Return the problem of one smooth piece, which is evaluated in the same way."""
-        return replace(self, problem=self.problem.on_branch(branch))

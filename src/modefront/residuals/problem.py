@@ -10,7 +10,7 @@ count :math:`a_i` of measured properties is the sum of theirs.
 from __future__ import annotations
 
 from collections.abc import Hashable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -24,7 +24,7 @@ from modefront.models.parameters import Parameter, Prior, in_order, parameters_o
 from modefront.models.reduced.options import Reduction
 from modefront.modes.result import Modes
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Residual, infeasible
-from modefront.pairing.match import Pairing, Pairs, mac_slopes, match, mean_mac, modes_needed
+from modefront.pairing.match import Pairing, Pairs, mac_slopes, match, modes_needed
 from modefront.residuals.base import Member, ModeErrors, Stack, joined, together
 from modefront.residuals.groups import Group
 from modefront.work.transfer import Shared, is_shared, shared
@@ -45,8 +45,6 @@ class UpdatingProblem:
     groups : the measured properties of each objective
     lower, upper, start : (parameters,) bounds and nominal values
     pairing : how measured modes and model modes are paired
-    pairs : model modes, from 0, that are paired with the measured ones whatever their MAC is; None
-        where they are matched
     priors : what is expected of each parameter; none of any unless given
     """
 
@@ -57,7 +55,6 @@ class UpdatingProblem:
     upper: Floats
     start: Floats
     pairing: Pairing = field(default_factory=Pairing)
-    pairs: tuple[int, ...] | None = None
     priors: tuple[Prior | None, ...] = ()
     members: tuple[tuple[Member, ...], ...] = field(init=False, repr=False, compare=False)
     """The members of each group."""
@@ -137,20 +134,12 @@ class UpdatingProblem:
             "paired_mode": pairs.index + 1.0,
             "coincident": modes.coincident[pairs.index].astype(float),
         }
-        return Evaluation(theta, J, slopes, quantities, residuals, tuple(pairs.index.tolist()))
-
-    def on_branch(self, branch: tuple[int, ...]) -> UpdatingProblem:
-        """Return the problem with these pairs of modes at all parameters."""
-        return replace(self, pairs=branch)
+        return Evaluation(theta, J, slopes, quantities, residuals)
 
     def modes(self, theta: Floats, *, derivatives: bool = True) -> tuple[Modes, Pairs]:
         """Return the model's modes at ``theta`` and which of them belong to the measured ones."""
         count = modes_needed(self.pairing, self.data, self.model.size)
         modes = self.model.modes(theta, count, derivatives=derivatives)
-        if self.pairs is not None:
-            index = np.array(self.pairs, dtype=np.intp)
-            mac = mean_mac(self.data, modes.phi)[np.arange(index.size), index]
-            return modes, Pairs(index, mac)
         return modes, match(self.pairing, self.data, modes.frequency, modes.phi)
 
     def residuals(self, theta: Floats) -> tuple[Residual, ...]:

@@ -147,5 +147,4 @@ class _Disturbed:
             np.array([x.r @ x.r for x in both]),
             slopes,
             residuals=both,
-            branch=found.branch,
         )
