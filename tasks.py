@@ -3,10 +3,12 @@
 python3 tasks.py demo    the three-story study, both configurations, beside the published numbers
 python3 tasks.py test    the tests
 python3 tasks.py lint    formatting, lint and types
+python3 tasks.py docs    the pages, as docs/_build/html/index.html
 python3 tasks.py trials  inputs that are spoilt by chance and runs that are killed (hours)
 
 Needs Python 3.11 or newer and nothing else. Packages are those pinned in requirements.txt for the
-demo, and in requirements-dev.txt, which adds to them, for all else.
+demo, and in requirements-docs.txt for the pages and requirements-dev.txt for all else, which add
+to them.
 """
 
 from __future__ import annotations
@@ -20,11 +22,17 @@ from pathlib import Path
 
 ROOT = Path(__file__).resolve().parent
 ENVIRONMENT = ROOT / ".venv"
-RUNTIME, DEVELOPMENT = "requirements.txt", "requirements-dev.txt"
+RUNTIME, DEVELOPMENT, PAGES = (
+    "requirements.txt",
+    "requirements-dev.txt",
+    "requirements-docs.txt",
+)
+NEEDS = {"demo": RUNTIME, "docs": PAGES}
 TASKS = {
     "demo": [["examples/three_story.py", "demo"]],
     "test": [["-m", "pytest", "-q", "-n", "auto", "--dist", "worksteal"]],
     "trials": [["tests/trials/trials.py"]],
+    "docs": [["-m", "sphinx", "-q", "-W", "--keep-going", "docs", "docs/_build/html"]],
     "lint": [
         ["-m", "ruff", "format", "--check", "."],
         ["-m", "ruff", "check", "."],
@@ -47,7 +55,7 @@ def run(*arguments: str) -> None:
 
 def set_up(requirements: str) -> None:
     """Create the environment, renew it if pinned packages have changed, or add what it lacks."""
-    files = (RUNTIME, DEVELOPMENT, "pyproject.toml")
+    files = (RUNTIME, DEVELOPMENT, PAGES, "pyproject.toml")
     pinned = b"".join((ROOT / name).read_bytes() for name in files)
     digest = hashlib.sha256(pinned + str(ROOT).encode()).hexdigest()
     stamp = ENVIRONMENT / "installed"
@@ -70,7 +78,7 @@ def main() -> None:
         sys.exit(f"modefront needs Python 3.11 or newer; this is {sys.version.split()[0]}")
     if len(sys.argv) < 2 or sys.argv[1] not in TASKS:
         sys.exit(__doc__)
-    set_up(RUNTIME if sys.argv[1] == "demo" else DEVELOPMENT)
+    set_up(NEEDS.get(sys.argv[1], DEVELOPMENT))
     *first, last = TASKS[sys.argv[1]]
     for command in first:
         run(*command)

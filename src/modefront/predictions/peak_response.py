@@ -182,9 +182,9 @@ class PeakResponse:
     def evaluate(
         self, problem: UpdatingProblem, theta: Floats, _: np.random.SeedSequence
     ) -> Mapping[str, Floats]:
-        """Return |T| at the greatest peak and its frequency in Hz, each (responses,).
+        """Return the height of the greatest peak and its frequency in Hz, each (responses,).
 
-        NaN where |T| has no local maximum within the band. Raises ModelError where the model
+        NaN where there is no local maximum within the band. Raises ModelError where the model
         cannot be evaluated at ``theta``.
         """
         system, quantity = self.loads.system(problem, theta), ResponseQuantity(self.quantity)
