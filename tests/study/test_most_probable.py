@@ -14,6 +14,7 @@ from two_masses import STUDY
 import modefront as mf
 from modefront.cli.show import as_json
 from modefront.study.examples import write_example
+from modefront.uncertainty.freed import wider
 
 DATA = """set,mode,frequency,damping,low,high
 a,1,4.586,0.02,0.613,1.0
@@ -128,6 +129,30 @@ def test_a_bound_that_holds_the_model_is_named(tmp_path: Path) -> None:
     for name, at in zip(data["parameter"].values, side, strict=True):
         text = f"{name} is at its {'upper' if at > 0 else 'lower'} bound"
         assert (text in data.attrs["verdict"]) == bool(at)
+
+
+def test_the_bound_that_excludes_the_truth_is_named_with_the_value_beyond_it(
+    tmp_path: Path,
+) -> None:
+    """The first spring is 1.4, and at most 1.1 is allowed."""
+    names = ("k1", "k2")
+    model = mf.chain(names, [1.0, 1.0], [1000.0, 1000.0], stiffness_parameters=names)
+    modes = model.modes(np.array([1.4, 1.0]), 2)
+    data = mf.modal_data(modes.frequency, modes.phi.T, model.sensors)
+    parameters = [mf.Parameter(name, nominal=1.0, bounds=(0.8, 1.1)) for name in names]
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    problem = mf.updating_problem(model, data, groups, parameters=parameters)
+    results = mf.solve(problem, points=3, search=mf.Search(doubt=0.5))
+    assert results["freed_theta"].values == pytest.approx([1.4, 1.0], abs=1e-4)
+    (said,) = [text for text in results.verdict if "bound" in text]
+    assert "With k1 = 1.4, errors of frequencies are " in said
+    assert "k2 = " not in said.split("With")[1]
+
+
+def test_wider_bounds_are_farther_by_their_range_or_ratio() -> None:
+    below, above = wider(np.array([0.5, -1.0]), np.array([2.0, 3.0]))
+    assert below.tolist() == [0.125, -5.0]
+    assert above.tolist() == [8.0, 7.0]
 
 
 def test_the_published_posterior_is_that_without_expectation(tmp_path: Path) -> None:

@@ -7,6 +7,7 @@ import xarray as xr
 
 from modefront._typing import Floats
 from modefront.results.schema import described
+from modefront.uncertainty.freed import Freed
 
 QUANTILES = (0.05, 0.5, 0.95)
 """Quantiles of the parameters: a 90 % interval and the median."""
@@ -40,3 +41,10 @@ def with_intervals(
     }
     out = data.assign(described(values)).assign_coords(quantile=list(QUANTILES))
     return out.assign_attrs(assumed=assumed)
+
+
+def with_freed(data: xr.Dataset, found: Freed | None) -> xr.Dataset:
+    """Return results with the model to which wider bounds lead; as they are without one."""
+    if found is None:
+        return data
+    return data.assign(described({"freed_theta": found.theta, "freed_misfit": found.misfit}))

@@ -412,6 +412,9 @@ def _errors() -> Iterator[Variable]:
         "root mean square error of the reference over the one that is expected",
         unit="1",
     )
+    freed = "the most probable model where the bounds that hold it are widened"
+    yield Variable("freed_theta", ("parameter",), f"theta of {freed}")
+    yield Variable("freed_misfit", ("group",), f"misfit of {freed}", unit="1")
     again = "with the data drawn again; NaN where it did not converge"
     over = "over the data drawn again"
     yield Variable("bootstrap_theta", ("replicate", "point", "parameter"), f"theta {again}")
@@ -549,6 +552,7 @@ TOGETHER: Mapping[str, tuple[str, ...]] = {
         "posterior_mac_std",
     ),
     "samples": ("interval", "trust", "sample_theta", "misfit"),
+    "wider bounds": ("freed_theta", "freed_misfit"),
     "modes of points": (
         "set_frequency",
         "set_frequency_std",

@@ -24,6 +24,9 @@ WORSE = 1.1
 SMALL = 0.5
 """Change of errors along a front, over those expected, below which the compromise hardly counts."""
 
+GAIN = 0.1
+"""Share of its errors that a group loses without bounds, from which these are worth widening."""
+
 NAMED = 3
 """Parameters of a kind that are named."""
 
@@ -74,18 +77,35 @@ def _use(data: xr.Dataset) -> str:
 
 
 def _at_bounds(data: xr.Dataset) -> Iterator[str]:
-    """Yield which bounds hold parameters of the reference."""
+    """Yield which bounds hold parameters of the reference, and what it gains without them."""
     best = _row(data, Kind.MOST_PROBABLE)
     sides, values = best["at_bound"].values, best["theta"].values
-    held = [
+    names = data["parameter"].values
+    at = [
         f"{name} is at its {'upper' if side > 0 else 'lower'} bound {value:.4g}"
-        for name, side, value in zip(data["parameter"].values, sides, values, strict=True)
-        if side
+        for name, side, value in zip(names, sides, values, strict=True)
     ]
-    if held:
-        more = f" and {len(held) - NAMED} more" * (len(held) > NAMED)
-        which = "it" if len(held) == 1 else "them"
-        yield f"{enumeration(held[:NAMED])}{more}: widen {which}, or ask what the model lacks."
+    held = np.flatnonzero(sides)
+    if not held.size:
+        return
+    more = f" and {held.size - NAMED} more" * (held.size > NAMED)
+    said = f"{enumeration([at[j] for j in held[:NAMED]])}{more}"
+    if "freed_theta" not in data:
+        yield f"{said}: widen {'it' if held.size == 1 else 'them'}, or ask what the model lacks."
+        return
+    free, before, after = (data[name].values for name in ("freed_theta", "misfit", "freed_misfit"))
+    beyond = [j for j in held if sides[j] * (free[j] - values[j]) > 0]
+    i = int(np.argmax(before - after))
+    if not beyond or before[i] - after[i] < GAIN * before[i]:
+        yield f"{said}: wider bounds lower no errors by more than {100 * GAIN:.0f} %."
+        return
+    where = enumeration([f"{names[j]} = {free[j]:.3g}" for j in beyond[:NAMED]])
+    further = f" and {len(beyond) - NAMED} more" * (len(beyond) > NAMED)
+    yield (
+        f"{said}. With {where}{further}, errors of {data['group'].values[i]} are {after[i]:.2g} of "
+        f"those expected instead of {before[i]:.2g}: widen "
+        f"{'its bounds' if len(beyond) == 1 else 'their bounds'}, or ask what the model lacks."
+    )
 
 
 def _assumed(data: xr.Dataset) -> Iterator[str]:

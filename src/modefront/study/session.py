@@ -41,6 +41,7 @@ from modefront.study.definition import Study
 from modefront.study.estimate import expected_tasks
 from modefront.study.processes import processes
 from modefront.study.whereabouts import note_study
+from modefront.uncertainty.freed import freed
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior, prior_widths
@@ -248,7 +249,7 @@ class _Session:
 
     def _results(self) -> xr.Dataset:
         from modefront.results.assemble import dataset
-        from modefront.results.intervals import with_intervals
+        from modefront.results.intervals import with_freed, with_intervals
         from modefront.results.posterior import posterior_models, with_posterior
         from modefront.results.predictions import extent, with_predictions
         from modefront.results.verdict import verdict
@@ -266,7 +267,7 @@ class _Session:
         )
         front = certified_front(problem, search, work)
         noise = study.noise.of(problem, study.uncertainty.of(problem.data))
-        samples, misfit = None, np.empty(0)
+        samples, misfit, unbound = None, np.empty(0), None
         if noise is not None:
             (best, *_) = most_probable(problem, noise, _known(front), work)
             points = certified_points(
@@ -276,6 +277,7 @@ class _Session:
             count = max(DRAWS, study.uncertainty.draws)
             samples = draw_models(noise, best.theta, count, study.seed, work)
             (misfit,) = work.run([Task(("most-probable", "misfit"), noise.misfit, (best.theta,))])
+            unbound = freed(noise, best.theta, work)
         options = AnalysisOptions(
             study.pareto, study.identifiability, study.uncertainty, study.seed, noise
         )
@@ -286,6 +288,7 @@ class _Session:
         data = self._with_shapes(dataset(problem, front, analysis))
         if noise is not None and samples is not None:
             data = with_intervals(data, samples, misfit, noise.assumed, prior_widths(problem))
+            data = with_freed(data, unbound)
             data = data.assign_attrs(verdict="\n".join(verdict(data)))
         runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file)
         draws = study.uncertainty.draws
