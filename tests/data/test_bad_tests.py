@@ -88,7 +88,7 @@ WARNINGS = [
     pytest.param(_changed(0, 1, -1), "opposite signs", id="sign"),
     pytest.param(_changed(1, 1, -1), "the driving point has the wrong sign", id="driving-point"),
     pytest.param(_changed(0, 1, 1000), "check its unit", id="unit"),
-    pytest.param(_changed(0, 1, 0.001), "differ by a factor of 0.001", id="small-unit"),
+    pytest.param(_changed(0, 1, 0.001), "the channel 2Z is 0.001 times as great", id="small-unit"),
     pytest.param(
         uff58(accelerances()[0, 0], 1, 1, 2 * np.pi * F), "looks like rad/s", id="circular"
     ),
@@ -109,6 +109,28 @@ def test_doubtful_files_have_warnings(tmp_path: Path, content: str, message: str
     path.write_text(content)
     (data_set,) = read_test(path).sets
     assert message in "\n".join(data_set.assembled.warnings)
+
+
+@pytest.mark.parametrize("roving", ["sensor", "hammer"])
+def test_a_sensor_in_g_is_named_by_reciprocity(tmp_path: Path, roving: str) -> None:
+    phi = np.array([[0.6, 1.0, 0.5], [1.0, -0.6, 0.7]])
+    s, omega = 2j * np.pi * F, 2 * np.pi * np.array([[4.0], [11.0]])
+    G = s**2 / (s**2 + 2 * 0.01 * omega * s + omega**2)
+    H = np.einsum("rj,ri,rk->jik", phi, phi, G)  # hammer, sensor, lines
+    H[:, 2] /= 9.80665
+    path = tmp_path / "test.toml"
+    points = ("a", "b", "c", "d") if roving == "hammer" else ("a", "b", "c")
+    files = [f"{k}.uff" for k in range(len(points))]
+    for j, file in enumerate(files):
+        text = "".join(uff58(H[min(j, 2), i], i + 1, j + 1) for i in range(3))
+        (tmp_path / file).write_text(text)
+    names = "".join(f'{name} = "{k}Z"\n' for k, name in enumerate(points, start=1))
+    path.write_text(f"[test]\n[[set]]\nfiles = {files}\n[sensors]\n{names}")
+    test = read_test(path)
+    assert test.name == "test"
+    (warning,) = test.sets[0].assembled.warnings
+    assert "the channel c is 0.102 times as great as reciprocity with a, b says" in warning
+    assert "between g and m/s²" in warning
 
 
 @pytest.mark.parametrize("letter", ["E", "D", "d"])

@@ -173,6 +173,18 @@ def test_references_and_blows_are_told_apart(tmp_path: Path) -> None:
     assert np.isnan(data.variance[1]).all()
 
 
+def test_functions_of_spreadsheets_are_read(tmp_path: Path) -> None:
+    H = _functions(0)
+    path = _csv(tmp_path / "a.csv", np.arange(1, 31.0), H)
+    text = path.read_text().replace(",", ";").replace(".", ",")
+    path.write_text("sep=;\n" + text)
+    (data_set,) = read_test(path).sets
+    assert data_set.assembled.data.H[0] == pytest.approx(np.array(list(H.values())))
+    path.write_text(text.replace(text.splitlines()[3], "3;x;1;1;1"))
+    with pytest.raises(InputError, match=r"line 4, column 'a_re'.*found 'x'"):
+        read_test(path)
+
+
 def test_different_axes_and_missing_files_are_named(tmp_path: Path) -> None:
     _csv(tmp_path / "0.csv", np.arange(1, 31.0), _functions(0))
     _csv(tmp_path / "1.csv", np.arange(2, 32.0), _functions(1))

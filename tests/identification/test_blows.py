@@ -190,5 +190,39 @@ def test_windows_without_records_and_a_mixture_are_errors(tmp_path: Path) -> Non
     (tmp_path / "f.csv").write_text("frequency,a_re,a_im\n" + lines)
     with pytest.raises(InputError, match="expected either functions or records of blows"):
         read_test(_test_file(tmp_path, ["f.csv", *files], ["a", *references], ""))
-    with pytest.raises(InputError, match="to which \\[impact\\] does not apply"):
+    with pytest.raises(InputError, match="'window' in their"):
         read_test(_test_file(tmp_path, ["f.csv"], ["a"], '[impact]\nestimator = "H2"'))
+
+
+def test_damping_of_windowed_functions_is_that_of_the_structure(tmp_path: Path) -> None:
+    tau = 1.0
+    files = []
+    for j in range(3):
+        for blow in range(3):
+            time, force, y = _records(j, 10 * j + blow)
+            spectra = np.fft.rfft(np.vstack([force, y]) * np.exp(-time / tau))
+            H = spectra[1:] / spectra[0]
+            f = np.arange(H.shape[1]) / (len(time) * time[1])
+            columns = [f, *(part for h in H for part in (h.real, h.imag))]
+            header = ",".join(["frequency", *(f"{n}_{e}" for n in FLOORS for e in ("re", "im"))])
+            path = tmp_path / f"{j}{blow}.csv"
+            np.savetxt(path, np.transpose(columns), delimiter=",", header=header, comments="")
+            files.append(path.name)
+    references = [FLOORS[int(name[0])] for name in files]
+    test = _test_file(tmp_path, files, references, "")
+    test.write_text(test.read_text() + f"window = {{ exponential = {tau} }}\n")
+    (data_set,) = read_test(test).sets
+    modes = identify(data_set.assembled.data, (2, 30)).modes
+    assert [mode.frequency for mode in modes] == pytest.approx(THREE_STORY, rel=1e-3)
+    assert [mode.damping for mode in modes] == pytest.approx(THREE_STORY_DAMPING, rel=0.1)
+    test.write_text(test.read_text().replace(str(tau), "-1"))
+    with pytest.raises(InputError, match="window exponential: expected a time constant in s"):
+        read_test(test)
+
+
+def test_blows_have_their_windows_in_impact(tmp_path: Path) -> None:
+    files, references = _blows(tmp_path, 1)
+    test = _test_file(tmp_path, files, references, "")
+    test.write_text(test.read_text() + "window = { exponential = 1.0 }\n")
+    with pytest.raises(InputError, match=r"found records of blows: \[impact\]"):
+        read_test(test)

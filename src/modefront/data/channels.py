@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
+from itertools import combinations
 from typing import TypeAlias
 
 import numpy as np
@@ -25,6 +26,17 @@ SAME_LINES = 1e-6
 
 STRAY = 300.0
 """Ratio of sizes from which on two channels seem to have different units."""
+
+COHERENT = 0.9
+"""Correlation of two reciprocal functions over the lines from which on their sizes are compared:
+noise of one of them then changes the ratio by up to 1 / 0.9."""
+
+UNEQUAL = 1.3
+"""Ratio of reciprocal functions from which on their sensors have different units: more than
+calibrations and mounted masses leave."""
+
+GRAVITY = 9.80665
+"""One g in m/s²."""
 
 
 @dataclass(frozen=True)
@@ -100,7 +112,7 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
         *_circular_axis(name, frequency),
         *_dead_channels(groups, dead),
         *_stray_sizes(mean, groups, dead),
-        *_reciprocity(name, mean, references, responses),
+        *_reciprocity(name, mean, references, responses, turned),
         *_driving_points(H, frequency, quantity, groups),
     ]
     data = frequency_responses(
@@ -222,32 +234,50 @@ def _driving_points(
 
 
 def _reciprocity(
-    name: str,
-    H: Complexes,
-    references: tuple[str, ...],
-    responses: tuple[str, ...],
-) -> list[str]:
-    """Return where H_ji and H_ij differ by a sign or a factor."""
-    out = []
-    for j, first in enumerate(references):
-        for second in references[j + 1 :]:
-            if first not in responses or second not in responses:
-                continue
-            a = H[j, responses.index(second)]
-            b = H[references.index(second), responses.index(first)]
-            if not (np.isfinite(a).all() and np.isfinite(b).all()):
-                continue
-            power = np.vdot(b, b).real
-            if power == 0 or not np.any(a):
-                continue
-            inner = np.vdot(b, a) / np.sqrt(power * np.vdot(a, a).real)
-            ratio = np.sqrt(np.vdot(a, a).real / power)
-            pair = f"set {name!r}: the functions {first}-{second} and {second}-{first}"
-            if inner.real < -0.5:
-                out.append(f"{pair} have opposite signs: check the direction of a sensor")
-            elif not 0.1 < ratio < 10:
-                out.append(f"{pair} differ by a factor of {ratio:.3g}: check the units")
-    return out
+    name: str, H: Complexes, references: tuple[str, ...], responses: tuple[str, ...], turned: bool
+) -> Iterator[str]:
+    """Yield where H_ji and H_ij differ by a sign, and which sensors differ by a factor."""
+    factors: dict[str, dict[str, float]] = {}
+    for (j, first), (k, second) in combinations(enumerate(references), 2):
+        if first not in responses or second not in responses:
+            continue
+        a, b = H[j, responses.index(second)], H[k, responses.index(first)]
+        if not (np.isfinite(a).all() and np.isfinite(b).all() and np.any(a) and np.any(b)):
+            continue
+        ratio = float(np.linalg.norm(a) / np.linalg.norm(b))
+        inner = np.vdot(b, a) / (np.linalg.norm(a) * np.linalg.norm(b))
+        if inner.real < -0.5:
+            yield (
+                f"set {name!r}: the functions {first}-{second} and {second}-{first} have opposite "
+                "signs: check the direction of a sensor"
+            )
+        if abs(inner) > COHERENT:  # a was measured by the sensor at the second point, or turned
+            sensor, other = (first, second) if turned else (second, first)
+            factors.setdefault(sensor, {})[other] = ratio
+            factors.setdefault(other, {})[sensor] = 1 / ratio
+    yield from _sensors_of_other_units(name, factors)
+
+
+def _sensors_of_other_units(name: str, factors: dict[str, dict[str, float]]) -> Iterator[str]:
+    """Yield the sensors that differ from every other one with which reciprocity compares them.
+
+    ``factors`` holds the size of each sensor over that of the others. Where it compares two sensors
+    only, either may be the wrong one; the one with the smaller numbers comes first.
+    """
+    for sensor, others in sorted(factors.items(), key=lambda x: min(x[1].values())):
+        if any(1 / UNEQUAL < factor < UNEQUAL for factor in others.values()):
+            continue
+        partner, factor = sorted(others.items(), key=lambda x: x[1])[len(others) // 2]
+        alone = len(others) == len(factors[partner]) == 1
+        if alone and factor > 1:
+            continue
+        says = f"set {name!r}: the channel {sensor} is {factor:.3g} times as great as reciprocity "
+        says += f"with {', '.join(others)} says"
+        if alone:
+            says += f", or {partner} is {1 / factor:.3g} times"
+        if abs(abs(np.log(factor)) - np.log(GRAVITY)) < np.log(1.05):
+            says += "; 9.81 is between g and m/s²"
+        yield says + ": check its unit and calibration"
 
 
 def looks_like_circular(frequency: Floats) -> bool:

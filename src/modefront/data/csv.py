@@ -183,7 +183,7 @@ def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
     try:
         refuse_holes(path, expected, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:
-            separator, before = _separator(stream)
+            separator, before = find_separator(stream)
             reader = csv.reader(stream, delimiter=separator, strict=True, skipinitialspace=True)
             rows = ((before + reader.line_num, row) for row in reader if any(map(str.strip, row)))
             try:
@@ -197,7 +197,7 @@ def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
         raise InputError(Fault(str(path), "file", "CSV in UTF-8", reason(error))) from None
 
 
-def _separator(stream: TextIO) -> tuple[str, int]:
+def find_separator(stream: TextIO) -> tuple[str, int]:
     """Return the separator of the columns, and the number of lines before the header that name it.
 
     The stream is left at the first line that counts.

@@ -3,6 +3,7 @@
 Functions have a column ``frequency`` in Hz, then two columns ``NAME_re`` and ``NAME_im`` for every
 response, and ``NAME_coherence`` where there is one. Records have a column ``time`` in s, a column
 ``force``, and a column NAME for every response. All columns of a file belong to one reference.
+Separators and decimal commas are those of modal data (`modefront.data.csv`).
 """
 
 from __future__ import annotations
@@ -16,7 +17,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.data.blows import TIME, Contents, blow_of_columns
 from modefront.data.channels import Channel
-from modefront.data.csv import NUMBER
+from modefront.data.csv import NUMBER, SEPARATORS, find_separator
 from modefront.errors import Fault, InputError, reason, suggestion
 from modefront.inputs import MOST_DATA, available_memory, ended_column, file_size, refuse_holes
 from modefront.rounding import LARGEST
@@ -85,38 +86,45 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
     try:
         refuse_holes(path, what, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:
-            header = [field.strip() for field in next(csv.reader(stream), [])]
+            separator, before = find_separator(stream)
+            reader = csv.reader(stream, delimiter=separator)
+            header = [field.strip() for field in next(reader, [])]
             rows = stream.read().splitlines()
     except InputError:
         raise
     except (OSError, ValueError, csv.Error) as error:
         raise InputError(Fault(file, "file", "CSV in UTF-8", reason(error))) from None
-    numbered = [(number, row) for number, row in enumerate(rows, start=2) if row.strip(" ,\t")]
+    if separator != ",":
+        rows = [row.replace(",", ".") for row in rows]
+    start = before + 2
+    numbered = [(k, row) for k, row in enumerate(rows, start) if row.strip(SEPARATORS + " ")]
     if not any(header):
         raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
     if not numbered:
         raise InputError(Fault(file, "line 2", "a row for each line of frequency", "the end"))
-    ended_column(path, (row.rpartition(",")[2] for _, row in numbered))
+    ended_column(path, (row.rpartition(separator)[2] for _, row in numbered))
     try:
-        values = np.loadtxt([row for _, row in numbered], delimiter=",", comments=None, ndmin=2)
+        texts = [row for _, row in numbered]
+        values = np.loadtxt(texts, delimiter=separator, comments=None, ndmin=2)
         if values.shape == (len(numbered), len(header)) and (np.abs(values) <= LARGEST).all():
             return header, values
     except ValueError:
         pass
-    values, faults = _one_by_one(file, header, numbered)
+    values, faults = _one_by_one(
+        file, header, [(number, row.split(separator)) for number, row in numbered]
+    )
     if faults:
         raise InputError(faults[:MOST_FAULTS])
     return header, values
 
 
 def _one_by_one(
-    file: str, header: Sequence[str], rows: Sequence[tuple[int, str]]
+    file: str, header: Sequence[str], rows: Sequence[tuple[int, list[str]]]
 ) -> tuple[Floats, list[Fault]]:
     """Return numbered rows of numbers, and what is wrong with them."""
     faults: list[Fault] = []
     values = np.empty((len(rows), len(header)))
-    for position, (number, row) in enumerate(rows):
-        fields = row.split(",")
+    for position, (number, fields) in enumerate(rows):
         if len(fields) != len(header):
             expected = f"{len(header)} fields, as in the header"
             faults.append(Fault(file, f"line {number}", expected, str(len(fields))))

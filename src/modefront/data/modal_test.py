@@ -58,6 +58,17 @@ class _Settings:
     quantity: str = ""
     sensors: dict[str, str] = field(default_factory=dict)
     windows: Windows | None = None
+    decay: float = 0.0
+
+
+@dataclass(frozen=True)
+class _Set:
+    """A table of a data set: files with a reference each, decay of their window in 1/s."""
+
+    name: str
+    files: list[str]
+    references: list[str]
+    decay: float
 
 
 def read_test(path: Path) -> ModalTest:
@@ -105,15 +116,16 @@ def _from_toml(path: Path) -> ModalTest:
     if faults:
         raise InputError(faults)
     data_sets = []
-    for title, files, references in sets:
+    for each in sets:
         contents = [
             _contents(root, path.parent / file, reference)
-            for file, reference in zip(files, references, strict=True)
+            for file, reference in zip(each.files, each.references, strict=True)
         ]
         if faults:
             raise InputError(faults)
-        data_sets.append(DataSet(title, _assembled(contents, title, settings, root)))
-    return ModalTest(name, band, modes, tuple(data_sets))
+        its_own = replace(settings, decay=each.decay)
+        data_sets.append(DataSet(each.name, _assembled(contents, each.name, its_own, root)))
+    return ModalTest(name or path.stem, band, modes, tuple(data_sets))
 
 
 def _parsed(path: Path) -> dict[str, object]:
@@ -128,7 +140,7 @@ def _test_table(root: Table) -> tuple[str, _Settings]:
     title, quantity = "", ""
     table = root.table("test", "a table [test]")
     if table:
-        title = table.text("name") or ""
+        title = table.text("name", default=None) or ""
         quantity = table.choice("quantity", tuple(ORDERS), default=None) or ""
         table.close()
     sensors: dict[str, str] = {}
@@ -177,8 +189,8 @@ def _impact_table(root: Table) -> Windows | None:
     return windows
 
 
-def _set_tables(root: Table, folder: Path) -> list[tuple[str, list[str], list[str]]]:
-    """Return name, files and reference of each file of all data sets."""
+def _set_tables(root: Table, folder: Path) -> list[_Set]:
+    """Return the tables of all data sets."""
     out = []
     for number, table in enumerate(root.tables("set", required=True), start=1):
         name = table.text("name", default=str(number)) or str(number)
@@ -197,11 +209,22 @@ def _set_tables(root: Table, folder: Path) -> list[tuple[str, list[str], list[st
             found = f"{len(references)} for {len(files)} files"
             table.fault("reference", "one reference a file", found)
             references = [""] * len(files)
+        decay = _window(table)
         table.close()
-        out.append((name, files, references))
-    for name in repeated(name for name, _, _ in out):
+        out.append(_Set(name, files, references, decay))
+    for name in repeated(each.name for each in out):
         root.fault("[[set]]", "a name for each data set", f"{name!r} twice")
     return out
+
+
+def _window(data_set: Table) -> float:
+    """Return what the exponential window of functions added to the decay of their poles, in 1/s."""
+    window = data_set.table("window", "a table { exponential = time constant in s }", None)
+    if not window:
+        return 0.0
+    tau = window.number("exponential", "a time constant in s above zero", lambda x: x > 0)
+    window.close()
+    return 1 / tau if tau else 0.0
 
 
 def _contents(root: Table, path: Path, reference: str) -> Contents:
@@ -260,16 +283,18 @@ def _functions(
     """Return the channels of a set, made of blows where it has any."""
     channels = tuple(channel for content in contents for channel in content.channels)
     blows = [blow for content in contents for blow in content.blows]
-    windows = settings.windows
-    if root is not None and channels and (blows or windows):
-        place = f"[[set]] {name!r}"
-        expected = "either functions or records of blows" if blows else "records of blows in time"
-        found = (
-            "both" if blows else "frequency response functions, to which [impact] does not apply"
-        )
-        raise InputError(Fault(root.file, place, expected, found))
+    windows, wrong = settings.windows, None
+    if channels and blows:
+        wrong = "either functions or records of blows", "both"
+    elif channels and windows:
+        found = "frequency response functions: 'window' in their [[set]] says how they were made"
+        wrong = "records of blows in time, for [impact]", found
+    elif blows and settings.decay:
+        wrong = "functions, for 'window'", "records of blows: [impact] has their windows"
+    if wrong and root is not None:
+        raise InputError(Fault(root.file, f"[[set]] {name!r}", *wrong))
     if not blows:
-        return Averaged(channels, (), 0.0, {})
+        return Averaged(channels, (), settings.decay, {})
     return averaged_blows(blows, windows or Windows(), settings.quantity)
 
 
