@@ -277,6 +277,35 @@ def _redirected(case: Case, sensors: list[int]) -> UpdatingProblem | None:
     return None
 
 
+def node_of_one(case: Case) -> UpdatingProblem | None:
+    """Return the study with one sensor of the model at another place that moves otherwise."""
+    return _moved(case, shared=False)
+
+
+def node_of_another(case: Case) -> UpdatingProblem | None:
+    """Return the study with one sensor of the model at the place of another one."""
+    return _moved(case, shared=True)
+
+
+def _moved(case: Case, *, shared: bool) -> UpdatingProblem | None:
+    model, s = case.problem.model, _sensor(case)
+    if not isinstance(model, MatrixModel):
+        return None
+    geometry = model.geometry
+    if geometry is None:
+        return None
+    taken = np.delete(geometry.sensor_nodes, s)
+    free = np.setdiff1d(np.arange(len(geometry.nodes)), geometry.sensor_nodes)
+    for node in case.rng.permutation(taken if shared else free).tolist():
+        nodes = geometry.sensor_nodes.copy()
+        nodes[s] = node
+        selection = geometry.weights(nodes, geometry.sensor_directions)
+        if abs(selection).sum(axis=1).all() and not _moves_alike(model, selection):
+            moved = replace(geometry, sensor_nodes=nodes)
+            return case.with_model(replace(model, selection=selection, geometry=moved))
+    return None
+
+
 def counted_from_one(case: Case) -> UpdatingProblem | None:
     """Return the study with degrees of freedom or nodes of the sensors counted from 1."""
     model = case.problem.model
@@ -368,6 +397,8 @@ MISTAKES: dict[str, tuple[Spoil, tuple[str, ...]]] = {
     "sensors exchanged": (exchanged, ("WrongSensors",)),
     "direction of one sensor": (direction_of_one, ("WrongPlaces",)),
     "direction of all sensors": (direction_of_all, ("WrongPlaces",)),
+    "place of one sensor": (node_of_one, ("WrongPlaces",)),
+    "two sensors at one place": (node_of_another, ("WrongPlaces",)),
     "counted from 1": (counted_from_one, ("WrongPlaces",)),
     "damping in percent": (percent, ("DampingInPercent",)),
     "frequency of one set": (one_frequency, ("SetFrequency",)),

@@ -249,6 +249,12 @@ def test_directions_that_do_not_match(tmp_path: Path) -> None:
     assert "direction y of floor2 does not match the data: x raises MAC" in text
 
 
+def test_two_sensors_at_one_degree_of_freedom(tmp_path: Path) -> None:
+    text = only(spoilt(tmp_path, CHAIN, ("floor2 = 1", "floor2 = 2")))
+    assert "floor2 fits the data at degree of freedom 1 and not at degree of freedom 2" in text
+    assert "where the model has floor3 too" in text
+
+
 def test_degrees_of_freedom_counted_from_one(tmp_path: Path) -> None:
     sensors = "sensors = { floor1 = 0, floor2 = 1, floor3 = 2 }"
 

@@ -1,14 +1,16 @@
 r"""Which single explanation of poor shapes is best: changed sensors, other places, or none.
 
 Explanations and factors on all frequencies compete by the cost of pairing at the nominal model; a
-reversed sensor may make modes look exchanged, and frequencies off by a factor. The best one is
-then proved: data as they are and as explained are both fitted within the bounds
-(`modefront.diagnosis.fit`), since a nominal model that is merely poor is no mistake.
+reversed sensor may make modes look exchanged, and frequencies off by a factor. The best one of each
+kind is then proved: data as they are and as explained are both fitted within the bounds
+(`modefront.diagnosis.fit`), since a nominal model that is merely poor is no mistake. Of those that
+are proved, the one is named that fits best: the symptom of a mistake may look like another one at
+the nominal parameters, and does not after a fit.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -17,7 +19,7 @@ from modefront._typing import Floats, Ints
 from modefront.diagnosis.comparison import Comparison
 from modefront.diagnosis.fit import Fit
 from modefront.diagnosis.measured import Measured, assigned, mac_values, pair_costs
-from modefront.diagnosis.places import Relocation, relocations
+from modefront.diagnosis.places import Relocation, moved, relocations
 from modefront.diagnosis.sensors import (
     LEAST,
     Change,
@@ -46,6 +48,8 @@ PRICE = 0.03
 class WrongPlaces:
     """The model has sensors at other places, or along other directions, than the data.
 
+    Where ``place`` says where a sensor fits, ``given`` says where the model has it.
+
     Attributes
     ----------
     counted : "degrees of freedom" or "nodes" that are counted from 1; empty for directions
@@ -53,6 +57,8 @@ class WrongPlaces:
     given, better : their direction in the model, and the one that fits
     mode : measured mode that gains most
     before, after : its MAC with the model
+    place : where a single sensor fits; empty where the mistake is another one
+    shared : sensors that measure the same degree of freedom in the model
     """
 
     counted: str
@@ -62,6 +68,8 @@ class WrongPlaces:
     mode: int
     before: float
     after: float
+    place: str = ""
+    shared: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True, eq=False)
@@ -102,17 +110,17 @@ def explained(comparison: Comparison, view: Measured, shifts: list[float]) -> Ex
     for each in sorted(explanations, key=lambda each: each.cost):
         if not each.is_plain and each.cost < plain.cost:
             kinds.setdefault(_kind(each), each)
-    for each in kinds.values():
-        proved = _proved(comparison, view, each, plain.cost)
-        if proved is not None:
-            return proved
-    return plain
+    proved = [_proved(comparison, view, each, plain.cost) for each in kinds.values()]
+    known = [each for each in proved if each is not None]
+    return min(known, key=lambda each: each[1])[0] if known else plain
 
 
 def _kind(explanation: Explanation) -> str:
     """Return of what kind an explanation is; the best of each kind is tried."""
     if explanation.relocation is None:
         return "changes"
+    if explanation.relocation.place:
+        return "place"
     return explanation.relocation.counted or "direction"
 
 
@@ -120,13 +128,17 @@ def _explanations(comparison: Comparison, view: Measured, shift: float) -> Itera
     phi = comparison.phi
     changes = tuple(searched(comparison, view, shift))
     everywhere = range(view.psi.shape[0])
-    yield _explanation(comparison, (), None, view, phi, shift)
+    plain = _explanation(comparison, (), None, view, phi, shift)
+    yield plain
     if changes:
         changed = applied(changes, view, everywhere)
         yield _explanation(comparison, changes, None, changed, phi, shift)
-    for relocation in relocations(comparison) if view.has_shape.any() else ():
-        moved = relocation.selection @ comparison.Phi
-        yield _explanation(comparison, (), relocation, view, moved, shift)
+    if not view.has_shape.any():
+        return
+    at_others = moved(comparison, view, pairs_of(comparison, plain))
+    for relocation in (*relocations(comparison), *at_others):
+        relocated = relocation.selection @ comparison.Phi
+        yield _explanation(comparison, (), relocation, view, relocated, shift)
 
 
 def _explanation(
@@ -139,29 +151,44 @@ def _explanation(
 ) -> Explanation:
     mac = mac_values(view.psi, view.seen, phi)
     cost = pair_costs(mac, view.log_frequency, comparison.log_frequency, shift)
-    assumed = PRICE * (len(changes) + (relocation is not None)) + FROM_ONE * abs(shift)
-    total = assigned(cost)[1] + assumed * cost.shape[0]
+    total = assigned(cost)[1] + _price(changes, relocation, shift) * cost.shape[0]
     return Explanation(changes, relocation, view, phi, shift, total)
+
+
+def _price(changes: Sequence[Change], relocation: Relocation | None, shift: float) -> float:
+    """Return the cost of an explanation for each mode; a place is one of many, and costs twice."""
+    relocated = 0 if relocation is None else 1 + bool(relocation.place)
+    return PRICE * (len(changes) + relocated) + FROM_ONE * abs(shift)
 
 
 def _proved(
     comparison: Comparison, view: Measured, best: Explanation, plain: float
-) -> Explanation | None:
-    """Return the part of an explanation with which a fit is clearly better than without.
+) -> tuple[Explanation, float] | None:
+    """Return the part of an explanation with which a fit is clearly better, and what it costs.
 
     A reduced basis knows the sensors of its model alone: the costs of pairing at the nominal model,
     ``plain`` without the explanation, have to do there.
     """
     count = int(view.has_shape.sum())
+    is_fitted = isinstance(comparison.problem.model, MatrixModel)
+
+    def costing(proved: Explanation, fit: Fit | None) -> tuple[Explanation, float]:
+        if fit is None or not is_fitted:
+            return proved, proved.cost
+        price = _price(proved.changes, proved.relocation, proved.shift)
+        return proved, fit.cost + price * proved.view.log_frequency.size
+
     last = comparison.updating(best.shift).fit(view)
     if best.relocation is not None:
         model = comparison.problem.model
         if not isinstance(model, MatrixModel):
-            is_clear = best.cost < PROVED * plain and plain - best.cost > LEAST * count
-            return best if is_clear else None
-        moved = replace(model, selection=best.relocation.selection)
-        fit = comparison.updating(best.shift, moved).fit(view)
-        return best if _is_better(fit, last, count) else None
+            share = CERTAIN if best.relocation.place else PROVED
+            is_clear = best.cost < share * plain and plain - best.cost > LEAST * count
+            return costing(best, None) if is_clear else None
+        relocated = replace(model, selection=best.relocation.selection)
+        fit = comparison.updating(best.shift, relocated).fit(view)
+        is_better = _is_better(fit, last, count, certain=bool(best.relocation.place))
+        return costing(best, fit) if is_better else None
     everywhere, updating = range(view.psi.shape[0]), comparison.updating(best.shift)
     kept, fit = list(best.changes), updating.fit(best.view)
     while kept and not _is_better(fit, last, count):
@@ -175,13 +202,15 @@ def _proved(
     if not kept:
         return None
     changed = applied(kept, view, everywhere)
-    return _explanation(comparison, tuple(kept), None, changed, best.phi, best.shift)
+    found = _explanation(comparison, tuple(kept), None, changed, best.phi, best.shift)
+    return costing(found, fit)
 
 
-def _is_better(new: Fit | None, old: Fit | None, count: int) -> bool:
+def _is_better(new: Fit | None, old: Fit | None, count: int, *, certain: bool = False) -> bool:
     """Return whether a fit of ``count`` shapes is clearly better than another one.
 
-    Modes that neither explains say nothing. The less is left, the less it takes to be clear.
+    Modes that neither explains say nothing. The less is left, the less it takes to be clear. Where
+    the new one is the best of many, little has to be left: it has to be ``certain``.
     """
     if new is None or old is None:
         return new is not None
@@ -191,7 +220,7 @@ def _is_better(new: Fit | None, old: Fit | None, count: int) -> bool:
     gained = before - left
     if left < CERTAIN * before and gained > LEAST / 4 * count:
         return True
-    return left < PROVED * before and gained > LEAST * count
+    return not certain and left < PROVED * before and gained > LEAST * count
 
 
 def pairs_of(comparison: Comparison, explanation: Explanation) -> Ints:
@@ -223,4 +252,16 @@ def finding_of(
         comparison.data.modes[r],
         float(before[r]),
         float(after[r]),
+        explanation.relocation.place,
+        _shared(comparison, explanation.relocation) if explanation.relocation.place else (),
     )
+
+
+def _shared(comparison: Comparison, relocation: Relocation) -> tuple[str, ...]:
+    """Return the sensors that the model has where it has the one that is moved."""
+    matrices, s = comparison.matrices, relocation.sensors[0]
+    if matrices is None:
+        return ()
+    rows = matrices.selection
+    others = [t for t in range(rows.shape[0]) if t != s and not abs(rows[[t]] - rows[[s]]).sum()]
+    return tuple(comparison.data.sensors[t] for t in others)

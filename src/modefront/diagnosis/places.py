@@ -1,7 +1,9 @@
-"""Sensors at other places or along other directions than the model says.
+r"""Sensors at other places or along other directions than the model says.
 
 Degrees of freedom or nodes that a user counts from 1 are all off by one. A sensor that measures
-along another axis, or all those of an axis, or two axes exchanged, are tried one by one.
+along another axis, or all those of an axis, or two axes exchanged, are tried one by one. So is a
+sensor at another place: with the pairs as they are, all nodes are tried at the cost of a few
+products, as :math:`\psi^T \varphi` and :math:`\varphi^T \varphi` change by one product each.
 """
 
 from __future__ import annotations
@@ -14,6 +16,7 @@ import scipy.sparse
 
 from modefront._typing import Floats, Ints
 from modefront.diagnosis.comparison import Comparison
+from modefront.diagnosis.measured import Measured
 from modefront.fem.mesh import Mesh
 from modefront.models.geometry import Geometry
 
@@ -22,6 +25,9 @@ ALONG = 0.99
 
 AXES = ("x", "y", "z")
 SIX = (*AXES, "rx", "ry", "rz")
+
+MOVED = 3
+"""Sensors that are tried at other places, those that gain most: each of them is paired anew."""
 
 
 @dataclass(frozen=True)
@@ -49,6 +55,7 @@ class Relocation:
     counted : "degrees of freedom" or "nodes" that are counted from 1; empty for directions
     sensors : positions of the sensors that have another direction
     given, better : their direction in the model and the one that fits, such as "x" and "-y"
+    place : where the sensor fits instead; empty for directions
     """
 
     selection: scipy.sparse.csr_array
@@ -56,6 +63,7 @@ class Relocation:
     sensors: tuple[int, ...] = ()
     given: str = ""
     better: str = ""
+    place: str = ""
 
 
 def relocations(comparison: Comparison) -> Iterator[Relocation]:
@@ -78,6 +86,70 @@ def relocations(comparison: Comparison) -> Iterator[Relocation]:
     if (geometry.sensor_nodes > 0).all() and (geometry.sensor_directions != 0).any(axis=1).all():
         yield Relocation(places.at(geometry.sensor_nodes - 1), counted="nodes")
     yield from _turned(places)
+
+
+def moved(comparison: Comparison, view: Measured, index: Ints) -> Iterator[Relocation]:
+    """Yield single sensors, each at the place where its measured motion fits best.
+
+    ``index`` (modes,) are the model modes that belong to the measured ones. Places are nodes, with
+    the sensor's direction kept; where nodes move along one axis alone, degrees of freedom.
+    """
+    model = comparison.matrices
+    if model is None or comparison.Phi is None:
+        return
+    shapes, phi, geometry = comparison.Phi[:, index], comparison.phi[:, index], model.geometry
+    in_space = geometry is not None and len(geometry.axes) > 1
+    found: list[tuple[float, int, int]] = []
+    for s in np.flatnonzero(view.seen.any(axis=(0, 1))).tolist():
+        if geometry is not None and in_space:
+            values = geometry.displacement(shapes) @ geometry.sensor_directions[s]
+        elif model.selection[[s]].nnz == 1:
+            values = shapes.T * model.selection[[s]].sum()
+        else:
+            continue
+        gains = _gains(view, phi, s, values)
+        place = int(np.argmax(gains))
+        found.append((float(gains[place]), s, place))
+    for gain, s, place in sorted(found, reverse=True)[:MOVED]:
+        if gain <= 0:
+            continue
+        selection = model.selection.tolil()
+        if geometry is not None and in_space:
+            at = geometry.weights(np.array([place]), geometry.sensor_directions[[s]])
+            words = [_point(geometry.nodes[n]) for n in (geometry.sensor_nodes[s], place)]
+        else:
+            at = scipy.sparse.csr_array(
+                ([model.selection[[s]].sum()], ([0], [place])), shape=(1, model.size)
+            )
+            dof = int(model.selection[[s]].indices[0])
+            words = [f"degree of freedom {k}" for k in (dof, place)]
+        selection[[s]] = at.tolil()
+        yield Relocation(selection.tocsr(), sensors=(s,), given=words[0], place=words[1])
+
+
+def _gains(view: Measured, phi: Floats, s: int, values: Floats) -> Floats:
+    """Return by how much the MAC values, summed, rise with sensor s at each place, (places,).
+
+    ``phi`` (sensors, modes) is the model's motion of the sensors, ``values`` (modes, places) that
+    of the places, in the paired modes.
+    """
+    psi, seen = view.psi, view.seen
+    usable = seen.sum(axis=2) > 1
+    share = usable / np.maximum(usable.sum(axis=0), 1)
+    cross = (psi * phi.T).sum(axis=2) - psi[:, :, s] * phi[s]
+    norm = (seen * phi.T**2).sum(axis=2) - seen[:, :, s] * phi[s] ** 2
+
+    def total(at: Floats) -> Floats:
+        x = cross[:, :, None] + psi[:, :, s, None] * at
+        b = norm[:, :, None] + seen[:, :, s, None] * at**2
+        mac = np.divide(x**2, b, out=np.zeros(b.shape), where=b > 0)
+        return np.asarray((share[:, :, None] * mac).sum(axis=(0, 1)))
+
+    return total(values) - total(phi[s][:, None])
+
+
+def _point(x: Floats) -> str:
+    return "(" + ", ".join(f"{value:.4g}" for value in x) + ")"
 
 
 @dataclass(frozen=True, eq=False)

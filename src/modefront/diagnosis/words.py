@@ -153,6 +153,13 @@ def _places(finding: WrongPlaces) -> tuple[str, str]:
         )
     names = enumerated(finding.sensors)
     many = len(finding.sensors) > 1
+    if finding.place:
+        too = f", where the model has {enumerated(finding.shared)} too" if finding.shared else ""
+        return (
+            f"sensor {names} fits the data at {finding.place} and not at {finding.given}{too}: "
+            f"this {gain}",
+            f"check where {names} was in the test, and write its place in [model.sensors]",
+        )
     return (
         f"direction {finding.given} of {names} does not match the data: {finding.better} {gain}",
         f"check along which axis {names} measure{'' if many else 's'}, and write direction = "
