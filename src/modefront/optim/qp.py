@@ -162,13 +162,11 @@ def solve_qp(qp: QuadraticProgramme) -> QuadraticStep:
         s = _clipped(s + d, lo, hi)
         if free.all() and len(active) < 2:
             break
-        mu, kappa = qp.multipliers(s, active, free)
-        if kappa.min(initial=0.0) < -WRONG:
-            active = [i for i in active if i != int(np.argmin(kappa))]
+        kept, slope, scale = _stationarity(qp, s, active, free)
+        if len(kept) < len(active):
+            active = kept
             continue
-        slope = qp.g + qp.B @ s + qp.C.T @ kappa
-        scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
-        wrong = _wrong(slope + qp.A.T @ mu, scale, free, s <= lo, s >= hi)
+        wrong = _wrong(slope, scale, free, s <= lo, s >= hi)
         if wrong is None:
             break
         free[wrong] = True
@@ -198,18 +196,30 @@ def _many_at_once(
         if met < 1:
             active = [*active, joining]
             continue
-        mu, kappa = qp.multipliers(s, active, free)
-        if kappa.min(initial=0.0) < -WRONG:
-            active = [i for i in active if i != int(np.argmin(kappa))]
+        kept, slope, scale = _stationarity(qp, s, active, free)
+        if len(kept) < len(active):
+            active = kept
             continue
-        slope = qp.g + qp.B @ s + qp.C.T @ kappa
-        scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
-        gain = _gain(slope + qp.A.T @ mu, free, s <= qp.lo, s >= qp.hi)
+        gain = _gain(slope, free, s <= qp.lo, s >= qp.hi)
         wrong = gain > WRONG * scale
         if not wrong.any():
             return s, free, active, True
         free = free | wrong
     return s, free, active, False
+
+
+def _stationarity(
+    qp: QuadraticProgramme, s: Floats, active: list[int], free: Bools
+) -> tuple[list[int], Floats, float]:
+    """Return the active functions to keep, the slope of the Lagrangian (p,), and its size.
+
+    The function of the most negative multiplier is not kept.
+    """
+    mu, kappa = qp.multipliers(s, active, free)
+    wrong = int(np.argmin(kappa)) if kappa.min(initial=0.0) < -WRONG else -1
+    slope = qp.g + qp.B @ s + qp.C.T @ kappa
+    scale = max(float(np.abs(slope).max()), float(np.abs(qp.g).max()))
+    return [i for i in active if i != wrong], slope + qp.A.T @ mu, scale
 
 
 def _projected(
