@@ -291,7 +291,7 @@ def test_many_parameters_alike_are_said_at_once() -> None:
     gram = np.ones((6, 6))
     gram[5, :5] = gram[:5, 5] = 0.0
     (message,) = alike_in_words(gram, names)
-    assert message.startswith("a, b, c, d and e all act nearly alike on the residuals")
+    assert message.startswith("a, b, c, d and e have nearly the same effect on all residuals")
     assert len(alike_in_words(gram[:4, :4][1:, 1:], names)) == 3
 
 

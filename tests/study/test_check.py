@@ -58,7 +58,7 @@ def test_a_nominal_value_at_a_bound_and_parameters_alike_are_warned_of(study: St
     first = replace(problem, groups=(Group("first", frequency=[1]),))
     warnings = check(replace(study, problem=first)).warnings
     assert sum("do not determine" in text for text in warnings) == 2
-    assert sum("act nearly alike" in text for text in warnings) == 3
+    assert sum("nearly the same effect" in text for text in warnings) == 3
 
 
 def test_more_parameters_than_the_memory_holds(

@@ -205,7 +205,7 @@ def test_scatter_next_to_the_end_of_a_piece_is_doubtful() -> None:
     assert {"", "ends"} <= set(doubts)
     named = ", ".join(data["label"].values[near])
     assert any(
-        f"deviations may not be valid at {named}: a branch" in x for x in data["finding"].values
+        f"deviations are approximate at {named}: a branch" in x for x in data["finding"].values
     )
 
 

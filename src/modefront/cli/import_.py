@@ -69,7 +69,7 @@ def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
     if imported.frequencies is not None:
         shown = " ".join(f"{f:.5g}" for f in imported.frequencies)
         say(f"frequencies of the nominal model: {shown} Hz")
-        say("  others than your program prints: are units consistent (N, kg, m; N, t, mm)?")
+        say("  if your program prints other frequencies, check the units (N, kg, m; N, t, mm)")
     for file in files:
         say(f"wrote {file}")
     say(f"next: add [data] and [model.sensors] to {files[-1]}, then modefront check it")

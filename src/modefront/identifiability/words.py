@@ -144,20 +144,17 @@ def alike_in_words(gram: Floats, names: Sequence[str], idle: Sequence[int] = ())
     for parameters in sets:
         within = {pair: value for pair, value in alike.items() if set(pair) <= set(parameters)}
         if len(parameters) > TOGETHER:
-            worst = min(within.values())
             named = [names[i] for i in sorted(parameters)]
             listed = (
                 enumeration(named) if len(parameters) <= NAMED else f"{len(parameters)} parameters"
             )
             out.append(
-                f"{listed} all act nearly alike on the residuals (collinearity index {worst:.2g} "
-                "of two of them at least)"
+                f"{listed} have nearly the same effect on all residuals: fix or tie all but one"
             )
             alike = {pair: value for pair, value in alike.items() if pair not in within}
     return out + [
-        f"{names[i]} and {names[j]} act nearly alike on the residuals "
-        f"(collinearity index {value:.2g})"
-        for (i, j), value in alike.items()
+        f"{names[i]} and {names[j]} have nearly the same effect on all residuals: fix or tie one"
+        for i, j in alike
     ]
 
 
@@ -190,7 +187,7 @@ def direction_in_words(v: Floats, names: Sequence[str], scale: Scale | None = No
     if kind == "amounts" and _equal(ratio):
         how = "equal amounts"
     elif len(members) > PARTS:
-        how = f"{kind} in a fixed ratio"
+        how = "amounts that compensate each other"
     else:
         how = f"{kind} in the ratio " + " : ".join(f"{x:.3g}" for x in ratio)
     return f"{_named(members, ratio, names)} can be changed by {how}" + _meaning(v, scale)

@@ -143,16 +143,13 @@ def _flat(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> It
         return
     total = len(of_kind(front.points, Kind.FRONT))
     within = f"within {100 * analysis.tolerance:g} % of the least J of"
-    first = label(Kind.IDENTIFIABLE, index=1)
-    last = label(Kind.IDENTIFIABLE, index=len(part.points))
-    rest = f"{first} to {last} are the front without them"
     for name, count in zip(problem.objectives, part.flat.tolist(), strict=True):
         if count:
             yield (
                 Rank.FLAT,
                 f"the front is flat at {label(Kind.EDGE, name)}: beside it, {count} of {total} "
-                f"points are {within} {name}; "
-                + (rest if part.points else "without them it is one point"),
+                f"points are {within} {name}"
+                + ("" if part.points else "; without them it is one point"),
             )
     for name, count in zip(problem.objectives, part.uncut.tolist(), strict=True):
         if count:
@@ -271,7 +268,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
             where = _places(warned, len(labels))
             yield (
                 Rank.LINEARISATION,
-                f"standard deviations may not be valid at {where}: {warning.value}",
+                f"standard deviations are approximate at {where}: {warning.value}",
             )
 
 

@@ -254,13 +254,13 @@ def _iteration(data: xr.Dataset) -> Iterator[str]:
     optimal = data["theta"].values[data["kind"].values == Kind.OPTIMAL.value][0]
     span = np.diff(data["bounds"].values, axis=1)[:, 0]
     if "iterated-weights" not in of:
-        yield "the iteration w = a / J runs into the singularity and confirms nothing"
+        yield "the fixed-point iteration of the weights ends at an exact fit and confirms nothing"
         return
     away = np.abs((theta[of == "iterated-weights"][0] - optimal) / span).max(initial=0.0)
     if away < ARRIVED:
-        yield "the iteration w = a / J arrives at the same optimally weighted model"
+        yield "the fixed-point iteration of the weights finds the same optimally weighted model"
     else:
-        yield f"the iteration w = a / J arrives elsewhere, {away:.2g} of the ranges away"
+        yield "the optimal weights are not unique: their fixed-point iteration finds a second set"
 
 
 def _branches(data: xr.Dataset) -> Iterator[str]:
