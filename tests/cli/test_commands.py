@@ -155,6 +155,7 @@ def test_from_nothing_to_results(modefront_: Run, tmp_path: Path) -> None:
     status, out, err = modefront_("check", folder / "study.toml")
     assert (status, err) == (0, "")
     assert out.endswith(f"next: modefront run {folder / 'study.toml'}\n")
+    assert "at most 20,000 evaluations of the search" in out
     assert "derivatives agree with finite differences" in out
     assert "no warnings" in out
     assert sorted(path.name for path in folder.iterdir()) == ["modes.csv", "study.toml"]

@@ -70,6 +70,7 @@ def check(study: Path, every: bool) -> None:
     findings = check_study(loaded)
     print_findings(loaded, findings, every=every)
     say_estimate(estimate(loaded))
+    say(f"at most {loaded.search.evaluations:,} evaluations of the search: [search] evaluations")
     if not findings.sound and findings.mistakes:
         raise UnfinishedError(
             "the derivatives cannot be proved before what is warned of first is put right"
