@@ -369,7 +369,7 @@ def _errors() -> Iterator[Variable]:
     yield Variable(
         "scatter_doubt",
         ("point",),
-        "why the linearised scatter may not be valid: any of saddle, meets, leaves, switches, "
+        "why the linearised scatter is approximate: any of saddle, meets, leaves, switches, "
         "ends, rival, unsolved; empty where nothing says so",
         "text",
     )

@@ -69,4 +69,4 @@ def wider(lower: Floats, upper: Floats) -> tuple[Floats, Floats]:
 def _freed(noise: NoiseModel, theta: Floats) -> Freed | None:
     """Return the model to which theta (p,) leads; None where the search does not converge."""
     found = maximum(noise, theta)
-    return Freed(found.theta, noise.misfit(found.theta)) if found.converged else None
+    return Freed(found.theta, noise.over_expected(found.J[:-1])) if found.converged else None
