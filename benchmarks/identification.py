@@ -33,7 +33,8 @@ import numpy as np
 from modefront._typing import Complexes, Floats
 from modefront.data.impact import Windows, impact_responses
 from modefront.data.responses import FrequencyResponses, frequency_responses, joined
-from modefront.identification.identify import Identification, identify
+from modefront.identification.methods.hammer import identify
+from modefront.identification.record import Identification
 
 F = np.arange(0.05, 30.05, 0.05)
 BLOWS = 5

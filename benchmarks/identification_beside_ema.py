@@ -31,7 +31,7 @@ from sdypy import EMA
 from identification import F, Structure, eight, noisy, three_story
 from modefront._typing import Complexes, Floats
 from modefront.data.responses import frequency_responses
-from modefront.identification.identify import identify
+from modefront.identification.methods.hammer import identify
 from modefront.identification.shapes import real_shape
 
 SCALE = 200.0

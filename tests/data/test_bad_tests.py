@@ -9,7 +9,7 @@ from modefront._typing import Complexes, Floats
 from modefront.data.frf_csv import read_test_csv
 from modefront.data.modal_test import read_test
 from modefront.errors import InputError
-from modefront.identification.identify import weighting
+from modefront.identification.methods.hammer import weighting
 
 F = np.arange(0.1, 20.05, 0.1)
 

@@ -10,7 +10,7 @@ from simulation import THREE_STORY, THREE_STORY_DAMPING, impact_records, three_s
 from modefront._typing import Floats
 from modefront.data.modal_test import read_test
 from modefront.errors import InputError
-from modefront.identification.identify import identify
+from modefront.identification.methods.hammer import identify
 
 FLOORS = ("floor1", "floor2", "floor3")
 

@@ -6,7 +6,7 @@ from simulation import THREE_STORY, THREE_STORY_DAMPING, accelerance, blows, thr
 
 from modefront._typing import Floats
 from modefront.data.responses import frequency_responses
-from modefront.identification.identify import identify
+from modefront.identification.methods.hammer import identify
 
 F = np.arange(0.1, 30.05, 0.1)
 
@@ -75,7 +75,7 @@ def test_coherence_weights_and_tells_the_variance() -> None:
     data = frequency_responses(F, measured.mean(axis=0), coherence=coherence, blows=10)
     result = identify(data, (1, 30))
     assert len(result.modes) == 3
-    assert result.residuals.chi2 == pytest.approx(1, abs=0.15)
+    assert result.functions.residuals.chi2 == pytest.approx(1, abs=0.15)
 
 
 def test_a_dead_channel_and_gaps_are_left_out() -> None:

@@ -5,7 +5,7 @@ import pytest
 
 from modefront._typing import Floats
 from modefront.data.impact import Estimator, Windows, impact_responses
-from modefront.identification.identify import identify
+from modefront.identification.methods.hammer import identify
 
 RATE, SAMPLES = 256.0, 2048
 

@@ -14,7 +14,8 @@ from modefront.data.csv import is_reserved, write_csv
 from modefront.data.modal_test import ModalTest, read_test
 from modefront.data.uff import write_uff55
 from modefront.errors import Fault, InputError, UnfinishedError
-from modefront.identification.identify import LEAST_LINES, Identification, identify
+from modefront.identification.methods.hammer import LEAST_LINES, identify
+from modefront.identification.record import Identification
 from modefront.identification.sets import CombinedModes, combine, modal_data_of
 from modefront.outputs import write_text
 
@@ -91,7 +92,7 @@ def _check_band(path: Path, test: ModalTest, band: tuple[float, float] | None) -
 def findings(identification: Identification) -> list[str]:
     """Return the warnings on one identification."""
     out = []
-    residuals = identification.residuals
+    data, residuals = identification.functions.data, identification.functions.residuals
     if not identification.converged:
         out.append("the maximum of the likelihood was not reached within its tolerance")
     if residuals.chi2 > 1.5:
@@ -107,7 +108,7 @@ def findings(identification: Identification) -> list[str]:
         )
     for (j, i), share in np.ndenumerate(residuals.share):
         if share > POOR_FIT:
-            pair = f"{identification.data.references[j]} to {identification.data.responses[i]}"
+            pair = f"{data.references[j]} to {data.responses[i]}"
             out.append(f"the function from {pair} is poorly fitted: residual {share:.0%}")
     return out
 
@@ -158,12 +159,12 @@ def _print_residuals(
         "residual of each function over its norm", ["set", "reference", "response", "residual"]
     )
     for name, identification in zip(names, identified, strict=True):
-        for (j, i), share in np.ndenumerate(identification.residuals.share):
+        for (j, i), share in np.ndenumerate(identification.functions.residuals.share):
             shown = f"{share:.2%}" if np.isfinite(share) else "not measured"
             out.add_row(
                 safe(name),
-                safe(identification.data.references[j]),
-                safe(identification.data.responses[i]),
+                safe(identification.functions.data.references[j]),
+                safe(identification.responses[i]),
                 shown,
             )
     screen.print(out)
@@ -195,7 +196,7 @@ def _write(
 
 
 def _complex_at(phi: Any, identification: Identification, sensors: Sequence[str]) -> Any:
-    where = dict(zip(identification.data.responses, phi, strict=True))
+    where = dict(zip(identification.responses, phi, strict=True))
     return np.array([where.get(name, 0j) for name in sensors])
 
 
@@ -216,19 +217,19 @@ def as_report(
         sets.append(
             {
                 "name": name,
-                "references": list(identification.data.references),
-                "responses": list(identification.data.responses),
-                "band": [
-                    float(identification.data.frequency[0]),
-                    float(identification.data.frequency[-1]),
+                "references": list(identification.functions.data.references),
+                "responses": list(identification.responses),
+                "band": list(identification.band),
+                "chi2": identification.functions.residuals.chi2,
+                "correlation_factor": identification.functions.residuals.widening,
+                "force_noise": [
+                    float(np.sqrt(b)) for b in identification.functions.residuals.force
                 ],
-                "chi2": identification.residuals.chi2,
-                "correlation_factor": identification.residuals.widening,
-                "force_noise": [float(np.sqrt(b)) for b in identification.residuals.force],
                 "residual": [
-                    [_number(float(x)) for x in row] for row in identification.residuals.share
+                    [_number(float(x)) for x in row]
+                    for row in identification.functions.residuals.share
                 ],
-                "residual_terms": identification.residual_terms,
+                "residual_terms": identification.functions.residual_terms,
                 "evaluations": identification.evaluations,
                 "converged": identification.converged,
                 "modes": [

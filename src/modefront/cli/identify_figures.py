@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from modefront.errors import Fault, InputError, reason
-from modefront.identification.identify import Identification
+from modefront.identification.record import Identification
 from modefront.identification.shapes import auto_mac
 from modefront.outputs import output
 from modefront.plots.style import COLOURS, STYLE, plain
@@ -83,20 +83,19 @@ def _stabilisation(figure: Figure, identification: Identification) -> None:
             mode.frequency, color=COLOURS[2], linewidth=0.8, label="" if k else "accepted mode"
         )
     axes.set(xlabel="frequency in Hz", ylabel="order", title="stabilisation diagram")
-    axes.set_xlim(identification.data.frequency[0], identification.data.frequency[-1])
+    axes.set_xlim(*identification.band)
     behind = axes.twinx()
     with np.errstate(divide="ignore"):
-        level = 10 * np.log10(np.nanmean(np.abs(identification.data.H) ** 2, axis=(0, 1)))
-    behind.plot(identification.data.frequency, level, color="0.6", linewidth=0.6)
-    behind.set_ylabel(f"mean {identification.data.quantity} in dB")
+        level = 10 * np.log10(np.nanmean(np.abs(identification.functions.data.H) ** 2, axis=(0, 1)))
+    behind.plot(identification.functions.data.frequency, level, color="0.6", linewidth=0.6)
+    behind.set_ylabel(f"mean {identification.functions.data.quantity} in dB")
     axes.legend(loc="upper right")
 
 
 def _functions(figure: Figure, identification: Identification) -> None:
     """Draw synthesised over measured functions, those with the greatest residuals first."""
-    share = np.where(
-        np.isfinite(identification.residuals.share), identification.residuals.share, -1.0
-    )
+    fitted = identification.functions
+    share = np.where(np.isfinite(fitted.residuals.share), fitted.residuals.share, -1.0)
     listed = [position for position in np.argsort(-share.ravel()) if share.ravel()[position] >= 0][
         :MOST_PANELS
     ]
@@ -106,18 +105,16 @@ def _functions(figure: Figure, identification: Identification) -> None:
     for panel, position in enumerate(listed):
         j, i = np.unravel_index(position, share.shape)
         axes = figure.add_subplot(rows, columns, panel + 1)
-        f = identification.data.frequency
-        axes.semilogy(
-            f, np.abs(identification.data.H[j, i]), color="0.6", linewidth=0.8, label="measured"
-        )
+        f = fitted.data.frequency
+        axes.semilogy(f, np.abs(fitted.data.H[j, i]), color="0.6", linewidth=0.8, label="measured")
         axes.semilogy(
             f,
-            np.abs(identification.synthesised[j, i]),
+            np.abs(fitted.synthesised[j, i]),
             color=COLOURS[1],
             linewidth=0.8,
             label="synthesised",
         )
-        pair = f"{identification.data.references[j]} to {identification.data.responses[i]}"
+        pair = f"{fitted.data.references[j]} to {fitted.data.responses[i]}"
         axes.set_title(f"{plain(pair)}: residual {share[j, i]:.1%}")
         axes.set_xlabel("frequency in Hz")
         if not panel:

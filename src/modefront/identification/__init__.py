@@ -10,7 +10,7 @@ clusters of poles      `stabilisation`
 maximum likelihood     `modal_model`
 modes that data need   `selection`
 standard deviations    `statistics`, `shapes`
-one data set           `identify`
+one data set           `methods`, a file a method; `record` is what they return
 several data sets      `sets`
 =====================  ================================================================
 """

@@ -28,8 +28,7 @@ from scipy.stats import chi2
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.identification.identify import Identification
-from modefront.identification.statistics import ModeEstimate
+from modefront.identification.record import Identification, ModeEstimate
 
 WIDTH = 5.0
 """Distance within which frequencies may belong to the same mode."""
@@ -70,7 +69,7 @@ class CombinedModes:
 
 def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> CombinedModes:
     """Return the modes of several data sets under common numbers, by frequency."""
-    sensors = tuple(dict.fromkeys(name for each in identifications for name in each.data.responses))
+    sensors = tuple(dict.fromkeys(name for each in identifications for name in each.responses))
     groups = _groups(identifications, sensors)
     K, R = len(identifications), len(groups)
     index = tuple(tuple(group.get(k, -1) for group in groups) for k in range(K))
@@ -121,7 +120,7 @@ def between(x: Floats, std: Floats) -> float:
 
 
 def _at(values: Floats, identification: Identification, sensors: Sequence[str]) -> Floats:
-    where = dict(zip(identification.data.responses, values, strict=True))
+    where = dict(zip(identification.responses, values, strict=True))
     return np.array([where.get(name, np.nan) for name in sensors])
 
 

@@ -47,7 +47,7 @@ Mech. Syst. Signal Process. 21 (2007) 2359-2373, doi:10.1016/j.ymssp.2006.11.007
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 import scipy.fft
@@ -66,6 +66,7 @@ from modefront.identification.modal_model import (
     windowed_correlation,
 )
 from modefront.identification.noise import square
+from modefront.identification.record import ModeEstimate, Residuals
 from modefront.identification.shapes import TINY, RealShape, real_shape
 
 SIGNIFICANT = 3.0
@@ -79,54 +80,6 @@ MOST_TIMES = 400
 
 TOGETHER = 50
 """Samples of the noise of the force whose effects are computed at once."""
-
-
-@dataclass(frozen=True)
-class Residuals:
-    """Correlation and size of the errors of the data, from the residuals of a fit.
-
-    Attributes
-    ----------
-    chi2 : weighted sum of squares over the degrees of freedom; 1 where the variance is right
-    correlation : (lags,) of a line with the next ones
-    force : (references,) b, variance of the noise of the force channel, relative
-    share : (references, responses) norm of the residual over that of the function; NaN where the
-        function was not measured
-    """
-
-    chi2: float
-    correlation: Complexes
-    force: Floats
-    share: Floats
-
-    @property
-    def widening(self) -> float:
-        """Factor on the variance of what is the mean of many lines, by their correlation."""
-        return float(1 + 2 * self.correlation[1:].real.sum())
-
-
-@dataclass(frozen=True)
-class ModeEstimate:
-    """One mode with its standard deviations, in physical units.
-
-    Attributes
-    ----------
-    pole : rad/s
-    frequency, damping : Hz, ratio
-    frequency_std, damping_std : their standard deviations
-    shape : the complex shape and the real one
-    shape_std : (responses,) standard deviations of the real shape of unit norm
-    participation : (references,) factors that go with the complex shape as given, before rotation
-    """
-
-    pole: complex
-    frequency: float
-    damping: float
-    frequency_std: float
-    damping_std: float
-    shape: RealShape
-    shape_std: Floats
-    participation: Complexes
 
 
 def residuals(task: Problem, fit: Fit) -> Residuals:

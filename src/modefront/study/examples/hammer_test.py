@@ -17,7 +17,7 @@ import scipy.linalg as la
 from modefront._typing import Complexes
 from modefront.data.csv import write_csv
 from modefront.data.modal_test import read_test
-from modefront.identification.identify import identify
+from modefront.identification.methods.hammer import identify
 from modefront.identification.sets import combine, modal_data_of
 from modefront.outputs import write_text
 

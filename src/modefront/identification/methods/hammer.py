@@ -20,18 +20,19 @@ from modefront.data.responses import ORDERS, FrequencyResponses
 from modefront.identification import lscf, modal_model, selection
 from modefront.identification.modal_model import Fit, Problem
 from modefront.identification.noise import fitted_variance, variance_from_differences
+from modefront.identification.record import (
+    FittedFunctions,
+    Identification,
+    ModeEstimate,
+    Rejected,
+)
 from modefront.identification.stabilisation import (
     MOST_DAMPING,
     Cluster,
     StabilisationDiagram,
     stabilisation_diagram,
 )
-from modefront.identification.statistics import (
-    ModeEstimate,
-    Residuals,
-    mode_estimates,
-    residuals,
-)
+from modefront.identification.statistics import mode_estimates, residuals
 
 Weighting = Literal["given", "scaled", "residuals"]
 
@@ -71,45 +72,6 @@ LEAST_COLLINEARITY = 0.5
 
 SEED = 20080410
 """Of the random combinations of the singular value decomposition."""
-
-
-@dataclass(frozen=True)
-class Rejected:
-    """A pole that is no mode, in Hz and as a ratio, and why."""
-
-    frequency: float
-    damping: float
-    reason: str
-
-
-@dataclass(frozen=True)
-class Identification:
-    """Modes of one data set.
-
-    Attributes
-    ----------
-    data : the functions within the band
-    modes : accepted modes by frequency
-    rejected : what was found besides, and why it is no mode
-    diagram : poles of all orders
-    synthesised : functions of the model, of the shape of ``data.H``
-    residuals : what the residuals say
-    variance : the variance that weighted the data
-    evaluations : number of evaluations of the model in the last fit
-    converged : whether it met its tolerance
-    residual_terms : number of residual terms on either side of the band
-    """
-
-    data: FrequencyResponses
-    modes: tuple[ModeEstimate, ...]
-    rejected: tuple[Rejected, ...]
-    diagram: StabilisationDiagram
-    synthesised: Complexes
-    residuals: Residuals
-    variance: Floats
-    evaluations: int
-    converged: bool
-    residual_terms: int
 
 
 def identify(
@@ -306,17 +268,23 @@ def _result(solution: _Solution, clusters: list[Cluster], given: bool) -> Identi
     ]
     rejected += _passed_over(clusters, fit.model.lam * omega)
     weight = np.where(task.weight > 0, task.weight, np.nan)
-    return Identification(
+    functions = FittedFunctions(
         solution.data,
+        modal_model.synthesise(task, fit.model) * solution.size,
+        solution.size**2 / weight,
+        misfit,
+        modal_model.RESIDUALS.index(task.powers),
+    )
+    f = solution.data.frequency
+    return Identification(
+        solution.data.responses,
+        (float(f[0]), float(f[-1])),
         tuple(sorted(kept, key=lambda mode: mode.frequency)),
         tuple(sorted(rejected, key=lambda pole: pole.frequency)),
         solution.diagram,
-        modal_model.synthesise(task, fit.model) * solution.size,
-        misfit,
-        solution.size**2 / weight,
+        functions,
         fit.evaluations,
         fit.converged,
-        modal_model.RESIDUALS.index(task.powers),
     )
 
 

@@ -1,0 +1,11 @@
+"""Methods of identification, one file each: from the measurements of a data set to its modes.
+
+A method is a function ``identify(data, band, ...)`` that returns an
+`modefront.identification.record.Identification`; ``data`` are what its kind of test measures.
+
+===========  =====================================================  ============================
+method       data                                                   source
+===========  =====================================================  ============================
+`hammer`     `modefront.data.responses.FrequencyResponses`          `modefront.identification`
+===========  =====================================================  ============================
+"""

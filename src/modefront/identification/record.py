@@ -1,0 +1,113 @@
+"""What every method of identification returns: modes with their standard deviations."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+from modefront._typing import Complexes, Floats
+from modefront.data.responses import FrequencyResponses
+from modefront.identification.shapes import RealShape
+from modefront.identification.stabilisation import StabilisationDiagram
+
+
+@dataclass(frozen=True)
+class ModeEstimate:
+    """One mode with its standard deviations, in physical units.
+
+    Attributes
+    ----------
+    pole : rad/s
+    frequency, damping : Hz, ratio
+    frequency_std, damping_std : their standard deviations
+    shape : the complex shape and the real one
+    shape_std : (responses,) standard deviations of the real shape of unit norm
+    participation : (references,) factors that go with the complex shape as given, before rotation
+    """
+
+    pole: complex
+    frequency: float
+    damping: float
+    frequency_std: float
+    damping_std: float
+    shape: RealShape
+    shape_std: Floats
+    participation: Complexes
+
+
+@dataclass(frozen=True)
+class Rejected:
+    """A pole that is no mode, in Hz and as a ratio, and why."""
+
+    frequency: float
+    damping: float
+    reason: str
+
+
+@dataclass(frozen=True)
+class Residuals:
+    """Correlation and size of the errors of the data, from the residuals of a fit.
+
+    Attributes
+    ----------
+    chi2 : weighted sum of squares over the degrees of freedom; 1 where the variance is right
+    correlation : (lags,) of a line with the next ones
+    force : (references,) b, variance of the noise of the force channel, relative
+    share : (references, responses) norm of the residual over that of the function; NaN where the
+        function was not measured
+    """
+
+    chi2: float
+    correlation: Complexes
+    force: Floats
+    share: Floats
+
+    @property
+    def widening(self) -> float:
+        """Factor on the variance of what is the mean of many lines, by their correlation."""
+        return float(1 + 2 * self.correlation[1:].real.sum())
+
+
+@dataclass(frozen=True)
+class FittedFunctions:
+    """Measured functions beside those of the modal model.
+
+    Attributes
+    ----------
+    data : the functions within the band
+    synthesised : functions of the model, of the shape of ``data.H``
+    variance : the variance that weighted the data
+    residuals : what the residuals say
+    residual_terms : number of residual terms on either side of the band
+    """
+
+    data: FrequencyResponses
+    synthesised: Complexes
+    variance: Floats
+    residuals: Residuals
+    residual_terms: int
+
+
+@dataclass(frozen=True)
+class Identification:
+    """Modes of one data set.
+
+    Attributes
+    ----------
+    responses : names of the sensors, the components of shapes
+    band : the lowest and the highest line in Hz
+    modes : accepted modes by frequency
+    rejected : what was found besides, and why it is no mode
+    diagram : poles of all orders
+    functions : measured and fitted functions
+    evaluations : number of evaluations of the model in the last fit
+    converged : whether it met its tolerance
+    """
+
+    responses: tuple[str, ...]
+    band: tuple[float, float]
+    modes: tuple[ModeEstimate, ...]
+    rejected: tuple[Rejected, ...]
+    diagram: StabilisationDiagram
+    functions: FittedFunctions
+    evaluations: int
+    converged: bool
