@@ -11,10 +11,10 @@ from scipy.sparse.linalg import eigsh
 from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.fem.elements.beam import beam
-from modefront.fem.elements.brick import brick, tetrahedron
 from modefront.fem.elements.common import ElementMatrices
-from modefront.fem.elements.shapes import TETRAHEDRON_EDGES
+from modefront.fem.elements.shapes import CUBE_EDGES, TETRAHEDRON_EDGES, WEDGE_EDGES, Edges
 from modefront.fem.elements.shell import shell
+from modefront.fem.elements.solid import solid
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
 
@@ -60,14 +60,16 @@ def move_inner(X: Floats, step: Floats, amplitude: float, seed: int) -> Floats:
     return moved
 
 
-def _tetrahedron_nodes() -> Floats:
-    corners = np.array([[0, 0, 0], [1.2, 0.1, -0.1], [0.2, 0.9, 0.1], [0.1, 0.3, 1.1]])
-    return np.concatenate([corners, [(corners[i] + corners[j]) / 2 for i, j in TETRAHEDRON_EDGES]])
-
-
 BOX = np.array([[0, 0, 0], [1, 0, 0], [1, 1, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [1, 1, 1],
                 [0, 1, 1]], dtype=float)  # fmt: skip
 SECTION = fem.rectangle(0.1, 0.2)
+LEANING = BOX + 0.15 * np.sin(np.arange(24).reshape(8, 3) ** 2)
+TETRAHEDRON = np.array([[0, 0, 0], [1.2, 0.1, -0.1], [0.2, 0.9, 0.1], [0.1, 0.3, 1.1]])
+
+
+def _quadratic(corners: Floats, edges: Edges, curved: float = 0.0) -> Floats:
+    nodes = np.concatenate([corners, [(corners[i] + corners[j]) / 2 for i, j in edges]])
+    return np.asarray(nodes + curved * np.sin(np.arange(nodes.size).reshape(-1, 3) ** 2))
 
 
 def _beam(X: Floats, r: Floats) -> ElementMatrices:
@@ -104,17 +106,16 @@ ELEMENTS: dict[str, tuple[Floats, int, Callable[[Floats], ElementMatrices]]] = {
         6,
         lambda X: shell(X, STEEL, 0.1, -0.2),
     ),
-    "brick": (
-        BOX + 0.15 * np.sin(np.arange(24).reshape(8, 3) ** 2),
-        3,
-        lambda X: brick(X, STEEL),
-    ),
-    "tetrahedron": (_tetrahedron_nodes(), 3, lambda X: tetrahedron(X, STEEL)),
-    "tetrahedron, curved": (
-        _tetrahedron_nodes() + 0.03 * np.sin(np.arange(30).reshape(10, 3) ** 2),
-        3,
-        lambda X: tetrahedron(X, STEEL),
-    ),
+    **{
+        name: (X, 3, lambda X: solid(X, STEEL))
+        for name, X in {
+            "brick": LEANING,
+            "tetrahedron": _quadratic(TETRAHEDRON, TETRAHEDRON_EDGES),
+            "tetrahedron, curved": _quadratic(TETRAHEDRON, TETRAHEDRON_EDGES, 0.03),
+            "wedge": _quadratic(LEANING[[0, 1, 2, 4, 5, 6]], WEDGE_EDGES, 0.03),
+            "brick of 20 nodes": _quadratic(LEANING, CUBE_EDGES, 0.03),
+        }.items()
+    },
 }
 
 

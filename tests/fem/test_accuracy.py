@@ -190,7 +190,13 @@ def test_cantilever_of_bricks_with_one_through_the_thickness() -> None:
 
 
 @pytest.mark.parametrize(
-    ("kind", "counts", "order"), [("brick", (4, 8, 12), 2), ("tetrahedron", (3, 4, 6), 4)]
+    ("kind", "counts", "order"),
+    [
+        ("brick", (4, 8, 12), 2),
+        ("tetrahedra", (3, 4, 6), 4),
+        ("wedges", (2, 3, 4), 4),
+        ("quadratic_bricks", (2, 3, 4), 4),
+    ],
 )
 def test_solids_converge_to_the_shear_mode_of_a_box(
     kind: str, counts: tuple[int, ...], order: int
@@ -200,8 +206,8 @@ def test_solids_converge_to_the_shear_mode_of_a_box(
     errors = []
     for n in counts:
         X, cells = fem.grids.box((1.0, 1.0, 1.0), (n, n, n))
-        if kind == "tetrahedron":
-            X, cells = fem.grids.tetrahedra(X, cells)
+        if kind != "brick":
+            X, cells = getattr(fem.grids, kind)(X, cells)
         supports = tuple(
             fem.Support(boundary(X, (d,)), (name,)) for d, name in enumerate(("x", "y", "z"))
         )

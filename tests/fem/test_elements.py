@@ -9,7 +9,17 @@ from hypothesis import strategies as st
 from structures import BOX, ELEMENTS, SECTION, STEEL, rigid_motions, rotation, total
 
 from modefront._typing import Floats
-from modefront.fem.elements.shapes import gauss_box, gauss_simplex, square_8
+from modefront.fem.elements.shapes import (
+    CUBE_8,
+    CUBE_20,
+    SQUARE_4,
+    TETRAHEDRON_10,
+    TRIANGLE_3,
+    WEDGE_15,
+    Cell,
+    gauss_box,
+    gauss_simplex,
+)
 
 NAMES = list(ELEMENTS)
 seeds = st.integers(0, 2**32 - 1)
@@ -108,11 +118,14 @@ def test_quadrature_integrates_the_degree_it_promises() -> None:
     assert (w * xi[:, 0] ** 2 * xi[:, 1] ** 2).sum() == pytest.approx(4 / 9)
 
 
-def test_shape_functions_agree_with_their_derivatives() -> None:
-    rng = np.random.default_rng(0)
-    xi, step = rng.uniform(-1, 1, (5, 2)), 1e-6
-    _, dN = square_8(xi)
-    for d in range(2):
-        e = step * np.eye(2)[d]
-        numeric = (square_8(xi + e)[0] - square_8(xi - e)[0]) / (2 * step)
-        assert np.abs(numeric - dN[..., d]).max() < 1e-9
+@pytest.mark.parametrize("cell", [SQUARE_4, TRIANGLE_3, CUBE_8, TETRAHEDRON_10, WEDGE_15, CUBE_20])
+def test_shape_functions_are_one_at_their_node_and_agree_with_their_derivatives(cell: Cell) -> None:
+    dim = cell.nodes.shape[1]
+    assert np.abs(cell.shape(cell.nodes)[0] - np.eye(len(cell.nodes))).max() < 1e-14
+    xi, step = np.random.default_rng(0).uniform(-1, 1, (5, dim)), 1e-6
+    _, dN = cell.shape(xi)
+    assert np.abs(dN.sum(1)).max() < 1e-13
+    for d in range(dim):
+        e = step * np.eye(dim)[d]
+        numeric = (cell.shape(xi + e)[0] - cell.shape(xi - e)[0]) / (2 * step)
+        assert np.abs(numeric - dN[..., d]).max() < 1e-8

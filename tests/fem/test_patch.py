@@ -10,6 +10,11 @@ from modefront import fem
 from modefront._typing import Floats, Ints
 
 GRADIENT = 1e-3 * np.array([[0.7, 0.3, -0.2], [0.1, -0.5, 0.4], [-0.3, 0.2, 0.6]])
+QUADRATIC = {
+    "tetrahedron": fem.grids.tetrahedra,
+    "wedge": fem.grids.wedges,
+    "brick of 20 nodes": fem.grids.quadratic_bricks,
+}
 
 
 def _plate(kind: str, seed: int) -> tuple[Floats, Ints]:
@@ -47,12 +52,12 @@ def test_shell_bending(kind: str, seed: int) -> None:
 
 
 @pytest.mark.parametrize("seed", range(3))
-@pytest.mark.parametrize("kind", ["brick", "tetrahedron"])
+@pytest.mark.parametrize("kind", ["brick", *QUADRATIC])
 def test_solid(kind: str, seed: int) -> None:
     X, cells = fem.grids.box((1.5, 1.2, 0.9), (3, 3, 3))
     X = move_inner(X, np.array([0.5, 0.4, 0.3]), 0.25, seed)
-    if kind == "tetrahedron":
-        X, cells = fem.grids.tetrahedra(X, cells)
+    if kind in QUADRATIC:
+        X, cells = QUADRATIC[kind](X, cells)
     model = fem.assemble(fem.Structure(X, (fem.Solids("s", cells, STEEL),)), floating=True)
     u = np.zeros((len(X), 6))
     u[:, :3] = X @ GRADIENT.T

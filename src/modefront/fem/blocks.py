@@ -19,9 +19,9 @@ from modefront.fem.check import (
     unit_vector,
 )
 from modefront.fem.elements.beam import beam
-from modefront.fem.elements.brick import brick, tetrahedron
 from modefront.fem.elements.point import lumped_mass, spring
 from modefront.fem.elements.shell import shell
+from modefront.fem.elements.solid import SOLIDS, solid
 from modefront.fem.scatter import Block
 from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import Beams, Mass, Shells, Solids, Spring
@@ -99,10 +99,9 @@ def _solids(X: Floats, group: Solids, place: str) -> Block:
             f"{place}: tetrahedra of 4 nodes are far too stiff in bending; mesh with second-order"
             " elements (10 nodes)"
         )
-    cells = cell_array(group.cells, (8, 10), len(X), place)
+    cells = cell_array(group.cells, tuple(SOLIDS), len(X), place)
     check_sizes(solid_sizes(X[cells]), cells, "volume", place)
-    element = brick if cells.shape[1] == 8 else tetrahedron
-    return Block(group.name, cells, TRANSLATIONS, element(X[cells], group.material))
+    return Block(group.name, cells, TRANSLATIONS, solid(X[cells], group.material))
 
 
 def spring_blocks(X: Floats, springs: Sequence[Spring], checks: Checks) -> list[Block]:

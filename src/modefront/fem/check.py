@@ -15,16 +15,8 @@ import numpy.typing as npt
 from modefront._typing import Floats, Ints
 from modefront.fem.dofs import direction_indices
 from modefront.fem.elements import shell
-from modefront.fem.elements.shapes import (
-    CUBE,
-    SQUARE,
-    TETRAHEDRON_EDGES,
-    cube_8,
-    gauss_tetrahedron_4,
-    jacobian,
-    simplex_quadratic,
-    square_4,
-)
+from modefront.fem.elements.shapes import SQUARE_4, jacobian
+from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import Direction, Parameter, Shells, Structure
 
@@ -130,22 +122,19 @@ def shell_sizes(X: Floats) -> Floats:
         return np.asarray(np.linalg.norm(normal, axis=1) / extent**2)
     normal = np.cross(X[:, 2] - X[:, 0], X[:, 3] - X[:, 1])
     flat = np.linalg.norm(normal, axis=1) <= FLAT * extent**2
-    safe = np.where(flat[:, None, None], np.pad(SQUARE, ((0, 0), (0, 1))), X)
+    safe = np.where(flat[:, None, None], np.pad(SQUARE_4.nodes, ((0, 0), (0, 1))), X)
     x, _ = shell.project(safe, shell.axes(safe))
-    det = np.linalg.det(jacobian(x, square_4(SQUARE)[1])).min(1)
+    det = np.linalg.det(jacobian(x, SQUARE_4.shape(SQUARE_4.nodes)[1])).min(1)
     return np.where(flat, 0.0, det / extent**2)
 
 
 def solid_sizes(X: Floats) -> Floats:
-    """Smallest relative det J of each solid X (elements, 8 or 10, 3)."""
+    """Smallest relative det J of each solid X (elements, nodes, 3)."""
     extent = np.linalg.norm(np.ptp(X, axis=1), axis=1)
     extent = np.where(extent > 0, extent, 1)
-    if X.shape[1] == 8:
-        dN = cube_8(CUBE)[1]
-    else:
-        corners = np.vstack([np.zeros(3), np.eye(3), gauss_tetrahedron_4()[0]])
-        dN = simplex_quadratic(corners, TETRAHEDRON_EDGES)[1]
-    return np.asarray(np.linalg.det(jacobian(X, dN)).min(1) / extent**3)
+    kind = SOLIDS[X.shape[1]]
+    points = np.vstack([kind.cell.nodes[: kind.corners], kind.stiffness[0]])
+    return np.asarray(np.linalg.det(jacobian(X, kind.cell.shape(points)[1])).min(1) / extent**3)
 
 
 def check_names(structure: Structure) -> None:

@@ -5,10 +5,11 @@ from __future__ import annotations
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.fem.elements.shapes import TETRAHEDRON_EDGES
+from modefront.fem.elements.shapes import CUBE_EDGES, TETRAHEDRON_EDGES, WEDGE_EDGES, Edges
 
 # Kuhn's division of the cube along one diagonal; it matches from cube to cube.
 KUHN = ((0, 1, 2, 6), (0, 2, 3, 6), (0, 3, 7, 6), (0, 7, 4, 6), (0, 4, 5, 6), (0, 5, 1, 6))
+HALVES = ((0, 1, 2, 4, 5, 6), (0, 2, 3, 4, 6, 7))
 
 
 def line(start: Floats, end: Floats, count: int) -> tuple[Floats, Ints]:
@@ -50,12 +51,24 @@ def tetrahedra(X: Floats, bricks: Ints) -> tuple[Floats, Ints]:
 
     Nodes at the middle of edges are added to the nodes X (nodes, 3).
     """
-    corners = bricks[:, KUHN].reshape(-1, 4)
-    i, j = np.array(TETRAHEDRON_EDGES).T
-    ends = np.sort(np.stack([corners[:, i], corners[:, j]], -1), -1)
-    edges, edge = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
-    middle = len(X) + edge.reshape(len(corners), 6)
-    return np.concatenate([X, X[edges].mean(1)]), np.concatenate([corners, middle], 1)
+    return _quadratic(X, bricks[:, KUHN].reshape(-1, 4), TETRAHEDRON_EDGES)
+
+
+def wedges(X: Floats, bricks: Ints) -> tuple[Floats, Ints]:
+    """Return nodes and two wedges of 15 nodes for each brick (cells, 8), likewise."""
+    return _quadratic(X, bricks[:, HALVES].reshape(-1, 6), WEDGE_EDGES)
+
+
+def quadratic_bricks(X: Floats, bricks: Ints) -> tuple[Floats, Ints]:
+    """Return nodes and a brick of 20 nodes for each brick (cells, 8), likewise."""
+    return _quadratic(X, bricks, CUBE_EDGES)
+
+
+def _quadratic(X: Floats, corners: Ints, edges: Edges) -> tuple[Floats, Ints]:
+    ends = np.sort(corners[:, np.array(edges)], axis=-1)
+    pairs, edge = np.unique(ends.reshape(-1, 2), axis=0, return_inverse=True)
+    middle = len(X) + edge.reshape(len(corners), -1)
+    return np.concatenate([X, X[pairs].mean(1)]), np.concatenate([corners, middle], 1)
 
 
 def _lattice(x: Floats, y: Floats, z: Floats) -> Floats:

@@ -95,7 +95,7 @@ def _distorted(group: Solids, X: Floats) -> list[str]:
         f"'{group.name}' are distorted, by up to {100 * distortion.max():.0f} % of the volume at "
         f"their corners (element {int(np.argmax(distortion))}): expect bending frequencies "
         "too great by some 20 % at a third and 30 % at a half where a span has 5 bricks, by 3 to "
-        "6 % where it has 10; refine, or take tetrahedra of 10 nodes"
+        "6 % where it has 10; refine, or take bricks of 20 nodes"
     ]
 
 

@@ -32,12 +32,11 @@ from scipy.spatial import KDTree
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.check import SAME_PLACE
 from modefront.fem.dofs import DIRECTIONS, LinkRows
+from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.scatter import Block
 from modefront.fem.section import FemError
 from modefront.rounding import ACCUMULATED, TINY
 
-BRICK_FACES = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
-TETRAHEDRON_FACES = ((0, 1, 2), (0, 1, 3), (1, 2, 3), (0, 2, 3))
 LARGEST_PART = 3000
 """Motions of a part beyond which it is not examined: its null space takes their cube."""
 
@@ -111,13 +110,8 @@ def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
             pairs.append(to_nodes)
             continue
         solid_pairs.append(to_nodes)
-        corners = np.array(BRICK_FACES if k == 8 else TETRAHEDRON_FACES)
-        faces[corners.shape[1]].append(
-            (
-                np.sort(block.cells[:, corners], -1).reshape(-1, corners.shape[1]),
-                np.repeat(vertex, len(corners)),
-            )
-        )
+        for corners in SOLIDS[k].faces:
+            faces[len(corners)].append((np.sort(block.cells[:, corners], -1), vertex))
     size = int(first[-1])
     for sides in faces.values():
         if sides:

@@ -27,7 +27,7 @@ Kind = Literal["beam", "shell", "solid"]
 CELL_TYPES: Mapping[Kind, tuple[str, ...]] = {
     "beam": ("line",),
     "shell": ("triangle", "quad"),
-    "solid": ("hexahedron", "tetra10"),
+    "solid": ("hexahedron", "tetra10", "wedge15", "hexahedron20"),
 }
 
 READER = "modefront.fem.mesh_reader:read_with_meshio"

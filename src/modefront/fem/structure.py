@@ -63,12 +63,13 @@ class Shells:
 
 @dataclass(frozen=True)
 class Solids:
-    """Group of bricks or tetrahedra.
+    """Group of bricks, wedges or tetrahedra.
 
     Attributes
     ----------
     name : of the group; several blocks may share it
-    cells : nodes of bricks (elements, 8) or of tetrahedra (elements, 10), in the order of VTK
+    cells : nodes of bricks (elements, 8 or 20), wedges (elements, 15) or tetrahedra (elements, 10),
+        in the order of VTK
     material : of all elements
     """
 

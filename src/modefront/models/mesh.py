@@ -82,7 +82,10 @@ def mesh_model(
     return replace(model, limits=limits, geometry=_geometry(structure, built))
 
 
-CELL_TYPES = {2: "line", 3: "triangle", 4: "quad", 8: "hexahedron", 10: "tetra10"}
+CELL_TYPES = {
+    **{2: "line", 3: "triangle", 4: "quad"},
+    **{8: "hexahedron", 10: "tetra10", 15: "wedge15", 20: "hexahedron20"},
+}
 """Types of cells, as meshio calls them, by their nodes."""
 
 

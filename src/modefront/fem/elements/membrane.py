@@ -32,15 +32,15 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.fem.elements.common import condense, plane_stress, symmetric
-from modefront.fem.elements.shapes import gauss_box, gradients, jacobian, square_4
+from modefront.fem.elements.shapes import SQUARE_4, gauss_box, gradients, jacobian
 
 
 def quadrilateral(x: Floats, E: float, nu: float) -> Floats:
     """Stiffness (elements, 12, 12) per unit thickness of quadrilaterals x (elements, 4, 2)."""
     xi, w = gauss_box(2, 2)
-    N, dN = square_4(xi)
+    N, dN = SQUARE_4.shape(xi)
     g, det = gradients(x, dN)
-    J0 = jacobian(x, square_4(np.zeros((1, 2)))[1])
+    J0 = jacobian(x, SQUARE_4.shape(np.zeros((1, 2)))[1])
     bubbles = np.zeros((len(xi), 2, 2))
     bubbles[:, [0, 1], [0, 1]] = -2 * xi
     g_modes = np.linalg.solve(J0, np.swapaxes(bubbles, 1, 2)[None])

@@ -36,16 +36,16 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.fem.elements.common import plane_stress, symmetric
 from modefront.fem.elements.shapes import (
+    SQUARE_4,
+    SQUARE_8,
     SQUARE_EDGES,
+    TRIANGLE_3,
+    TRIANGLE_6,
     TRIANGLE_EDGES,
     gauss_box,
     gauss_simplex,
     gradients,
     jacobian,
-    simplex_linear,
-    simplex_quadratic,
-    square_4,
-    square_8,
 )
 
 
@@ -73,10 +73,10 @@ def bending(x: Floats, E: float, nu: float) -> Floats:
     count, corners = x.shape[:2]
     if corners == 3:
         xi, w = gauss_simplex(2, 2)
-        dN, dN_slopes = simplex_linear(xi)[1], simplex_quadratic(xi, TRIANGLE_EDGES)[1]
+        dN, dN_slopes = TRIANGLE_3.shape(xi)[1], TRIANGLE_6.shape(xi)[1]
     else:
         xi, w = gauss_box(2, 2)
-        dN, dN_slopes = square_4(xi)[1], square_8(xi)[1]
+        dN, dN_slopes = SQUARE_4.shape(xi)[1], SQUARE_8.shape(xi)[1]
     J = jacobian(x, dN)
     weight = w * np.linalg.det(J)
     g = np.linalg.solve(J, np.swapaxes(dN_slopes, 1, 2)[None])
@@ -93,10 +93,10 @@ def deflection(x: Floats, xi: Floats) -> Floats:
     """Interpolation of w (elements, points, 3 corners) at the reference points xi."""
     count, corners = x.shape[:2]
     if corners == 3:
-        N = simplex_linear(xi)[0]
+        N = TRIANGLE_3.shape(xi)[0]
         sides = [(4 * N[:, i] * N[:, j], N[:, j] - N[:, i]) for i, j in TRIANGLE_EDGES]
     else:
-        N = square_4(xi)[0]
+        N = SQUARE_4.shape(xi)[0]
         u, v = xi.T
         sides = [
             ((1 - u**2) * (1 - v) / 2, u),
@@ -120,7 +120,7 @@ def deflection(x: Floats, xi: Floats) -> Floats:
 def translational(x: Floats) -> Floats:
     """Mass (elements, 3 corners, 3 corners) of w per density and thickness."""
     xi, w = gauss_simplex(4, 2) if x.shape[1] == 3 else gauss_box(4, 2)
-    dN = (simplex_linear if x.shape[1] == 3 else square_4)(xi)[1]
+    dN = (TRIANGLE_3 if x.shape[1] == 3 else SQUARE_4).shape(xi)[1]
     weight = w * np.linalg.det(jacobian(x, dN))
     W = deflection(x, xi)
     return symmetric(np.swapaxes(W, 1, 2) @ (W * weight[..., None]))
@@ -129,6 +129,6 @@ def translational(x: Floats) -> Floats:
 def linear_mass(x: Floats) -> Floats:
     """Integrals of N_i N_j (elements, corners, corners) for the linear shape functions."""
     xi, w = gauss_simplex(2, 2) if x.shape[1] == 3 else gauss_box(3, 2)
-    N, dN = (simplex_linear if x.shape[1] == 3 else square_4)(xi)
+    N, dN = (TRIANGLE_3 if x.shape[1] == 3 else SQUARE_4).shape(xi)
     weight = w * gradients(x, dN)[1]
     return np.asarray(np.einsum("eg,gi,gj->eij", weight, N, N, optimize=True))

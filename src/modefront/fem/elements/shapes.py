@@ -4,30 +4,105 @@ On a reference cell with coordinates xi the position is x = sum_i N_i(xi) x_i, s
 
     J = dx/dxi,   dN/dx = J^-1 dN/dxi,   integral f dV = sum_g w_g det J(xi_g) f(xi_g).
 
+The N_i span the monomials xi^p of the cell and are one at their node: N = P(xi) P(nodes)^-1.
+
 ========  =====================================================================
 symbol    meaning
 ========  =====================================================================
 N, dN     shape functions (points, nodes), their derivatives (points, nodes, dim)
+P         monomials (points, nodes), with the powers p (nodes, dim)
 xi, w     quadrature points (points, dim) and weights (points,)
 J         Jacobian (elements, points, dim, dim), J[..., k, d] = dx_d / dxi_k
 ========  =====================================================================
 
-Squares and cubes span [-1, 1]; triangles and tetrahedra the unit simplex. Node orders are
-those of VTK. Source: O. C. Zienkiewicz, R. L. Taylor, "The Finite Element Method", vol. 1.
+Squares and cubes span [-1, 1]; triangles and tetrahedra the unit simplex, wedges its product with
+[-1, 1]. Node orders are those of VTK. Source: O. C. Zienkiewicz, R. L. Taylor, "The Finite Element
+Method", vol. 1.
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from itertools import product
+
 import numpy as np
 from scipy.special import roots_jacobi
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 
-SQUARE = np.array([[-1, -1], [1, -1], [1, 1], [-1, 1]], dtype=float)
-CUBE = np.array([[x, y, z] for z in (-1, 1) for x, y in SQUARE], dtype=float)
-TRIANGLE_EDGES = ((0, 1), (1, 2), (2, 0))
-SQUARE_EDGES = ((0, 1), (1, 2), (2, 3), (3, 0))
 TETRAHEDRON_EDGES = ((0, 1), (1, 2), (2, 0), (0, 3), (1, 3), (2, 3))
+CUBE_EDGES = (
+    *((0, 1), (1, 2), (2, 3), (3, 0), (4, 5), (5, 6), (6, 7), (7, 4)),
+    *((0, 4), (1, 5), (2, 6), (3, 7)),
+)
+WEDGE_EDGES = ((0, 1), (1, 2), (2, 0), (3, 4), (4, 5), (5, 3), (0, 3), (1, 4), (2, 5))
+TRIANGLE_EDGES = TETRAHEDRON_EDGES[:3]
+SQUARE_EDGES = CUBE_EDGES[:4]
+
+Edges = Sequence[tuple[int, int]]
+
+
+@dataclass(frozen=True)
+class Cell:
+    """Reference cell with as many monomials as nodes.
+
+    Attributes
+    ----------
+    nodes : (nodes, dim), corners first, then midpoints of edges
+    powers : exponents of the monomials (nodes, dim)
+    """
+
+    nodes: Floats
+    powers: Ints
+
+    @cached_property
+    def _coefficients(self) -> Floats:
+        return np.asarray(np.linalg.inv(_monomials(self.nodes, self.powers)), dtype=float)
+
+    def shape(self, xi: Floats) -> tuple[Floats, Floats]:
+        """Return N (points, nodes) and dN (points, nodes, dim) at the points xi (points, dim)."""
+        C, p = self._coefficients, self.powers
+        steps = np.eye(p.shape[1], dtype=int)
+        slopes = [_monomials(xi, p - step) * (p @ step) @ C for step in steps]
+        return _monomials(xi, p) @ C, np.stack(slopes, -1)
+
+
+def _monomials(xi: Floats, powers: Ints) -> Floats:
+    return np.asarray((xi[:, None] ** powers.clip(0)).prod(-1), dtype=float)
+
+
+def _cell(corners: Floats, powers: Iterable[Sequence[int]], edges: Edges = ()) -> Cell:
+    middle = [corners[[i, j]].mean(0) for i, j in edges]
+    return Cell(np.array([*corners, *middle], dtype=float), np.array(list(powers)))
+
+
+def _box(dim: int, edges: Edges = ()) -> Cell:
+    """Return the (bi-, tri-) linear or, with edges, the serendipity cell."""
+    square = [[-1, -1], [1, -1], [1, 1], [-1, 1]]
+    corners = square if dim == 2 else [[x, y, z] for z in (-1, 1) for x, y in square]
+    powers = product(range(3 if edges else 2), repeat=dim)
+    return _cell(np.array(corners), (p for p in powers if p.count(2) < 2), edges)
+
+
+def _simplex(dim: int, edges: Edges = ()) -> Cell:
+    degree = 2 if edges else 1
+    powers = (p for p in product(range(degree + 1), repeat=dim) if sum(p) <= degree)
+    return _cell(np.vstack([np.zeros(dim), np.eye(dim)]), powers, edges)
+
+
+def _wedge(edges: Edges) -> Cell:
+    corners = np.array([[x, y, z] for z in (-1, 1) for x, y in ((0, 0), (1, 0), (0, 1))])
+    powers = (p for p in product(range(3), repeat=3) if p[0] + p[1] <= (2 if p[2] < 2 else 1))
+    return _cell(corners, powers, edges)
+
+
+SQUARE_4, SQUARE_8 = _box(2), _box(2, SQUARE_EDGES)
+CUBE_8, CUBE_20 = _box(3), _box(3, CUBE_EDGES)
+TRIANGLE_3, TRIANGLE_6 = _simplex(2), _simplex(2, TRIANGLE_EDGES)
+TETRAHEDRON_10 = _simplex(3, TETRAHEDRON_EDGES)
+WEDGE_15 = _wedge(WEDGE_EDGES)
 
 
 def gauss_box(count: int, dim: int) -> tuple[Floats, Floats]:
@@ -63,62 +138,11 @@ def gauss_tetrahedron_4() -> tuple[Floats, Floats]:
     return points, np.full(4, 1 / 24)
 
 
-def square_4(xi: Floats) -> tuple[Floats, Floats]:
-    """Bilinear square: N (points, 4) and dN (points, 4, 2)."""
-    f = 1 + xi[:, None, :] * SQUARE
-    return f.prod(-1) / 4, SQUARE * f[:, :, ::-1] / 4
-
-
-def square_8(xi: Floats) -> tuple[Floats, Floats]:
-    """Serendipity square: corners, then midpoints of `SQUARE_EDGES`."""
-    x, y = xi[:, 0], xi[:, 1]
-    mid = (
-        np.stack(
-            [
-                (1 - x**2) * (1 - y),
-                (1 + x) * (1 - y**2),
-                (1 - x**2) * (1 + y),
-                (1 - x) * (1 - y**2),
-            ],
-            -1,
-        )
-        / 2
-    )
-    dx = np.stack([-2 * x * (1 - y), 1 - y**2, -2 * x * (1 + y), -(1 - y**2)], -1) / 2
-    dy = np.stack([-(1 - x**2), -2 * y * (1 + x), 1 - x**2, -2 * y * (1 - x)], -1) / 2
-    N, dN = square_4(xi)
-    dmid = np.stack([dx, dy], -1)
-    return (
-        np.concatenate([N - (mid + np.roll(mid, 1, 1)) / 2, mid], 1),
-        np.concatenate([dN - (dmid + np.roll(dmid, 1, 1)) / 2, dmid], 1),
-    )
-
-
-def cube_8(xi: Floats) -> tuple[Floats, Floats]:
-    """Trilinear cube: N (points, 8) and dN (points, 8, 3)."""
-    f = 1 + xi[:, None, :] * CUBE
-    others = np.stack([f[..., 1] * f[..., 2], f[..., 0] * f[..., 2], f[..., 0] * f[..., 1]], -1)
-    return f.prod(-1) / 8, CUBE * others / 8
-
-
-def simplex_linear(xi: Floats) -> tuple[Floats, Floats]:
-    """Barycentric coordinates N (points, dim + 1) and dN (points, dim + 1, dim)."""
-    dim = xi.shape[1]
-    gradient = np.vstack([np.full((1, dim), -1.0), np.eye(dim)])
-    N: Floats = np.concatenate([1 - xi.sum(1, keepdims=True), xi], 1)
-    return N, np.tile(gradient, (len(xi), 1, 1))
-
-
-def simplex_quadratic(xi: Floats, edges: tuple[tuple[int, int], ...]) -> tuple[Floats, Floats]:
-    """Quadratic simplex: corners, then midpoints of `edges`."""
-    N, dN = simplex_linear(xi)
-    i, j = np.array(edges).T
-    at_corners = (4 * N - 1)[..., None] * dN
-    between = 4 * (N[:, i, None] * dN[:, j] + N[:, j, None] * dN[:, i])
-    return (
-        np.concatenate([N * (2 * N - 1), 4 * N[:, i] * N[:, j]], 1),
-        np.concatenate([at_corners, between], 1),
-    )
+def gauss_wedge(count: int) -> tuple[Floats, Floats]:
+    """Product of the rules of triangle and line, exact to degree 2 count - 1 in each."""
+    (xi, w), (z, v) = gauss_simplex(count, 2), gauss_box(count, 1)
+    points = np.concatenate([np.repeat(xi, count, 0), np.tile(z, (len(xi), 1))], 1)
+    return points, np.outer(w, v).ravel()
 
 
 def jacobian(x: Floats, dN: Floats) -> Floats:
