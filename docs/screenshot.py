@@ -30,7 +30,7 @@ def example(folder: Path) -> Path:
     study = folder / "study.toml"
     predictions = (HERE / "predictions.toml").read_text(encoding="utf-8")
     study.write_text(study.read_text(encoding="utf-8") + predictions, encoding="utf-8")
-    mf.load(study).run(folder / "results")
+    mf.run(mf.load(study), folder / "results")
     return folder / "results"
 
 

@@ -81,11 +81,22 @@ def test_no_modules_import_each_other() -> None:
     }
     graph: dict[str, set[str]] = {name: set() for name in names}
     for name, file in names.items():
-        for node in ast.parse(file.read_text(encoding="utf-8")).body:
+        for node in _executed(ast.parse(file.read_text(encoding="utf-8"))):
             if isinstance(node, ast.ImportFrom):
                 root = node.module or ""
                 inner = {f"{root}.{name.name}" for name in node.names}
-                graph[name] |= {module if module in names else root for module in inner} & set(
-                    names
-                )
-    list(TopologicalSorter(graph).static_order())  # raises CycleError
+                graph[name] |= {module if module in names else root for module in inner}
+            elif isinstance(node, ast.Import):
+                graph[name] |= {alias.name for alias in node.names}
+    known = {name: imports & names.keys() for name, imports in graph.items()}
+    list(TopologicalSorter(known).static_order())  # raises CycleError
+
+
+def _executed(node: ast.AST) -> Iterator[ast.AST]:
+    """Yield what is executed of a module, in functions too: all but imports for types only."""
+    for child in ast.iter_child_nodes(node):
+        if isinstance(child, ast.If) and ast.unparse(child.test).endswith("TYPE_CHECKING"):
+            yield from (each for other in child.orelse for each in (other, *_executed(other)))
+        else:
+            yield child
+            yield from _executed(child)

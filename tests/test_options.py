@@ -257,15 +257,15 @@ def test_a_study_made_in_python_is_that_of_a_file(study: Path, tmp_path: Path) -
         search=mf.Search(doubt=0.5),
     )
     assert replace(made, name=read.name, origin=read.origin) == read
-    of_file, of_python = read.run(tmp_path / "a"), made.run(tmp_path / "b")
-    in_memory = made.solve()
+    of_file, of_python = mf.run(read, tmp_path / "a"), mf.run(made, tmp_path / "b")
+    in_memory = mf.run(made)
     for name in of_file.variables:
         np.testing.assert_array_equal(of_file[name], of_python[name])
         np.testing.assert_array_equal(of_file[name], in_memory[name])
     assert "sample" in of_file["label"].values
     assert of_python.attrs["study"] == "by hand"
     # Pieces of a model that only Python knows are never taken for those of another one.
-    made.run(tmp_path / "b")
+    mf.run(made, tmp_path / "b")
     assert (tmp_path / "b" / "results.1.nc").exists()
 
 

@@ -6,7 +6,7 @@ import hashlib
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated
+from typing import Annotated
 
 from modefront.diagnosis.places import DataDirection, UnusedGroup
 from modefront.errors import Fault, InputError, refuse
@@ -21,9 +21,6 @@ from modefront.residuals.problem import UpdatingProblem
 from modefront.study.labels import labels_of
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
-
-if TYPE_CHECKING:
-    from modefront.results.results import Results
 
 
 @dataclass(frozen=True)
@@ -166,26 +163,6 @@ class Study:
                 faults += [replace(x, place=f"{place} {x.place}".rstrip()) for x in error.faults]
         refuse(faults)
         return replace(self, predictions=tuple(out))
-
-    def solve(self) -> Results:
-        """Return all Pareto-optimal models, edges and weighted models.
-
-        Raises UnfinishedError where no minimum of a group can be found, InputError where no
-        parameter changes a group.
-        """
-        from modefront.study.session import in_memory
-
-        return in_memory(self)
-
-    def run(self, folder: Path | str) -> Results:
-        """Do the work, write ``results.nc`` into a folder and return its results.
-
-        Work of an interrupted run is continued where the study was read from a file. What is
-        raised is what `modefront.run` raises.
-        """
-        from modefront.study.session import run
-
-        return run(self, Path(folder))
 
 
 def undrawn(uncertainty: Uncertainty, predictions: int) -> Iterator[Fault]:

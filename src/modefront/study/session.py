@@ -114,23 +114,13 @@ def solve(
         predictions=tuple(predictions),
         noise=noise or NoisePrior(),
     )
-    return in_memory(study)
-
-
-def in_memory(study: Study) -> Results:
-    """Return the results of a study, and write nothing.
-
-    Raises what `solve` raises.
-    """
-    from modefront.results.results import Results
-
-    return Results(_Session(study.completed(), Run()).results(), study.problem)
+    return run(study)
 
 
 # 7 arguments: the study, and how it is run by keyword.
 def run(
     study: Study,
-    folder: Path | str,
+    folder: Path | str | None = None,
     *,
     fresh: bool = False,
     refined: float | None = None,
@@ -138,7 +128,7 @@ def run(
     workers: int = 1,
     scheduler: str | None = None,
 ) -> Results:
-    """Write the results of a study to ``results.nc`` in a folder, and return them.
+    """Return the results of a study, and write them to ``results.nc`` in a folder.
 
     Parameters
     ----------
@@ -146,7 +136,8 @@ def run(
         The study. One that was read from a file continues where an interrupted run stopped: tasks
         that are done are not done again. One that was made in Python starts over.
     folder
-        Folder for ``results.nc`` and the results of the tasks; made where there is none.
+        Folder for ``results.nc`` and the results of the tasks; made where there is none. None
+        writes nothing.
     fresh
         Whether a study from a file starts over as well. Earlier results are renamed, never deleted.
     refined
@@ -176,7 +167,7 @@ def run(
 def run_on(
     carrier: AbstractContextManager[Backend],
     study: Study,
-    folder: Path | str,
+    folder: Path | str | None,
     *,
     fresh: bool = False,
     refined: float | None = None,
@@ -186,10 +177,13 @@ def run_on(
     from modefront.results.files import FILE, write
     from modefront.results.results import Results
 
-    folder = Path(folder)
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
     study = study.completed()
+    progress = progress or Progress()
+    if folder is None:
+        return Results(_worked(study, carrier, progress), study.problem)
+    folder = Path(folder)
     tasks = folder / FOLDER / f"{study.work[:12]}-{__version__}"
     _prepare(folder)
     for path in (tasks.parent, tasks):
@@ -197,19 +191,28 @@ def run_on(
             found = f"a link to {path.readlink()}: remove it, or choose another folder with -o"
             raise InputError(Fault(str(path), "folder", "a folder of its own", found))
     _prepare(tasks.parent)
-    progress = progress or Progress()
     with locked(folder):
         _prepare(tasks, (tasks, folder / FILE) if fresh or not study.work else ())
         remove_unfinished(folder, FILE)
         remove_unfinished(tasks)
-        with carrier as opened:
-            progress.workers = opened.workers
-            data = _Session(study, Run(Store(tasks), progress, opened)).results()
+        data = _worked(study, carrier, progress, Store(tasks))
         _keep_other(folder / FILE, study.digest)
         write(data, folder / FILE)
         if study.origin is not None:
             note_study(folder, tasks, study.origin.file)
     return Results(data, study.problem)
+
+
+def _worked(
+    study: Study,
+    carrier: AbstractContextManager[Backend],
+    progress: Progress,
+    store: Store | None = None,
+) -> xr.Dataset:
+    """Return what the work of a study gives; a store keeps the results of its tasks."""
+    with carrier as opened:
+        progress.workers = opened.workers
+        return _Session(study, Run(store, progress, opened)).results()
 
 
 def _prepare(folder: Path, aside: Sequence[Path] = ()) -> None:
