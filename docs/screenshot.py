@@ -13,7 +13,7 @@ from pathlib import Path
 from playwright.sync_api import sync_playwright
 
 import modefront as mf
-from modefront.report.page import write_page
+from modefront.reports.page import write_page
 from modefront.results.files import read_dataset
 from modefront.study.examples import write_example
 

@@ -7,7 +7,7 @@ import { join } from "node:path";
 import { fileURLToPath } from "node:url";
 import { build } from "esbuild";
 
-const shipped = new URL("../src/modefront/report/", import.meta.url);
+const shipped = new URL("../src/modefront/reports/", import.meta.url);
 const target = process.argv[2] ?? fileURLToPath(shipped);
 const here = fileURLToPath(new URL(".", import.meta.url));
 

@@ -12,7 +12,7 @@ import pytest
 import modefront
 
 LAYERS = (
-    ("_lazy", "_typing", "_version", "outputs", "rounding", "text"),
+    ("_lazy", "_typing", "_version", "brief", "outputs", "rounding", "text"),
     ("errors", "variables"),
     ("complete", "inputs", "hdf5"),
     ("isolated",),
@@ -27,7 +27,7 @@ LAYERS = (
     ("analysis", "diagnosis"),
     ("plots",),
     ("results",),
-    ("report", "exports"),
+    ("reports", "exports"),
     ("study",),
     ("cli",),
     ("__init__", "__main__"),

@@ -1,4 +1,4 @@
-// The data of a report: what modefront.report.payload writes, read back.
+// The data of a report: what modefront.reports.payload writes, read back.
 
 export type Row = (number | null)[];
 

@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from modefront.front.search import Search as Search
     from modefront.identifiability.combinations import combinations as combinations
     from modefront.identifiability.options import Identifiability as Identifiability
+    from modefront.identification.modal_test import identify as identify
     from modefront.models.chain import chain as chain
     from modefront.models.files import read_matrix as read_matrix
     from modefront.models.function import function_model as function_model
@@ -37,6 +38,8 @@ if TYPE_CHECKING:
     from modefront.predictions import PeakResponse as PeakResponse
     from modefront.predictions import Prediction as Prediction
     from modefront.predictions import SoilFilter as SoilFilter
+    from modefront.programs.importing import import_model as import_model
+    from modefront.reports.page import report as report
     from modefront.residuals.groups import Group as Group
     from modefront.residuals.problem import UpdatingProblem as UpdatingProblem
     from modefront.residuals.problem import updating_problem as updating_problem
@@ -46,6 +49,7 @@ if TYPE_CHECKING:
     from modefront.results.results import read_results as read_results
     from modefront.study.check import check as check
     from modefront.study.definition import Study as Study
+    from modefront.study.export import export as export
     from modefront.study.file import load as load
     from modefront.study.session import run as run
     from modefront.study.session import solve as solve

@@ -15,7 +15,7 @@ import xarray as xr
 
 import modefront as mf
 from modefront import fem
-from modefront.report.page import page
+from modefront.reports.page import page
 
 HOSTILE = "<script>document.title = 'taken'</script>"
 ROOT = Path(__file__).parents[2]

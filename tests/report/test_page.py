@@ -17,9 +17,9 @@ from pages import HOSTILE, ROOT, chain, content, hostile, mesh, plate, three_gro
 import modefront as mf
 from modefront.cli.main import main
 from modefront.models.local import geometry_of
-from modefront.report.page import page
-from modefront.report.payload import payload
-from modefront.report.words import topics
+from modefront.reports.page import page
+from modefront.reports.payload import payload
+from modefront.reports.words import topics
 from modefront.results.files import FILE, write
 from modefront.results.mode_shapes import drawing, mode_shapes
 from modefront.results.schema import faults, missing
@@ -28,7 +28,7 @@ from modefront.results.soundness import unsound
 
 MEGABYTE = 1e6
 REPORT = ROOT / "report"
-PACKAGE = ROOT / "src" / "modefront" / "report"
+PACKAGE = ROOT / "src" / "modefront" / "reports"
 
 
 def test_the_policy_allows_the_script_and_the_style_of_the_page_and_nothing_else() -> None:
@@ -45,7 +45,7 @@ def test_the_policy_allows_the_script_and_the_style_of_the_page_and_nothing_else
 
 
 def test_the_script_names_no_place_outside() -> None:
-    bundle = (ROOT / "src" / "modefront" / "report" / "report.js").read_text(encoding="utf-8")
+    bundle = (ROOT / "src" / "modefront" / "reports" / "report.js").read_text(encoding="utf-8")
     hosts = set(re.findall(r"https?://([\w.-]+)", bundle))
     assert hosts == {"www.w3.org"}, "names of namespaces alone"
     assert "</script" not in bundle

@@ -15,7 +15,7 @@ from faultless import DATA, STUDY
 from refusals import command
 
 import modefront as mf
-from modefront.report.words import topics
+from modefront.reports.words import topics
 from modefront.results.checksum import checksum
 from modefront.results.files import FILE, read_dataset, write
 from modefront.results.remarks import headlines

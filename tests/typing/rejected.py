@@ -96,5 +96,6 @@ def results(problem: mf.UpdatingProblem) -> xr.DataArray:
     result.model(1.5)  # rejected
     result.table(3)  # rejected
     result.nominal.theta["k"] = 2.0  # rejected
-    mf.run(problem, "results")  # rejected
+    mf.run(problem, "results")
+    mf.run("study.toml", "results")  # rejected
     return result["theta"]

@@ -3,56 +3,46 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from modefront.cli.terminal import say
 from modefront.errors import Fault, InputError
-from modefront.programs import PROGRAMS
 from modefront.programs.base import JobOptions
-from modefront.programs.importing import Imported, Request, describe, read_jobs, write_study
+from modefront.programs.importing import Imported, describe, import_model
 
 
-@dataclass(frozen=True)
-class Given:
-    """Options of the command that may be repeated, as they are written.
+def run_import(program: str, base: Path, options: JobOptions, output: Path, **given: Any) -> None:
+    """Read the jobs of a program, write a study, and print what was found.
 
-    Attributes
-    ----------
-    parameters : ``NAME=RUN``
-    factors : ``NAME=2.0``
-    functions : ``NAME=TERM,TERM``
-    checks : ``RUN:NAME=VALUE,NAME=VALUE``
+    The options that may be repeated are given as they are written: ``parameters`` as NAME=RUN,
+    ``factors`` as NAME=2.0, ``functions`` as NAME=TERM,TERM, ``checks`` as RUN:NAME=VALUE,….
     """
-
-    parameters: Sequence[str]
-    factors: Sequence[str]
-    functions: Sequence[str]
-    checks: Sequence[str]
-
-
-def run_import(
-    program: str,
-    nominal: Path,
-    given: Given,
-    options: JobOptions,
-    output: Path,
-    modes: int | None,
-) -> None:
-    """Read the jobs of a program, write a study, and print what was found."""
-    request = Request(
-        PROGRAMS[program],
-        nominal,
-        [(name, Path(run)) for name, run in map(_parameter, given.parameters)],
-        [(name, _number("--factor", text)) for name, text in map(_factor, given.factors)],
-        dict(map(_function, given.functions)),
-        [_check(text) for text in given.checks],
-        options,
-        modes,
+    runs: dict[str, list[Path]] = {}
+    for text in given["parameters"]:
+        name, run = _pair("--parameter", text, "NAME=RUN")
+        runs.setdefault(name, []).append(Path(run))
+    factors: dict[str, list[float]] = {}
+    for text in given["factors"]:
+        name, factor = _pair("--factor", text, "NAME=FACTOR")
+        factors.setdefault(name, []).append(_number("--factor", factor))
+    functions = {}
+    for text in given["functions"]:
+        name, terms = _pair("--function", text, "NAME=TERM,TERM, such as t=t,t^3")
+        functions[name] = [term.strip() for term in terms.split(",")]
+    checks = [_check(text) for text in given["checks"]]
+    imported = import_model(
+        program,
+        base,
+        runs,
+        factors=factors,
+        functions=functions,
+        checks=checks,
+        options=options,
+        modes=given["modes"],
+        progress=lambda text: say(text, err=True),
     )
-    imported = read_jobs(request, lambda text: say(text, err=True))
-    files = write_study(imported, program, output)
-    _print(imported, files, len(given.checks))
+    _print(imported, imported.write(output), len(checks))
 
 
 def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
@@ -72,7 +62,7 @@ def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
         say("  if your program prints other frequencies, check the units (N, kg, m; N, t, mm)")
     for file in files:
         say(f"wrote {file}")
-    say(f"next: add [data] and [model.sensors] to {files[-1]}, then modefront check it")
+    say(f"next: add [data] and [model.sensors] to {files[-1]}, then modefront check {files[-1]}")
 
 
 def _pair(option: str, text: str, form: str) -> tuple[str, str]:
@@ -80,19 +70,6 @@ def _pair(option: str, text: str, form: str) -> tuple[str, str]:
     if not sign or not name.strip() or not value.strip():
         raise InputError(Fault("", option, form, repr(text)))
     return name.strip(), value.strip()
-
-
-def _parameter(text: str) -> tuple[str, str]:
-    return _pair("--parameter", text, "NAME=RUN")
-
-
-def _factor(text: str) -> tuple[str, str]:
-    return _pair("--factor", text, "NAME=FACTOR")
-
-
-def _function(text: str) -> tuple[str, list[str]]:
-    name, terms = _pair("--function", text, "NAME=TERM,TERM, such as t=t,t^3")
-    return name, [term.strip() for term in terms.split(",")]
 
 
 def _check(text: str) -> tuple[Path, dict[str, float]]:

@@ -225,12 +225,22 @@ def compare(directories: tuple[Path, ...], form: str, every: bool) -> None:
 )
 def report(directories: tuple[Path, ...], output: Path | None, figures: Path | None) -> None:
     """Write the results in DIRECTORIES as one HTML file to look at."""
-    from modefront.cli.report import run_paper_figures, run_report
+    if figures is None:
+        from modefront.reports.page import report as write_report
 
-    if figures is not None:
-        run_paper_figures(directories, figures)
-    else:
-        run_report(directories, output)
+        path = write_report(directories, output)
+        say(f"wrote {path} ({path.stat().st_size / 1e6:.2f} MB): open it in a browser")
+        return
+    from modefront.plots import paper_figures
+    from modefront.results.compare import read_together
+
+    studies = [(data.attrs.get("study") or name, data) for name, data in read_together(directories)]
+    paths = paper_figures(studies, figures)
+    for path in paths:
+        say(f"wrote {path}")
+    for number, what in ((6, "peaks of the frequency response"), (7, "probabilities of failure")):
+        if f"figure-{number}" not in [path.stem for path in paths]:
+            say(f"figure {number} is left out: no study predicts {what}")
 
 
 @cli.command()
@@ -318,17 +328,17 @@ def identify(
     required=True,
     help="Folder for the study; one that has none.",
 )
-def import_(program: str, base: Path, output: Path, modes: int | None, **given: Any) -> None:
+def import_(program: str, base: Path, output: Path, **given: Any) -> None:
     """Turn the matrices of a finite-element PROGRAM into a study.
 
     BASE is the job at the nominal values.
     """
-    from modefront.cli.import_ import Given, run_import
+    from modefront.cli.import_ import run_import
     from modefront.programs.base import JobOptions
 
-    names = ("parameters", "factors", "functions", "checks")
-    options = JobOptions(given["stiffness_name"], given["mass_name"], given["dofs"], given["deck"])
-    run_import(program, base, Given(*(given[name] for name in names)), options, output, modes)
+    names = ("stiffness_name", "mass_name", "dofs", "deck")
+    options = JobOptions(*(given.pop(name) for name in names))
+    run_import(program, base, options, output, **given)
 
 
 @cli.command()
@@ -350,9 +360,13 @@ def export(
     directory: Path, point: str | None, study: Path | None, output: Path | None, modes: int | None
 ) -> None:
     """Write a model of the results in DIRECTORY: parameters, matrices, mode shapes."""
-    from modefront.cli.export import run_export
+    from modefront.study.export import export as write_model
 
-    run_export(directory, point, study, output, modes)
+    exported = write_model(directory, output, point=point, study=study, modes=modes)
+    for file in exported.files:
+        say(f"wrote {file}")
+    for what in exported.missing:
+        say(f"not written: {what}")
 
 
 def _run(

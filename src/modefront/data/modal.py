@@ -8,6 +8,7 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.brief import as_html, brief
 
 MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std")
 """Arrays of modal data, of which data sets are the first axis."""
@@ -36,7 +37,7 @@ class MeasuredShapes:
         return bool(np.isfinite(self.sets).all())
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class ModalData:
     """Frequencies, damping ratios and mode shapes; NaN is what was not measured.
 
@@ -59,6 +60,9 @@ class ModalData:
     shape: Floats
     frequency_std: Floats
     shape_std: Floats
+
+    __repr__ = brief
+    _repr_html_ = as_html
 
     @cached_property
     def mean_frequency(self) -> Floats:

@@ -7,19 +7,22 @@ import re
 import shutil
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
+from modefront.brief import as_html, brief
 from modefront.errors import Fault, InputError, ModelError, reason, refuse, suggestion
 from modefront.fem.dofs import DIRECTIONS
 from modefront.models.dofs import number_of, write_dofs
 from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.terms import exponents_of, form_of
 from modefront.outputs import output, write_text
+from modefront.programs import PROGRAMS
 from modefront.programs.base import Job, JobOptions, Program, whole
 from modefront.programs.changes import Change, changes, other_factor, write_changes
 from modefront.programs.condense import condensed
@@ -72,7 +75,11 @@ class Request:
     modes: int | None = None
 
 
-@dataclass(frozen=True, eq=False)
+JobFiles = Path | str | Sequence[Path | str]
+"""The job of a parameter, or several."""
+
+
+@dataclass(frozen=True, eq=False, repr=False)
 class Imported:
     """Terms, frequencies and remarks of an import.
 
@@ -85,6 +92,7 @@ class Imported:
     errors : error of the terms in each run for checking
     notes : what the program did to the model, and what was done about it
     changes : lines of the nominal deck that the runs change
+    program : that made the jobs
     """
 
     nominal: Job
@@ -94,6 +102,82 @@ class Imported:
     errors: tuple[float, ...]
     notes: tuple[str, ...]
     changes: tuple[Change, ...] = ()
+    program: str = ""
+
+    def write(self, folder: Path | str) -> list[Path]:
+        """Write a study with its matrices into a folder that has none, and return the files.
+
+        Raises InputError where the folder has a study already, or cannot be written to.
+        """
+        return write_study(self, self.program, Path(folder))
+
+    __repr__ = brief
+    _repr_html_ = as_html
+
+
+# 9 arguments: the jobs, and each option of the command by keyword.
+def import_model(
+    program: str,
+    base: Path | str,
+    parameters: Mapping[str, JobFiles],
+    *,
+    factors: Mapping[str, float | Sequence[float]] | None = None,
+    functions: Mapping[str, Sequence[str]] | None = None,
+    checks: Sequence[tuple[Path | str, Mapping[str, float]]] = (),
+    options: JobOptions | None = None,
+    modes: int | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Imported:
+    """Return the model that jobs of a finite-element program determine.
+
+    Parameters
+    ----------
+    program
+        ``calculix``, ``abaqus``, ``nastran``, ``ansys`` or ``opensees``.
+    base
+        The job at the nominal values.
+    parameters
+        Names of the parameters, each with the job, or jobs, in which it alone has another value.
+    factors
+        This value over the nominal one, for each job of the parameter; 2 unless given.
+    functions
+        Terms of a parameter on which the matrices depend, where not linearly: ``["t", "t^3"]``.
+    checks
+        Further jobs with the factors of parameters in them, which are compared with the terms.
+    options
+        What holds for all jobs.
+    modes
+        Frequencies to compute; a few unless given, none of a large model.
+    progress
+        Is told in words what is done.
+
+    Raises
+    ------
+    InputError
+        For jobs that cannot be read, do not belong together, or are not affine.
+    """
+    if program not in PROGRAMS:
+        found = suggestion(program, list(PROGRAMS))
+        raise InputError(Fault("", "program", f"one of {', '.join(PROGRAMS)}", found))
+
+    def listed(values: Mapping[str, Any], one: tuple[type, ...]) -> list[tuple[str, Any]]:
+        return [
+            (name, value)
+            for name, given in values.items()
+            for value in ([given] if isinstance(given, one) else given)
+        ]
+
+    request = Request(
+        PROGRAMS[program],
+        Path(base),
+        [(name, Path(job)) for name, job in listed(parameters, (str, Path))],
+        listed(factors or {}, (int, float)),
+        functions or {},
+        [(Path(job), values) for job, values in checks],
+        options or JobOptions(),
+        modes,
+    )
+    return replace(read_jobs(request, progress), program=program)
 
 
 def read_jobs(request: Request, progress: Callable[[str], None] = lambda _: None) -> Imported:

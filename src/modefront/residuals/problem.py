@@ -16,6 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.brief import as_html
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.base import Model
@@ -71,6 +72,8 @@ class UpdatingProblem:
             f"UpdatingProblem({p} parameters, {len(data.modes)} modes at {len(data.sensors)} "
             f"sensors in {sets}, groups {', '.join(self.objectives)})"
         )
+
+    _repr_html_ = as_html
 
     @cached_property
     def _stacks(self) -> tuple[tuple[Stack, ...], ...]:

@@ -15,6 +15,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import combinations
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 import xarray as xr
@@ -26,6 +27,9 @@ from modefront.errors import Fault, InputError
 from modefront.predictions import KINDS
 from modefront.results.files import read_dataset
 from modefront.results.selection import front_points
+
+if TYPE_CHECKING:
+    import pandas as pd
 
 PREDICTED = ("frequency", "mac")
 """Predictions of the modes that every file of results holds."""
@@ -109,13 +113,45 @@ class Apart:
     reference: float
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class Comparison:
-    """Several results side by side."""
+    """Several results side by side.
+
+    Attributes
+    ----------
+    groups : names of the objectives of all
+    fronts : one summary of each
+    pairs : distances of each two
+    """
 
     groups: tuple[str, ...]
     fronts: tuple[Summary, ...]
     pairs: tuple[Apart, ...]
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """One column a study, one row a quantity of its front."""
+        import pandas as pd
+
+        columns = [
+            [x.points, x.length, x.distance, x.reference, x.reference_distance] for x in self.fronts
+        ]
+        rows = [
+            "Pareto-optimal points",
+            "length of the front",
+            "least distance from origin",
+            "reference model",
+            "its distance from origin",
+        ]
+        names = short_names([x.name for x in self.fronts])
+        return pd.DataFrame(dict(zip(names, columns, strict=True)), index=pd.Index(rows))
+
+    def __repr__(self) -> str:
+        """Return the table."""
+        return str(self.table.to_string(float_format="{:.4g}".format))
+
+    def _repr_html_(self) -> str:
+        return str(self.table.to_html(float_format="{:.4g}".format))
 
 
 def compare(folders: Sequence[str | Path]) -> Comparison:

@@ -14,6 +14,7 @@ import scipy.sparse
 import xarray as xr
 
 from modefront._typing import Floats
+from modefront.brief import as_html, brief
 from modefront.errors import ModelError
 from modefront.front.point import Kind
 from modefront.models.local import matrices_at
@@ -32,8 +33,11 @@ if TYPE_CHECKING:
 SHOWN = (Kind.NOMINAL, Kind.MOST_PROBABLE, Kind.OPTIMAL, Kind.EQUAL, Kind.EDGE)
 """Kinds of models in the short representation, in its order."""
 
+SENTENCES, ROWS, COLUMNS = 8, 8, 6
+"""Sentences, models and groups in the short representation."""
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class FullShapes:
     """Modes of a model at all degrees of freedom.
 
@@ -46,8 +50,11 @@ class FullShapes:
     frequency: Floats
     shape: Floats
 
+    __repr__ = brief
+    _repr_html_ = as_html
 
-@dataclass(frozen=True)
+
+@dataclass(frozen=True, repr=False)
 class ReportedModel:
     """A model of the results.
 
@@ -69,6 +76,9 @@ class ReportedModel:
     frequency: Floats
     mac: Floats
     problem: UpdatingProblem | None = None
+
+    __repr__ = brief
+    _repr_html_ = as_html
 
     @property
     def stiffness(self) -> scipy.sparse.csc_array:
@@ -257,25 +267,32 @@ class Results:
         return self.dataset.isel(point=np.flatnonzero(self["kind"].values == kind.value))
 
     @property
-    def _title(self) -> str:
+    def _said(self) -> list[str]:
+        """The verdict, or the first findings of results that have none."""
         front = self.front["pareto"].values
-        optimal = f"{int(front.sum())} of {front.size} points of the front are Pareto optimal"
         name = str(self.attrs.get("study", "")) or "results"
-        return f"{name}: {optimal}; {self.attrs['model_evaluations']} eigenproblems"
+        optimal = f"{int(front.sum())} of {front.size} points of the front are Pareto optimal"
+        said = self.verdict or [str(x) for x in self["finding"].values]
+        return [f"{name}: {optimal}", *said[:SENTENCES]]
 
     @property
     def _short(self) -> pd.DataFrame:
+        """Errors of the groups of the first models."""
         labels = [str(x) for kind in SHOWN for x in self._of(kind)["label"].values]
-        return self.table(*labels)
+        rows = [self._position(label) for label in labels[:ROWS]]
+        error, groups = self["error"].values[rows], self["group"].values
+        import pandas as pd
+
+        columns = {f"error {group}": error[:, g] for g, group in enumerate(groups[:COLUMNS])}
+        return pd.DataFrame(columns, index=pd.Index(labels[:ROWS], name="model"))
 
     def __repr__(self) -> str:
-        lines = [self._title, "", self._short.to_string(float_format=lambda x: f"{x:.4g}")]
-        return "\n".join([*lines, "", *map(str, self["finding"].values[:3])])
+        """Return the verdict, and the errors of the first models."""
+        return "\n".join([*self._said, "", self._short.to_string(float_format="{:.4g}".format)])
 
     def _repr_html_(self) -> str:
-        table = self._short.to_html(float_format=lambda x: f"{x:.4g}", escape=True)
-        findings = "".join(f"<li>{html.escape(str(x))}</li>" for x in self["finding"].values[:3])
-        return f"<p>{html.escape(self._title)}</p>{table}<ul>{findings}</ul>"
+        said = "".join(f"<p>{html.escape(text)}</p>" for text in self._said)
+        return f"{said}{self._short.to_html(float_format='{:.4g}'.format, escape=True)}"
 
 
 def read_results(folder: Path | str, problem: UpdatingProblem | None = None) -> Results:

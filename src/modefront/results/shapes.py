@@ -19,6 +19,7 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats
+from modefront.brief import as_html, brief
 from modefront.data.modal import ModalData
 from modefront.errors import ModelError
 from modefront.models.geometry import Geometry
@@ -26,7 +27,7 @@ from modefront.models.local import matrices_at
 from modefront.residuals.problem import UpdatingProblem
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, repr=False)
 class PairedShapes:
     """Model modes that are paired with the measured ones, each pair in one scale.
 
@@ -52,6 +53,9 @@ class PairedShapes:
     measured: Floats
     sensors: tuple[str, ...]
     geometry: Geometry | None
+
+    __repr__ = brief
+    _repr_html_ = as_html
 
 
 def paired_shapes(row: xr.Dataset, problem: UpdatingProblem) -> PairedShapes:

@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from modefront.brief import as_html
 from modefront.diagnosis.comparison import COMPARED, Comparison, compare
 from modefront.diagnosis.diagnose import diagnose
 from modefront.diagnosis.pairs import BeyondCandidates, DistantPair, UnseenMode
@@ -89,6 +90,8 @@ class Findings:
         more = [f"and {count - SHOWN} more: see warnings"] * (count > SHOWN)
         first = f"Findings: derivatives {agree} finite differences; {count or 'no'} warnings"
         return "\n".join([first, *self.warnings[:SHOWN], *more])
+
+    _repr_html_ = as_html
 
     @property
     def sound(self) -> bool:

@@ -8,6 +8,7 @@ from dataclasses import dataclass, field, replace
 from pathlib import Path
 from typing import Annotated
 
+from modefront.brief import as_html
 from modefront.diagnosis.places import DataDirection, UnusedGroup
 from modefront.errors import Fault, InputError, refuse
 from modefront.front.given import Weighted, label_faults
@@ -88,6 +89,8 @@ class Study:
     def __repr__(self) -> str:
         """Return a line with the sizes of the problem."""
         return f"Study({self.name!r}, {self.problem}, method={self.pareto.method!r})"
+
+    _repr_html_ = as_html
 
     def _contradictions(self) -> Iterator[Fault]:
         try:

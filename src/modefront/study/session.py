@@ -119,7 +119,7 @@ def solve(
 
 # 7 arguments: the study, and how it is run by keyword.
 def run(
-    study: Study,
+    study: Study | UpdatingProblem,
     folder: Path | str | None = None,
     *,
     fresh: bool = False,
@@ -128,16 +128,17 @@ def run(
     workers: int = 1,
     scheduler: str | None = None,
 ) -> Results:
-    """Return the results of a study, and write them to ``results.nc`` in a folder.
+    """Return the results of a study or a problem, and write them to ``results.nc`` in a folder.
 
     Parameters
     ----------
     study
-        The study. One that was read from a file continues where an interrupted run stopped: tasks
-        that are done are not done again. One that was made in Python starts over.
+        The study, or a problem with the options that are usual. A study that was read from a file
+        continues where an interrupted run stopped: tasks that are done are not done again. One
+        that was made in Python starts over.
     folder
-        Folder for ``results.nc`` and the results of the tasks; made where there is none. None
-        writes nothing.
+        Folder for ``results.nc`` and the results of the tasks; made where there is none. None to
+        write nothing.
     fresh
         Whether a study from a file starts over as well. Earlier results are renamed, never deleted.
     refined
@@ -166,7 +167,7 @@ def run(
 
 def run_on(
     carrier: AbstractContextManager[Backend],
-    study: Study,
+    study: Study | UpdatingProblem,
     folder: Path | str | None,
     *,
     fresh: bool = False,
@@ -177,6 +178,8 @@ def run_on(
     from modefront.results.files import FILE, write
     from modefront.results.results import Results
 
+    if isinstance(study, UpdatingProblem):
+        study = Study(study)
     if refined is not None:
         study = replace(study, pareto=replace(study.pareto, refined=refined))
     study = study.completed()

@@ -17,7 +17,10 @@ import xarray as xr
 
 from modefront.errors import Fault, InputError, reason
 from modefront.outputs import write_text
-from modefront.report.payload import payload
+from modefront.reports.payload import payload
+from modefront.results.compare import read_together
+
+SUFFIXES = (".html", ".htm")
 
 PAGE = """\
 <!doctype html>
@@ -42,7 +45,7 @@ PAGE = """\
 def page(results: Sequence[tuple[str, xr.Dataset]]) -> str:
     """Return the page of sound results, given with the names of their folders."""
     title, data = payload(results)
-    folder = files("modefront.report")
+    folder = files("modefront.reports")
     script = (folder / "report.js").read_text(encoding="utf-8")
     style = (folder / "style.css").read_text(encoding="utf-8")
     policy = (
@@ -53,6 +56,29 @@ def page(results: Sequence[tuple[str, xr.Dataset]]) -> str:
     return PAGE.format(
         policy=policy, title=html.escape(shown), style=style, data=data, script=script
     )
+
+
+def report(folders: Path | str | Sequence[Path | str], output: Path | str | None = None) -> Path:
+    """Write the results in folders as one HTML file, and return its path.
+
+    Parameters
+    ----------
+    folders
+        Folder of results, or several of studies with the same groups.
+    output
+        File to write; ``report.html`` in the first folder unless given.
+
+    Raises
+    ------
+    InputError
+        For results that are not sound, and a file that cannot be written.
+    """
+    listed = [folders] if isinstance(folders, Path | str) else folders
+    path = Path(output) if output else Path(listed[0]) / "report.html"
+    if path.suffix.lower() not in SUFFIXES:
+        raise InputError(Fault(str(path), "-o", "a file that ends in .html", f"'{path.name}'"))
+    write_page(read_together([Path(folder) for folder in listed]), path)
+    return path
 
 
 def write_page(results: Sequence[tuple[str, xr.Dataset]], path: Path) -> None:

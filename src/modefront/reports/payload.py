@@ -19,7 +19,7 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront._version import __version__
 from modefront.predictions import KINDS, ResultVariable
-from modefront.report.words import texts, topics
+from modefront.reports.words import texts, topics
 from modefront.results.compare import short_names
 from modefront.results.selection import front_points
 

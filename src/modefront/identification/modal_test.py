@@ -1,0 +1,259 @@
+"""From the file of a modal test to its modes, and these as files."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from modefront._typing import Complexes
+from modefront.brief import as_html
+from modefront.data.csv import is_reserved, write_csv
+from modefront.data.modal import ModalData
+from modefront.data.modal_test import ModalTest, read_test
+from modefront.data.uff import write_uff55
+from modefront.errors import Fault, InputError, UnfinishedError
+from modefront.identification.methods.hammer import LEAST_LINES
+from modefront.identification.methods.hammer import identify as identify_set
+from modefront.identification.record import Identification
+from modefront.identification.sets import CombinedModes, combine, modal_data_of
+from modefront.outputs import write_text
+
+POOR_FIT = 0.5
+"""Residual of a function over its norm from which on it is pointed out."""
+
+NAMED = 3
+"""Functions that are fitted poorly, modes and warnings that are named."""
+
+
+@dataclass(frozen=True, repr=False)
+class IdentifiedTest:
+    """Modes of a modal test.
+
+    Attributes
+    ----------
+    test : its functions and options
+    identified : modes of each data set
+    modes : of all sets under common numbers; None where there are none
+    """
+
+    test: ModalTest
+    identified: tuple[Identification, ...]
+    modes: CombinedModes | None
+
+    @property
+    def names(self) -> list[str]:
+        """Names of the data sets."""
+        return [each.name for each in self.test.sets]
+
+    @cached_property
+    def data(self) -> ModalData:
+        """The modal data that studies read; raises UnfinishedError where no mode was found."""
+        if self.modes is None:
+            raise UnfinishedError("no mode was found in the band")
+        return modal_data_of(self.modes)
+
+    @property
+    def warnings(self) -> list[str]:
+        """What is to be looked at: in the files, and in the fit of each data set."""
+        read = [text for part in self.test.sets for text in part.assembled.warnings]
+        fitted = [
+            f"set {name!r}: {text}"
+            for name, identification in zip(self.names, self.identified, strict=True)
+            for text in _warnings(identification)
+        ]
+        return read + fitted
+
+    def write(self, path: Path | str) -> list[Path]:
+        """Write modal data, in ``.uff`` as dataset 55, and all else beside it; return the files.
+
+        Raises InputError for a file that ends in neither, that has no folder, or whose columns
+        sensors would take.
+        """
+        path = writable(path)
+        report = path.with_name(path.stem + "-identification.json")
+        if path.suffix.lower() == ".uff":
+            modes = modal_modes(self)
+            write_uff55(path, self.names, modes, self.data.sensors)
+        else:
+            sensors = self.data.sensors
+            clashing = [name for name in sensors if is_reserved(name, sensors)]
+            if clashing:
+                expected = "names of sensors that are no columns of modal data"
+                raise InputError(Fault("sensors", repr(clashing[0]), expected, "a reserved name"))
+            write_csv(path, self.data, self.modes.damping_std if self.modes else None)
+        text = json.dumps(self.as_plain(), indent=1, allow_nan=False)
+        write_text(report, text + "\n")
+        return [path, report]
+
+    def as_plain(self) -> dict[str, Any]:
+        """Return all that was identified as plain data; complex numbers are [real, imaginary]."""
+        sets = [
+            {"name": name} | _plain_set(identification)
+            for name, identification in zip(self.names, self.identified, strict=True)
+        ]
+        return {"test": self.test.name, "sets": sets}
+
+    def __repr__(self) -> str:
+        """Return the modes, a line each, and the first warnings."""
+        out = [f"{self.test.name}: {len(self.names)} data sets"]
+        if self.modes is not None:
+            columns = zip(
+                np.nanmean(self.modes.frequency, axis=0),
+                np.nanmean(self.modes.damping, axis=0),
+                strict=True,
+            )
+            lines = [f"  mode {r}: {f:.5g} Hz, {z:.2%}" for r, (f, z) in enumerate(columns, 1)]
+            more = [f"  and {len(lines) - 12} more"] * (len(lines) > 12)
+            out += [*lines[:12], *more]
+        warnings = self.warnings
+        out += [f"warning: {text}" for text in warnings[:NAMED]]
+        rest = len(warnings) - NAMED
+        return "\n".join([*out, *([f"and {rest} more: see warnings"] if rest > 0 else [])])
+
+    _repr_html_ = as_html
+
+
+def identify(test: Path | str, band: tuple[float, float] | None = None) -> IdentifiedTest:
+    """Return the modes of a modal test.
+
+    Parameters
+    ----------
+    test
+        File of the test: TOML, a universal file, or CSV with frequency response functions.
+    band
+        Least and greatest frequency in Hz; that of the test file, or all lines, unless given.
+
+    Raises
+    ------
+    InputError
+        For files that are wrong, and for a band without lines or functions.
+    """
+    path = Path(test)
+    read = read_test(path)
+    band = band or read.band
+    _check_band(path, read, band)
+    identified = tuple(identify_set(part.assembled.data, band, read.modes) for part in read.sets)
+    names = [part.name for part in read.sets]
+    found = any(identification.modes for identification in identified)
+    return IdentifiedTest(read, identified, combine(names, identified) if found else None)
+
+
+def writable(path: Path | str) -> Path:
+    """Return the path of modal data; raises InputError where none can be written to it."""
+    path = Path(path)
+    if path.suffix.lower() not in (".csv", ".uff"):
+        expected = "a file that ends in .csv, or in .uff for dataset 55"
+        raise InputError(Fault("modefront identify", "-o", expected, str(path)))
+    if not path.parent.is_dir():
+        raise InputError(Fault(str(path.parent), "folder", "a folder", "none"))
+    return path
+
+
+def _check_band(path: Path, test: ModalTest, band: tuple[float, float] | None) -> None:
+    for data_set in test.sets:
+        f = data_set.assembled.data.frequency
+        low, high = band or (0.0, np.inf)
+        count = int(np.count_nonzero((f >= low) & (f <= high) & (f > 0)))
+        if count < LEAST_LINES:
+            expected = f"at least {LEAST_LINES} lines of set {data_set.name!r} within it"
+            reach = f"{count}: the files reach from {f[0]:g} to {f[-1]:g} Hz"
+            raise InputError(Fault(str(path), "band", expected, reach))
+        inside = data_set.assembled.data.within(low, high)
+        if not np.any(np.abs(np.nan_to_num(inside.H)) > 0):
+            expected = "functions that are not zero"
+            raise InputError(Fault(str(path), "band", expected, f"zeros in set {data_set.name!r}"))
+
+
+def _warnings(identification: Identification) -> list[str]:
+    """Return the warnings on one identification."""
+    out = []
+    data, residuals = identification.functions.data, identification.functions.residuals
+    if not identification.converged:
+        out.append("the maximum of the likelihood was not reached within its tolerance")
+    if residuals.chi2 > 1.5:
+        out.append(
+            f"the model leaves {residuals.chi2:.1f} times the variance that the data have: "
+            "standard deviations are widened accordingly; nonlinearity, leakage or missing modes"
+        )
+    if residuals.widening > 1.5:
+        out.append(
+            "neighbouring lines are correlated: standard deviations are "
+            f"{residuals.widening**0.5:.1f} times those of independent lines; windows, zero "
+            "padding or drifting modes"
+        )
+    share = np.nan_to_num(residuals.share)
+    poor = [(float(share[j, i]), j, i) for j, i in np.argwhere(share > POOR_FIT).tolist()]
+    if poor:
+        worst = [
+            f"{data.references[j]} to {data.responses[i]} {x:.0%}"
+            for x, j, i in sorted(poor, reverse=True)[:NAMED]
+        ]
+        more = f" and {len(poor) - NAMED} more" * (len(poor) > NAMED)
+        out.append(
+            f"{len(poor)} of {share.size} functions are fitted poorly, residuals over norms: "
+            f"{', '.join(worst)}{more}"
+        )
+    return out
+
+
+def modal_modes(identified: IdentifiedTest) -> list[list[tuple[complex, Complexes]]]:
+    """Return the pole and the complex shape at all sensors of each mode of each set."""
+
+    def at(phi: Complexes, responses: Sequence[str]) -> Complexes:
+        where = dict(zip(responses, phi, strict=True))
+        return np.array([where.get(name, 0j) for name in identified.data.sensors])
+
+    return [
+        [(mode.pole, at(mode.shape.complex_shape, each.responses)) for mode in each.modes]
+        for each in identified.identified
+    ]
+
+
+def _pairs(values: Any) -> list[list[float | None]]:
+    return [[_number(float(x.real)), _number(float(x.imag))] for x in np.asarray(values, complex)]
+
+
+def _number(value: float) -> float | None:
+    return value if np.isfinite(value) else None
+
+
+def _plain_set(identification: Identification) -> dict[str, Any]:
+    """Return what was identified of one data set as plain data."""
+    functions, residuals = identification.functions, identification.functions.residuals
+    return {
+        "references": list(functions.data.references),
+        "responses": list(identification.responses),
+        "band": list(identification.band),
+        "chi2": residuals.chi2,
+        "correlation_factor": residuals.widening,
+        "force_noise": [float(np.sqrt(b)) for b in residuals.force],
+        "residual": [[_number(float(x)) for x in row] for row in residuals.share],
+        "residual_terms": functions.residual_terms,
+        "evaluations": identification.evaluations,
+        "converged": identification.converged,
+        "modes": [
+            {
+                "frequency": mode.frequency,
+                "frequency_std": mode.frequency_std,
+                "damping": mode.damping,
+                "damping_std": mode.damping_std,
+                "pole": [mode.pole.real, mode.pole.imag],
+                "shape": _pairs(mode.shape.complex_shape),
+                "real_shape_std": [_number(float(x)) for x in mode.shape_std],
+                "phase_collinearity": mode.shape.collinearity,
+                "loss": mode.shape.loss,
+                "participation": _pairs(mode.participation),
+            }
+            for mode in identification.modes
+        ],
+        "rejected": [
+            {"frequency": x.frequency, "damping": x.damping, "reason": x.reason}
+            for x in identification.rejected
+        ],
+    }

@@ -1,0 +1,83 @@
+"""What the commands do, done in Python: paths in, results out that are shown in a few lines."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import modefront as mf
+from modefront.study.examples import write_example
+
+QUICK = mf.Search(doubt=0.5)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """Return a folder with a study of the three-story building and its results."""
+    out = tmp_path_factory.mktemp("python")
+    write_example("three-story-c0", out)
+    text = (out / "study.toml").read_text()
+    (out / "study.toml").write_text(text + "\n[search]\ndoubt = 0.5\n")
+    study = mf.load(out / "study.toml")
+    mf.run(replace(study, pareto=mf.Pareto(points=3)), out / "results")
+    return out
+
+
+def assert_short(shown: Any) -> None:
+    assert 1 <= len(repr(shown).splitlines()) <= 20
+    assert "<" in shown._repr_html_()
+
+
+def test_results_are_shown_in_a_few_lines(folder: Path) -> None:
+    study = mf.load(folder / "study.toml")
+    results = mf.read_results(folder / "results", study.problem)
+    for shown in (
+        *(study, study.problem, study.problem.data, mf.check(study), results, results.reference),
+        *(results.reference.modes(2), results.shapes(0), mf.compare([folder / "results"])),
+    ):
+        assert_short(shown)
+
+
+def test_fronts_are_compared_by_the_texts_of_their_paths(folder: Path) -> None:
+    name = str(folder / "results")
+    comparison = mf.compare([name, name])
+    assert comparison.pairs[0].least == 0.0
+    assert list(comparison.table.index)[3] == "reference model"
+
+
+def test_a_report_is_written_beside_the_results_or_where_it_is_wanted(folder: Path) -> None:
+    assert mf.report(str(folder / "results")) == folder / "results" / "report.html"
+    page = mf.report([folder / "results", folder / "results"], folder / "both.html")
+    assert page.read_text(encoding="utf-8").startswith("<!doctype html>")
+    with pytest.raises(mf.InputError, match=r"ends in \.html, found 'page\.txt'"):
+        mf.report(folder / "results", folder / "page.txt")
+
+
+def test_a_model_is_exported_with_the_study_that_its_results_name(tmp_path: Path) -> None:
+    write_example("three-story-c0", tmp_path)
+    study = mf.load(tmp_path / "study.toml")
+    quick = replace(study, pareto=mf.Pareto(points=2), search=QUICK)
+    mf.run(quick, tmp_path / "results")
+    with pytest.raises(mf.InputError, match="the label of a model"):
+        mf.export(tmp_path / "results", point="nbi-0")
+    with pytest.raises(mf.InputError, match="with other inputs"):
+        mf.export(tmp_path / "results")  # options that were changed in Python are in no file
+
+
+def test_modes_of_a_test_are_data_of_a_study(tmp_path: Path) -> None:
+    write_example("hammer-test", tmp_path)
+    found = mf.identify(str(tmp_path / "m0-set1-floor3.csv"), band=(1.0, 25.0))
+    assert_short(found)
+    assert found.data.frequency[0, 0] == pytest.approx(4.7357, rel=1e-3)
+    written = found.write(tmp_path / "modes.csv")
+    assert [path.name for path in written] == ["modes.csv", "modes-identification.json"]
+    np.testing.assert_allclose(mf.read_csv(written[0]).frequency, found.data.frequency, rtol=1e-6)
+
+
+def test_a_program_that_is_not_known_is_named() -> None:
+    with pytest.raises(mf.InputError, match=r"one of calculix, abaqus, .*found 'calculx'"):
+        mf.import_model("calculx", "base", {"E": "E2"})
