@@ -22,6 +22,7 @@ from problems import (
     three_wells,
 )
 
+import modefront as mf
 from modefront._typing import Bools, Floats
 from modefront.errors import InputError
 from modefront.front.archive import Archive, Outcome, recorded
@@ -209,6 +210,22 @@ def test_at_its_budget_a_search_ends_and_says_what_did_not_converge(budget: int)
         for point in pareto_front(whole, ONES, Pareto(points=20), seed=1).points
     )
     assert len(whole.all) > len(problem.all)
+    assert front.open
+
+
+def test_what_a_search_leaves_open_at_its_budget_is_a_finding() -> None:
+    names = ["k1", "k2", "k3"]
+    model = mf.chain(names, [2.0, 1.5, 1.0], [3e3, 2e3, 4e3], stiffness_parameters=names)
+    truth = model.modes(np.array([1.1, 0.9, 1.05]), 3)
+    data = mf.modal_data(truth.frequency, truth.phi.T + 0.02, model.sensors)
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    parameters = [mf.Parameter(name, nominal=1.0, bounds=(0.5, 2.0)) for name in names]
+    problem = mf.updating_problem(model, data, groups, parameters=parameters)
+    text = "the search ended at its budget"
+    short = mf.solve(problem, points=5, search=Search(evaluations=30))
+    assert [x for x in short["finding"].values.tolist() if x.startswith(text) and "edge-" in x]
+    whole = mf.solve(problem, points=5)
+    assert not [x for x in whole["finding"].values.tolist() if x.startswith(text)]
 
 
 @pytest.mark.parametrize(

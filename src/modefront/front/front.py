@@ -33,7 +33,7 @@ class Edge:
     doubtful: bool = False
 
 
-# 12 fields: everything that a search leaves, which tasks keep as one record.
+# 13 fields: everything that a search leaves, which tasks keep as one record.
 @dataclass(frozen=True)
 class Front:
     """A Pareto front with its edges, its weighted models and its gaps.
@@ -54,6 +54,7 @@ class Front:
     places : (places,) the point of the front, from 0, to which each of them led; -1 for none
     known : (models, n) objectives of evaluated models that no evaluated model dominates
     sizes : (n,) typical sizes of the objectives, of random models; empty where not known
+    open : labels of what the search had not finished when its budget was spent
     """
 
     method: str
@@ -68,6 +69,7 @@ class Front:
     places: Ints = field(default_factory=lambda: np.zeros(0, dtype=np.intp))
     known: Floats = field(default_factory=lambda: np.zeros((0, 0)))
     sizes: Floats = field(default_factory=lambda: np.zeros(0))
+    open: tuple[str, ...] = ()
 
     @property
     def reference(self) -> Point:

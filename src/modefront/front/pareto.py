@@ -18,7 +18,7 @@ from modefront.front.front import Edge, Front
 from modefront.front.gaps import NARROW, Gap, gaps
 from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
-from modefront.front.point import Kind, Point, of_kind
+from modefront.front.point import Kind, Point, label, of_kind
 from modefront.front.proposers.base import Proposer, Rate
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
@@ -160,7 +160,16 @@ class _Run:
             places,
             self.state.archive.J.copy(),
             sizes,
+            self._open(),
         )
+
+    def _open(self) -> tuple[str, ...]:
+        """Return what the search had not finished at its budget, as labels; once for all points."""
+        names: dict[Key, str] = {("edge", x): label(Kind.EDGE, x) for x in self.problem.objectives}
+        names |= {("weights", k.value, x): label(k, x) for k, x, _ in self._weights()}
+        left = self.loop.open
+        between = ("points between the edges",) * bool(left - names.keys())
+        return (*(text for key, text in names.items() if key in left), *between)
 
     @property
     def places(self) -> list[Place]:

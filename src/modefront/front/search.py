@@ -16,7 +16,7 @@ from modefront.front.archive import recorded
 from modefront.front.proposers.base import Offer, Proposer
 from modefront.front.state import State
 from modefront.options import check_fields, number, whole
-from modefront.work.task import Executor, Task
+from modefront.work.task import Executor, Key, Task
 
 BATCH = 6
 """Offers that are solved at the same time."""
@@ -63,6 +63,7 @@ class Loop:
     work : solves the offers
     turn : number of batches that were solved
     costs : searches and evaluations of each proposer
+    open : subproblems for which offers were left at the budget
     """
 
     state: State
@@ -71,13 +72,16 @@ class Loop:
     work: Executor
     turn: int = 0
     costs: dict[str, list[int]] = field(default_factory=dict)
+    open: set[Key] = field(default_factory=set)
 
     def run(self, stage: str) -> None:
-        """Search until nothing is worth it."""
-        while self.state.evaluations < self.search.evaluations:
-            chosen = self._chosen()
-            if not chosen:
+        """Search until nothing is worth it, or until the budget is spent."""
+        while offers := self._offers():
+            if self.state.evaluations >= self.search.evaluations:
+                places = self.state.places
+                self.open |= {places[offer.place].subproblem.key for _, offer in offers}
                 break
+            chosen = offers[:BATCH]
             self.turn += 1
             tasks = [
                 Task(
@@ -94,8 +98,8 @@ class Loop:
                 spent[0] += 1
                 spent[1] += outcome.evaluations
 
-    def _chosen(self) -> list[tuple[Proposer, Offer]]:
-        """Return the offers with the greatest chance per evaluation."""
+    def _offers(self) -> list[tuple[Proposer, Offer]]:
+        """Return the offers worth making, the greatest chance per evaluation first."""
         offers = []
         for place, proposer in enumerate(self.proposers):
             cost = self._cost(proposer.name)
@@ -103,7 +107,7 @@ class Loop:
                 if offer.chance >= self.search.doubt:
                     offers.append((offer.chance / cost, -place, proposer, offer))
         offers.sort(key=lambda each: each[:2], reverse=True)
-        return [(proposer, offer) for _, _, proposer, offer in offers[:BATCH]]
+        return [(proposer, offer) for _, _, proposer, offer in offers]
 
     def _cost(self, name: str) -> float:
         """Return the evaluations that a search is expected to take."""

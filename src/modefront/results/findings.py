@@ -30,17 +30,18 @@ from modefront.uncertainty.validity import LinearisationWarning
 class Rank(IntEnum):
     """Order of findings."""
 
-    WEIGHTS = 0
-    IDLE = 1
-    ALL_DATA = 2
-    MANIFOLD = 3
-    FLAT = 4
-    OF_GROUP = 5
-    SPENT = 6
-    ALIKE = 7
-    SCATTER = 8
-    LINEARISATION = 9
-    DETERMINED = 10
+    BUDGET = 0
+    WEIGHTS = 1
+    IDLE = 2
+    ALL_DATA = 3
+    MANIFOLD = 4
+    FLAT = 5
+    OF_GROUP = 6
+    SPENT = 7
+    ALIKE = 8
+    SCATTER = 9
+    LINEARISATION = 10
+    DETERMINED = 11
 
 
 Finding = tuple[Rank, str]
@@ -61,6 +62,7 @@ def findings(
 ) -> list[str]:
     """Return the sentences; ``front`` holds all points, those of ``analysis`` too."""
     out = [
+        *_open(front),
         *_weights(problem, front),
         *_doubtful(problem, front),
         *_unknown_ends(front),
@@ -95,6 +97,15 @@ def _weights(problem: UpdatingProblem, front: Front) -> list[Finding]:
             f"gives {label(Kind.MOST_PROBABLE)}, which is better"
         )
     return [(Rank.WEIGHTS, f"there is no {label(Kind.OPTIMAL)}: {why}. {then}")]
+
+
+def _open(front: Front) -> list[Finding]:
+    """Return what the search had not finished when its budget was spent."""
+    if not front.open:
+        return []
+    what = enumeration(front.open)
+    text = f"the search ended at its budget, and better models are likely for {what}: raise "
+    return [(Rank.BUDGET, f"{text}[search] evaluations")]
 
 
 def _doubtful(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
