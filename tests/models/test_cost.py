@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
 import pytest
 import scipy.sparse
 
 import modefront as mf
+from modefront.models.base import full_of, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.reduced.cost import Estimate, estimate
 from modefront.models.reduced.model import ReducedModel
@@ -54,6 +57,23 @@ def test_a_basis_is_taken_where_the_estimate_is_less(
     model = problem(chain(size, members), mf.Reduction()).model
     assert isinstance(model, ReducedModel) == reduced
     assert isinstance(problem(chain(size, members), mf.Reduction("off")).model, MatrixModel)
+
+
+def test_every_model_says_which_one_is_solved_in_full_even_one_that_does_not_know() -> None:
+    full = chain(120, 2)
+    assert full_of(full) is full
+    reduced = problem(full, mf.Reduction(1e-8)).model
+    assert is_reduced(reduced)
+    assert isinstance(full_of(reduced), MatrixModel)
+
+    class Own:
+        """A model of a user, written before models said so."""
+
+        parameters, sensors, size, unused, places, directions = (), (), 1, (), (), ()
+
+    own: Any = Own()
+    assert full_of(own) is own
+    assert not is_reduced(own)
 
 
 def test_the_gain_is_the_ratio_of_both_estimates() -> None:

@@ -104,8 +104,8 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
     above the tolerance where it could not be met: for want of memory, or because the model has no
     modes where a snapshot is to be taken. Any other model needs no certificate.
     """
-    model = problem.model
-    if not isinstance(model, ReducedModel):
+    model = _reduced(problem)
+    if model is None:
         return search(work=work, known=None)
     model.restart()
     front: Front | None = None
@@ -152,8 +152,8 @@ def certified_points(
     problem: UpdatingProblem, points: Sequence[Point], work: Executor
 ) -> list[Point]:
     """Return points with the estimated errors of a reduced model, if it is one."""
-    model = problem.model
-    if not isinstance(model, ReducedModel) or not points:
+    model = _reduced(problem)
+    if model is None or not points:
         return list(points)
     kept = _certified(problem, model, [point.solution for point in points], "others", work)
     return [replace(point, solution=x) for point, x in zip(points, kept, strict=True)]
@@ -161,16 +161,16 @@ def certified_points(
 
 def certificate_attributes(problem: UpdatingProblem) -> dict[str, str | int | float]:
     """Return the tolerance of the certificates, if there are any."""
-    model = problem.model
-    return {"eigenvalue_tolerance": model.tolerance} if isinstance(model, ReducedModel) else {}
+    model = _reduced(problem)
+    return {"eigenvalue_tolerance": model.tolerance} if model else {}
 
 
 def certificate_values(
     problem: UpdatingProblem, solutions: Sequence[Solution], prefix: str = ""
 ) -> dict[str, object]:
     """Return the errors of solutions as values of results, if the model is a reduced one."""
-    model = problem.model
-    if not isinstance(model, ReducedModel):
+    model = _reduced(problem)
+    if model is None:
         return {}
     eigenvalue, shape = (
         np.array([x.evaluation.quantities[name] for x in solutions]).reshape(len(solutions), -1)
@@ -181,6 +181,11 @@ def certificate_values(
         prefix + ERRORS[1]: shape,
         f"{prefix}certified": (eigenvalue <= model.tolerance).all(axis=1),
     }
+
+
+def _reduced(problem: UpdatingProblem) -> ReducedModel | None:
+    """Return the model whose solutions need certificates; None where it is solved in full."""
+    return problem.model if isinstance(problem.model, ReducedModel) else None
 
 
 @dataclass(frozen=True)

@@ -12,8 +12,8 @@ from modefront.data.modal import MEASURED, ModalData
 from modefront.diagnosis.fit import Updating
 from modefront.diagnosis.measured import Measured, log_frequencies, mac_values, measured
 from modefront.errors import ModelError
-from modefront.models.base import Model
-from modefront.models.local import full_of, matrices_at
+from modefront.models.base import Model, full_of
+from modefront.models.local import matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.pairing.match import Pairs, match, modes_needed
 from modefront.residuals.problem import UpdatingProblem

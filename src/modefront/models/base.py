@@ -35,6 +35,10 @@ class Model(Protocol):
         """
 
     @property
+    def full(self) -> Model:
+        """The model that is solved in full: itself, unless it is reduced."""
+
+    @property
     def places(self) -> tuple[str, ...]:
         """Names of the sensors, and of what else can be loaded or looked at in predictions."""
 
@@ -48,3 +52,13 @@ class Model(Protocol):
         Raises ModelError where the model has no such modes, KeyError for unknown sensors, outputs
         or directions.
         """
+
+
+def full_of(model: Model) -> Model:
+    """Return the model that is solved in full; one that does not say so is that itself."""
+    return getattr(model, "full", model)
+
+
+def is_reduced(model: Model) -> bool:
+    """Return whether a model stands for another one that is solved in full."""
+    return full_of(model) is not model

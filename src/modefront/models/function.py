@@ -59,6 +59,11 @@ class FunctionModel:
         return self.nominal.size
 
     @property
+    def full(self) -> FunctionModel:
+        """Itself: it is not reduced."""
+        return self
+
+    @property
     def version(self) -> int:
         """Zero: the model does not change."""
         return 0

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from modefront._typing import Floats
-from modefront.models.base import Model
+from modefront.models.base import Model, full_of
 from modefront.models.function import FunctionModel
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
@@ -26,11 +26,6 @@ class Shapes:
     lam: Floats
     phi: Floats
     Phi: Floats | None
-
-
-def full_of(model: Model) -> Model:
-    """Return the model of which a reduced one is; any other one is that itself."""
-    return model.full if isinstance(model, ReducedModel) else model
 
 
 def matrices_at(model: Model, theta: Floats) -> MatrixModel | None:
@@ -55,12 +50,9 @@ def shapes_at(model: Model, theta: Floats, count: int) -> Shapes:
 
     Raises ModelError where the model has no such modes.
     """
-    if isinstance(model, ReducedModel):
-        lowest = model.full_modes(theta, count)
-        return Shapes(lowest.lam, model.full.selection @ lowest.Phi, lowest.Phi)
-    matrices = model.at(theta, derivatives=False) if isinstance(model, FunctionModel) else model
-    if isinstance(matrices, MatrixModel):
-        lowest = matrices.full_modes(theta, count)
-        return Shapes(lowest.lam, matrices.selection @ lowest.Phi, lowest.Phi)
+    known = model.at(theta, derivatives=False) if isinstance(model, FunctionModel) else model
+    if isinstance(known, MatrixModel | ReducedModel):
+        lowest = known.full_modes(theta, count)
+        return Shapes(lowest.lam, known.full.selection @ lowest.Phi, lowest.Phi)
     modes = model.modes(theta, count, derivatives=False)
     return Shapes(modes.lam, modes.phi, None)

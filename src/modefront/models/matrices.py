@@ -100,6 +100,11 @@ class MatrixModel:
         return isinstance(self.stiffness, SparseAffine) and isinstance(self.mass, SparseAffine)
 
     @property
+    def full(self) -> MatrixModel:
+        """Itself: it is not reduced."""
+        return self
+
+    @property
     def version(self) -> int:
         """Zero: the model does not change."""
         return 0

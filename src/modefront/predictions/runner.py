@@ -15,12 +15,13 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
-from modefront.models.reduced.model import ReducedModel
+from modefront.models.base import full_of, is_reduced
 from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.work.codec import record
 from modefront.work.store import hash_text
 from modefront.work.task import Executor, Part, Task, seed_sequence
+from modefront.work.transfer import is_shared
 
 Arrays = Mapping[str, Floats]
 
@@ -95,13 +96,13 @@ class PredictionRunner:
         mark = hash_text(f"{prediction!r} {self.seed}")[:8]
         numbers = seed_sequence(self.seed, "predict", prediction.name)
         key = ("predict", prediction.name, *part, mark)
-        model = self.problem.model
+        full = full_of(self.problem.model)
         return Task(
             key,
             function,
             (self.problem, prediction, numbers, *arguments),
             # Responses are those of the full model.
-            memory=model.full.footprint if isinstance(model, ReducedModel) else 0.0,
+            memory=full.footprint if is_reduced(self.problem.model) and is_shared(full) else 0.0,
         )
 
 

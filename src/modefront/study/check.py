@@ -38,8 +38,8 @@ from modefront.identifiability.words import (
     summary,
 )
 from modefront.inputs import available_memory
+from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced.model import ReducedModel
 from modefront.optim.problem import Evaluation
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Study
@@ -197,7 +197,7 @@ def _of_elements(problem: UpdatingProblem, beside: Comparison, *, is_in_hz: bool
 
     Where measured frequencies are not in Hz, those of the paired modes stand for them.
     """
-    model = problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
+    model = full_of(problem.model)
     if not isinstance(model, MatrixModel):
         return []
     measured = problem.data.mean_frequency if is_in_hz else beside.frequency[beside.pairs.index]
@@ -301,8 +301,7 @@ def _infeasible_bounds(problem: UpdatingProblem) -> list[str]:
 
     The full model is evaluated: a basis may not hold what makes a matrix indefinite.
     """
-    if isinstance(problem.model, ReducedModel):
-        problem = replace(problem, model=problem.model.full)
+    problem = replace(problem, model=full_of(problem.model))
     out = []
     for name, theta in (("lower", problem.lower), ("upper", problem.upper)):
         try:

@@ -18,7 +18,7 @@ import numpy as np
 
 from modefront.errors import InputError, ModelError
 from modefront.front.simplex import default_points, size
-from modefront.models.reduced.model import ReducedModel
+from modefront.models.base import full_of, is_reduced
 from modefront.predictions import Passage, Prediction
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.predictions import extent
@@ -116,7 +116,7 @@ def estimate(study: Study) -> Estimate | None:
     evaluations = round((solving - steps) / each) if each else 0
     long = [part for part in parts if part.seconds > SHARE * seconds and part.advice]
     advice = [part.advice for part in sorted(long, key=lambda part: -part.seconds)]
-    if study.problem.model.size >= LARGE and not isinstance(study.problem.model, ReducedModel):
+    if study.problem.model.size >= LARGE and not is_reduced(study.problem.model):
         advice.insert(0, 'a reduced basis ([model] reduction = "auto")')
     if seconds > SHORT:
         advice.append("--workers N with as many as there are cores")
@@ -184,7 +184,7 @@ def _round(count: int) -> int:
 
 def _seconds(problem: UpdatingProblem) -> float | None:
     """Return the seconds of an evaluation; the first one makes what others share."""
-    model = problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
+    model = full_of(problem.model)
     count = len(problem.data.modes)
     try:
         model.modes(problem.start, count)
@@ -195,7 +195,7 @@ def _seconds(problem: UpdatingProblem) -> float | None:
             best = min(best, time.perf_counter() - began)
     except ModelError:
         return None
-    return best * (REDUCED if isinstance(problem.model, ReducedModel) else 1.0)
+    return best * (REDUCED if is_reduced(problem.model) else 1.0)
 
 
 def _parts(study: Study, each: float, step: float) -> Iterator[Part]:
@@ -235,7 +235,7 @@ def _parts(study: Study, each: float, step: float) -> Iterator[Part]:
             both * samples * points * point,
             f"fewer bootstrap samples ([uncertainty] bootstrap, now {samples})",
         )
-    if isinstance(study.problem.model, ReducedModel):
+    if is_reduced(study.problem.model):
         yield Part("snapshot", each / REDUCED * (3 * p + 5))
 
 

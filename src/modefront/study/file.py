@@ -19,9 +19,8 @@ from modefront.front.options import Pareto
 from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
 from modefront.inputs import MOST_TABLES, read_text_bytes
-from modefront.models.base import Model
+from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel, of_free
-from modefront.models.reduced.model import ReducedModel
 from modefront.pairing.match import Pairing
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Origin, Study, undrawn
@@ -149,7 +148,7 @@ def _try_model(root: Table, problem: UpdatingProblem) -> None:
     except ModelError as error:
         root.fault("[model]", "modes at the nominal parameters", str(error))
         return
-    model = _full(problem)
+    model = full_of(problem.model)
     if isinstance(model, MatrixModel) and not model.floating and model.is_singular(problem.start):
         expected = "a structure that is held, or floating = true for rigid-body modes"
         root.fault("[model]", expected, "a singular stiffness matrix at the nominal parameters")
@@ -157,7 +156,7 @@ def _try_model(root: Table, problem: UpdatingProblem) -> None:
 
 def _refuses_zero(root: Table, problem: UpdatingProblem) -> bool:
     """Note bounds of 0 or less of parameters with roots or quotients; return whether any are."""
-    model = _full(problem)
+    model = full_of(problem.model)
     names = model.above_zero if isinstance(model, MatrixModel) else ()
     before = len(root.faults)
     for name in names:
@@ -168,11 +167,6 @@ def _refuses_zero(root: Table, problem: UpdatingProblem) -> bool:
             )
             root.fault(f"[[parameter]] '{name}' bounds", expected, f"{lower:g}")
     return len(root.faults) > before
-
-
-def _full(problem: UpdatingProblem) -> Model:
-    """Return the model that a reduced basis stands for, or the model itself."""
-    return problem.model.full if isinstance(problem.model, ReducedModel) else problem.model
 
 
 def _without_predictions(values: dict[str, Any]) -> dict[str, Any]:

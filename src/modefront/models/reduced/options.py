@@ -9,7 +9,7 @@ from typing import Annotated, Literal
 import numpy as np
 
 from modefront.data.modal import ModalData
-from modefront.models.base import Model
+from modefront.models.base import Model, is_reduced
 from modefront.models.matrices import MatrixModel
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.cost import estimate
@@ -78,7 +78,7 @@ class Reduction:
 
     def fallback(self, model: Model) -> str:
         """Return why a model is solved in full though a tolerance was asked for, or nothing."""
-        if isinstance(self.reduction, str) or isinstance(model, ReducedModel):
+        if isinstance(self.reduction, str) or is_reduced(model):
             return ""
         if isinstance(model, MatrixModel):
             return f"no reduced basis: the model has only {model.size} degrees of freedom"
