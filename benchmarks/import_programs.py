@@ -177,7 +177,7 @@ WRITERS: dict[str, Callable[[Path, scipy.sparse.csr_array], None]] = {
 def measure(program: str, job: Path, out: multiprocessing.Queue[tuple[float, ...]]) -> None:
     """Read a job and report time and memory."""
     clock, processor = time.perf_counter(), time.process_time()
-    result = PROGRAMS[program].read(job, JobOptions())
+    result = PROGRAMS[program].job(job, JobOptions())
     times = time.process_time() - processor, time.perf_counter() - clock
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     out.put((result.size, result.stiffness.nnz, result.mass.nnz, *times, memory))

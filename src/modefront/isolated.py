@@ -21,12 +21,13 @@ import tempfile
 import threading
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from dataclasses import astuple
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
-from modefront.errors import reason
+from modefront.errors import Fault, InputError, reason
 from modefront.inputs import available_memory
 from modefront.outputs import output, write_text
 from modefront.text import one_line
@@ -45,6 +46,9 @@ CRASHED = 255
 """Exit status above which a process was ended by the system, on Windows."""
 
 ARRAYS, TEXTS, OUTPUT = "arrays.npz", "texts.json", "output.txt"
+
+REFUSED = 2
+"""Exit status of a reader that raised InputError, whose faults are the texts."""
 
 Read = tuple[dict[str, np.ndarray[Any, Any]], Any]
 """Arrays by name, and texts and numbers as JSON has them."""
@@ -68,7 +72,7 @@ def isolated(
     function
         ``module:name`` of a function that takes the path and returns `Read`.
     path
-        The file.
+        The file, or what its name begins with.
     seconds, memory
         Limits, by the size of the file and what is free unless given; that of memory, in bytes,
         holds where the system has such limits.
@@ -79,19 +83,26 @@ def isolated(
     ------
     IsolatedError
         Where nothing was read.
+    InputError
+        Where the function raises it.
     """
-    seconds = seconds or LEAST_SECONDS + path.stat().st_size / SPEED
+    if _INSIDE:
+        return _called(function, path, arguments)
+    seconds = seconds or LEAST_SECONDS + _size(path) / SPEED
     memory = memory or available_memory()
     with tempfile.TemporaryDirectory(prefix="modefront-") as name:
         folder = Path(name)
-        called = [str(path.absolute()), *arguments]
-        status = _SERVER.status([function, called, name, seconds, memory], seconds)
+        called = [str(path), *arguments]
+        status = _SERVER.status([function, called, name, seconds, memory, str(Path.cwd())], seconds)
         printed = _beginning(folder / OUTPUT)
         if status is None or status == -getattr(signal, "SIGALRM", 0):
             text = f"nothing within {seconds:.0f} s, after which reading was given up"
             raise IsolatedError(text)
         if status < 0 or status > CRASHED:
             raise IsolatedError(f"a file that ends its reader (signal {abs(status)})")
+        if status == REFUSED:
+            texts = json.loads((folder / TEXTS).read_text(encoding="ascii"))
+            raise InputError(Fault(*parts) for parts in texts)
         if status:
             raise IsolatedError(one_line(printed, 400) or f"status {status} of the reader")
         try:
@@ -100,6 +111,31 @@ def isolated(
             return arrays, json.loads((folder / TEXTS).read_text(encoding="ascii"))
         except (OSError, ValueError) as error:
             raise IsolatedError(f"nothing that can be used: {reason(error)}") from None
+
+
+_INSIDE = False
+"""Whether this is a process that reads a file, so that no other one is needed."""
+
+
+def _called(function: str, path: Path, arguments: Sequence[str]) -> Read:
+    """Return what a function reads in this process."""
+    module, name = function.split(":")
+    try:
+        found: Read = getattr(importlib.import_module(module), name)(path, *arguments)
+    except (InputError, MemoryError):
+        raise
+    except (Exception, SystemExit) as error:  # what readers raise is not documented
+        raise IsolatedError(one_line(reason(error), 400) or type(error).__name__) from None
+    return found
+
+
+def _size(path: Path) -> int:
+    """Return the bytes of all files that belong to one by their names."""
+    try:
+        files = [each for each in path.parent.iterdir() if each.name.startswith(path.stem)]
+        return sum(each.stat().st_size for each in files if each.is_file())
+    except OSError:
+        return 0
 
 
 class _Server:
@@ -192,9 +228,9 @@ def _beginning(path: Path) -> str:
 def serve() -> None:
     """Have files read, one request a line, until there are no more."""
     for line in sys.stdin:
-        function, called, folder, seconds, memory = json.loads(line)
+        function, called, folder, seconds, memory, work = json.loads(line)
         if not hasattr(os, "fork"):
-            status = _read(function, called, folder, memory)
+            status = _read(function, called, folder, memory, work)
             print(status, flush=True)
             return
         with suppress(Exception):  # what fails fails again, and is said, below
@@ -202,38 +238,42 @@ def serve() -> None:
         child = os.fork()
         if not child:
             signal.setitimer(signal.ITIMER_REAL, seconds)
-            os._exit(_read(function, called, folder, memory))
+            os._exit(_read(function, called, folder, memory, work))
         print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
 
 
-def _read(function: str, called: Sequence[str], folder: str, memory: int) -> int:
+def _read(function: str, called: Sequence[str], folder: str, memory: int, work: str) -> int:
     """Read one file into a folder, and return the exit status; what is printed goes there."""
+    global _INSIDE
+    _INSIDE = True
     printed = os.open(Path(folder) / OUTPUT, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
     answers = os.dup(1)
     for number in (1, 2):
         os.dup2(printed, number)
-    module, name = function.split(":")
     path, *arguments = called
-    message = ""
+    message, status = "", 0
     try:
+        os.chdir(work)
         limit(memory)
-        read = getattr(importlib.import_module(module), name)
-        arrays, texts = read(Path(path), *arguments)
+        arrays, texts = _called(function, Path(path), arguments)
         named: Mapping[str, Any] = arrays
         with output(Path(folder) / ARRAYS) as stream:
             np.savez(stream, allow_pickle=False, **named)
         write_text(Path(folder) / TEXTS, json.dumps(texts))
+    except InputError as error:
+        write_text(Path(folder) / TEXTS, json.dumps([astuple(fault) for fault in error.faults]))
+        status = REFUSED
     except MemoryError:
         message = f"a file that takes more than {memory / 1e9:.2g} GB to be read"
-    except (Exception, SystemExit) as error:  # what readers raise is not documented
-        message = one_line(reason(error), 400) or type(error).__name__
+    except Exception as error:
+        message = str(error) or type(error).__name__
     sys.stdout.flush()
     if message:
         os.ftruncate(printed, 0)
         os.lseek(printed, 0, os.SEEK_SET)
         os.write(printed, message.encode("utf-8", "replace"))
     os.dup2(answers, 1)
-    return 1 if message else 0
+    return 1 if message else status
 
 
 def limit(memory: int) -> None:

@@ -478,7 +478,7 @@ def test_sensors_at_nodes_of_shells_that_are_tied(
         deck + "*STEP\n*FREQUENCY\n3\n*NODE PRINT, NSET=NALL\nU\n*END STEP\n"
     )
     ccx(tmp_path, "a", "b")
-    job = PROGRAMS["calculix"].read(tmp_path / "a", JobOptions())
+    job = PROGRAMS["calculix"].job(tmp_path / "a", JobOptions())
     _, shapes = printed(tmp_path / "b.dat")
     _, vectors = scipy.linalg.eigh(dense(job.mass), dense(job.stiffness))
     nodes = (2, 3, 4, 6, 7, 8, 500)
@@ -573,7 +573,7 @@ def test_the_plate_of_nastran(tmp_path: Path) -> None:
 
 def _stiffer_spring(source: Path, target: Path) -> None:
     """Copy a file with the spring at node 25 z (row 114 of KAA) at three times its stiffness."""
-    job = PROGRAMS["nastran"].read(source, JobOptions())
+    job = PROGRAMS["nastran"].job(source, JobOptions())
     K = dense(job.stiffness)
     K[113, 113] += 2e5
     write_op4(target, {"KAA": K, "MAA": dense(job.mass)}, "sparse")
@@ -601,7 +601,7 @@ def test_a_deck_that_does_not_fit_its_matrices(tmp_path: Path) -> None:
 
 @needs_data
 def test_the_solid_of_ansys() -> None:
-    job = PROGRAMS["ansys"].read(DATA / "ansys.full", JobOptions())
+    job = PROGRAMS["ansys"].job(DATA / "ansys.full", JobOptions())
     assert (job.size, job.stiffness.nnz) == (900, 39023 - 63)
     M = whole(job.mass)
     masses = [M[job.dofs.direction == d][:, job.dofs.direction == d].sum() for d in (1, 2, 3)]

@@ -31,7 +31,7 @@ K, M = structure()
 
 
 def read(program: str, path: Path, options: JobOptions | None = None) -> Job:
-    return PROGRAMS[program].read(path, options or JobOptions())
+    return PROGRAMS[program].job(path, options or JobOptions())
 
 
 def assert_same(job: Job, tolerance: float = 1e-13, K: Array = K, M: Array = M) -> None:

@@ -57,14 +57,11 @@ def read_entries(
     file_size(path, "a matrix")
     arguments = (form, name or "", "square" if square else "")
     try:
-        arrays, said = isolated(f"{__name__}:entries", path, arguments=arguments)
+        arrays, shape = isolated(f"{__name__}:entries", path, arguments=arguments)
     except IsolatedError as error:
         raise _wrong(path, "a readable matrix", str(error)) from None
-    if not arrays:
-        place, expected, found = said
-        raise _wrong(path, expected, found, place)
     places = arrays["row"], arrays["column"]
-    return scipy.sparse.coo_array((arrays["data"], places), shape=tuple(said))
+    return scipy.sparse.coo_array((arrays["data"], places), shape=tuple(shape))
 
 
 def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_array:
@@ -123,27 +120,22 @@ def entries(path: Path, form: str, name: str, square: str) -> Read:
     """Return row, column and data of the entries of a matrix, and its numbers of rows and columns.
 
     ``form`` is the ending of its format, and ``name`` that of a matrix in the file, empty for the
-    only one; a ``square`` one is expected unless that is empty. What is wrong comes in place of
-    both: place, expected and found.
+    only one; a ``square`` one is expected unless that is empty. Raises InputError for others.
     """
-    try:
-        matrix = READERS[form](path, name)
-        _check_shape(path, matrix.shape, square)
-        if matrix.dtype.kind not in "biufc":
-            raise ValueError(f"'{name}' is no matrix of numbers: {matrix.dtype}")
-        if matrix.dtype.kind == "c":
-            raise InputError(Fault(str(path), "file", "real numbers", str(matrix.dtype)))
-        if isinstance(matrix, np.ndarray):
-            matrix = matrix.astype(float)  # of any order and precision
-        A = scipy.sparse.coo_array(matrix)
-        need, free = PER_ENTRY * (A.nnz + A.shape[0]), available_memory()
-        if need > free:
-            expected = f"a matrix that fits into the {free / 1e9:.3g} GB of memory that are free"
-            found = f"{A.nnz} entries in {A.shape[0]} rows, which take {need / 1e9:.3g} GB"
-            raise InputError(Fault(str(path), "file", expected, found))
-    except InputError as error:
-        (fault,) = error.faults
-        return {}, [fault.place, fault.expected, fault.found]
+    matrix = READERS[form](path, name)
+    _check_shape(path, matrix.shape, square)
+    if matrix.dtype.kind not in "biufc":
+        raise ValueError(f"'{name}' is no matrix of numbers: {matrix.dtype}")
+    if matrix.dtype.kind == "c":
+        raise _wrong(path, "real numbers", str(matrix.dtype))
+    if isinstance(matrix, np.ndarray):
+        matrix = matrix.astype(float)  # of any order and precision
+    A = scipy.sparse.coo_array(matrix)
+    need, free = PER_ENTRY * (A.nnz + A.shape[0]), available_memory()
+    if need > free:
+        expected = f"a matrix that fits into the {free / 1e9:.3g} GB of memory that are free"
+        found = f"{A.nnz} entries in {A.shape[0]} rows, which take {need / 1e9:.3g} GB"
+        raise _wrong(path, expected, found)
     return {"row": A.row, "column": A.col, "data": A.data.astype(float)}, list(A.shape)
 
 

@@ -14,23 +14,19 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse
 
-from modefront._typing import Ints
-from modefront.errors import reason
-from modefront.models.dofs import DofTable, read_dofs
+from modefront._typing import Bools, Ints
+from modefront.models.dofs import DofTable
 from modefront.programs.base import (
-    DOUBLE,
     Entries,
-    Job,
     JobOptions,
-    Program,
+    Listed,
+    Matrix,
     columns,
     existing,
-    kept,
-    refuse_mass_alone,
-    upper,
+    unlabelled,
     wrong,
 )
-from modefront.programs.inp import read_deck
+from modefront.programs.inp import deck_of
 from modefront.programs.mesh import ProgramMesh
 
 HELD = 0.9e36
@@ -42,19 +38,17 @@ SLOTS = 32
 ADVICE = "*MATRIX GENERATE, STIFFNESS, MASS with *MATRIX OUTPUT, STIFFNESS, MASS writes them"
 
 
-def read(path: Path, options: JobOptions) -> Job:
+def read(path: Path, options: JobOptions) -> Listed:
     """Return the matrices of a job, given by its name or by its file of the stiffness."""
-    stiffness, mass = _files(path)
-    widths = [len(_fields(file)) for file in (stiffness, mass)]
-    if widths == [3, 3]:
-        return _by_rows([stiffness, mass], options)
-    parts = [_labelled_entries(file) for file in (stiffness, mass)]
-    dofs, tables = _common(parts[0][0], parts[1][0])
-    K, M = (
-        upper(file, dofs.size, Entries(*table, part[1]), dofs)
-        for file, table, part in zip((stiffness, mass), tables, parts, strict=True)
+    files = _files(path)
+    widths = [len(_fields(file)) for file in files]
+    rows = widths == [3, 3]
+    dofs, entries = _by_rows(files, options) if rows else _by_labels(files)
+    notes: list[str] = []
+    mesh = _mesh(files[0], options, notes)
+    return Listed(
+        files, (entries[0], entries[1]), dofs, _free, counted=False, mesh=mesh, notes=notes
     )
-    return _job(stiffness, K, M, dofs, True, options)
 
 
 def _files(path: Path) -> tuple[Path, Path]:
@@ -96,87 +90,56 @@ def _fields(path: Path) -> list[str]:
     return fields
 
 
-def _labelled_entries(path: Path) -> tuple[tuple[Ints, ...], np.ndarray]:
-    """Return nodes and directions of rows and columns, and the values."""
-    commas = "," in _first(path)
-    *labels, values = columns(path, "," if commas else r"\s+", "iiiif", comment="*")
-    return tuple(labels), values
-
-
-def _common(
-    stiffness: tuple[Ints, ...], mass: tuple[Ints, ...]
-) -> tuple[DofTable, list[tuple[Ints, Ints]]]:
+def _by_labels(files: tuple[Path, Path]) -> tuple[DofTable, list[Entries]]:
     """Return the table of all labels, nodes made by the program last, and rows and columns."""
-    keys = [
-        [part[k].astype(np.int64) * SLOTS + part[k + 1] for k in (0, 2)]
-        for part in (stiffness, mass)
-    ]
-    used = np.unique(np.concatenate([np.unique(key) for pair in keys for key in pair]))
+    parts = []
+    for file in files:
+        commas = "," in _first(file)
+        *labels, value = columns(file, "," if commas else r"\s+", "iiiif", comment="*")
+        node, direction, other, its = (x.astype(np.int64) for x in labels)
+        parts.append((node * SLOTS + direction, other * SLOTS + its, value))
+    used = np.unique(np.concatenate([np.unique(key) for part in parts for key in part[:2]]))
     order = np.argsort(used < SLOTS, kind="stable")  # nodes made by the program are below 1
     place = np.empty(used.size, np.intp)
     place[order] = np.arange(used.size)
-    tables: list[tuple[Ints, Ints]] = [
-        (place[np.searchsorted(used, row)], place[np.searchsorted(used, column)])
-        for row, column in keys
+    entries = [
+        Entries(place[np.searchsorted(used, row)], place[np.searchsorted(used, column)], value)
+        for row, column, value in parts
     ]
     node, direction = used[order] // SLOTS, used[order] % SLOTS
-    return DofTable(node, direction, (node > 0).astype(float)), tables
+    return DofTable(node, direction, (node > 0).astype(float)), entries
 
 
-def _by_rows(files: list[Path], options: JobOptions) -> Job:
-    """Return the job of files in the format COORDINATE; rows below 0 are nodes of the program."""
+def _by_rows(files: tuple[Path, Path], options: JobOptions) -> tuple[DofTable, list[Entries]]:
+    """Return what files in the format COORDINATE list; rows below 0 are nodes of the program."""
     parts = []
     for file in files:
         commas = "," in _first(file)
         separator = "," if commas else r"\s+"
         parts.append(columns(file, separator, "iif", comment="%" if not commas else "*"))
     highest = max(int(index.max()) for part in parts for index in part[:2])
-    lowest = min(0, *(int(index.min()) for part in parts for index in part[:2]))
-    size = highest - lowest
-    nobody = np.concatenate([np.zeros(highest, np.intp), -np.arange(1, 1 - lowest)])
-    dofs = DofTable(nobody, np.zeros(size, np.intp), (nobody >= 0).astype(float))
-    if options.dofs is not None:
-        given = read_dofs(options.dofs)
-        if given.size != highest:
-            raise wrong(options.dofs, f"{highest} rows, one a degree of freedom", str(given.size))
-        grown = (np.append(given.node, nobody[highest:]), np.append(given.direction, -lowest * [0]))
-        dofs = DofTable(*grown, np.append(given.weight, np.zeros(-lowest)))
-    K, M = (
-        upper(
-            file, size, Entries(_place(part[0], highest), _place(part[1], highest), part[2]), dofs
-        )
-        for file, part in zip(files, parts, strict=True)
+    made = -min(0, *(int(index.min()) for part in parts for index in part[:2]))
+    own = options.table(highest) or unlabelled(highest)
+    dofs = DofTable(
+        np.append(own.node, -np.arange(1, 1 + made)),
+        np.append(own.direction, np.zeros(made, np.intp)),
+        np.append(own.weight, np.zeros(made)),
     )
-    return _job(files[0], K, M, dofs, options.dofs is not None, options)
+    entries = [Entries(*(_place(x, highest) for x in part[:2]), part[2]) for part in parts]
+    return dofs, entries
 
 
 def _place(index: Ints, highest: int) -> Ints:
     return np.where(index > 0, index - 1, highest - 1 - index)
 
 
-def _job(
-    path: Path,
-    K: scipy.sparse.csr_array,
-    M: scipy.sparse.csr_array,
-    dofs: DofTable,
-    labelled: bool,
-    options: JobOptions,
-) -> Job:
-    """Return the job without degrees of freedom that are held."""
-    notes: list[str] = []
-    refuse_mass_alone(path, K, M, dofs)
-    free = np.flatnonzero((K.diagonal() < HELD) & (K.diagonal() + M.diagonal() != 0) | _tied(K))
-    if free.size < dofs.size:
-        notes.append(f"{dofs.size - free.size} degrees of freedom that are held are left out")
-        K, M = kept(K, free), kept(M, free)
-        dofs = DofTable(dofs.node[free], dofs.direction[free], dofs.weight[free])
-    if not labelled:
-        notes.append("sensors can be given by degrees of freedom only, unless --dofs names nodes")
-    mesh = _mesh(path, options, notes)
-    return Job(str(path), K, M, dofs, DOUBLE, labelled=labelled, mesh=mesh, notes=tuple(notes))
+def _free(K: Matrix, M: Matrix) -> Bools:
+    """Return which degrees of freedom are not held."""
+    used: Bools = (K.diagonal() < HELD) & (K.diagonal() + M.diagonal() != 0)
+    return used | _tied(K)
 
 
-def _tied(K: scipy.sparse.csr_array) -> np.ndarray:
+def _tied(K: Matrix) -> Bools:
     """Return which rows have entries beside the diagonal, as those of Lagrange multipliers."""
     off = scipy.sparse.coo_array(K)
     beside = (off.row != off.col) & (off.data != 0)
@@ -187,15 +150,7 @@ def _tied(K: scipy.sparse.csr_array) -> np.ndarray:
 
 def _mesh(path: Path, options: JobOptions, notes: list[str]) -> ProgramMesh | None:
     job = re.sub(r"_STIF\d+$", "", path.stem, flags=re.IGNORECASE)
-    try:
-        deck = read_deck(options.deck or path.with_name(job + ".inp"))
-    except OSError as error:
-        notes.append(f"without the deck ({reason(error)}) there are no coordinates")
-        return None
-    if deck.parts:
+    deck = deck_of(options.deck or path.with_name(job + ".inp"), notes)
+    if deck is not None and deck.parts:
         notes.append("the deck numbers nodes in parts: coordinates are left out")
-        return None
-    return deck.mesh
-
-
-ABAQUS = Program("abaqus", read, eliminates=True)
+    return None if deck is None or deck.parts else deck.mesh

@@ -26,23 +26,12 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse
 
 from modefront._typing import Floats, Ints
 from modefront.inputs import counted
-from modefront.models.dofs import DofTable, read_dofs
+from modefront.models.dofs import DofTable
 from modefront.models.files import read_entries
-from modefront.programs.base import (
-    DOUBLE,
-    Entries,
-    Job,
-    JobOptions,
-    Program,
-    existing,
-    kept,
-    upper,
-    wrong,
-)
+from modefront.programs.base import Entries, JobOptions, Listed, existing, unlabelled, wrong
 
 INTEGERS = 0x80
 """Bit of the flags (their highest byte) for integers."""
@@ -62,7 +51,7 @@ IDENTIFIERS = {name: k for k, name in enumerate(("UX", "UY", "UZ", "ROTX", "ROTY
 ADVICE = "a modal analysis writes file.full (WRFULL,1 stops there), *EXPORT,…,MMF job_K.mmf"
 
 
-def read(path: Path, options: JobOptions) -> Job:
+def read(path: Path, options: JobOptions) -> Listed:
     """Return the matrices of a job: a .full file, or the beginning of the names of two others."""
     full = path if path.suffix.lower() == ".full" else path.with_name(path.name + ".full")
     if full is path or full.is_file():
@@ -99,7 +88,7 @@ class _Words:
         return (int(header[low - 1]) & 0xFFFFFFFF) + (int(header[high - 1]) << 32)
 
 
-def _from_full(path: Path) -> Job:
+def _from_full(path: Path) -> Listed:
     data = np.fromfile(path, dtype=np.uint8)
     words = _Words(path, data[: data.size // 4 * 4].view("<i4"))
     header, position = words.record(HEADER)
@@ -121,19 +110,14 @@ def _from_full(path: Path) -> Job:
         raise wrong(path, f"{size} degrees of freedom", f"{identifiers.size} of {counts.sum()}")
     node = np.repeat(nodes, counts).astype(np.intp)
     dofs = DofTable(node, np.abs(identifiers).astype(np.intp), np.ones(size))
-    free = np.flatnonzero(identifiers > 0)
     terms = words.long(header, 34, 22)
     stiffness = _rows(words, words.long(header, 19, 20), words.long(header, 9, 10), size)
     if terms == 0:
         raise wrong(path, "a mass matrix (ANTYPE,MODAL)", "none")
     position = words.long(header, 27, 28)
     mass = _diagonal(words, position, size) if header[10] else _rows(words, position, terms, size)
-    K, M = (kept(upper(path, size, each, dofs), free) for each in (stiffness, mass))
-    dofs = DofTable(dofs.node[free], dofs.direction[free], dofs.weight[free])
-    notes = [f"{size - free.size} degrees of freedom that are held are left out"]
-    if int(header[34]):
-        notes.append("there is a damping matrix, which is left out")
-    return Job(str(path), K, M, dofs, DOUBLE, notes=tuple(notes[size == free.size :]))
+    notes = ["there is a damping matrix, which is left out"] if int(header[34]) else []
+    return Listed((path, path), (stiffness, mass), dofs, identifiers > 0, notes=notes)
 
 
 def _rows(words: _Words, position: int, terms: int, size: int) -> Entries:
@@ -171,39 +155,34 @@ def _diagonal(words: _Words, position: int, size: int) -> Entries:
 # *EXPORT, MMF
 
 
-def _from_market(path: Path, options: JobOptions) -> Job:
-    matrices: dict[str, scipy.sparse.coo_array] = {}
+def _from_market(path: Path, options: JobOptions) -> Listed:
+    files, matrices = [], []
     for what, endings in MATRICES.items():
         names = [path.with_name(path.name + end + suffix) for end in endings for suffix in SUFFIXES]
         file = next((name for name in names if name.is_file()), names[0])
-        matrices[what] = read_entries(existing(file, f"the {what} of Ansys", ADVICE), form=".mtx")
-    size = matrices["stiffness"].shape[0]
-    if matrices["mass"].shape[0] != size:
-        raise wrong(path, f"a mass matrix of {size} rows", str(matrices["mass"].shape[0]))
-    dofs, labelled = _labels(path, size, options)
-    K, M = (
-        upper(path, size, Entries(matrix.row, matrix.col, matrix.data), dofs)
-        for matrix in (matrices["stiffness"], matrices["mass"])
-    )
-    notes = () if labelled else ("sensors can be given by degrees of freedom only, unless --dofs",)
-    return Job(str(path), K, M, dofs, DOUBLE, labelled=labelled, notes=notes)
+        matrices.append(read_entries(existing(file, f"the {what} of Ansys", ADVICE), form=".mtx"))
+        files.append(file)
+    size = matrices[0].shape[0]
+    if matrices[1].shape[0] != size:
+        raise wrong(path, f"a mass matrix of {size} rows", str(matrices[1].shape[0]))
+    dofs = options.table(size) or _labels(path, size)
+    K, M = (Entries(matrix.row, matrix.col, matrix.data) for matrix in matrices)
+    return Listed((files[0], files[1]), (K, M), dofs)
 
 
-def _labels(path: Path, size: int, options: JobOptions) -> tuple[DofTable, bool]:
-    """Return nodes and directions from --dofs, a mapping of HBMAT, or the vectors of the file."""
+def _labels(path: Path, size: int) -> DofTable:
+    """Return nodes and directions of a mapping of HBMAT, or the vectors of the file, if any."""
     mapping = path.with_name(path.name + ".mapping")
     maps = [path.with_name(f"{path.name}_{name}.mmf") for name in ("nod2bcs", "back")]
-    if options.dofs is not None:
-        table = read_dofs(options.dofs)
-    elif mapping.is_file():
+    if mapping.is_file():
         table = _mapping(mapping)
     elif all(file.is_file() for file in maps):
         table = _maps(maps[0], maps[1])
     else:
-        return DofTable(np.zeros(size, np.intp), np.zeros(size, np.intp), np.ones(size)), False
+        return unlabelled(size)
     if table.size != size:
         raise wrong(path, f"{size} degrees of freedom in the table of nodes", str(table.size))
-    return table, True
+    return table
 
 
 def _mapping(path: Path) -> DofTable:
@@ -234,6 +213,3 @@ def _maps(nod2bcs: Path, back: Path) -> DofTable:
     entries: Floats = picked.data
     column[picked.row[entries != 0]] = picked.col[entries != 0]
     return DofTable(nodes[column // per_node], column % per_node + 1, np.ones(column.size))
-
-
-ANSYS = Program("ansys", read)

@@ -1,11 +1,18 @@
-"""Interface of finite-element programs: matrices, their degrees of freedom, and a mesh."""
+"""What finite-element programs have in common: how a job is read, checked and handed on.
+
+A program has a module with a function ``read``, which returns what the files of a job list. It runs
+in a process of its own, with limits on time and memory, in which the matrices are checked too: they
+are whole, finite and symmetric, and without what is held.
+"""
 
 from __future__ import annotations
 
+import importlib
 import re
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import TypeAlias
 
 import numpy as np
 import scipy.sparse
@@ -13,12 +20,15 @@ import scipy.sparse
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import Fault, InputError, reason
 from modefront.inputs import ended, file_size, first_repeated
-from modefront.models.dofs import DofTable
-from modefront.programs.mesh import ProgramMesh
+from modefront.isolated import IsolatedError, Read, isolated
+from modefront.models.dofs import DofTable, read_dofs
+from modefront.programs.mesh import ProgramMesh, arrays_of, mesh_from
 from modefront.rounding import LARGEST, SYMMETRY
 
 DOUBLE = 1e-15
 """Relative error of numbers that are written as binary doubles: a few roundings of the program."""
+
+Matrix: TypeAlias = scipy.sparse.csr_array
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,17 +41,15 @@ class Job:
     stiffness, mass : upper triangles (N, N), rows compressed
     dofs : node and direction of each degree of freedom
     precision : relative error of the numbers as they are written
-    labelled : whether the program's files tell nodes and directions; else there are only numbers
     mesh : nodes and elements where the deck is at hand; None where it is not
     notes : what the program did to the model, and what was done about it
     """
 
     name: str
-    stiffness: scipy.sparse.csr_array
-    mass: scipy.sparse.csr_array
+    stiffness: Matrix
+    mass: Matrix
     dofs: DofTable
     precision: float
-    labelled: bool = True
     mesh: ProgramMesh | None = None
     notes: tuple[str, ...] = ()
 
@@ -49,6 +57,11 @@ class Job:
     def size(self) -> int:
         """Number of degrees of freedom N."""
         return self.dofs.size
+
+    @property
+    def labelled(self) -> bool:
+        """Whether the program's files tell nodes and directions; else there are only numbers."""
+        return bool((self.dofs.node > 0).any())
 
 
 @dataclass(frozen=True)
@@ -67,6 +80,13 @@ class JobOptions:
     dofs: Path | None = None
     deck: Path | None = None
 
+    def table(self, size: int) -> DofTable | None:
+        """Return the given table of degrees of freedom, if any; it has to have ``size`` rows."""
+        table = read_dofs(self.dofs) if self.dofs is not None else None
+        if self.dofs is not None and table is not None and table.size != size:
+            raise wrong(self.dofs, f"{size} rows, one a degree of freedom", str(table.size))
+        return table
+
 
 @dataclass(frozen=True)
 class Program:
@@ -75,23 +95,23 @@ class Program:
     Attributes
     ----------
     name : as the command line names it
-    read : returns a job, given its path as on the command line
+    module : has the function ``read`` that takes a path and options, and returns `Listed`
     eliminates : whether degrees of freedom of negative nodes are to be eliminated where that is
         exact; they are kept otherwise
     """
 
     name: str
-    read: Callable[[Path, JobOptions], Job]
+    module: str
     eliminates: bool = False
 
     def job(self, path: Path, options: JobOptions) -> Job:
         """Return a job; raises InputError where its files cannot be read, whatever the cause."""
+        texts = (options.stiffness, options.mass, options.dofs, options.deck)
+        arguments = (self.module, *(str(text or "") for text in texts))
         try:
-            return self.read(path, options)
-        except InputError:
-            raise
-        except Exception as error:  # damaged files fail in more ways than can be listed
-            raise wrong(path, f"a job of {self.name}", reason(error)) from None
+            return _unpacked(*isolated(f"{__name__}:read_job", path, arguments=arguments))
+        except IsolatedError as error:
+            raise wrong(path, f"a job of {self.name}", str(error)) from None
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,13 +129,87 @@ class Entries:
     value: Floats = field(repr=False)
 
 
-def upper(path: Path, size: int, entries: Entries, dofs: DofTable) -> scipy.sparse.csr_array:
+@dataclass(frozen=True, eq=False)
+class Listed:
+    """What the files of a job list, before it is checked.
+
+    Attributes
+    ----------
+    files : that of the stiffness, and that of the mass
+    entries : those of the stiffness, and those of the mass
+    dofs : node and direction of each row; those of `unlabelled` where no file tells them
+    free : which rows are not held, (N,), or what returns it, given both triangles; None for all
+    counted : whether files say how many entries they have; else those that are cut off at a line
+        show by mass without stiffness, which is refused
+    precision, mesh, notes : as in `Job`
+    """
+
+    files: tuple[Path, Path]
+    entries: tuple[Entries, Entries]
+    dofs: DofTable
+    free: Bools | Callable[[Matrix, Matrix], Bools] | None = None
+    counted: bool = True
+    precision: float = DOUBLE
+    mesh: ProgramMesh | None = None
+    notes: Sequence[str] = ()
+
+
+def unlabelled(size: int) -> DofTable:
+    """Return the table of degrees of freedom that belong to no node."""
+    return DofTable(np.zeros(size, np.intp), np.zeros(size, np.intp), np.ones(size))
+
+
+# In the process that reads files
+
+
+# 6 arguments: those of the process, all texts.
+def read_job(path: Path, module: str, stiffness: str, mass: str, dofs: str, deck: str) -> Read:
+    """Return the parts of the job that the reader in a module returns, once it is checked."""
+    files = [Path(text) if text else None for text in (dofs, deck)]
+    options = JobOptions(stiffness or None, mass or None, *files)
+    listed: Listed = importlib.import_module(module).read(path, options)
+    K, M = (
+        upper(file, entries, listed.dofs)
+        for file, entries in zip(listed.files, listed.entries, strict=True)
+    )
+    table, notes = listed.dofs, list(listed.notes)
+    if not listed.counted:
+        _refuse_mass_alone(listed.files[0], K, M, table)
+    unheld = listed.free(K, M) if callable(listed.free) else listed.free
+    free = np.arange(table.size) if unheld is None else np.flatnonzero(unheld)
+    if free.size < table.size:
+        notes.append(f"{table.size - free.size} degrees of freedom that are held are left out")
+        K, M = K[free][:, free].tocsr(), M[free][:, free].tocsr()
+    if not (table.node > 0).any():
+        notes.append("sensors can be given by degrees of freedom only, unless --dofs names nodes")
+    arrays = {"node": table.node, "direction": table.direction, "weight": table.weight}
+    arrays = {name: values[free] for name, values in arrays.items()}
+    for letter, A in (("K", K), ("M", M)):
+        arrays |= {f"{letter}{k}": x for k, x in enumerate((A.data, A.indices, A.indptr))}
+    if listed.mesh is not None:
+        arrays |= arrays_of(listed.mesh)
+    return arrays, [str(listed.files[0]), listed.precision, notes]
+
+
+def _unpacked(arrays: dict[str, np.ndarray], texts: tuple[str, float, list[str]]) -> Job:
+    """Return the job of its parts."""
+    name, precision, notes = texts
+    dofs = DofTable(*(arrays.pop(part) for part in ("node", "direction", "weight")))
+    K, M = (
+        Matrix(tuple(arrays.pop(f"{letter}{k}") for k in range(3)), shape=(dofs.size, dofs.size))
+        for letter in "KM"
+    )
+    mesh = mesh_from(arrays) if arrays else None
+    return Job(name, K, M, dofs, precision, mesh, tuple(notes))
+
+
+def upper(path: Path, entries: Entries, dofs: DofTable) -> Matrix:
     """Return the upper triangle of a symmetric matrix of which one triangle or both are listed.
 
     Raises InputError where an index is beyond the size, a value is no number, an entry is listed
     again, or both triangles are listed and differ.
     """
-    row, column, value = entries.row, entries.column, entries.value
+    row, column, value, size = entries.row, entries.column, entries.value, dofs.size
     if row.size and (min(row.min(), column.min()) < 0 or max(row.max(), column.max()) >= size):
         found = f"row {int(max(row.max(), column.max())) + 1}"
         raise wrong(path, f"rows and columns from 1 to {size}", found)
@@ -129,27 +223,25 @@ def upper(path: Path, size: int, entries: Entries, dofs: DofTable) -> scipy.spar
         raise wrong(path, "each entry once", f"the one at {place} again")
     below = row > column
     if below.any() and (row < column).any():
-        return _symmetric(path, size, entries, below, dofs)
+        return _symmetric(path, entries, below, dofs)
     if below.any():
         row, column = column, row
     return _compressed(size, row, column, value)
 
 
-def _compressed(size: int, row: Ints, column: Ints, value: Floats) -> scipy.sparse.csr_array:
+def _compressed(size: int, row: Ints, column: Ints, value: Floats) -> Matrix:
     out = scipy.sparse.coo_array((value, (row, column)), shape=(size, size)).tocsr()
     out.sum_duplicates()
     return out
 
 
-def _symmetric(
-    path: Path, size: int, entries: Entries, below: Bools, dofs: DofTable
-) -> scipy.sparse.csr_array:
+def _symmetric(path: Path, entries: Entries, below: Bools, dofs: DofTable) -> Matrix:
     """Return the upper triangle where entries are on both sides of the diagonal.
 
     These are both triangles, or one of them whose entries are turned here and there; in the latter
     no pair of places is given twice.
     """
-    row, column, value = entries.row, entries.column, entries.value
+    row, column, value, size = entries.row, entries.column, entries.value, dofs.size
     above = ~below
     A = _compressed(size, row[above], column[above], value[above])
     B = _compressed(size, column[below], row[below], value[below])
@@ -167,25 +259,18 @@ def _symmetric(
             "a symmetric matrix (damping, contact, friction and rotors make it unsymmetric)",
             f"{A[i, j]:.6g} at {dofs.label(i)} and {dofs.label(j)}, and {B[i, j]:.6g} across",
         )
-    half = scipy.sparse.csr_array(A - difference / 2)
+    half = Matrix(A - difference / 2)
     half.sort_indices()
     return half
 
 
-def whole(triangle: scipy.sparse.csr_array) -> scipy.sparse.csr_array:
+def whole(triangle: Matrix) -> Matrix:
     """Return the symmetric matrix of an upper triangle."""
     strict = scipy.sparse.triu(triangle, k=1, format="csr")
-    return scipy.sparse.csr_array(triangle + strict.T)
+    return Matrix(triangle + strict.T)
 
 
-def kept(job_matrix: scipy.sparse.csr_array, dofs: Ints) -> scipy.sparse.csr_array:
-    """Return the rows and columns of some degrees of freedom, ascending, of an upper triangle."""
-    return job_matrix[dofs][:, dofs].tocsr()
-
-
-def refuse_mass_alone(
-    path: Path, K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, dofs: DofTable
-) -> None:
+def _refuse_mass_alone(path: Path, K: Matrix, M: Matrix, dofs: DofTable) -> None:
     """Refuse a text file whose stiffness ends before the mass does: it is cut off at a line."""
     alone = np.flatnonzero((abs(K).sum(axis=0) + abs(K).sum(axis=1) == 0) & (M.diagonal() != 0))
     if alone.size:

@@ -21,20 +21,17 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Ints
-from modefront.errors import reason
 from modefront.models.dofs import DofTable
 from modefront.programs.base import (
     Entries,
-    Job,
     JobOptions,
-    Program,
+    Listed,
     columns,
     coordinates,
     existing,
-    upper,
     wrong,
 )
-from modefront.programs.inp import Deck, read_deck
+from modefront.programs.inp import Deck, deck_of
 
 SUFFIXES = (".inp", ".sti", ".mas", ".dof", ".dat", ".frd")
 
@@ -47,32 +44,34 @@ ADVICE = (
 )
 
 
-def read(path: Path, options: JobOptions) -> Job:
-    """Return the matrices of a job, given with or without a suffix; see `Program`."""
+def read(path: Path, options: JobOptions) -> Listed:
+    """Return the matrices of a job, given with or without a suffix."""
     job = path.with_suffix("") if path.suffix in SUFFIXES else path
     files = {suffix: job.with_name(job.name + suffix) for suffix in (".dof", ".sti", ".mas")}
     for file in files.values():
         existing(file, "a matrix or table of CalculiX", ADVICE)
     labels = columns(files[".dof"], ".", "ii", comment="#")
     node, direction = (column.astype(np.intp) for column in labels)
-    plain = DofTable(node, direction, np.ones(node.size))
     entries = {suffix: coordinates(files[suffix]) for suffix in (".sti", ".mas")}
     _refuse_cut_off(files, entries, node.size)
     notes: list[str] = []
     own = job.with_name(job.name + ".inp")
-    deck = _deck(options.deck or own, notes)
+    deck = deck_of(
+        options.deck or own,
+        notes,
+        ", and held nodes of shells and beams cannot be told from others",
+    )
     if deck is not None and own.is_file() and own.stat().st_mtime > files[".sti"].stat().st_mtime:
         notes.append(f"{job.name}.inp is newer than {job.name}.sti: was it run since?")
-    dofs = _table(plain, deck)
+    dofs = _table(DofTable(node, direction, np.ones(node.size)), deck)
     _describe(dofs, notes)
-    return Job(
-        str(files[".sti"]),
-        upper(files[".sti"], node.size, entries.pop(".sti"), plain),
-        upper(files[".mas"], node.size, entries.pop(".mas"), plain),
+    return Listed(
+        (files[".sti"], files[".mas"]),
+        (entries[".sti"], entries[".mas"]),
         dofs,
-        PRECISION,
+        precision=PRECISION,
         mesh=deck.mesh if deck else None,
-        notes=tuple(notes),
+        notes=notes,
     )
 
 
@@ -91,17 +90,6 @@ def _refuse_cut_off(files: dict[str, Path], entries: dict[str, Entries], size: i
             f"{second.row.size} in place of {first.row.size}, or others; is one of them cut off?"
         )
         raise wrong(files[".mas"], expected, found)
-
-
-def _deck(path: Path, notes: list[str]) -> Deck | None:
-    try:
-        return read_deck(path)
-    except OSError as error:
-        notes.append(
-            f"without the deck ({reason(error)}) there are no coordinates, and held nodes of"
-        )
-        notes[-1] += " shells and beams cannot be told from others"
-        return None
 
 
 def _table(labels: DofTable, deck: Deck | None) -> DofTable:
@@ -208,6 +196,3 @@ def _describe(dofs: DofTable, notes: list[str]) -> None:
     nodes = np.unique(dofs.node[dofs.node > 0])
     if dead := np.setdiff1d(nodes, dofs.node[dofs.weight != 0]).size:
         notes.append(f"{dead} nodes are held: there are no sensors at them")
-
-
-CALCULIX = Program("calculix", read)

@@ -22,8 +22,8 @@ from modefront._typing import Bools, Ints
 from modefront.errors import Fault, InputError
 from modefront.models.dofs import DofTable
 from modefront.models.terms import BASE
-from modefront.programs.base import whole
-from modefront.programs.differences import Matrix, Quantity, Term, Terms, all_terms
+from modefront.programs.base import Matrix, whole
+from modefront.programs.differences import Quantity, Term, Terms, all_terms
 
 SINGULAR = 1e-12
 """Least over greatest singular value of a block from which on it can be inverted."""

@@ -29,7 +29,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal, TypeAlias
+from typing import Literal
 
 import numpy as np
 import scipy.sparse
@@ -39,7 +39,7 @@ from modefront.errors import Fault, InputError
 from modefront.linalg.affine import Monomials
 from modefront.models.dofs import DofTable
 from modefront.models.terms import BASE, term_exponents
-from modefront.programs.base import Job, whole
+from modefront.programs.base import Job, Matrix, whole
 from modefront.rounding import ACCUMULATED
 
 DROPPED = 1e-13
@@ -65,8 +65,6 @@ COVERED = 0.99
 
 Quantity = Literal["stiffness", "mass"]
 QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")
-
-Matrix: TypeAlias = scipy.sparse.csr_array
 
 
 @dataclass(frozen=True, eq=False)

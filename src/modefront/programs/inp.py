@@ -132,6 +132,15 @@ def read_deck(path: Path) -> Deck:
     )
 
 
+def deck_of(path: Path, notes: list[str], missing: str = "") -> Deck | None:
+    """Return the deck of a job; None with a note of what is ``missing`` where it is not there."""
+    try:
+        return read_deck(path)
+    except OSError as error:
+        notes.append(f"without the deck ({reason(error)}) there are no coordinates{missing}")
+        return None
+
+
 def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], list[list[str]]]]:
     """Yield keyword, options and lines of numbers of every block, those of included files too."""
     keyword, options, rows = "", dict[str, str](), list[list[str]]()

@@ -64,12 +64,33 @@ def refuse_unknown_nodes(path: Path, known: Collection[int], nodes: Iterable[int
         raise InputError(Fault(str(path), "nodes", expected, f"no node {missing}"))
 
 
+def arrays_of(mesh: ProgramMesh) -> dict[str, Any]:
+    """Return the arrays of a mesh by their names."""
+    cells = {f"cells_{kind}": table for kind, table in mesh.cells.items()}
+    return {"number": mesh.number, "coordinates": mesh.coordinates, **cells}
+
+
+def mesh_from(arrays: Mapping[str, Any]) -> ProgramMesh:
+    """Return the mesh of its arrays; raises ValueError where they do not belong together."""
+    number, coordinates = arrays["number"], arrays["coordinates"]
+    cells = {
+        name.removeprefix("cells_"): table
+        for name, table in arrays.items()
+        if name not in ("number", "coordinates")
+    }
+    right = coordinates.shape == (number.size, 3) and all(
+        table.shape[1:] == (CORNERS[kind],) and np.isin(table, number).all()
+        for kind, table in cells.items()
+    )
+    if not right:
+        raise ValueError("arrays that do not belong together")
+    return ProgramMesh(number.astype(np.intp), coordinates.astype(float), cells)
+
+
 def write_mesh(path: Path, mesh: ProgramMesh) -> None:
     """Write a mesh as arrays of NumPy."""
-    arrays: dict[str, Any] = {f"cells_{kind}": table for kind, table in mesh.cells.items()}
-    arrays |= {"number": mesh.number, "coordinates": mesh.coordinates}
     with output(path) as stream:
-        np.savez(stream, **arrays)
+        np.savez(stream, **arrays_of(mesh))
 
 
 def read_mesh(path: Path) -> ProgramMesh:
@@ -80,16 +101,7 @@ def read_mesh(path: Path) -> ProgramMesh:
     file_size(path, "nodes and elements (mesh.npz)")
     try:
         with path.open("rb") as stream, np.load(stream, allow_pickle=False) as file:
-            arrays = {name: file[name] for name in file.files}
-        number, coordinates = arrays.pop("number"), arrays.pop("coordinates")
-        cells = {name.removeprefix("cells_"): table for name, table in arrays.items()}
-        right = coordinates.shape == (number.size, 3) and all(
-            table.shape[1:] == (CORNERS[kind],) and np.isin(table, number).all()
-            for kind, table in cells.items()
-        )
-        if not right:
-            raise ValueError("arrays that do not belong together")
-        return ProgramMesh(number.astype(np.intp), coordinates.astype(float), cells)
+            return mesh_from({name: file[name] for name in file.files})
     except Exception as error:  # what NumPy raises for a damaged file is not documented
         found = reason(error)
     raise InputError(Fault(str(path), "file", "nodes and elements (mesh.npz)", found))

@@ -8,24 +8,22 @@ many rows, and a translation of the whole strains nothing but elements that are 
 from __future__ import annotations
 
 from collections.abc import Iterable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
-import scipy.sparse
 
 from modefront._typing import Bools, Ints
 from modefront.errors import reason
-from modefront.models.dofs import DofTable, read_dofs
+from modefront.models.dofs import DofTable
 from modefront.programs.base import (
     DOUBLE,
     Entries,
-    Job,
     JobOptions,
-    Program,
+    Listed,
+    Matrix,
     existing,
-    kept,
-    refuse_mass_alone,
-    upper,
+    unlabelled,
     whole,
     wrong,
 )
@@ -46,7 +44,7 @@ EQUILIBRIUM = 1e-6
 ADVICE = "OUTPUT4 KAA,MAA,,,//-1/21 writes an .op4 file, EXTSEOUT or PARAM,EXTOUT,DMIGPCH a .pch"
 
 
-def read(path: Path, options: JobOptions) -> Job:
+def read(path: Path, options: JobOptions) -> Listed:
     """Return the matrices of a job, given by its .op4 or .pch file, or without suffix.
 
     A file with another suffix that is no deck, such as that of a Fortran unit, is one of OUTPUT4.
@@ -103,7 +101,7 @@ def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
 # OUTPUT4
 
 
-def _from_op4(path: Path, options: JobOptions) -> Job:
+def _from_op4(path: Path, options: JobOptions) -> Listed:
     matrices = read_op4(path)
     names = _pair(path, matrices, options)
     pair = [matrices[name] for name in names]
@@ -112,36 +110,21 @@ def _from_op4(path: Path, options: JobOptions) -> Job:
         if (matrix.rows, matrix.columns) != (size, size):
             expected = f"'{name}' with {size} rows and columns"
             raise wrong(path, expected, f"{matrix.rows} x {matrix.columns}")
-    nobody = DofTable(np.zeros(size, np.intp), np.zeros(size, np.intp), np.ones(size))
-    K, M = (upper(path, size, matrix.entries, nobody) for matrix in pair)
     notes: list[str] = []
     deck = _deck(path, options, notes)
-    precision = max(DOUBLE, *(matrix.precision for matrix in pair))
-    if options.dofs is not None:
-        return Job(str(path), K, M, _given(options.dofs, size), precision, notes=tuple(notes))
-    if deck is None:
-        notes.append("sensors can be given by degrees of freedom only, unless --dofs names nodes")
-        return Job(str(path), K, M, nobody, precision, labelled=False, notes=tuple(notes))
-    return _labelled(path, deck, (K, M), precision, notes)
+    listed = Listed(
+        (path, path),
+        (pair[0].entries, pair[1].entries),
+        options.table(size) or unlabelled(size),
+        precision=max(DOUBLE, *(matrix.precision for matrix in pair)),
+        notes=notes,
+    )
+    return listed if deck is None or options.dofs else _labelled(listed, deck, notes)
 
 
-def _given(path: Path, size: int) -> DofTable:
-    table = read_dofs(path)
-    if table.size != size:
-        raise wrong(path, f"{size} rows, one a degree of freedom", str(table.size))
-    return table
-
-
-def _labelled(
-    path: Path,
-    deck: Bulk,
-    matrices: tuple[scipy.sparse.csr_array, scipy.sparse.csr_array],
-    precision: float,
-    notes: list[str],
-) -> Job:
-    """Return a job with nodes and components of the deck, those that are held being left out."""
-    K, M = matrices
-    size = K.shape[0]
+def _labelled(listed: Listed, deck: Bulk, notes: list[str]) -> Listed:
+    """Return a job with nodes and components of the deck, of which some may be held."""
+    path, size = listed.files[0], listed.dofs.size
     choices = {
         "all nodes": deck.dofs(reduced=False, singular=True),
         "its free degrees of freedom": deck.dofs(reduced=True, singular=True),
@@ -154,19 +137,17 @@ def _labelled(
         raise wrong(path, expected, counts)
     table = np.array(fitting[0], dtype=np.intp).reshape(-1, 2)
     dofs = DofTable(table[:, 0], table[:, 1], np.ones(size))
-    free = np.array([dof not in deck.held | deck.followers for dof in fitting[0]])
-    free &= K.diagonal() + M.diagonal() != 0
-    if not free.all():
-        notes.append(f"{int((~free).sum())} degrees of freedom that are held are left out")
-        positions = np.flatnonzero(free)
-        K, M = kept(K, positions), kept(M, positions)
-        dofs = DofTable(dofs.node[positions], dofs.direction[positions], dofs.weight[positions])
-    _check_labels(path, deck, K, dofs)
+    unheld = np.array([dof not in deck.held | deck.followers for dof in fitting[0]])
+
+    def free(K: Matrix, M: Matrix) -> Bools:
+        rows: Bools = unheld & (K.diagonal() + M.diagonal() != 0)
+        _check_labels(path, deck, K, dofs, rows)
+        return rows
+
     if deck.turned:
         some = ", ".join(map(str, sorted(deck.turned)[:6]))
         notes.append(f"directions are those of the nodes' own systems at node {some}")
-    mesh = _drawn(deck, notes)
-    return Job(str(path), K, M, dofs, precision, mesh=mesh, notes=tuple(notes))
+    return replace(listed, dofs=dofs, free=free, mesh=_drawn(deck, notes))
 
 
 def _drawn(deck: Bulk, notes: list[str]) -> ProgramMesh | None:
@@ -177,14 +158,14 @@ def _drawn(deck: Bulk, notes: list[str]) -> ProgramMesh | None:
     return None
 
 
-def _check_labels(path: Path, deck: Bulk, triangle: scipy.sparse.csr_array, dofs: DofTable) -> None:
+def _check_labels(path: Path, deck: Bulk, triangle: Matrix, dofs: DofTable, free: Bools) -> None:
     """Refuse nodes and components with which translations strain what is held nowhere."""
     K = whole(triangle)
-    special = _near_supports(deck, dofs)
+    strained = free & ~_near_supports(deck, dofs, free)
     for direction in (1, 2, 3):
-        r = (dofs.direction == direction).astype(float)
+        r = (free & (dofs.direction == direction)).astype(float)
         force, size = K @ r, abs(K) @ r
-        bad = (np.abs(force) > EQUILIBRIUM * size) & (size > 0) & ~special
+        bad = (np.abs(force) > EQUILIBRIUM * size) & (size > 0) & strained
         if bad.any():
             k = int(np.argmax(np.abs(force) * bad))
             raise wrong(
@@ -195,10 +176,10 @@ def _check_labels(path: Path, deck: Bulk, triangle: scipy.sparse.csr_array, dofs
             )
 
 
-def _near_supports(deck: Bulk, dofs: DofTable) -> Bools:
+def _near_supports(deck: Bulk, dofs: DofTable, free: Bools) -> Bools:
     """Return which degrees of freedom are at nodes that an element joins with one that is held."""
-    free = {(int(n), int(c)) for n, c in zip(dofs.node, dofs.direction, strict=True)}
-    held = {int(n) for n in deck.mesh.number if any((int(n), c) not in free for c in (1, 2, 3))}
+    moving = set(zip(dofs.node[free].tolist(), dofs.direction[free].tolist(), strict=True))
+    held = {n for n in deck.mesh.number.tolist() if any((n, c) not in moving for c in (1, 2, 3))}
     held |= deck.turned | {n for n, _ in deck.followers} | set(deck.scalar)
     near = set(held)
     for _ in range(2 if deck.followers else 1):  # followers join elements of their masters
@@ -210,20 +191,22 @@ def _near_supports(deck: Bulk, dofs: DofTable) -> Bools:
 # DMIG
 
 
-def _from_dmig(path: Path, options: JobOptions) -> Job:
+def _from_dmig(path: Path, options: JobOptions) -> Listed:
     matrices = read_dmig(path)
-    names = _pair(path, matrices, options)
-    pair = [matrices[name] for name in names]
+    pair = [matrices[name] for name in _pair(path, matrices, options)]
     labels = np.concatenate([table for each in pair for table in (each.row, each.column)])
     table = np.unique(labels, axis=0)
-    dofs = DofTable(table[:, 0], table[:, 1], np.ones(len(table)))
-    K, M = (upper(path, len(table), _numbered(each, table), dofs) for each in pair)
-    refuse_mass_alone(path, K, M, dofs)
     notes: list[str] = []
     deck = _deck(path, options, notes)
-    mesh = _drawn(deck, notes) if deck else None
-    precision = max(each.precision for each in pair)
-    return Job(str(path), K, M, dofs, precision, mesh=mesh, notes=tuple(notes))
+    return Listed(
+        (path, path),
+        (_numbered(pair[0], table), _numbered(pair[1], table)),
+        DofTable(table[:, 0], table[:, 1], np.ones(len(table))),
+        counted=False,
+        precision=max(each.precision for each in pair),
+        mesh=_drawn(deck, notes) if deck else None,
+        notes=notes,
+    )
 
 
 def _numbered(matrix: DmigMatrix, table: Ints) -> Entries:
@@ -233,6 +216,3 @@ def _numbered(matrix: DmigMatrix, table: Ints) -> Entries:
         np.searchsorted(keys, x[:, 0] * 10 + x[:, 1]) for x in (matrix.row, matrix.column)
     )
     return Entries(row, column, matrix.value)
-
-
-NASTRAN = Program("nastran", read)

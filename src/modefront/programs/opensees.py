@@ -17,27 +17,18 @@ from modefront.errors import reason
 from modefront.inputs import ended, once
 from modefront.models.dofs import read_dofs
 from modefront.models.files import read_entries
-from modefront.programs.base import (
-    DOUBLE,
-    Entries,
-    Job,
-    JobOptions,
-    Program,
-    existing,
-    upper,
-    wrong,
-)
+from modefront.programs.base import Entries, JobOptions, Listed, existing, wrong
 from modefront.programs.mesh import ProgramMesh, mesh_of, refuse_unknown_nodes
 
 ADVICE = "the snippet in docs/import.md writes it"
 CELLS = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
 
 
-def read(path: Path, options: JobOptions) -> Job:
+def read(path: Path, options: JobOptions) -> Listed:
     """Return the matrices of a job, given by the beginning of the names of its files."""
     table = options.dofs or path.with_name(path.name + "_dofs.csv")
     dofs = read_dofs(existing(table, "nodes and directions of OpenSees", ADVICE))
-    matrices = []
+    files, entries = [], []
     for letter in "KM":
         file = path.with_name(f"{path.name}_{letter}.npz")
         if not file.is_file():
@@ -47,9 +38,10 @@ def read(path: Path, options: JobOptions) -> Job:
         if matrix.shape != (dofs.size, dofs.size):
             expected = f"{dofs.size} rows and columns, as '{table.name}' has rows"
             raise wrong(file, expected, " x ".join(map(str, matrix.shape)))
-        entries = Entries(matrix.row, matrix.col, matrix.data)
-        matrices.append(upper(file, dofs.size, entries, dofs))
-    return Job(str(path), matrices[0], matrices[1], dofs, DOUBLE, mesh=_mesh(path))
+        files.append(file)
+        entries.append(Entries(matrix.row, matrix.col, matrix.data))
+    pair = entries[0], entries[1]
+    return Listed((files[0], files[1]), pair, dofs, mesh=_mesh(path))
 
 
 def _mesh(path: Path) -> ProgramMesh | None:
@@ -85,6 +77,3 @@ def _rows(path: Path, number: type) -> list[list[Any]]:
     if number is float and (len({len(row) for row in out}) > 1 or not np.isfinite(out).all()):
         raise ValueError("rows of different lengths, or numbers that are not finite")
     return out
-
-
-OPENSEES = Program("opensees", read)
