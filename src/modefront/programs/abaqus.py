@@ -16,18 +16,17 @@ import scipy.sparse
 
 from modefront._typing import Bools, Ints
 from modefront.models.dofs import DofTable
-from modefront.programs.base import (
-    Entries,
-    JobOptions,
-    Listed,
-    Matrix,
-    columns,
-    existing,
-    unlabelled,
-    wrong,
-)
+from modefront.programs.base import JobOptions, Matrix, wrong
 from modefront.programs.inp import deck_of
 from modefront.programs.mesh import ProgramMesh
+from modefront.programs.reading import (
+    Entries,
+    Listed,
+    columns,
+    existing,
+    given_table,
+    unlabelled,
+)
 
 HELD = 0.9e36
 """Diagonal entries from which a degree of freedom is a support."""
@@ -119,13 +118,16 @@ def _by_rows(files: tuple[Path, Path], options: JobOptions) -> tuple[DofTable, l
         parts.append(columns(file, separator, "iif", comment="%" if not commas else "*"))
     highest = max(int(index.max()) for part in parts for index in part[:2])
     made = -min(0, *(int(index.min()) for part in parts for index in part[:2]))
-    own = options.table(highest) or unlabelled(highest)
+    own = given_table(options, highest) or unlabelled(highest)
     dofs = DofTable(
         np.append(own.node, -np.arange(1, 1 + made)),
         np.append(own.direction, np.zeros(made, np.intp)),
         np.append(own.weight, np.zeros(made)),
     )
-    entries = [Entries(*(_place(x, highest) for x in part[:2]), part[2]) for part in parts]
+    entries = [
+        Entries(_place(row, highest), _place(column, highest), value)
+        for row, column, value in parts
+    ]
     return dofs, entries
 
 

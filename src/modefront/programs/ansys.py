@@ -31,7 +31,14 @@ from modefront._typing import Floats, Ints
 from modefront.inputs import counted
 from modefront.models.dofs import DofTable
 from modefront.models.files import read_entries
-from modefront.programs.base import Entries, JobOptions, Listed, existing, unlabelled, wrong
+from modefront.programs.base import JobOptions, wrong
+from modefront.programs.reading import (
+    Entries,
+    Listed,
+    existing,
+    given_table,
+    unlabelled,
+)
 
 INTEGERS = 0x80
 """Bit of the flags (their highest byte) for integers."""
@@ -165,7 +172,7 @@ def _from_market(path: Path, options: JobOptions) -> Listed:
     size = matrices[0].shape[0]
     if matrices[1].shape[0] != size:
         raise wrong(path, f"a mass matrix of {size} rows", str(matrices[1].shape[0]))
-    dofs = options.table(size) or _labels(path, size)
+    dofs = given_table(options, size) or _labels(path, size)
     K, M = (Entries(matrix.row, matrix.col, matrix.data) for matrix in matrices)
     return Listed((files[0], files[1]), (K, M), dofs)
 

@@ -1,32 +1,20 @@
-"""What finite-element programs have in common: how a job is read, checked and handed on.
-
-A program has a module with a function ``read``, which returns what the files of a job list. It runs
-in a process of its own, with limits on time and memory, in which the matrices are checked too: they
-are whole, finite and symmetric, and without what is held.
-"""
+"""Finite-element programs, their options, and the jobs that are read of them."""
 
 from __future__ import annotations
 
-import importlib
-import re
-from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from pathlib import Path
 from typing import TypeAlias
 
 import numpy as np
 import scipy.sparse
 
-from modefront._typing import Bools, Floats, Ints
-from modefront.errors import Fault, InputError, reason
-from modefront.inputs import ended, file_size, first_repeated
-from modefront.isolated import IsolatedError, Read, isolated
-from modefront.models.dofs import DofTable, read_dofs
-from modefront.programs.mesh import ProgramMesh, arrays_of, mesh_from
-from modefront.rounding import LARGEST, SYMMETRY
+from modefront.errors import Fault, InputError
+from modefront.isolated import IsolatedError, isolated
+from modefront.models.dofs import DofTable
+from modefront.programs.mesh import ProgramMesh, mesh_from
 
-DOUBLE = 1e-15
-"""Relative error of numbers that are written as binary doubles: a few roundings of the program."""
+READER = "modefront.programs.reading:read_job"
 
 Matrix: TypeAlias = scipy.sparse.csr_array
 
@@ -80,13 +68,6 @@ class JobOptions:
     dofs: Path | None = None
     deck: Path | None = None
 
-    def table(self, size: int) -> DofTable | None:
-        """Return the given table of degrees of freedom, if any; it has to have ``size`` rows."""
-        table = read_dofs(self.dofs) if self.dofs is not None else None
-        if self.dofs is not None and table is not None and table.size != size:
-            raise wrong(self.dofs, f"{size} rows, one a degree of freedom", str(table.size))
-        return table
-
 
 @dataclass(frozen=True)
 class Program:
@@ -109,86 +90,11 @@ class Program:
         texts = (options.stiffness, options.mass, options.dofs, options.deck)
         arguments = (self.module, *(str(text or "") for text in texts))
         try:
-            return _unpacked(*isolated(f"{__name__}:read_job", path, arguments=arguments))
+            return _unpacked(
+                *isolated("modefront.programs.reading:read_job", path, arguments=arguments)
+            )
         except IsolatedError as error:
             raise wrong(path, f"a job of {self.name}", str(error)) from None
-
-
-@dataclass(frozen=True, eq=False)
-class Entries:
-    """Entries of a matrix as a file lists them: one triangle, or both.
-
-    Attributes
-    ----------
-    row, column : (entries,) from 0
-    value : (entries,)
-    """
-
-    row: Ints
-    column: Ints
-    value: Floats = field(repr=False)
-
-
-@dataclass(frozen=True, eq=False)
-class Listed:
-    """What the files of a job list, before it is checked.
-
-    Attributes
-    ----------
-    files : that of the stiffness, and that of the mass
-    entries : those of the stiffness, and those of the mass
-    dofs : node and direction of each row; those of `unlabelled` where no file tells them
-    free : which rows are not held, (N,), or what returns it, given both triangles; None for all
-    counted : whether files say how many entries they have; else those that are cut off at a line
-        show by mass without stiffness, which is refused
-    precision, mesh, notes : as in `Job`
-    """
-
-    files: tuple[Path, Path]
-    entries: tuple[Entries, Entries]
-    dofs: DofTable
-    free: Bools | Callable[[Matrix, Matrix], Bools] | None = None
-    counted: bool = True
-    precision: float = DOUBLE
-    mesh: ProgramMesh | None = None
-    notes: Sequence[str] = ()
-
-
-def unlabelled(size: int) -> DofTable:
-    """Return the table of degrees of freedom that belong to no node."""
-    return DofTable(np.zeros(size, np.intp), np.zeros(size, np.intp), np.ones(size))
-
-
-# In the process that reads files
-
-
-# 6 arguments: those of the process, all texts.
-def read_job(path: Path, module: str, stiffness: str, mass: str, dofs: str, deck: str) -> Read:
-    """Return the parts of the job that the reader in a module returns, once it is checked."""
-    files = [Path(text) if text else None for text in (dofs, deck)]
-    options = JobOptions(stiffness or None, mass or None, *files)
-    listed: Listed = importlib.import_module(module).read(path, options)
-    K, M = (
-        upper(file, entries, listed.dofs)
-        for file, entries in zip(listed.files, listed.entries, strict=True)
-    )
-    table, notes = listed.dofs, list(listed.notes)
-    if not listed.counted:
-        _refuse_mass_alone(listed.files[0], K, M, table)
-    unheld = listed.free(K, M) if callable(listed.free) else listed.free
-    free = np.arange(table.size) if unheld is None else np.flatnonzero(unheld)
-    if free.size < table.size:
-        notes.append(f"{table.size - free.size} degrees of freedom that are held are left out")
-        K, M = K[free][:, free].tocsr(), M[free][:, free].tocsr()
-    if not (table.node > 0).any():
-        notes.append("sensors can be given by degrees of freedom only, unless --dofs names nodes")
-    arrays = {"node": table.node, "direction": table.direction, "weight": table.weight}
-    arrays = {name: values[free] for name, values in arrays.items()}
-    for letter, A in (("K", K), ("M", M)):
-        arrays |= {f"{letter}{k}": x for k, x in enumerate((A.data, A.indices, A.indptr))}
-    if listed.mesh is not None:
-        arrays |= arrays_of(listed.mesh)
-    return arrays, [str(listed.files[0]), listed.precision, notes]
 
 
 def _unpacked(arrays: dict[str, np.ndarray], texts: tuple[str, float, list[str]]) -> Job:
@@ -203,147 +109,12 @@ def _unpacked(arrays: dict[str, np.ndarray], texts: tuple[str, float, list[str]]
     return Job(name, K, M, dofs, precision, mesh, tuple(notes))
 
 
-def upper(path: Path, entries: Entries, dofs: DofTable) -> Matrix:
-    """Return the upper triangle of a symmetric matrix of which one triangle or both are listed.
-
-    Raises InputError where an index is beyond the size, a value is no number, an entry is listed
-    again, or both triangles are listed and differ.
-    """
-    row, column, value, size = entries.row, entries.column, entries.value, dofs.size
-    if row.size and (min(row.min(), column.min()) < 0 or max(row.max(), column.max()) >= size):
-        found = f"row {int(max(row.max(), column.max())) + 1}"
-        raise wrong(path, f"rows and columns from 1 to {size}", found)
-    good = np.abs(value) <= LARGEST
-    if not good.all():
-        k = int(np.argmin(good))
-        place = f"{dofs.label(int(row[k]))} and {dofs.label(int(column[k]))}"
-        raise wrong(path, "finite numbers", f"{value[k]:g} at {place}")
-    if (again := first_repeated(row, column, size)) is not None:
-        place = f"{dofs.label(int(row[again]))} and {dofs.label(int(column[again]))}"
-        raise wrong(path, "each entry once", f"the one at {place} again")
-    below = row > column
-    if below.any() and (row < column).any():
-        return _symmetric(path, entries, below, dofs)
-    if below.any():
-        row, column = column, row
-    return _compressed(size, row, column, value)
-
-
-def _compressed(size: int, row: Ints, column: Ints, value: Floats) -> Matrix:
-    out = scipy.sparse.coo_array((value, (row, column)), shape=(size, size)).tocsr()
-    out.sum_duplicates()
-    return out
-
-
-def _symmetric(path: Path, entries: Entries, below: Bools, dofs: DofTable) -> Matrix:
-    """Return the upper triangle where entries are on both sides of the diagonal.
-
-    These are both triangles, or one of them whose entries are turned here and there; in the latter
-    no pair of places is given twice.
-    """
-    row, column, value, size = entries.row, entries.column, entries.value, dofs.size
-    above = ~below
-    A = _compressed(size, row[above], column[above], value[above])
-    B = _compressed(size, column[below], row[below], value[below])
-    off = A - scipy.sparse.dia_array((A.diagonal()[None], [0]), shape=A.shape)
-    if (abs(off).sign() * abs(B).sign()).nnz == 0:
-        return (A + B).tocsr()
-    difference = scipy.sparse.coo_array(off - B)
-    greatest = max(np.abs(A.data).max(initial=0), np.abs(B.data).max(initial=0))
-    worst = np.abs(difference.data).max(initial=0)
-    if worst > SYMMETRY * greatest:
-        k = int(np.argmax(np.abs(difference.data)))
-        i, j = int(difference.row[k]), int(difference.col[k])
-        raise wrong(
-            path,
-            "a symmetric matrix (damping, contact, friction and rotors make it unsymmetric)",
-            f"{A[i, j]:.6g} at {dofs.label(i)} and {dofs.label(j)}, and {B[i, j]:.6g} across",
-        )
-    half = Matrix(A - difference / 2)
-    half.sort_indices()
-    return half
-
-
 def whole(triangle: Matrix) -> Matrix:
     """Return the symmetric matrix of an upper triangle."""
     strict = scipy.sparse.triu(triangle, k=1, format="csr")
     return Matrix(triangle + strict.T)
 
 
-def _refuse_mass_alone(path: Path, K: Matrix, M: Matrix, dofs: DofTable) -> None:
-    """Refuse a text file whose stiffness ends before the mass does: it is cut off at a line."""
-    alone = np.flatnonzero((abs(K).sum(axis=0) + abs(K).sum(axis=1) == 0) & (M.diagonal() != 0))
-    if alone.size:
-        found = f"none at {alone.size} of them, the first {dofs.label(int(alone[0]))}"
-        expected = "stiffness at all degrees of freedom that have mass (is the file cut off?)"
-        raise wrong(path, expected, found)
-
-
 def wrong(path: Path, expected: str, found: str, place: str = "file") -> InputError:
     """Return the error of a file, or of a place in it."""
     return InputError(Fault(str(path), place, expected, found))
-
-
-def existing(path: Path, expected: str, advice: str) -> Path:
-    """Return a path of a file that is there and not empty.
-
-    Raises InputError, which says what to do, where it is not.
-    """
-    if file_size(path, f"{expected} ({advice})") > 0:
-        return path
-    raise wrong(path, f"{expected} ({advice})", "an empty one")
-
-
-BARE = re.compile(rb"(\d)([+-]\d{3})$")
-"""An exponent of three digits, as Fortran writes it."""
-
-
-def coordinates(path: Path) -> Entries:
-    """Return the entries of a file of lines ``row column value``, counted from 1.
-
-    Raises InputError where a line is none, or is cut off.
-    """
-    row, column, value = columns(path, r"\s+", "iif", comment="#")
-    return Entries(row - 1, column - 1, value)
-
-
-def columns(path: Path, separator: str, kinds: str, *, comment: str) -> list[np.ndarray]:
-    """Return the columns of a table of numbers in a file.
-
-    Lines that begin with ``comment`` are left out. ``kinds`` has a letter for each column, ``i``
-    for whole numbers and ``f`` for real ones. Raises InputError for other lines.
-    """
-    import pandas as pd  # xarray needs it, so that it is there
-
-    ended(path)
-    types = {k: np.int32 if kind == "i" else np.float64 for k, kind in enumerate(kinds)}
-    try:
-        table = pd.read_csv(
-            path,
-            sep=separator,
-            header=None,
-            comment=comment,
-            skipinitialspace=True,
-            dtype=types,
-            names=range(len(kinds)),
-            index_col=False,
-            engine="c",
-        )
-    except (ValueError, OSError, OverflowError) as error:
-        expected = f"{len(kinds)} numbers in every line"
-        raise wrong(path, expected, reason(error)) from None
-    return [table[k].to_numpy() for k in range(len(kinds))]
-
-
-def fixed_width(text: bytes, width: int) -> Floats:
-    """Return numbers of a fixed width that follow each other without separators.
-
-    A ``D`` stands for the ``E`` of an exponent, which Fortran leaves out before three digits.
-    Raises ValueError where one is no number.
-    """
-    array = np.frombuffer(text.replace(b"D", b"E").replace(b"d", b"e"), dtype=f"S{width}")
-    try:
-        out: Floats = array.astype(float)
-    except ValueError:
-        out = np.array([float(BARE.sub(rb"\1E\2", field)) for field in array.tolist()])
-    return out

@@ -22,16 +22,15 @@ import numpy as np
 
 from modefront._typing import Ints
 from modefront.models.dofs import DofTable
-from modefront.programs.base import (
+from modefront.programs.base import JobOptions, wrong
+from modefront.programs.inp import Deck, deck_of
+from modefront.programs.reading import (
     Entries,
-    JobOptions,
     Listed,
     columns,
     coordinates,
     existing,
-    wrong,
 )
-from modefront.programs.inp import Deck, deck_of
 
 SUFFIXES = (".inp", ".sti", ".mas", ".dof", ".dat", ".frd")
 

@@ -16,21 +16,19 @@ import numpy as np
 from modefront._typing import Bools, Ints
 from modefront.errors import reason
 from modefront.models.dofs import DofTable
-from modefront.programs.base import (
-    DOUBLE,
-    Entries,
-    JobOptions,
-    Listed,
-    Matrix,
-    existing,
-    unlabelled,
-    whole,
-    wrong,
-)
+from modefront.programs.base import JobOptions, Matrix, whole, wrong
 from modefront.programs.bulk import Bulk, read_bulk
 from modefront.programs.dmig import DmigMatrix, read_dmig
 from modefront.programs.mesh import ProgramMesh
 from modefront.programs.op4 import read_op4
+from modefront.programs.reading import (
+    DOUBLE,
+    Entries,
+    Listed,
+    existing,
+    given_table,
+    unlabelled,
+)
 
 DECKS = (".dat", ".bdf", ".nas", ".inp")
 MATRICES = (".op4", ".pch")
@@ -115,7 +113,7 @@ def _from_op4(path: Path, options: JobOptions) -> Listed:
     listed = Listed(
         (path, path),
         (pair[0].entries, pair[1].entries),
-        options.table(size) or unlabelled(size),
+        given_table(options, size) or unlabelled(size),
         precision=max(DOUBLE, *(matrix.precision for matrix in pair)),
         notes=notes,
     )

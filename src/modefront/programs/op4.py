@@ -23,7 +23,8 @@ import numpy as np
 
 from modefront.errors import reason
 from modefront.inputs import counted
-from modefront.programs.base import Entries, fixed_width, wrong
+from modefront.programs.base import wrong
+from modefront.programs.reading import Entries, fixed_width
 
 STRING = 65536
 """Unit of the length in the header of a string."""

@@ -17,8 +17,9 @@ from modefront.errors import reason
 from modefront.inputs import ended, once
 from modefront.models.dofs import read_dofs
 from modefront.models.files import read_entries
-from modefront.programs.base import Entries, JobOptions, Listed, existing, wrong
+from modefront.programs.base import JobOptions, wrong
 from modefront.programs.mesh import ProgramMesh, mesh_of, refuse_unknown_nodes
+from modefront.programs.reading import Entries, Listed, existing
 
 ADVICE = "the snippet in docs/import.md writes it"
 CELLS = {1: "vertex", 2: "line", 3: "triangle", 4: "quad", 8: "hexahedron"}
