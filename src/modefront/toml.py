@@ -141,6 +141,12 @@ class Table:
         place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
         return Table(self.file, place, value, self.faults, files=self.files, notes=self.notes)
 
+    def names(self, key: str) -> dict[str, str]:
+        """Return a table of names for names, such as those of columns; an empty one without it."""
+        table = self.table(key, "a table, name in the file = name here", None)
+        found = {name: table.text(name) for name in table.values} if table is not None else {}
+        return {name: text for name, text in found.items() if text is not None}
+
     def tables(self, key: str, required: bool) -> list[Table]:
         """Return the tables of a list, such as ``[[parameter]]``."""
         path = f"{self.place[1:-1]}.{key}" if self.place else key

@@ -10,7 +10,7 @@ from modefront.data.modal import ModalData, modal_data
 from modefront.errors import InputError
 from modefront.models.chain import chain
 from modefront.residuals.groups import Group
-from modefront.residuals.problem import UpdatingProblem
+from modefront.residuals.problem import UpdatingProblem, updating_problem
 
 SENSORS = ("low", "top")
 nan = np.nan
@@ -181,3 +181,37 @@ def test_empty_columns_at_the_end_are_left_out(tmp_path: Path) -> None:
 def test_numbers_that_are_none_and_modes_twice(text: str, says: str, tmp_path: Path) -> None:
     with pytest.raises(InputError, match=says):
         read(tmp_path, text)
+
+
+def test_columns_of_other_names(tmp_path: Path) -> None:
+    text = "No.;f [Hz];acc 1;acc 1_std;top\n1;4,5;,5;0,1;-0,2\n"
+    file = tmp_path / "modes.csv"
+    file.write_text(text)
+    columns = {"No.": "mode", "f [Hz]": "frequency", "acc 1": "low"}
+    data = read_csv(file, SENSORS, columns)
+    np.testing.assert_array_equal(data.frequency, [[4.5]])
+    np.testing.assert_array_equal(data.shape, [[[0.5, -0.2]]])
+    np.testing.assert_array_equal(data.shape_std, [[[0.1, nan]]])
+    with pytest.raises(InputError, match=r"columns 'acc': .* found 'acc' .did you mean 'acc 1'"):
+        read_csv(file, SENSORS, {**columns, "acc": "low"})
+    with pytest.raises(InputError, match="column 'top': expected each column once"):
+        read_csv(file, SENSORS, {**columns, "acc 1": "top"})
+
+
+def test_data_at_some_of_the_sensors_of_a_model(tmp_path: Path) -> None:
+    names = ("floor1", "floor2", "floor3")
+    model = chain(["k"], [1.0] * 3, [900.0, 800.0, 700.0], stiffness_parameters=["k", None, None])
+    groups = [Group("f", frequency="all"), Group("s", shape="all")]
+    bounds, nominal = {"k": (0.5, 2.0)}, {"k": 1.0}
+    some = modal_data(
+        np.array([2.0, 6.0]), np.array([[1.0, 0.4], [-0.6, 1.0]]), ("floor3", "floor1")
+    )
+    problem = updating_problem(model, some, groups, bounds, nominal)
+    header = "mode,frequency,floor1,floor2,floor3\n"
+    same = read(tmp_path, header + "1,2,0.4,,1\n2,6,1,,-0.6\n", names)
+    right = updating_problem(model, same, groups, bounds, nominal)
+    np.testing.assert_array_equal(problem.evaluate(np.ones(1)).J, right.evaluate(np.ones(1)).J)
+    assert problem.properties.tolist() == right.properties.tolist()
+    other = modal_data(np.ones(1), np.ones((1, 1)), ("flor3",))
+    with pytest.raises(ValueError, match=r"found 'flor3' .did you mean 'floor3'"):
+        updating_problem(model, other, groups, bounds, nominal)

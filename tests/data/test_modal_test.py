@@ -230,3 +230,92 @@ def test_written_modal_data_are_read_again(tmp_path: Path) -> None:
     np.testing.assert_allclose(again.shape, data.shape)
     np.testing.assert_allclose(again.shape_std[0], data.shape_std[0])
     assert (tmp_path / "m.csv").read_text().startswith("set,mode,frequency,damping,low,top,freq")
+
+
+@pytest.mark.parametrize("form", ["rad", "deg"])
+def test_functions_as_magnitude_and_phase(tmp_path: Path, form: str) -> None:
+    f, H = np.arange(1, 31.0), _functions(0)
+    angles = {name: np.unwrap(np.angle(h)) for name, h in H.items()}
+    angles = angles if form == "rad" else {name: np.degrees(x) for name, x in angles.items()}
+    header = ",".join(["frequency", *(f"{n}_{e}" for n in H for e in ("magnitude", form))])
+    table = np.transpose([f, *(x for n in H for x in (np.abs(H[n]), angles[n]))])
+    np.savetxt(tmp_path / "a.csv", table, "%.12g", ",", header=header, comments="")
+    (data_set,) = read_test(tmp_path / "a.csv").sets
+    assert data_set.assembled.data.H[0] == pytest.approx(np.array(list(H.values())))
+
+
+@pytest.mark.parametrize(
+    ("columns", "says"),
+    [
+        ("a_magnitude,a_rad\n1,1,-170\n2,2,20\n", "a_rad.*a phase in radians .*found 170"),
+        ("a_magnitude,a_deg\n1,1,-3\n2,2,0.2\n", "a_deg.*a phase in degrees .*found 3"),
+        ("a_magnitude,a_deg\n1,-40,-30\n2,2,20\n", "magnitudes of 0 or more, found -40: .*dB"),
+        ("a_magnitude,a_phase\n1,1,2\n2,2,3\n", "'a_rad' or 'a_deg'.*no such column"),
+        ("a_magnitude,a_rad,a_deg\n1,1,2,3\n", "'a_rad' or 'a_deg'.*found both"),
+        ("a_re,a_im,a_magnitude,a_rad\n1,1,2,3,4\n", "'a_rad' or 'a_deg'.*found both"),
+        ("a_magnitude,a_im\n1,1,2\n", "'a_rad' or 'a_deg'.*no such column"),
+    ],
+)
+def test_magnitudes_and_phases_of_other_units(tmp_path: Path, columns: str, says: str) -> None:
+    (tmp_path / "a.csv").write_text("frequency," + columns)
+    with pytest.raises(InputError, match=says):
+        read_test(tmp_path / "a.csv")
+
+
+def test_columns_are_named_freely(tmp_path: Path) -> None:
+    f, H = np.arange(1, 31.0), _functions(0)
+    path = _csv(tmp_path / "0.csv", f, H)
+    test = _test_file(tmp_path, ["0.csv"], ["a"])
+    (right,) = read_test(test).sets
+    path.write_text(path.read_text().replace("frequency", "f [Hz]").replace("b_", "acc 1_"))
+    path.write_text(path.read_text().replace("a_re", "A real").replace("a_im", "A imag"))
+    names = '{ "f [Hz]" = "frequency", "acc 1" = "b", "A real" = "a_re", "A imag" = "a_im" }'
+    text = test.read_text()
+    test.write_text(f"{text}columns = {names}\n")
+    (found,) = read_test(test).sets
+    assert found.assembled.data.responses == ("a", "b")
+    np.testing.assert_array_equal(found.assembled.data.H, right.assembled.data.H)
+    test.write_text(f"{text}columns = {names[:-1]}, other = 'c' }}\n")
+    with pytest.raises(InputError, match=r"columns: expected a column of the CSV files .*'other'"):
+        read_test(test)
+
+
+@pytest.mark.parametrize("value", ["", "0", "2.5"])
+def test_functions_that_say_nothing_are_left_out(tmp_path: Path, value: str) -> None:
+    path = _csv(tmp_path / "a.csv", np.arange(1, 31.0), _functions(0))
+    header, *rows = path.read_text().splitlines()
+    rows = [f"{row},{value},{value}" for row in rows]
+    path.write_text("\n".join([f"{header},c_re,c_im", *rows]) + "\n")
+    (data_set,) = read_test(path).sets
+    data = data_set.assembled.data
+    assert data.responses == ("a", "b", "c")
+    assert np.isnan(data.H[0, 2]).all()
+    assert data.H[0, :2] == pytest.approx(np.array(list(_functions(0).values())))
+    what = "one number at all lines" if value == "2.5" else "empty or only zeros"
+    assert f"'c_im': {what}; the channel is left out" in "\n".join(data_set.assembled.warnings)
+    if not value:
+        text = path.read_text()
+        path.write_text(text.replace(rows[3], rows[3] + "7"))
+        with pytest.raises(InputError, match=r"line 2, column 'c_im': .*found ''"):
+            read_test(path)
+        path.write_text("\n".join([f"{header},c_re,c_im", *(f"{row}7" for row in rows)]) + "\n")
+        with pytest.raises(InputError, match=r"column 'c_re': expected numbers.*an empty one"):
+            read_test(path)
+
+
+@pytest.mark.parametrize("value", ["", "4.5"])
+def test_records_that_never_move_are_left_out(tmp_path: Path, value: str) -> None:
+    t = np.arange(400) * 0.01
+    for k in range(2):
+        rng = np.random.default_rng(k)
+        force = np.where(t < 0.03, 1.0 + t, 0.0) + 1e-3 * rng.standard_normal(t.size)
+        move = np.exp(-2 * t) * np.sin(30 * t) + 1e-3 * rng.standard_normal(t.size)
+        rows = [f"{a:.9g},{b:.9g},{value},{c:.9g}" for a, b, c in zip(t, force, move, strict=True)]
+        (tmp_path / f"{k}.csv").write_text("\n".join(["time,force,still,top", *rows]) + "\n")
+    (data_set,) = read_test(_test_file(tmp_path, ["0.csv", "1.csv"], ["a", "a"])).sets
+    data = data_set.assembled.data
+    assert np.isnan(data.H[0, data.responses.index("still")]).all()
+    assert np.isfinite(data.H[0, data.responses.index("top")]).all()
+    assert "'still': empty or only zeros; the channel is left out" in "\n".join(
+        data_set.assembled.warnings
+    )

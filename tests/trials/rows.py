@@ -234,6 +234,13 @@ def write_frf_csv(folder: Path) -> None:
     _table(folder / "a.csv", header, np.column_stack(columns))
 
 
+def write_polar_csv(folder: Path) -> None:
+    f, H = _functions(12)
+    header = ["frequency", *(f"{name}_{part}" for name in "abc" for part in ("magnitude", "deg"))]
+    columns = [f, *(part for row in H for part in (np.abs(row), np.angle(row, deg=True)))]
+    _table(folder / "a.csv", header, np.column_stack(columns))
+
+
 def write_blow(folder: Path) -> None:
     t = np.arange(48) * 0.01
     rng = np.random.default_rng(1)
@@ -519,6 +526,10 @@ FORMATS: dict[str, Format] = {
     ),
     "functions in CSV": Format(
         *(write_frf_csv, "a.csv", read_functions("a.csv")),
+        unnoticed={"delete": [LINE_OF_CSV], "cut": [LINE_OF_CSV]},
+    ),
+    "functions in CSV, polar": Format(
+        *(write_polar_csv, "a.csv", read_functions("a.csv")),
         unnoticed={"delete": [LINE_OF_CSV], "cut": [LINE_OF_CSV]},
     ),
     "blow in CSV": Format(

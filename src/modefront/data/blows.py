@@ -53,10 +53,17 @@ class Blow:
 
 @dataclass(frozen=True)
 class Contents:
-    """Contents of a file: functions, or the records of blows where there are no functions."""
+    """Contents of a file: functions, or the records of blows where there are no functions.
+
+    Attributes
+    ----------
+    channels, blows : functions, and records
+    unused : what of the map of columns of a set names none of the file
+    """
 
     channels: tuple[Channel, ...] = ()
     blows: tuple[Blow, ...] = ()
+    unused: frozenset[str] = frozenset()
 
 
 def blow_of_columns(file: str, header: Sequence[str], values: Floats, reference: str) -> Blow:
@@ -76,7 +83,7 @@ def blow_of_columns(file: str, header: Sequence[str], values: Floats, reference:
     if faults:
         raise InputError(faults)
     column = dict(zip(header, values.T, strict=True))
-    responses = {name: column[name] for name in names}
+    responses = {name: np.nan_to_num(column[name], nan=0.0) for name in names}  # empty columns
     return Blow(file, "columns", reference, column[TIME], column[FORCE], responses)
 
 
@@ -150,7 +157,10 @@ def _extent(time: Floats) -> str:
 
 def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
     first = blows[0]
-    names = tuple(first.responses)
+    names = tuple(x for x in first.responses if any(np.ptp(blow.responses[x]) for blow in blows))
+    if not names:
+        place = f"blows at {first.reference!r}"
+        raise InputError(Fault(first.file, place, "a response that moves", "none"))
     try:
         return impact_responses(
             np.array([blow.force for blow in blows]),
@@ -167,9 +177,11 @@ def _averaged(blows: Sequence[Blow], windows: Windows) -> ImpactResponses:
 
 
 def _channels(first: Blow, averaged: ImpactResponses, quantity: str) -> list[Channel]:
+    """Return the functions; those of responses that never move are zeros."""
     data = averaged.data
+    still = np.zeros(len(data.frequency), complex)
     variance = data.variance
-    return [
+    moving = [
         Channel(
             first.file,
             f"response {name!r}",
@@ -182,4 +194,12 @@ def _channels(first: Blow, averaged: ImpactResponses, quantity: str) -> list[Cha
             None if variance is None else variance[0, i],
         )
         for i, name in enumerate(data.responses)
+    ]
+    return moving + [
+        Channel(
+            *(first.file, f"response {name!r}", first.reference, name, data.frequency, still),
+            first.quantity or quantity,
+        )
+        for name in first.responses
+        if name not in data.responses
     ]

@@ -105,7 +105,7 @@ def assemble(channels: Sequence[Channel], quantity: str, name: str, turned: bool
                 coherence[j, i] = channel.coherence
             if channel.variance is not None:
                 variance[j, i] = channel.variance
-    dead = ~(np.abs(np.nan_to_num(H)) > 0).any(axis=(0, 3))
+    dead = (np.nan_to_num(H) == np.nan_to_num(H[..., :1])).all(axis=(0, 3))
     H[:, dead] = np.nan
     mean = np.nanmean(H, axis=0) if len(H) > 1 else H[0]
     warnings = [
@@ -174,9 +174,10 @@ def _check_values(channels: Sequence[Channel]) -> None:
             found = f"{channel.H[bad[0]].real:g} at {channel.frequency[bad[0]]:g} Hz"
             found += f" and {len(bad) - 1} more" * (len(bad) > 1)
             faults.append(Fault(channel.file, channel.place, EXPECTED, found))
-    if all(not np.any(channel.H) for channel in channels) and not faults:
-        expected = "functions that are not zero everywhere"
-        faults.append(Fault(channels[0].file, channels[0].place, expected, "only zeros"))
+    if all(not np.any(channel.H[0] != channel.H) for channel in channels) and not faults:
+        expected = "functions that are not the same at all lines"
+        found = "one number" if np.any(channels[0].H) else "only zeros"
+        faults.append(Fault(channels[0].file, channels[0].place, expected, found))
     if faults:
         raise InputError(faults[:5])
 
@@ -191,10 +192,11 @@ def _circular_axis(name: str, frequency: Floats) -> Iterator[str]:
 
 
 def _dead_channels(groups: _Groups, dead: Bools) -> Iterator[str]:
-    """Warn of channels (references, responses) that are zero."""
+    """Warn of channels (references, responses) that are zero, or one number at all lines."""
     for (j, i), group in groups.items():
         if dead[j, i]:
-            yield f"{group[0].file}: {group[0].place}: only zeros; the channel is left out"
+            what = "one number at all lines" if group[0].H.any() else "empty or only zeros"
+            yield f"{group[0].file}: {group[0].place}: {what}; the channel is left out"
 
 
 def _stray_sizes(mean: Complexes, groups: _Groups, dead: Bools) -> Iterator[str]:

@@ -26,7 +26,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.errors import Fault, InputError, reason, suggestion
+from modefront.errors import Fault, InputError, reason, refuse, suggestion
 from modefront.inputs import MOST_DATA, available_memory, ended_column, file_size, refuse_holes
 from modefront.outputs import write_table
 from modefront.rounding import LARGEST as LARGEST_NUMBER
@@ -83,7 +83,31 @@ def is_reserved(name: str, sensors: Collection[str]) -> bool:
     return name in (*KEYS, *QUANTITIES) or (base != name and base in (*QUANTITIES, *sensors))
 
 
-def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalData:
+def renamed(
+    header: Sequence[str], columns: Mapping[str, str], endings: Sequence[str]
+) -> tuple[list[str], set[str]]:
+    """Return the names of columns after a map, and what of the map names one of them.
+
+    A key of ``columns`` is the whole name of a column, or its beginning before one of ``endings``.
+
+    >>> renamed(["acc 1", "acc 1_std"], {"acc 1": "top"}, ["_std"])
+    (['top', 'top_std'], {'acc 1'})
+    """
+    out, used = [], set()
+    for name in header:
+        ends = ("", *(end for end in endings if name.endswith(end)))
+        end = next((end for end in ends if name[: len(name) - len(end)] in columns), None)
+        base = name if end is None else name[: len(name) - len(end)]
+        used |= set() if end is None else {base}
+        out.append(name if end is None else columns[base] + end)
+    return out, used
+
+
+def read_csv(
+    path: Path | str,
+    sensors: Sequence[str] | None = None,
+    columns: Mapping[str, str] | None = None,
+) -> ModalData:
     """Return the modal data of a CSV file.
 
     Parameters
@@ -95,6 +119,8 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
         well as commas do, and decimal commas are read where commas separate none.
     sensors
         Names of the sensors, in the order of the shapes; those of the columns unless given.
+    columns
+        Names that columns of the file stand for, by their own; those of deviations follow.
 
     Raises
     ------
@@ -105,6 +131,13 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
     with _reader(path) as rows:
         first, fields = next(rows, (1, []))
         header = "\0".join(map(str.strip, fields)).rstrip("\0").split("\0") if fields else []
+        own = header
+        header, used = renamed(own, columns or {}, (STD,))
+        refuse(
+            Fault(file, f"columns {clean(name, NAME)!r}", "a column of it", suggestion(name, own))
+            for name in columns or {}
+            if name not in used
+        )
         rows = _trimmed(rows, len(header))
         if not header:
             raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
@@ -145,8 +178,8 @@ def read_csv(path: Path | str, sensors: Sequence[str] | None = None) -> ModalDat
     if faults:
         raise InputError(faults)
     ended_column(path, last)
-    columns = dict(zip((x for x in header if x not in KEYS), np.array(table).T, strict=True))
-    return _assemble(path, keys, columns, tuple(sensors))
+    values_of = dict(zip((x for x in header if x not in KEYS), np.array(table).T, strict=True))
+    return _assemble(path, keys, values_of, tuple(sensors))
 
 
 def write_csv(
@@ -178,26 +211,34 @@ def _fault(file: str, line: int, column: str | None, expected: str, found: str) 
 @contextmanager
 def _reader(path: Path) -> Iterator[Iterator[tuple[int, list[str]]]]:
     """Return the numbered rows that are not blank; raises InputError for what is no CSV."""
-    expected = "a file of modal data"
-    size = file_size(path, expected, min(MOST_DATA, available_memory() // 4))
+    with opened(path, "a file of modal data") as (stream, separator, before):
+        reader = csv.reader(stream, delimiter=separator, strict=True, skipinitialspace=True)
+        rows = ((before + reader.line_num, row) for row in reader if any(map(str.strip, row)))
+        try:
+            yield rows if separator == "," else _with_points(rows)
+        except csv.Error as error:
+            place = f"line {before + reader.line_num}"
+            raise InputError(Fault(str(path), place, "CSV", reason(error))) from None
+
+
+@contextmanager
+def opened(path: Path, what: str) -> Iterator[tuple[TextIO, str, int]]:
+    """Open a table; yield the stream at its header, the separator, and the lines before.
+
+    Raises InputError for what is no text, too large, or torn.
+    """
+    size = file_size(path, what, min(MOST_DATA, available_memory() // 4))
     try:
-        refuse_holes(path, expected, size)
+        refuse_holes(path, what, size)
         with path.open(newline="", encoding="utf-8-sig") as stream:
-            separator, before = find_separator(stream)
-            reader = csv.reader(stream, delimiter=separator, strict=True, skipinitialspace=True)
-            rows = ((before + reader.line_num, row) for row in reader if any(map(str.strip, row)))
-            try:
-                yield rows if separator == "," else _with_points(rows)
-            except csv.Error as error:
-                place = f"line {before + reader.line_num}"
-                raise InputError(Fault(str(path), place, "CSV", reason(error))) from None
+            yield stream, *_find_separator(stream)
     except InputError:
         raise
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, csv.Error) as error:
         raise InputError(Fault(str(path), "file", "CSV in UTF-8", reason(error))) from None
 
 
-def find_separator(stream: TextIO) -> tuple[str, int]:
+def _find_separator(stream: TextIO) -> tuple[str, int]:
     """Return the separator of the columns, and the number of lines before the header that name it.
 
     The stream is left at the first line that counts.

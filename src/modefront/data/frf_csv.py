@@ -1,99 +1,147 @@
 """Frequency response functions in CSV, or the records of a blow.
 
-Functions have a column ``frequency`` in Hz, then two columns ``NAME_re`` and ``NAME_im`` for every
-response, and ``NAME_coherence`` where there is one. Records have a column ``time`` in s, a column
-``force``, and a column NAME for every response. All columns of a file belong to one reference.
-Separators and decimal commas are those of modal data (`modefront.data.csv`).
+Functions have a column ``frequency`` in Hz, then for every response two columns: ``NAME_re`` and
+``NAME_im``, or ``NAME_magnitude`` and its phase ``NAME_rad`` or ``NAME_deg``; and
+``NAME_coherence`` where there is one. Records have a column ``time`` in s, a column ``force``, and
+a column NAME for every response. A map gives columns of other names these. All columns of a file
+belong to one reference. A response whose columns are empty is not
+measured. Separators and decimal commas are those of modal data (`modefront.data.csv`).
 """
 
 from __future__ import annotations
 
 import csv
-from collections.abc import Sequence
+from collections.abc import Collection, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Complexes, Floats
 from modefront.data.blows import TIME, Contents, blow_of_columns
 from modefront.data.channels import Channel
-from modefront.data.csv import NUMBER, SEPARATORS, find_separator
-from modefront.errors import Fault, InputError, reason, suggestion
-from modefront.inputs import MOST_DATA, available_memory, ended_column, file_size, refuse_holes
+from modefront.data.csv import NUMBER, SEPARATORS, opened, renamed
+from modefront.errors import Fault, InputError, refuse, suggestion
+from modefront.inputs import ended_column
 from modefront.rounding import LARGEST
 
-FREQUENCY, REAL, IMAGINARY, COHERENCE = "frequency", "_re", "_im", "_coherence"
+FREQUENCY, COHERENCE = "frequency", "_coherence"
+
+PAIRS = (("_re", "_im"), ("_magnitude", "_rad"), ("_magnitude", "_deg"))
+"""Endings of the two columns of a function, in each of its forms."""
+
+ENDINGS = ("_re", "_im", "_magnitude", "_rad", "_deg", COHERENCE)
+
+HALF_TURN = 3.15
+"""Greatest size of a phase that seems to be in radians, where it should be in degrees."""
+
+MOST_RADIANS = 100.0
+"""Greatest size of a phase in radians, beyond which it seems to be in degrees."""
 
 MOST_FAULTS = 5
 """Faults that are listed of one file."""
 
 
-def read_test_csv(path: Path, reference: str) -> Contents:
-    """Return the functions or the blow of one file; raises InputError with what is wrong."""
-    header, values = read_numbers(path, "a file of frequency response functions or records")
+def read_test_csv(path: Path, reference: str, columns: Mapping[str, str] | None = None) -> Contents:
+    """Return the functions or the blow of one file.
+
+    ``columns`` maps names of the file to those above: of a column, or of a response without the
+    endings of its columns. Raises InputError with what is wrong.
+    """
+    own, values = read_numbers(path, "a file of frequency response functions or records")
+    header, used = renamed(own, columns or {}, ENDINGS)
+    unused = frozenset((columns or {}).keys() - used)
     if TIME in header and FREQUENCY not in header:
-        return Contents(blows=(blow_of_columns(str(path), header, values, reference),))
-    names = _names(path, header)
+        blow = blow_of_columns(str(path), header, values, reference)
+        return Contents(blows=(blow,), unused=unused)
+    forms = _forms(path, header)
     column = dict(zip(header, values.T, strict=True))
+    given = {name for name, x in column.items() if np.isfinite(x).all()}
     channels = (
         Channel(
             str(path),
-            f"columns {name + REAL!r} and {name + IMAGINARY!r}",
+            f"columns {name + pair[0]!r} and {name + pair[1]!r}",
             reference,
             name,
             column[FREQUENCY],
-            column[name + REAL] + 1j * column[name + IMAGINARY],
-            coherence=column.get(name + COHERENCE),
+            _function(path, name, pair, (column[name + pair[0]], column[name + pair[1]])),
+            coherence=column[name + COHERENCE] if name + COHERENCE in given else None,
         )
-        for name in names
+        for name, pair in forms.items()
     )
-    return Contents(tuple(channels))
+    return Contents(tuple(channels), unused=unused)
 
 
-def _names(path: Path, header: Sequence[str]) -> list[str]:
-    """Return the names of the responses, in the order of the columns."""
+def _function(
+    path: Path, name: str, pair: tuple[str, str], parts: tuple[Floats, Floats]
+) -> Complexes:
+    """Return the function of two columns; raises InputError for a phase of another unit."""
+    first, second = parts
+    empty = [bool(np.isnan(part).any()) for part in parts]
+    if all(empty):
+        return np.zeros(first.shape, complex)
+    if any(empty):
+        place = f"column {name + pair[empty.index(True)]!r}"
+        raise InputError(Fault(str(path), place, "numbers, as in the other column", "an empty one"))
+    if pair == PAIRS[0]:
+        return np.asarray(first + 1j * second)
+    most = float(np.abs(second).max())
+    faults = []
+    if first.min() < 0:
+        found = f"{first.min():g}: are these dB?"
+        place = f"column {name + pair[0]!r}"
+        faults.append(Fault(str(path), place, "magnitudes of 0 or more", found))
+    degrees = pair[1] == "_deg"
+    if (1 < most <= HALF_TURN) if degrees else most > MOST_RADIANS:
+        unit = "degrees" if degrees else "radians"
+        expected = f"a phase in {unit} (NAME_deg is in degrees, NAME_rad in radians)"
+        found = f"{most:g} at most"
+        faults.append(Fault(str(path), f"column {name + pair[1]!r}", expected, found))
+    refuse(faults)
+    phase = np.radians(second) if degrees else second
+    return np.asarray(first * np.exp(1j * phase))
+
+
+def _forms(path: Path, header: Sequence[str]) -> dict[str, tuple[str, str]]:
+    """Return the endings of the two columns of every response, in the order of the columns."""
     file = str(path)
     faults = []
     if FREQUENCY not in header:
         found = "no such column"
         faults.append(Fault(file, f"line 1, column {FREQUENCY!r}", "this column", found))
-    names = [name.removesuffix(REAL) for name in header if name.endswith(REAL)]
-    known = {FREQUENCY, *(name + end for name in names for end in (REAL, IMAGINARY, COHERENCE))}
+    forms: dict[str, tuple[str, str]] = {}
+    for first in dict.fromkeys(pair[0] for pair in PAIRS):
+        for name in (x.removesuffix(first) for x in header if x.endswith(first)):
+            whole = [pair for pair in PAIRS if pair[0] == first and name + pair[1] in header]
+            if len(whole) != 1 or name in forms:
+                wanted = " or ".join(repr(name + b) for a, b in PAIRS if a == first)
+                has = "both" if whole else "no such column"
+                faults.append(Fault(file, f"line 1, column {wanted}", "this column", has))
+            forms[name] = whole[0] if whole else (first, first)
+    known = {FREQUENCY, *(n + end for n, pair in forms.items() for end in (*pair, COHERENCE))}
     for name in dict.fromkeys(header):
         if header.count(name) > 1:
             faults.append(Fault(file, f"line 1, column {name!r}", "each column once", "another"))
         if name not in known:
-            expected = "frequency, or NAME_re, NAME_im or NAME_coherence of a response"
-            faults.append(
-                Fault(file, f"line 1, column {name!r}", expected, suggestion(name, known))
-            )
-    for name in names:
-        if name + IMAGINARY not in header:
-            place = f"line 1, column {name + IMAGINARY!r}"
-            faults.append(Fault(file, place, "this column", "no such column"))
-    if not names:
+            expected = "frequency, or NAME_re and NAME_im, NAME_magnitude and NAME_rad or NAME_deg,"
+            expected += " or NAME_coherence of a response; 'columns' in [[set]] renames others"
+            found = suggestion(name, known)
+            faults.append(Fault(file, f"line 1, column {name!r}", expected, found))
+    if not forms:
         expected = "columns NAME_re and NAME_im of at least one response"
         faults.append(Fault(file, "line 1", expected, ", ".join(header[:6])))
-    if faults:
-        raise InputError(faults[:MOST_FAULTS])
-    return names
+    refuse(faults[:MOST_FAULTS])
+    return forms
 
 
 def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
-    """Return the header and the rows of a CSV file of numbers; raises InputError."""
+    """Return the header and the rows of a CSV file of numbers; NaN in columns that are empty.
+
+    Raises InputError.
+    """
     file = str(path)
-    size = file_size(path, what, min(MOST_DATA, available_memory() // 4))
-    try:
-        refuse_holes(path, what, size)
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            separator, before = find_separator(stream)
-            reader = csv.reader(stream, delimiter=separator)
-            header = [field.strip() for field in next(reader, [])]
-            rows = stream.read().splitlines()
-    except InputError:
-        raise
-    except (OSError, ValueError, csv.Error) as error:
-        raise InputError(Fault(file, "file", "CSV in UTF-8", reason(error))) from None
+    with opened(path, what) as (stream, separator, before):
+        header = [field.strip() for field in next(csv.reader(stream, delimiter=separator), [])]
+        rows = stream.read().splitlines()
     if separator != ",":
         rows = [row.replace(",", ".") for row in rows]
     start = before + 2
@@ -102,28 +150,30 @@ def read_numbers(path: Path, what: str) -> tuple[list[str], Floats]:
         raise InputError(Fault(file, "line 1", "a header of column names", "an empty file"))
     if not numbered:
         raise InputError(Fault(file, "line 2", "a row for each line of frequency", "the end"))
-    ended_column(path, (row.rpartition(separator)[2] for _, row in numbered))
+    texts = [row for _, row in numbered]
     try:
-        texts = [row for _, row in numbered]
         values = np.loadtxt(texts, delimiter=separator, comments=None, ndmin=2)
         if values.shape == (len(numbered), len(header)) and (np.abs(values) <= LARGEST).all():
+            ended_column(path, (row.rpartition(separator)[2] for row in texts))
             return header, values
     except ValueError:
         pass
-    values, faults = _one_by_one(
-        file, header, [(number, row.split(separator)) for number, row in numbered]
-    )
-    if faults:
-        raise InputError(faults[:MOST_FAULTS])
+    fields = [(number, row.split(separator)) for number, row in numbered]
+    whole = [row for _, row in fields if len(row) == len(header)]
+    empty = {k for k in range(len(header)) if not any(row[k].strip() for row in whole)}
+    values, faults = _one_by_one(file, header, fields, empty)
+    refuse(faults[:MOST_FAULTS])
+    last = max(k for k in range(len(header)) if k not in empty)
+    ended_column(path, (row[last] for row in whole))
     return header, values
 
 
 def _one_by_one(
-    file: str, header: Sequence[str], rows: Sequence[tuple[int, list[str]]]
+    file: str, header: Sequence[str], rows: Sequence[tuple[int, list[str]]], empty: Collection[int]
 ) -> tuple[Floats, list[Fault]]:
-    """Return numbered rows of numbers, and what is wrong with them."""
+    """Return numbered rows of numbers, and what is wrong with them; NaN in empty columns."""
     faults: list[Fault] = []
-    values = np.empty((len(rows), len(header)))
+    values = np.full((len(rows), len(header)), np.nan)
     for position, (number, fields) in enumerate(rows):
         if len(fields) != len(header):
             expected = f"{len(header)} fields, as in the header"
@@ -133,7 +183,7 @@ def _one_by_one(
             text = field.strip()
             if NUMBER.fullmatch(text) and abs(float(text)) <= LARGEST:
                 values[position, k] = float(text)
-            else:
+            elif k not in empty:
                 place = f"line {number}, column {header[k]!r}"
                 faults.append(Fault(file, place, f"a finite number up to {LARGEST:g}", repr(text)))
         if len(faults) >= MOST_FAULTS:

@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.brief import as_html, brief
+from modefront.errors import suggestion
 
 MEASURED = ("frequency", "damping", "shape", "frequency_std", "shape_std")
 """Arrays of modal data, of which data sets are the first axis."""
@@ -73,6 +74,27 @@ class ModalData:
         out: Floats = np.where(count > 0, total / np.maximum(count, 1), np.nan)
         return out
 
+    def at(self, sensors: tuple[str, ...]) -> ModalData:
+        """Return the data at all of these sensors: what is not among the present ones is NaN.
+
+        Raises ValueError where a present sensor is not among them.
+        """
+        if sensors == self.sensors:
+            return self
+        for name in self.sensors:
+            if name not in sensors:
+                known = f"expected data at sensors of the model ({', '.join(sensors)})"
+                raise ValueError(f"{known}, found {suggestion(name, sensors)}")
+        places = [sensors.index(name) for name in self.sensors]
+        if len(set(places)) < len(places):
+            raise ValueError(f"expected data at each sensor once, found {', '.join(self.sensors)}")
+        shapes = []
+        for values in (self.shape, self.shape_std):
+            out = np.full((*values.shape[:2], len(sensors)), np.nan)
+            out[:, :, places] = values
+            shapes.append(out)
+        return replace(self, sensors=sensors, shape=shapes[0], shape_std=shapes[1])
+
     @cached_property
     def measured_shapes(self) -> MeasuredShapes:
         """The shapes with zeros where nothing was measured."""
@@ -106,7 +128,7 @@ def modal_data(
         Mode shapes at the sensors, (modes, sensors) or (sets, modes, sensors), in any scale and
         with any sign.
     sensors
-        Names of the sensors, those of the model in the same order.
+        Names of the sensors, of which the model may have others too.
     sets
         Names of the data sets; ``"1"``, ``"2"`` and so on unless given.
     damping

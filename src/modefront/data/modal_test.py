@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import tomllib
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
 
@@ -63,12 +63,16 @@ class _Settings:
 
 @dataclass(frozen=True)
 class _Set:
-    """A table of a data set: files with a reference each, decay of their window in 1/s."""
+    """A table of a data set: files with a reference each, decay of their window, names of columns.
+
+    The decay is in 1/s.
+    """
 
     name: str
     files: list[str]
     references: list[str]
     decay: float
+    columns: dict[str, str]
 
 
 def read_test(path: Path) -> ModalTest:
@@ -118,9 +122,12 @@ def _from_toml(path: Path) -> ModalTest:
     data_sets = []
     for each in sets:
         contents = [
-            _contents(root, path.parent / file, reference)
+            _contents(root, path.parent / file, reference, each.columns)
             for file, reference in zip(each.files, each.references, strict=True)
         ]
+        for name in sorted(frozenset.intersection(*(x.unused for x in contents))):
+            expected = "a column of the CSV files of the set"
+            root.fault(f"[[set]] {each.name!r} columns", expected, repr(name))
         if faults:
             raise InputError(faults)
         its_own = replace(settings, decay=each.decay)
@@ -209,9 +216,8 @@ def _set_tables(root: Table, folder: Path) -> list[_Set]:
             found = f"{len(references)} for {len(files)} files"
             table.fault("reference", "one reference a file", found)
             references = [""] * len(files)
-        decay = _window(table)
+        out.append(_Set(name, files, references, _window(table), table.names("columns")))
         table.close()
-        out.append(_Set(name, files, references, decay))
     for name in repeated(each.name for each in out):
         root.fault("[[set]]", "a name for each data set", f"{name!r} twice")
     return out
@@ -227,19 +233,20 @@ def _window(data_set: Table) -> float:
     return 1 / tau if tau else 0.0
 
 
-def _contents(root: Table, path: Path, reference: str) -> Contents:
+def _contents(root: Table, path: Path, reference: str, columns: Mapping[str, str]) -> Contents:
     try:
         if not is_universal(path):
-            return read_test_csv(path, reference)
-        contents = read_uff(path)
+            return read_test_csv(path, reference, columns)
+        contents = replace(read_uff(path), unused=frozenset(columns))
     except InputError as error:
         root.faults.extend(error.faults)
         return Contents()
     if not reference:
         return contents
-    return Contents(
-        tuple(replace(channel, reference=reference) for channel in contents.channels),
-        tuple(replace(blow, reference=reference) for blow in contents.blows),
+    return replace(
+        contents,
+        channels=tuple(replace(channel, reference=reference) for channel in contents.channels),
+        blows=tuple(replace(blow, reference=reference) for blow in contents.blows),
     )
 
 

@@ -216,7 +216,8 @@ def updating_problem(
     model
         The model: `chain`, `matrices`, `mesh_model` or `function_model` makes one.
     data
-        Measured modes at the sensors of the model, in the same order.
+        Measured modes at sensors of the model, at all or some of them; at the others, nothing is
+        measured.
     groups
         The objectives, one a group of measured properties.
     bounds, nominal
@@ -233,10 +234,9 @@ def updating_problem(
     ------
     ValueError
         If a parameter is not given once, has bounds of no width or a nominal value beyond them
-        (`InputError`), if a group has no members, or if data and model differ in their sensors.
+        (`InputError`), if a group has no members, or if data have a sensor that the model has not.
     """
-    if data.sensors != model.sensors:
-        raise ValueError(f"expected data at sensors {model.sensors}, found {data.sensors}")
+    data = data.at(model.sensors)
     given = parameters or parameters_of(bounds or {}, nominal or {})
     model, chosen = of_free(model, in_order(given, model.parameters))
     if reduction is not None:

@@ -36,6 +36,7 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
     places = (
         table.table("sensors", "a table, sensor = node and direction", None) if is_uff else None
     )
+    columns = {} if is_uff else table.names("columns")
     table.close()
     if name is None:
         return None
@@ -47,7 +48,7 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
             data = _of_nodes(table, places, read_uff55(table.path(name)), model)
         else:
             # Without a model all columns may be sensors: what else is wrong is found nevertheless.
-            data = read_csv(table.path(name), model.sensors if model else None)
+            data = read_csv(table.path(name), model.sensors if model else None, columns)
     except InputError as error:
         root.faults.extend(error.faults)
         return None
