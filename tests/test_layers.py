@@ -24,6 +24,7 @@ LAYERS = (
     ("programs",),
     ("residuals",),
     ("identifiability", "predictions", "uncertainty"),
+    ("findings",),
     ("analysis", "diagnosis"),
     ("plots",),
     ("results",),

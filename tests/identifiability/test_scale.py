@@ -4,7 +4,6 @@ Every sentence is compared with what finite differences of the residuals, or the
 themselves at models along the claimed combination, say without this code.
 """
 
-import re
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
@@ -17,6 +16,7 @@ import scipy.sparse
 import modefront as mf
 from modefront import Pairing
 from modefront._typing import Floats
+from modefront.findings.knowledge import alike, free_in_words, summary
 from modefront.identifiability.combinations import (
     combinations,
     combinations_at,
@@ -24,7 +24,6 @@ from modefront.identifiability.combinations import (
     without_effect,
 )
 from modefront.identifiability.scale import scale_at, whole_scalings
-from modefront.identifiability.words import alike_in_words, free_in_words, summary
 from modefront.models.matrices import MatrixModel
 from modefront.study.check import determined, refuse_unchanged_groups
 
@@ -184,16 +183,9 @@ def test_shapes_leave_the_scale_of_the_stiffness_in_every_form(
     if form != "alpha":
         assert message == "k1, k2, k3 and k4 can be scaled together"
     else:
-        equal = "equal amounts" if (k == 1).all() else r"amounts in the ratio ([-\d. :e]+)"
-        match = re.fullmatch(
-            f"k1, k2, k3 and k4 can be changed by {equal}, "
-            "which scales the stiffness matrix as a whole",
-            message,
-        )
-        assert match
-        if match.groups():
-            ratio = [float(x) for x in match[1].split(" : ")]
-            assert ratio == pytest.approx(k / k.max(), rel=1e-2)
+        assert message == "k1, k2, k3 and k4 can scale the stiffness matrix as a whole"
+        amounts = result[-1].direction * scale.unit
+        assert amounts / amounts.max() == pytest.approx(k / k.max(), rel=1e-2)
     # What is claimed holds far away, in both directions.
     for factor in (0.7, 1.5):
         other = in_form(form, factor * k)
@@ -217,12 +209,7 @@ def test_two_springs_in_series_are_said_as_a_pair(form: str) -> None:
     for group in (0, 1, None):
         result = combinations(problem, theta, group, scale=scale)
         message = free_in_words(result, problem.model.parameters, scale)
-        (pair,) = [text for text in message if text.startswith("k1 and k2 ")]
-        ratio = [float(x) for x in pair.rpartition("ratio ")[2].split(" : ")]
-        assert ("powers" in pair) == (form != "alpha")
-        # d(1/k1 + 1/k2) = 0: amounts are as k1**2 : -k2**2, powers as k1 : -k2.
-        expected = -(0.8**2) / 2.0**2 if form == "alpha" else -0.8 / 2.0
-        assert ratio[1] / ratio[0] == pytest.approx(expected, rel=1e-2)
+        assert "k1 and k2 cannot be told apart" in message
     for k1 in (1.6, 2.5):
         other = in_form(form, np.array([k1, 1 / (1 / 2.0 + 1 / 0.8 - 1 / k1), 1.0, 1.1]))
         for group in (0, 1):
@@ -248,10 +235,10 @@ def test_null_directions_of_few_data_hold_in_both_directions(form: str) -> None:
         for h in (1e-3, -1e-3):
             other = residuals(problem, theta + h * scale.unit * v, 0)
             assert np.abs(other - here).max() < 10 * h**2, "to first order"
-    text = summary("frequencies", "frequency", result, problem.model.parameters, scale)
+    text = str(summary("frequencies", "frequency", result, problem.model.parameters, scale))
     assert text.startswith("frequencies determine 4 of 12 combinations of parameters; ")
     assert text.endswith("; and 5 more: no frequency changes")
-    assert "alone" not in text
+    assert "any value" not in text
 
 
 def idle_problem() -> mf.UpdatingProblem:
@@ -283,16 +270,16 @@ def test_a_parameter_without_effect_is_said_once_and_is_like_no_other() -> None:
     )
     H = evaluation.H.sum(axis=0) / 2
     noise = 1e-30 * np.ones((4, 4))
-    assert alike_in_words(H + noise, problem.model.parameters, [3]) == []
+    assert alike(H + noise, problem.model.parameters, [3]) == []
 
 
 def test_many_parameters_alike_are_said_at_once() -> None:
     names = tuple("abcdef")
     gram = np.ones((6, 6))
     gram[5, :5] = gram[:5, 5] = 0.0
-    (message,) = alike_in_words(gram, names)
-    assert message.startswith("a, b, c, d and e have nearly the same effect on all residuals")
-    assert len(alike_in_words(gram[:4, :4][1:, 1:], names)) == 3
+    (message,) = alike(gram, names)
+    assert str(message).startswith("a, b, c, d and e have nearly the same effect on all residuals")
+    assert len(alike(gram[:4, :4][1:, 1:], names)) == 3
 
 
 def test_a_group_that_no_parameter_changes_is_refused() -> None:
@@ -377,4 +364,4 @@ def test_without_matrices_changes_are_over_the_range() -> None:
     assert scale.scalings == []
     result = combinations(opaque, opaque.start, 1)
     text = free_in_words(result, problem.model.parameters, scale)
-    assert text == ["k1, k2, k3 and k4 can be changed by equal amounts"]
+    assert text == ["k1, k2, k3 and k4 cannot be told apart"]

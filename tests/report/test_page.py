@@ -201,6 +201,7 @@ def test_words_say_what_was_found_and_what_is_open() -> None:
     text = {topic.heading: " ".join(topic.sentences) for topic in topics(chain())}
     assert "3 measured modes in 2 groups" in text["What was studied"]
     assert "normal-boundary intersection" in text["What was studied"]
+    assert text[""].startswith("Use most-probable: its errors over those expected are ")
     assert "Pareto-optimal models have frequencies" in text["How well the best models do"]
     assert "the nominal model has 8.2 %" in text["How well the best models do"]
     assert "k1 from" in text["What the data leave open"]

@@ -10,7 +10,7 @@ import xarray as xr
 from modefront.cli.layout import Screen
 from modefront.cli.overview import print_models
 from modefront.cli.predictions import print_predictions
-from modefront.results.remarks import coverage_in_words, remarks
+from modefront.results.remarks import remarks
 
 
 def print_points(screen: Screen, data: xr.Dataset) -> None:
@@ -125,18 +125,10 @@ def print_uncertainty(screen: Screen, data: xr.Dataset) -> None:
 
 
 def print_findings_of(screen: Screen, data: xr.Dataset) -> None:
-    """Print all findings, the remarks on the results, and the coverage of the front."""
+    """Print all findings."""
     screen.blank()
     for line in remarks(data):
         screen.say(line, start="- ")
-    attrs = data.attrs
-    if not np.isnan(attrs["largest_gap"]) or not np.isnan(attrs["hypervolume"]):
-        screen.say(coverage_in_words(data), start="- ")
-    screen.say(
-        f"{attrs['model_evaluations']} eigenproblems in all, {attrs['front_evaluations']} of them "
-        "for the points of the front",
-        start="- ",
-    )
 
 
 LISTS: Mapping[str, Callable[[Screen, xr.Dataset], None]] = {

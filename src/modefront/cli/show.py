@@ -16,8 +16,8 @@ from modefront.cli.layout import BLANK, Line, Screen
 from modefront.cli.lists import LISTS, print_lists
 from modefront.cli.overview import models_in, predictions_in
 from modefront.cli.predictions import first_predictions
-from modefront.results.remarks import digest, headlines, remarks
-from modefront.results.selection import front_points
+from modefront.findings.record import PAGE
+from modefront.results.remarks import digest, findings_of, headlines
 from modefront.study.estimate import Estimate
 from modefront.work.costs import Costs
 
@@ -51,7 +51,7 @@ def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
     for line in _verdict(data):
         screen.say(line)
     findings = digest(headlines(data), f"modefront show --findings {folder}")
-    for line in [*_front(data), *findings, *cost_lines(costs)]:
+    for line in [*findings, *cost_lines(costs)]:
         screen.say(line, start="  ")
     screen.say(f"next: modefront show {folder}")
 
@@ -59,19 +59,6 @@ def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
 def _verdict(data: xr.Dataset) -> list[str]:
     """Return the sentences of the first answer."""
     return str(data.attrs.get("verdict", "")).splitlines()
-
-
-def _front(data: xr.Dataset) -> list[str]:
-    """Return how many points the front has."""
-    front = front_points(data)
-    if not front.size:
-        return []
-    optimal = int(data["pareto"].values[front].sum())
-    many = "all" if optimal == front.size else f"{optimal}"
-    return [
-        f"the front has {front.size} points; {many} of them are Pareto optimal: no known model "
-        "is better in one group and as good in the others"
-    ]
 
 
 def print_results(data: xr.Dataset, lists: Sequence[str] = ()) -> None:
@@ -93,6 +80,7 @@ def print_results(data: xr.Dataset, lists: Sequence[str] = ()) -> None:
         lines += [BLANK, *predictions_in(screen, *first_predictions(data), PREDICTIONS)]
     options = [f"--{name}" for name in LISTS if name != "predictions" or predicted]
     last = screen.sentence(f"full lists: modefront show {' '.join(options)}, or --all")
+    last += screen.sentence(f"what each finding means, and what to do: {PAGE}")
     lines.append(BLANK)
     lines += _findings(screen, data, max(HEIGHT - len(lines) - len(last) - 1, LEAST))
     screen.show([*lines, BLANK, *last])
@@ -100,7 +88,7 @@ def print_results(data: xr.Dataset, lists: Sequence[str] = ()) -> None:
 
 def _findings(screen: Screen, data: xr.Dataset, most: int) -> list[Line]:
     """Return the first findings, in ``most`` lines or in those of the first two where more."""
-    sentences = [*_front(data), *headlines(data)]
+    sentences = headlines(data)
     blocks = [screen.sentence(text, start="- ") for text in sentences]
     if sum(map(len, blocks)) <= most:
         return [line for block in blocks for line in block]
@@ -120,9 +108,15 @@ def as_json(data: xr.Dataset) -> str:
         for name, value in {**data.coords, **data.data_vars}.items()
     }
     attributes = {str(key): as_plain(np.asarray(value)) for key, value in data.attrs.items()}
-    remarked = remarks(data)
-    sections = {"verdict": _verdict(data), "attributes": attributes, "variables": variables}
-    return json.dumps({**sections, "remarks": remarked}, indent=1)
+    found = findings_of(data, full=True)
+    sections = {
+        "verdict": _verdict(data),
+        "attributes": attributes,
+        "variables": variables,
+        "remarks": [str(finding) for finding in found],
+        "findings": [finding.as_plain() for finding in found],
+    }
+    return json.dumps(sections, indent=1)
 
 
 def as_plain(values: Any) -> Any:

@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 import xarray as xr
 
+from modefront.findings.catalogue import Severity
 from modefront.front.methods import METHODS
 from modefront.predictions import KINDS
-from modefront.results.remarks import cautions, failures, misfit, single
+from modefront.results.remarks import findings_of
 from modefront.results.selection import front_points
 
 FEW = 8
@@ -23,7 +24,7 @@ WIDE = 1.02
 
 @dataclass(frozen=True)
 class Topic:
-    """Sentences on one question."""
+    """Sentences on one question; those of the first answer have no heading."""
 
     heading: str
     sentences: tuple[str, ...]
@@ -35,41 +36,54 @@ def texts(values: Any) -> list[str]:
 
 
 def topics(data: xr.Dataset) -> list[Topic]:
-    """Return the sentences on the study, its results and its open questions."""
+    """Return the sentences: the first answer, then those on each question."""
+    found = findings_of(data)
+
+    def of(*severities: Severity) -> list[str]:
+        return [str(finding) for finding in found if finding.severity in severities]
+
+    beware = of(Severity.FAILURE, Severity.CAUTION) or ["all models that were solved for converged"]
     all_topics = (
+        Topic("", tuple(str(data.attrs.get("verdict", "")).splitlines())),
+        Topic("How well the best models do", sentences(of(Severity.FIT))),
+        Topic("What to beware of", sentences([*beware, *_dominated(data)])),
+        Topic("What the data leave open", (*sentences(of(Severity.OPEN)), *_open(data))),
         Topic("What was studied", tuple(_study(data))),
-        Topic("How well the best models do", _sentences(misfit(data))),
-        Topic("What the data leave open", tuple(_open(data))),
-        Topic("What to beware of", tuple(_caution(data))),
     )
     return [topic for topic in all_topics if topic.sentences]
+
+
+def sentences(texts: Iterable[str]) -> tuple[str, ...]:
+    """Return texts as whole sentences."""
+    return tuple(f"{text[:1].upper()}{text[1:]}".rstrip(".") + "." for text in texts)
 
 
 def _study(data: xr.Dataset) -> Iterator[str]:
     sizes = data.sizes
     groups = texts(data["group"].values)
+    method = str(data.attrs["method"])
+    title = METHODS[method].title if method in METHODS else method
     yield (
         f"A model with {_count(sizes['parameter'], 'parameter')} is compared with "
         f"{_count(sizes['mode'], 'measured mode')} in {_count(len(groups), 'group')} of measured "
-        f"properties: {', '.join(groups)}."
+        f"properties: {', '.join(groups)}. The front is found by {title}, and "
+        f"{_count(int(data.attrs['model_evaluations']), 'eigenproblem')} were solved in all."
     )
-    front = front_points(data)
-    optimal = int(data["pareto"].values[front].sum())
-    method = str(data.attrs["method"])
-    title = METHODS[method].title if method in METHODS else method
-    yield from _sentences(single(data))
-    if front.size:
-        yield (
-            f"The front has {_count(front.size, 'point')}, found by {title}; "
-            f"{optimal} of them are Pareto optimal: no known model is better in one group without "
-            "being worse in another."
-        )
-    yield f"{_count(int(data.attrs['model_evaluations']), 'eigenproblem')} were solved in all."
     if data.attrs.get("remark"):
         yield f"{data.attrs['remark']}."
 
 
+def _dominated(data: xr.Dataset) -> Iterator[str]:
+    front = front_points(data)
+    labels = data["label"].values[front[~data["pareto"].values[front].astype(bool)]].tolist()
+    if labels:
+        rest = len(labels) - FEW
+        some = ", ".join(labels[:FEW]) + (f" and {rest} more" if rest > 0 else "")
+        yield f"dominated by a known model, and drawn hollow: {some}"
+
+
 def _open(data: xr.Dataset) -> Iterator[str]:
+    """Yield the ranges of the front, which are no confidence intervals."""
     best = np.flatnonzero(data["pareto"].values)
     theta, bounds = data["theta"].values[best], data["bounds"].values
     names = texts(data["parameter"].values)
@@ -80,9 +94,11 @@ def _open(data: xr.Dataset) -> Iterator[str]:
         ranges = [f"{names[j]} from {low[j]:.3g} to {high[j]:.3g}" for j in order.tolist()]
         rest = len(names) - len(ranges)
         more = f" ({_count(rest, 'parameter')} more vary less)" if rest else ""
-        yield f"Over all {best.size} Pareto-optimal models, {', '.join(ranges)}{more}."
+        yield (
+            f"Over all {best.size} Pareto-optimal models, that is for all weights of the groups, "
+            f"{', '.join(ranges)}{more}."
+        )
     yield from _spread(data)
-    yield from _sentences(texts(data["finding"].values))
 
 
 def _spread(data: xr.Dataset) -> Iterator[str]:
@@ -108,23 +124,6 @@ def _spread(data: xr.Dataset) -> Iterator[str]:
         )
 
 
-def _caution(data: xr.Dataset) -> Iterator[str]:
-    failed = failures(data)
-    if not failed:
-        yield "All models that were solved for converged."
-    front = front_points(data)
-    dominated = data["label"].values[front[~data["pareto"].values[front].astype(bool)]].tolist()
-    drawn = (
-        [f"dominated by a known model, and drawn hollow: {_some(dominated)}"] if dominated else []
-    )
-    yield from _sentences([*failed, *drawn, *cautions(data)])
-
-
-def _sentences(texts: Iterable[str]) -> tuple[str, ...]:
-    """Return texts as whole sentences."""
-    return tuple(f"{text[:1].upper()}{text[1:]}".rstrip(".") + "." for text in texts)
-
-
 def _times(ratio: float) -> str:
     """Return a ratio in words.
 
@@ -143,9 +142,3 @@ def _times(ratio: float) -> str:
 
 def _count(number: int, noun: str) -> str:
     return f"{number} {noun}{'s' * (number != 1)}"
-
-
-def _some(names: Sequence[str]) -> str:
-    """Return names, a few of many."""
-    rest = len(names) - FEW
-    return ", ".join(names[:FEW]) + (f" and {rest} more" if rest > 0 else "")

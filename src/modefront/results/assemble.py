@@ -19,7 +19,7 @@ from modefront.front.point import WEIGHTED, Kind, label
 from modefront.optim.sqp import Solution
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values, analysis_values, determinations
-from modefront.results.findings import findings
+from modefront.results.findings import as_values, findings
 from modefront.results.schema import FORMAT, derived, described
 
 ITERATED = "iterated-weights"
@@ -33,7 +33,7 @@ def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     values |= _branches(front) | lattice_values(front)
     determined = determinations(problem, front)
     values |= analysis_values(problem, front, analysis, determined)
-    values["finding"] = findings(problem, front, analysis, determined)
+    values |= as_values(findings(problem, front, analysis, determined))
     values |= derived(values)
     groups, parameters = list(problem.objectives), list(problem.model.parameters)
     return xr.Dataset(

@@ -1,51 +1,31 @@
-"""Findings of the analysis of a front as sentences, the most important first."""
+"""Findings of the analysis of a front, the most important first."""
 
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from enum import IntEnum
+from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.analysis.front import FrontAnalysis, followed
 from modefront.analysis.manifold import Extent, Manifold
-from modefront.front.front import Front
-from modefront.front.point import Kind, label, of_kind
-from modefront.identifiability.words import (
+from modefront.findings.knowledge import (
     PARTS,
-    alike_in_words,
+    alike,
     determined,
     enumeration,
     measured_noun,
-    no_effect_in_words,
+    no_effect,
     summary,
 )
+from modefront.findings.record import Finding, as_text, found, in_order
+from modefront.front.front import Front
+from modefront.front.point import Kind, label, of_kind
 from modefront.optim.problem import AT_BOUND
 from modefront.residuals.problem import UpdatingProblem
-from modefront.results.analysis import Determination
+from modefront.results.analysis import Determination, Values
 from modefront.uncertainty.validity import LinearisationWarning
-
-
-class Rank(IntEnum):
-    """Order of findings."""
-
-    BUDGET = 0
-    WEIGHTS = 1
-    IDLE = 2
-    ALL_DATA = 3
-    MANIFOLD = 4
-    FLAT = 5
-    OF_GROUP = 6
-    SPENT = 7
-    ALIKE = 8
-    SCATTER = 9
-    LINEARISATION = 10
-    DETERMINED = 11
-
-
-Finding = tuple[Rank, str]
-"""A sentence with its place in the order."""
 
 FEW = 10
 """Points that are named one by one in a sentence."""
@@ -59,8 +39,8 @@ def findings(
     front: Front,
     analysis: FrontAnalysis,
     determinations: Sequence[Determination],
-) -> list[str]:
-    """Return the sentences; ``front`` holds all points, those of ``analysis`` too."""
+) -> list[Finding]:
+    """Return the findings; ``front`` holds all points, those of ``analysis`` too."""
     out = [
         *_open(front),
         *_weights(problem, front),
@@ -74,7 +54,15 @@ def findings(
         *_held(problem, analysis),
         *_replicates(analysis),
     ]
-    return [text for _, text in sorted(out, key=lambda finding: finding[0])]
+    return in_order(out)
+
+
+def as_values(findings: Sequence[Finding]) -> Values:
+    """Return the variables of results that hold findings: sentences, and records."""
+    return {
+        "finding": [str(finding) for finding in findings],
+        "finding_record": [as_text(finding) for finding in findings],
+    }
 
 
 def _weights(problem: UpdatingProblem, front: Front) -> list[Finding]:
@@ -96,28 +84,19 @@ def _weights(problem: UpdatingProblem, front: Front) -> list[Finding]:
             f"{label(Kind.EQUAL)} takes the place of {label(Kind.OPTIMAL)}; a weight in [noise] "
             f"gives {label(Kind.MOST_PROBABLE)}, which is better"
         )
-    return [(Rank.WEIGHTS, f"there is no {label(Kind.OPTIMAL)}: {why}. {then}")]
+    return [found("no-optimal-weights", label(Kind.OPTIMAL), why=why, then=then)]
 
 
 def _open(front: Front) -> list[Finding]:
     """Return what the search had not finished when its budget was spent."""
-    if not front.open:
-        return []
-    what = enumeration(front.open)
-    text = f"the search ended at its budget, and better models are likely for {what}: raise "
-    return [(Rank.BUDGET, f"{text}[search] evaluations")]
+    return [found("budget", enumeration(front.open))] if front.open else []
 
 
 def _doubtful(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
     """Yield which edges may not be the best there are."""
     for name, edge in zip(problem.objectives, front.edges, strict=True):
         if edge.doubtful:
-            yield (
-                Rank.WEIGHTS,
-                f"the edge of {name} may not be the best: {edge.starts} random starts led to "
-                f"{edge.found} different minima, and at most one of them to it. Ask for more with "
-                "[search] doubt = 0.01, or choose a pairing that changes less",
-            )
+            yield found("doubtful-edge", name, starts=edge.starts, minima=edge.found)
 
 
 def _unknown_ends(front: Front) -> list[Finding]:
@@ -125,26 +104,25 @@ def _unknown_ends(front: Front) -> list[Finding]:
     out = []
     for k, gap in enumerate(front.gaps):
         if gap.end is None:
-            out.append(f"the front has a gap: where branch {k + 1} ends is not known")
+            out.append(found("unknown-end", str(k + 1), end="ends"))
         if gap.start is None:
-            out.append(f"the front has a gap: where branch {k + 2} starts is not known")
-    return [(Rank.WEIGHTS, text) for text in out]
+            out.append(found("unknown-end", str(k + 2), end="starts"))
+    return out
 
 
 def _identifiability(problem: UpdatingProblem, reference: Determination) -> Iterator[Finding]:
     """Yield the determined combinations of parameters at the reference."""
-    names, groups, where = problem.model.parameters, problem.groups, reference.point.label
-    for text in no_effect_in_words(reference.idle, names):
-        yield Rank.IDLE, f"at {where}: {text}"
+    names, groups = problem.model.parameters, problem.groups
+    where = f"at {reference.point.label}: "
+    yield from no_effect(reference.idle, names, where)
     for i, (name, combinations) in enumerate(reference.combinations):
         whole = i == len(groups)
         noun = measured_noun(groups if whole else [groups[i]])
         full = determined(combinations) == (len(names) - len(reference.idle), 0)
-        rank = Rank.DETERMINED if full else Rank.ALL_DATA if whole else Rank.OF_GROUP
-        text = summary(name, noun, combinations, names, reference.scale, reference.idle)
-        yield rank, f"at {where}: {text}"
-    for text in alike_in_words(reference.effects, names, reference.idle):
-        yield Rank.ALIKE, f"at {where}: {text}"
+        kind = "determined" if full else "all-data" if whole else "group-data"
+        of = (reference.scale, reference.idle)
+        yield summary(name, noun, combinations, names, *of, kind=kind, where=where)
+    yield from alike(reference.effects, names, reference.idle, where)
 
 
 def _flat(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Iterator[Finding]:
@@ -153,44 +131,30 @@ def _flat(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> It
     if part is None:
         return
     total = len(of_kind(front.points, Kind.FRONT))
-    within = f"within {100 * analysis.tolerance:g} % of the least J of"
+    said: dict[str, Any] = {"points": total, "tolerance": 100 * analysis.tolerance}
     for name, count in zip(problem.objectives, part.flat.tolist(), strict=True):
         if count:
-            yield (
-                Rank.FLAT,
-                f"the front is flat at {label(Kind.EDGE, name)}: beside it, {count} of {total} "
-                f"points are {within} {name}"
-                + ("" if part.points else "; without them it is one point"),
-            )
+            then = "" if part.points else "; without them it is one point"
+            edge = label(Kind.EDGE, name)
+            yield found("flat", name, edge=edge, flat=count, then=then, **said)
     for name, count in zip(problem.objectives, part.uncut.tolist(), strict=True):
         if count:
-            yield (
-                Rank.FLAT,
-                f"the front is flat at {label(Kind.EDGE, name)}: {count} of {total} points are "
-                f"{within} {name}; where that part ends was not found, so it is not cut",
-            )
+            yield found("uncut", name, edge=label(Kind.EDGE, name), flat=count, **said)
 
 
 def _separate(analysis: FrontAnalysis) -> list[Finding]:
     """Return how many isolated models are equivalent."""
-    out: list[Finding] = []
+    out = []
     for of, manifolds in analysis.manifolds:
         isolated = sum(manifold.extent is Extent.ISOLATED for manifold in manifolds)
         if isolated > 1:
-            out.append((Rank.MANIFOLD, f"{isolated} separate models fit {of} equally well"))
+            out.append(found("separate", of, models=isolated))
         left = sum(
             manifold.extent is Extent.SPENT and len(manifold.models) == 1 for manifold in manifolds
         )
         if left:
             spent = sum(manifold.evaluations for manifold in manifolds)
-            out.append(
-                (
-                    Rank.SPENT,
-                    f"{left} more model{'s fit' if left > 1 else ' fits'} {of} equally well: what "
-                    f"is connected to {'them' if left > 1 else 'it'} is not known, as the "
-                    f"{spent} eigenproblems that [identifiability] models allows were spent before",
-                )
-            )
+            out.append(found("not-followed", of, many=left > 1, models=left, spent=spent))
     return out
 
 
@@ -202,17 +166,17 @@ def _connected(problem: UpdatingProblem, analysis: FrontAnalysis) -> list[Findin
         for manifold in manifolds:
             if manifold.twin is not None and of not in shared[manifold.twin]:
                 shared[manifold.twin].append(of)
-    alike: dict[tuple[str, int], list[Manifold]] = {}
+    connected: dict[tuple[str, int], list[Manifold]] = {}
     for k, (_, manifold) in enumerate(known):
         if len(manifold.models) > 1:
-            alike.setdefault((enumeration(shared[k]), manifold.dimension), []).append(manifold)
-    return [(Rank.MANIFOLD, _extent(problem, of, some)) for (of, _), some in alike.items()]
+            connected.setdefault((enumeration(shared[k]), manifold.dimension), []).append(manifold)
+    return [_extent(problem, of, some) for (of, _), some in connected.items()]
 
 
 KINDS = {1: "curve", 2: "surface"}
 
 
-def _extent(problem: UpdatingProblem, of: str, manifolds: Sequence[Manifold]) -> str:
+def _extent(problem: UpdatingProblem, of: str, manifolds: Sequence[Manifold]) -> Finding:
     """Return how far manifolds of one dimension go, of several the greatest."""
     greatest = max(manifolds, key=lambda greatest: len(greatest.models))
     kind = KINDS.get(greatest.dimension, "manifold")
@@ -220,12 +184,10 @@ def _extent(problem: UpdatingProblem, of: str, manifolds: Sequence[Manifold]) ->
     count = f"{len(greatest.models)} models, by {spent}, {greatest.extent.value}"
     more = "" if greatest.dimension in KINDS else f" of dimension {greatest.dimension}"
     far = _far(problem, np.array([model.theta for model in greatest.models]))
-    if len(manifolds) == 1:
-        return f"a {kind}{more} of models fits {of} equally well: {far} ({count})"
-    return (
-        f"{len(manifolds)} separate {kind}s{more} of models fit {of} equally well; "
-        f"on the greatest {far} ({count})"
-    )
+    many = len(manifolds) > 1
+    named = f"{len(manifolds)} separate {kind}s{more}" if many else f"a {kind}{more}"
+    where = "; on the greatest" if many else ":"
+    return found("manifold", of, many=many, manifolds=named, where=where, reach=far, count=count)
 
 
 def _far(problem: UpdatingProblem, theta: Floats) -> str:
@@ -254,21 +216,17 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
         given = np.isfinite(data.frequency_std).any() or np.isfinite(data.shape_std).any()
         used = (data.frequency_std > 0).any() or (data.shape_std > 0).any()
         if given and not used:
-            yield Rank.SCATTER, "no standard deviation is above 0: none is used"
+            yield found("no-deviations")
         return
     why = {"std": "their standard deviations", "sets": "the scatter of the data sets"}
-    yield Rank.SCATTER, f"uncertainty of the data is taken from {why[analysis.source]}"
+    yield found("source", why[analysis.source])
     unknown = _without_std(problem) if analysis.source == "std" else 0
     if unknown:
-        yield (
-            Rank.SCATTER,
-            f"{unknown} measured values have no standard deviation above 0: they count as exact",
-        )
+        yield found("exact-data", values=unknown)
     labels = [point.label for point in front.points if point.kind is not Kind.NOMINAL]
     missing = [name for name in labels if name not in analysis.scatter]
     if missing:
-        where = _places(missing, len(labels))
-        yield Rank.LINEARISATION, f"no standard deviations are known at {where}"
+        yield found("no-scatter", _places(missing, len(labels)))
     for warning in LinearisationWarning:
         warned = [
             name
@@ -276,11 +234,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
             if name in analysis.scatter and warning in analysis.scatter[name].warnings
         ]
         if warned:
-            where = _places(warned, len(labels))
-            yield (
-                Rank.LINEARISATION,
-                f"standard deviations are approximate at {where}: {warning.value}",
-            )
+            yield found("approximate", _places(warned, len(labels)), why=warning.value)
 
 
 def _places(labels: Sequence[str], points: int) -> str:
@@ -303,7 +257,7 @@ def _held(problem: UpdatingProblem, analysis: FrontAnalysis) -> Iterator[Finding
     parameters = zip(problem.model.parameters, analysis.posterior.held, strict=True)
     held = [name for name, is_held in parameters if is_held]
     if held:
-        yield Rank.SCATTER, f"the posterior is given {enumeration(held)} at a bound"
+        yield found("held", enumeration(held))
 
 
 def _replicates(analysis: FrontAnalysis) -> Iterator[Finding]:
@@ -311,7 +265,4 @@ def _replicates(analysis: FrontAnalysis) -> Iterator[Finding]:
     solutions = [solution for each in analysis.replicates for solution in each.values()]
     failed = sum(not solution.converged for solution in solutions)
     if failed:
-        yield (
-            Rank.SCATTER,
-            f"bootstrap: {failed} of {len(solutions)} solutions did not converge",
-        )
+        yield found("replicates", failed=failed, solutions=len(solutions))

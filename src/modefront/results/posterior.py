@@ -12,10 +12,12 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats
-from modefront.identifiability.words import enumeration
+from modefront.findings.knowledge import enumeration
+from modefront.findings.record import Finding, found, from_text
 from modefront.predictions import Kind, Prediction, ResultVariable
 from modefront.predictions.runner import Predicted, PredictionRunner
 from modefront.results.analysis import Values, left_open
+from modefront.results.findings import as_values
 from modefront.results.predictions import by_kind
 from modefront.results.schema import described
 from modefront.uncertainty.differences import Stencil, stencil
@@ -32,12 +34,12 @@ class PosteriorModels:
     ----------
     differences : finite-difference models along the axes of the posterior; None for none
     samples : (draws, p) samples of the posterior
-    messages : what limits them
+    limits : what limits them
     """
 
     differences: Stencil | None
     samples: Floats
-    messages: Sequence[str]
+    limits: Sequence[Finding]
 
     @property
     def count(self) -> int:
@@ -66,30 +68,24 @@ def posterior_models(
     if posterior is None and len(samples):
         return PosteriorModels(None, samples, [])
     if posterior is None:
-        missing = "there is no posterior: no models are drawn from it"
-        return PosteriorModels(None, none, [missing] if draws else [])
-    messages = []
+        return PosteriorModels(None, none, [found("no-posterior")] if draws else [])
+    limits = []
     theta, reference = data["theta"].values[_reference(data)], data.attrs["reference"]
     parted = zip(problem.model.parameters, left_open(posterior.free), strict=True)
     names = [name for name, is_open in parted if is_open]
     if names:
-        messages.append(
-            "the posterior of predictions is that of what the data determine: where they leave "
-            f"{enumeration(names)} open, the models are those of {reference}"
-        )
+        limits.append(found("open-in-posterior", enumeration(names), reference=reference))
     differences = stencil(theta, posterior.axes, problem.lower, problem.upper)
     if differences is None:
-        messages.append(f"{reference} has no room for differences between bounds: see draws")
+        limits.append(found("no-room", str(reference)))
     if draws and drawn is None:
         rng = np.random.default_rng(seed_sequence(runner.seed, "posterior"))
         bounds = problem.lower, problem.upper
         try:
             samples = draw(theta, posterior.axes, rng, draws, bounds)
         except TruncationError as error:
-            messages.append(
-                f"no models are drawn: the posterior is wider than the bounds ({error})"
-            )
-    return PosteriorModels(differences, samples, messages)
+            limits.append(found("no-draws", str(error)))
+    return PosteriorModels(differences, samples, limits)
 
 
 def with_posterior(
@@ -97,23 +93,25 @@ def with_posterior(
 ) -> xr.Dataset:
     """Return results that have predictions with the scatter of these by the posterior."""
     values: Values = {}
-    messages = list(models.messages)
+    limits = list(models.limits)
     coordinates: dict[str, object] = {}
     for kind, predictions in by_kind(runner.predictions):
         if models.differences is not None:
-            variables, remarks = _to_first_order(data, runner, models.differences, predictions)
+            variables, more = _to_first_order(data, runner, models.differences, predictions)
             values |= variables
-            messages += remarks
+            limits += more
             coordinates[f"{kind.dimension}_other"] = data[kind.dimension].values
         if len(models.samples):
-            variables, remarks = _of_samples(data, runner, models.samples, predictions)
+            variables, more = _of_samples(data, runner, models.samples, predictions)
             values |= variables
-            messages += remarks
+            limits += more
     if len(models.samples):
         values["draw_theta"] = models.samples
         coordinates["statistic"] = np.array(SUMMARY)
-    values["finding"] = [*data["finding"].values.tolist(), *messages]
-    return data.drop_vars("finding").assign(described(values)).assign_coords(coordinates)
+    kept = zip(data["finding"].values.tolist(), data["finding_record"].values, strict=True)
+    values |= as_values([*(from_text(str(text), each) for each, text in kept), *limits])
+    data = data.drop_vars(["finding", "finding_record"])
+    return data.assign(described(values)).assign_coords(coordinates)
 
 
 def _reference(data: xr.Dataset) -> int:
@@ -141,7 +139,7 @@ def _to_first_order(
     runner: PredictionRunner,
     differences: Stencil,
     predictions: Sequence[Prediction],
-) -> tuple[Values, list[str]]:
+) -> tuple[Values, list[Finding]]:
     """Return standard deviations and covariances, of the logarithms where these are linearised."""
     kind = predictions[0].kind
     m, _, p = differences.theta.shape
@@ -155,12 +153,11 @@ def _to_first_order(
         C = _covariance(differences, middle, beside, logarithmic=variable.logarithmic)
         unknown |= np.isfinite(middle) & np.isnan(np.diag(C))
         out |= _scatter(kind, variable, middle, C)
-    messages = [
-        f"no posterior standard deviation of {name}: models within one of "
-        f"{data.attrs['reference']} cannot be solved, or {kind.undefined}"
+    reference = str(data.attrs["reference"])
+    return out, [
+        found("no-deviation", str(name), reference=reference, undefined=kind.undefined)
         for name in data[kind.dimension].values[unknown]
     ]
-    return out, messages
 
 
 def _covariance(
@@ -193,7 +190,7 @@ def _of_samples(
     runner: PredictionRunner,
     samples: Floats,
     predictions: Sequence[Prediction],
-) -> tuple[Values, list[str]]:
+) -> tuple[Values, list[Finding]]:
     """Return the predictions of samples of the posterior, each and summed up."""
     kind, n = predictions[0].kind, len(samples)
     rows = [runner.at_models(each, samples, "draw") for each in predictions]
@@ -203,9 +200,8 @@ def _of_samples(
         out[f"draw_{variable.name}"] = values[variable.key]
         out[f"posterior_{variable.name}"] = summary(values[variable.key])
     failed = [sum(not x.solved for x in row) for row in rows]
-    messages = [
-        f"{count} of {n} models drawn from the posterior cannot be solved for {each.name}: they "
-        "are left out"
+    limits = [
+        found("unsolved-draws", each.name, count=count, drawn=n, what="cannot be solved")
         for each, count in zip(predictions, failed, strict=True)
         if count
     ]
@@ -213,10 +209,9 @@ def _of_samples(
     missing = np.isnan(values[first.key]).sum(axis=0)
     missing -= np.repeat(failed, [len(each.places) for each in predictions])
     missing[np.isnan(data[first.name].values[_reference(data)])] = 0
-    messages += [
-        f"{count} of {n} models drawn from the posterior {kind.absent} for {name}: they are left "
-        "out"
+    limits += [
+        found("unsolved-draws", str(name), count=int(count), drawn=n, what=kind.absent)
         for name, count in zip(data[kind.dimension].values, missing, strict=True)
         if count > 0
     ]
-    return out, messages
+    return out, limits

@@ -1,7 +1,4 @@
-"""Remarks on results as sentences, for the terminal and the report.
-
-A sentence begins with a small letter and ends without a full stop.
-"""
+"""Findings of results, those of their analysis included, in the order of what matters."""
 
 from __future__ import annotations
 
@@ -11,6 +8,8 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Floats
+from modefront.findings.catalogue import Severity
+from modefront.findings.record import Finding, found, from_text, in_order
 from modefront.front.point import Kind
 from modefront.optim.problem import AT_BOUND
 from modefront.results.selection import front_points, not_converged, uncertified
@@ -40,95 +39,84 @@ POOR = 0.5
 """MAC below which a pair is poor."""
 
 
-def digest(findings: Sequence[str], where: str, most: int | None = MOST) -> list[str]:
-    """Return the first of some findings, with the number of others and the option that prints them.
+def digest(sentences: Sequence[str], where: str, most: int | None = MOST) -> list[str]:
+    """Return the first of some sentences, with how many more and the option that prints them.
 
     >>> digest(["a", "b", "c"], "see FILE", 2)
     ['a', 'b', 'and 1 more finding: see FILE']
     """
-    rest = 0 if most is None else len(findings) - most
+    rest = 0 if most is None else len(sentences) - most
     if rest <= 0:
-        return list(findings)
-    return [*findings[:most], f"and {rest} more finding{'s' * (rest > 1)}: {where}"]
+        return list(sentences)
+    return [*sentences[:most], f"and {rest} more finding{'s' * (rest > 1)}: {where}"]
+
+
+def findings_of(data: xr.Dataset, *, full: bool = False) -> list[Finding]:
+    """Return the findings of results, the most important first.
+
+    ``full`` has details of branches, numerics and coverage too, and names all models and modes.
+    """
+    out = [
+        *_failures(data),
+        *_front(data),
+        *_misfit(data),
+        *_branches(data),
+        *_spacing(data),
+        *_not_optimal(data),
+        *_poor_pairs(data, None if full else FEW),
+        *_pairs(data, None if full else FEW),
+        *_at_bounds(data, None if full else FEW),
+        *_analysed(data),
+    ]
+    if full:
+        out += [*_exact(data), *_iteration(data), *_certificates(data), *_coverage(data)]
+    else:
+        out = [finding for finding in out if finding.severity is not Severity.DETAIL]
+    return in_order(out)
 
 
 def remarks(data: xr.Dataset) -> list[str]:
-    """Return all remarks on the results."""
-    return [
-        *_changed(data),
-        *misfit(data),
-        *single(data),
-        *_exact(data),
-        *_iteration(data),
-        *_branches(data),
-        *_spacing(data),
-        *_not_optimal(data),
-        *_certificates(data),
-        *_poor_pairs(data),
-        *_pairs(data),
-        *_at_bounds(data),
-        *_failed(data),
-        *_sampled(data),
-        *data["finding"].values.tolist(),
-    ]
+    """Return the sentences of all findings of results."""
+    return [str(finding) for finding in findings_of(data, full=True)]
 
 
 def headlines(data: xr.Dataset) -> list[str]:
-    """Return the first remarks: failures, distance of the models from the data, open questions.
-
-    Details of the branches, of the numerics and of the coverage of the front are left to `remarks`
-    and `coverage_in_words`.
-    """
-    return [
-        *failures(data),
-        *misfit(data),
-        *single(data),
-        *_gaps(data),
-        *_poor_pairs(data, FEW),
-        *_changed_pairs(data),
-        *_at_bounds(data, FEW),
-        *data["finding"].values.tolist(),
-    ]
+    """Return the sentences of the first findings: without details, and with few names."""
+    return [str(finding) for finding in findings_of(data)]
 
 
-def failures(data: xr.Dataset) -> list[str]:
-    """Return which models did not converge, are not accurate, or have no test of convergence.
-
-    Before them, that the results were changed.
-    """
-    failed = uncertified(data)
-    above = np.isin(data["label"].values, failed)
-    inaccurate = [f"modes are less accurate than asked for at {places(data, above)}"]
-    return [*_changed(data), *_failed(data), *(inaccurate if failed.size else []), *_sampled(data)]
+def _analysed(data: xr.Dataset) -> Iterator[Finding]:
+    """Yield the findings of the analysis, which the file holds."""
+    sentences = data["finding"].values.tolist()
+    kept = data["finding_record"].values.tolist() if "finding_record" in data else sentences
+    for sentence, record in zip(sentences, kept, strict=True):
+        yield from_text(str(record), str(sentence))
 
 
-def _changed(data: xr.Dataset) -> list[str]:
-    return [str(data.attrs[CHANGED])] if CHANGED in data.attrs else []
+def _failures(data: xr.Dataset) -> Iterator[Finding]:
+    """Yield that results were changed; which models did not converge, or are not accurate."""
+    if CHANGED in data.attrs:
+        yield found("changed", str(data.attrs[CHANGED]))
+    failed = np.isin(data["label"].values, not_converged(data))
+    if failed.any():
+        yield found("not-converged", places(data, failed))
+    above = np.isin(data["label"].values, uncertified(data))
+    if above.any():
+        yield found("inaccurate", places(data, above))
+    if (data["status"].values == "sampled").any():
+        spent = int(data.attrs["front_evaluations"])
+        yield found("no-test", str(data.attrs["method"]), evaluations=spent)
 
 
-def cautions(data: xr.Dataset) -> list[str]:
-    """Return the warnings other than failures."""
-    return [
-        *_branches(data),
-        *_spacing(data),
-        *_not_optimal(data),
-        *_poor_pairs(data, FEW),
-        *_changed_pairs(data),
-        *_at_bounds(data, FEW),
-    ]
-
-
-def coverage_in_words(data: xr.Dataset) -> str:
-    """Return how well the front is covered, with the terms explained."""
-    attrs = data.attrs
-    text = (
-        f"hypervolume {attrs['hypervolume']:.5f} up to 1.1 (what the front dominates; more is "
-        f"better), IGD+ {attrs['igd_plus']:.2e} (mean distance of all nondominated models that are "
-        f"known from it; 0 is best), largest gap {attrs['largest_gap']:.3f} between neighbours, "
-        "all in units of the ranges of the objectives over the edges"
-    )
-    missing = np.isnan(attrs["hypervolume"])
-    return text + ("; for the hypervolume: pip install modefront[metrics]" if missing else "")
+def _front(data: xr.Dataset) -> Iterator[Finding]:
+    """Yield how many points the front has, or that it is one."""
+    front = front_points(data)
+    if data.attrs["front_is_a_point"]:
+        yield found("one-model")
+    elif front.size:
+        optimal = int(data["pareto"].values[front].sum())
+        said = "all" if optimal == front.size else optimal
+        yield found("front", points=int(front.size), optimal=said)
 
 
 def places(data: xr.Dataset, chosen: Bools) -> str:
@@ -157,7 +145,7 @@ def places(data: xr.Dataset, chosen: Bools) -> str:
     return ", ".join(parts)
 
 
-def misfit(data: xr.Dataset) -> Iterator[str]:
+def _misfit(data: xr.Dataset) -> Iterator[Finding]:
     """Yield how far models are from the data: all Pareto-optimal ones, the reference, the nominal.
 
     Pareto-optimal are edges and weighted models too: the best models are never left out.
@@ -166,14 +154,17 @@ def misfit(data: xr.Dataset) -> Iterator[str]:
     if not chosen.any():
         return
     best = str(data.attrs["reference"])
-    parts = [
-        f"all {int(chosen.sum())} Pareto-optimal models have {_fit(data, chosen, whole=True)}",
-        f"{best} has {_fit(data, labels == best)}",
-    ]
-    nominal = data["kind"].values == Kind.NOMINAL.value
+    nominal, beside = data["kind"].values == Kind.NOMINAL.value, ""
     if nominal.any() and np.isfinite(data["frequency"].values[nominal]).any():
-        parts.append(f"the nominal model has {_fit(data, nominal)}")
-    yield "; ".join(parts)
+        beside = f"; the nominal model has {_fit(data, nominal)}"
+    yield found(
+        "misfit",
+        best,
+        models=int(chosen.sum()),
+        whole=_fit(data, chosen, whole=True),
+        reference=_fit(data, labels == best),
+        nominal=beside,
+    )
 
 
 def _fit(data: xr.Dataset, chosen: Bools, *, whole: bool = False) -> str:
@@ -225,27 +216,18 @@ def _least(values: Floats) -> float:
     return float(known.min()) if known.size else float("nan")
 
 
-def single(data: xr.Dataset) -> Iterator[str]:
-    """Yield that the front is one point, where it is."""
-    if data.attrs["front_is_a_point"]:
-        yield "one model is the best in every group: the front is a single point"
-
-
-def _exact(data: xr.Dataset) -> Iterator[str]:
+def _exact(data: xr.Dataset) -> Iterator[Finding]:
     """Yield that optimal weights have no minimum where a group can be fitted exactly."""
     exact = data["group"].values[data["exact"].values.astype(bool)].tolist()
     if exact and _has_optimal(data):
-        yield (
-            f"the model can fit {', '.join(exact)} exactly, where the optimal weights are not "
-            "defined: optimal-weights is the regular minimum"
-        )
+        yield found("exact-fit", ", ".join(exact))
 
 
 def _has_optimal(data: xr.Dataset) -> bool:
     return bool((data["kind"].values == Kind.OPTIMAL.value).any())
 
 
-def _iteration(data: xr.Dataset) -> Iterator[str]:
+def _iteration(data: xr.Dataset) -> Iterator[Finding]:
     """Yield where the iteration of the weights arrives."""
     if not _has_optimal(data):
         return
@@ -254,123 +236,103 @@ def _iteration(data: xr.Dataset) -> Iterator[str]:
     optimal = data["theta"].values[data["kind"].values == Kind.OPTIMAL.value][0]
     span = np.diff(data["bounds"].values, axis=1)[:, 0]
     if "iterated-weights" not in of:
-        yield "the fixed-point iteration of the weights ends at an exact fit and confirms nothing"
+        yield found("iteration-ends")
         return
     away = np.abs((theta[of == "iterated-weights"][0] - optimal) / span).max(initial=0.0)
-    if away < ARRIVED:
-        yield "the fixed-point iteration of the weights finds the same optimally weighted model"
-    else:
-        yield "the optimal weights are not unique: their fixed-point iteration finds a second set"
+    yield found("iteration-agrees" if away < ARRIVED else "iteration-differs")
 
 
-def _branches(data: xr.Dataset) -> Iterator[str]:
-    """Yield where the branches of the front end, and which points lie between them."""
-    for i in range(0, data.sizes.get("end", 0), 2):
+def _branches(data: xr.Dataset) -> Iterator[Finding]:
+    """Yield how many branches the front has, where they end, and which points lie between them."""
+    gaps = data.sizes.get("end", 0) // 2
+    if gaps:
+        yield found("branches", branches=gaps + 1)
+    for i in range(0, 2 * gaps, 2):
         end, start = data["end_objective"].values[i : i + 2]
         if np.isfinite([end, start]).all():
-            yield (
-                f"the front has a gap: branch {i // 2 + 1} ends at J = {_vector(end)}, "
-                f"branch {i // 2 + 2} starts at J = {_vector(start)}"
+            branch = i // 2 + 1
+            yield found(
+                "branch-ends",
+                str(branch),
+                other=branch + 1,
+                end=_vector(end),
+                start=_vector(start),
             )
     if "piece" in data:
         on_front = np.isin(np.arange(data.sizes["point"]), front_points(data))
         inside = on_front & ~data["pareto"].values & ~data["dominated_among_front"].values
         if inside.any():
-            yield (
-                f"{places(data, inside)}: dominated by a known model that is no point of the "
-                "front, such as the start of a branch"
-            )
+            yield found("between-branches", places(data, inside))
 
 
-def _gaps(data: xr.Dataset) -> Iterator[str]:
-    """Yield how many branches the front has, where it has several."""
-    gaps = data.sizes.get("end", 0) // 2
-    if gaps:
-        yield f"the front is not connected: it has {gaps + 1} branches"
-
-
-def _spacing(data: xr.Dataset) -> Iterator[str]:
+def _spacing(data: xr.Dataset) -> Iterator[Finding]:
     """Yield whether neighbours on the front are farther apart than requested."""
-    requested = data.attrs.get("refined", np.inf)
-    if data.attrs["largest_gap"] > requested:
-        yield (
-            f"neighbours on the front are up to {data.attrs['largest_gap']:.3g} apart, though "
-            f"{requested:g} is requested: no point between them was found"
-        )
+    gap, requested = data.attrs.get("largest_gap", 0.0), data.attrs.get("refined", np.inf)
+    if gap > requested:
+        yield found("spacing", gap=float(gap), requested=float(requested))
 
 
-def _not_optimal(data: xr.Dataset) -> Iterator[str]:
+def _not_optimal(data: xr.Dataset) -> Iterator[Finding]:
     """Yield which points are no local Pareto optima."""
+    if "stationary_weight" not in data:
+        return
     negative = (data["stationary_weight"].values < -NEGATIVE).any(axis=1)
     negative &= ~np.isnan(data["stationary_weight"].values).any(axis=1)
     if negative.any():
-        yield f"{places(data, negative)}: no local Pareto optimum (a weight is negative)"
+        yield found("not-optimal", places(data, negative))
 
 
-def _poor_pairs(data: xr.Dataset, most: int | None = None) -> Iterator[str]:
+def _poor_pairs(data: xr.Dataset, most: int | None) -> Iterator[Finding]:
     """Yield which measured modes resemble their model modes poorly; of many, without the places."""
     poor = data["mac"].values < POOR
     modes = data["mode"].values
     if most is not None and poor.any(axis=0).sum() > most:
         some = ", ".join(str(r) for r in modes[poor.any(axis=0)])
-        yield f"measured modes {some} resemble their model modes poorly (MAC below {POOR})"
+        yield found("poor-pair", some, many=True, poor=POOR, places="")
         return
     for r, column in zip(modes, poor.T, strict=True):
         if column.any():
-            yield (
-                f"measured mode {r} resembles its model mode poorly (MAC below {POOR}) at "
-                f"{places(data, column)}"
-            )
+            yield found("poor-pair", str(r), poor=POOR, places=f" at {places(data, column)}")
 
 
-def _pairs(data: xr.Dataset) -> Iterator[str]:
-    """Yield which measured modes are paired with different model modes along the front.
+def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
+    """Return which measured modes are paired with different model modes, of many in one record.
 
     Where they change places is said of a front of two objectives, on which points have neighbours.
     """
     front = front_points(data)
-    labels = data["label"].values
-    for r, column in zip(data["mode"].values, data["paired_mode"].values[front].T, strict=True):
+    labels, paired = data["label"].values, data["paired_mode"].values[front]
+    out, changed = [], []
+    for r, column in zip(data["mode"].values, paired.T, strict=True):
         known = column[np.isfinite(column)]
         numbers, counts = np.unique(known, return_counts=True)
         changes = np.flatnonzero(np.diff(column)).tolist()
         if numbers.size < 2:
             continue
+        changed.append(str(r))
         if data.sizes["group"] == 2 and len(changes) <= 2:
             for i in changes:
-                yield (
-                    f"measured mode {r} is paired with model mode {column[i]:.0f} at "
-                    f"{labels[front[i]]} and {column[i + 1]:.0f} at {labels[front[i + 1]]}"
-                )
+                before, after = (f"{column[k]:.0f}" for k in (i, i + 1))
+                ends = {"first": labels[front[i]], "second": labels[front[i + 1]]}
+                out.append(found("changed-pair", str(r), before=before, after=after, **ends))
             continue
         order = np.argsort(-counts, kind="stable")
         each = [f"{numbers[k]:.0f} at {counts[k]}" for k in order.tolist()]
-        yield (
-            f"measured mode {r} is paired with different model modes along the front: "
-            f"{', '.join(each)} of {front.size} points"
-        )
+        said = f": {', '.join(each)} of {front.size} points"
+        out.append(found("changed-pairs", str(r), counts=said))
+    if most is not None and len(out) > most:
+        return [found("changed-pairs", ", ".join(changed), many=True, counts="")]
+    return out
 
 
-def _changed_pairs(data: xr.Dataset) -> list[str]:
-    """Return which measured modes are paired with different model modes, of many in one line."""
-    pairs = list(_pairs(data))
-    if len(pairs) <= FEW:
-        return pairs
-    paired = data["paired_mode"].values[front_points(data)]
-    changed = [np.unique(column[np.isfinite(column)]).size > 1 for column in paired.T]
-    modes = ", ".join(str(r) for r in data["mode"].values[changed])
-    return [f"measured modes {modes} are paired with different model modes along the front"]
-
-
-def _at_bounds(data: xr.Dataset, most: int | None = None) -> Iterator[str]:
+def _at_bounds(data: xr.Dataset, most: int | None) -> Iterator[Finding]:
     """Yield which parameters are at a bound and where, of more than ``most`` only how many."""
     theta, bounds = data["theta"].values, data["bounds"].values
     span = bounds[:, 1] - bounds[:, 0]
     at_bound = (np.abs(theta[:, :, None] - bounds) <= AT_BOUND * span[:, None]).any(axis=2)
     names = data["parameter"].values[at_bound.any(axis=0)].tolist()
     if most is not None and len(names) > most:
-        some = ", ".join(names[:most])
-        yield f"{len(names)} parameters are at a bound in some models: {some} and others"
+        yield found("many-at-bounds", ", ".join(names[:most]), parameters=len(names))
         return
     named = [
         f"{name} ({places(data, column)})"
@@ -378,47 +340,44 @@ def _at_bounds(data: xr.Dataset, most: int | None = None) -> Iterator[str]:
         if column.any()
     ]
     if named:
-        yield f"parameters at a bound: {'; '.join(named)}"
+        yield found("at-bounds", "; ".join(named))
 
 
-def _certificates(data: xr.Dataset) -> Iterator[str]:
+def _certificates(data: xr.Dataset) -> Iterator[Finding]:
     """Yield how exact the modes of a reduced basis are, and which models miss the tolerance."""
     attrs = data.attrs
     if attrs.get("remark"):
-        yield str(attrs["remark"])
+        yield found("remark", str(attrs["remark"]))
     if "certified" not in data:
         return
-    worst = float(data["eigenvalue_error"].max())
-    predicted = attrs.get("prediction_eigensolutions", 0)
-    yield (
-        f"reduced basis from {attrs['full_eigensolutions'] - predicted} full eigensolutions "
-        f"and {attrs.get('corrected_eigensolutions', 0)} corrected with their factors: relative "
-        f"errors of eigenvalues up to {worst:.1e} (estimated; tolerance "
-        f"{attrs['eigenvalue_tolerance']:.0e}), of shapes up to "
-        f"{float(data['shape_error'].max()):.1e}"
+    predicted = int(attrs.get("prediction_eigensolutions", 0))
+    yield found(
+        "reduced",
+        full=int(attrs["full_eigensolutions"]) - predicted,
+        corrected=int(attrs.get("corrected_eigensolutions", 0)),
+        eigenvalue=float(data["eigenvalue_error"].max()),
+        tolerance=float(attrs["eigenvalue_tolerance"]),
+        shape=float(data["shape_error"].max()),
     )
     if predicted:
-        yield f"predictions are not reduced: they took {predicted} full eigensolutions"
+        yield found("not-reduced", full=predicted)
     failed = uncertified(data)
     if failed.size:
-        yield f"above the tolerance: {', '.join(failed)}"
+        yield found("above-tolerance", ", ".join(failed))
         held = data["label"].values[data["certified"].values]
-        yield f"within the tolerance: {', '.join(held) if held.size else 'none'}"
+        yield found("within-tolerance", ", ".join(held) if held.size else "none")
 
 
-def _failed(data: xr.Dataset) -> Iterator[str]:
-    failed = np.isin(data["label"].values, not_converged(data))
-    if failed.any():
-        yield f"not converged: {places(data, failed)}"
-
-
-def _sampled(data: xr.Dataset) -> Iterator[str]:
-    if (data["status"].values == "sampled").any():
-        yield (
-            f"{data.attrs['method']} has no test of convergence: it stopped when its "
-            f"{data.attrs['front_evaluations']} evaluations were spent, and its points do not "
-            "count as converged"
-        )
+def _coverage(data: xr.Dataset) -> Iterator[Finding]:
+    """Yield how well the front is covered, and what that took."""
+    attrs = data.attrs
+    gap, volume = float(attrs["largest_gap"]), float(attrs["hypervolume"])
+    if not (np.isnan(gap) and np.isnan(volume)):
+        missing = "; for the hypervolume: pip install modefront[metrics]" * bool(np.isnan(volume))
+        igd = float(attrs["igd_plus"])
+        yield found("coverage", hypervolume=volume, igd=igd, gap=gap, missing=missing)
+    spent, front = (int(attrs[f"{of}_evaluations"]) for of in ("model", "front"))
+    yield found("effort", spent=spent, front=front)
 
 
 def _vector(values: Floats) -> str:

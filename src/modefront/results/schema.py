@@ -252,6 +252,12 @@ def _data() -> Iterator[Variable]:
         "text",
         required=True,
     )
+    yield Variable(
+        "finding_record",
+        ("finding",),
+        "kind, subject, numbers of each finding and whether it is on several subjects, as JSON",
+        "text",
+    )
 
 
 def _reduced() -> Iterator[Variable]:

@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import xarray as xr
 
+from modefront.findings.knowledge import enumeration
 from modefront.front.point import Kind
-from modefront.identifiability.words import enumeration
 from modefront.results.intervals import TRUST
 from modefront.results.selection import front_points
 

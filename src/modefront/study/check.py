@@ -18,6 +18,14 @@ from modefront.diagnosis.units import DampingInPercent, FrequencyFactor, OtherQu
 from modefront.diagnosis.words import Mistake
 from modefront.diagnosis.words import in_words as mistake_in_words
 from modefront.errors import Fault, InputError, ModelError
+from modefront.findings.knowledge import (
+    SHOWN,
+    alike,
+    in_words,
+    measured_noun,
+    no_effect,
+    summary,
+)
 from modefront.identifiability.combinations import (
     NONE,
     WEAK,
@@ -29,14 +37,6 @@ from modefront.identifiability.combinations import (
     without_effect,
 )
 from modefront.identifiability.scale import Scale, scale_at
-from modefront.identifiability.words import (
-    SHOWN,
-    alike_in_words,
-    in_words,
-    measured_noun,
-    no_effect_in_words,
-    summary,
-)
 from modefront.inputs import available_memory
 from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel
@@ -248,12 +248,12 @@ def determined(problem: UpdatingProblem) -> tuple[str, ...]:
     out = []
     for i, group in enumerate(groups):
         of_group = combinations(problem, problem.start, i, scale=scale)
-        out.append(summary(group.name, measured_noun([group]), of_group, names, scale, idle))
+        out.append(str(summary(group.name, measured_noun([group]), of_group, names, scale, idle)))
     if len(groups) > 1:
         weights = optimal_weights(problem.properties, nominal.J)
         of_all = combinations(problem, problem.start, weights=weights, scale=scale)
         noun = measured_noun(groups)
-        out.append(summary("all data together", noun, of_all, names, scale, idle))
+        out.append(str(summary("all data together", noun, of_all, names, scale, idle)))
     return tuple(out)
 
 
@@ -268,10 +268,10 @@ def _undetermined(
     weights = optimal_weights(problem.properties, nominal.J)
     idle = without_effect(problem, nominal, scale)
     if parameters_only:
-        return no_effect_in_words(idle, names)
+        return [str(finding) for finding in no_effect(idle, names)]
     known = combinations(problem, problem.start, weights=weights, scale=scale)
     weak = [each for each in known if each.share < WEAK and not _is_of(idle, each)]
-    out = no_effect_in_words(idle, names)
+    out = [str(finding) for finding in no_effect(idle, names)]
     for degree, chosen in (
         ("do not determine", [each for each in weak if each.share <= NONE]),
         ("hardly determine", [each for each in weak if each.share > NONE]),
@@ -283,12 +283,10 @@ def _undetermined(
             )
             continue
         out += [
-            f"the data {degree} this combination of relative changes"
-            f"{f' ({each.share:.0e} of the best one)' if each.share > NONE else ''}: "
-            f"{in_words(each, names)}"
+            f"the data {degree} {in_words(each, names)}: fix or tie one, or measure more"
             for each in chosen
         ]
-    return out + alike_in_words(gram(nominal, weights, scale), names, idle)
+    return [*out, *map(str, alike(gram(nominal, weights, scale), names, idle))]
 
 
 def _is_of(idle: Sequence[int], combination: Combination) -> bool:

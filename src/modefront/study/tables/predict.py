@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 from modefront.data.modal import ModalData
 from modefront.errors import InputError
-from modefront.identifiability.words import enumeration
+from modefront.findings.knowledge import enumeration
 from modefront.models.base import Model
 from modefront.options import each_once
 from modefront.predictions import KINDS, Prediction

@@ -1,0 +1,204 @@
+"""What data determine of the parameters, and what they leave open, as findings."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.findings.record import Finding, found
+from modefront.identifiability.collinearity import pairs
+from modefront.identifiability.combinations import NONE, WEAK, Combination
+from modefront.identifiability.scale import Scale
+from modefront.identifiability.sparse import SAME, sparse_basis
+from modefront.residuals.groups import Group
+
+PARTS = 5
+"""Parameters of a combination that are named, at most."""
+
+NAMED = 20
+"""Parameters that change alike, at most, that are named one by one."""
+
+TOGETHER = 3
+"""Parameters alike of which pairs are named, at most."""
+
+MOST = 100
+"""Combinations that are not determined, beyond which they are counted and not listed: a
+simple basis of them takes the fourth power of their number."""
+
+SHOWN = 3
+"""Directions that are not determined, at most, that a sentence names one by one."""
+
+
+def enumeration(names: Sequence[str]) -> str:
+    """Return names as a text: "a, b and c"."""
+    *first, last = names
+    return f"{', '.join(first)} and {last}" if first else last
+
+
+def in_words(combination: Combination, names: Sequence[str]) -> str:
+    """Return the parameters of a combination that have the greatest parts in it."""
+    v = np.abs(combination.direction)
+    order = [names[i] for i in np.argsort(-v, kind="stable") if v[i] >= 0.1 * v.max()]
+    return enumeration([*order[:PARTS], *(["others"] if len(order) > PARTS else [])])
+
+
+def measured_noun(groups: Sequence[Group]) -> str:
+    """Return the noun for the data of groups: their kind of residual, "residual" for several."""
+    kinds = {kind for group in groups for kind, _ in group.chosen}
+    return kinds.pop() if len(kinds) == 1 else "residual"
+
+
+def determined(combinations: Sequence[Combination]) -> tuple[int, int]:
+    """Return how many combinations are determined, and how many of those only weakly."""
+    shares = np.array([combination.share for combination in combinations])
+    return int((shares > NONE).sum()), int(((shares > NONE) & (shares < WEAK)).sum())
+
+
+# 8 arguments: the data, what they determine, and how the sentence begins.
+def summary(
+    subject: str,
+    noun: str,
+    combinations: Sequence[Combination],
+    names: Sequence[str],
+    scale: Scale | None = None,
+    idle: Sequence[int] = (),
+    kind: str = "group-data",
+    where: str = "",
+) -> Finding:
+    """Return what a group of data determines.
+
+    ``subject`` are the data in the plural, ``noun`` names what does not change; ``idle`` are
+    parameters without effect on any data, which are left out. Without a ``scale``, changes are
+    relative to the parameters. ``where`` begins the sentence.
+    """
+    rank, weak = determined(combinations)
+    p = len(names) - len(idle)
+    text = " that have an effect" if idle else ""
+    if weak:
+        hardly = [each for each in combinations if NONE < each.share < WEAK]
+        parts = list(dict.fromkeys(in_words(each, names) for each in hardly[::-1]))
+        text += f", and say little about {_listed(parts)}"
+    if rank < p:
+        free = _listed(free_in_words(combinations, names, scale, idle))
+        text += f"; {free}: no {noun} changes"
+    count = f"{p} combination{'s' * (p > 1)}"
+    return found(kind, subject, where=where, rank=rank, combinations=count, free=text)
+
+
+def free_in_words(
+    combinations: Sequence[Combination],
+    names: Sequence[str],
+    scale: Scale | None = None,
+    idle: Sequence[int] = (),
+) -> list[str]:
+    """Return the combinations that are not determined, each as text; see `summary`."""
+    scale = scale or _relative(len(names))
+    free = np.array(
+        [combination.direction for combination in combinations if combination.share <= NONE]
+    ).T
+    free[list(idle)] = 0.0
+    lam, V = np.linalg.eigh(free.T @ free)
+    kept = free @ V[:, lam > 0.5]  # parameters without effect are directions of their own
+    if not kept.size:
+        return []
+    if kept.shape[1] > MOST:
+        return [f"{kept.shape[1]} combinations of parameters can have any values"]
+    whole = [scaling.change / scale.unit for scaling in scale.scalings]
+    whole.append(scale.theta / scale.unit)
+    shares = np.array([combination.share for combination in combinations])
+    V = np.array([combination.direction for combination in combinations])
+
+    def holds(v: Floats) -> bool:
+        return bool(np.linalg.norm(shares * (V @ v)) <= 3 * NONE * np.linalg.norm(v))
+
+    return [direction_in_words(v, names, scale) for v in sparse_basis(kept, whole, holds).T]
+
+
+def _relative(p: int) -> Scale:
+    """Return the scale of changes that are relative to positive parameters."""
+    return Scale(np.ones(p), np.ones(p), np.ones(p, dtype=bool))
+
+
+def no_effect(idle: Sequence[int], names: Sequence[str], where: str = "") -> list[Finding]:
+    """Return that parameters have no effect, if there are any."""
+    if not idle:
+        return []
+    named = enumeration([names[i] for i in idle]) if len(idle) <= NAMED else f"{len(idle)} of them"
+    return [found("no-effect", named, many=len(idle) > 1, where=where)]
+
+
+def alike(
+    gram: Floats, names: Sequence[str], idle: Sequence[int] = (), where: str = ""
+) -> list[Finding]:
+    """Return which parameters act nearly alike, from G^T G; those ``idle`` are none.
+
+    Sets of more than `TOGETHER` parameters of which every two are alike are said at once.
+    """
+    two = {(i, j): value for i, j, value in pairs(gram) if not {i, j} & set(idle)}
+    sets: list[list[int]] = []
+    for pair in two:
+        if not any(set(pair) <= set(parameters) for parameters in sets):
+            sets.append(list(pair))
+            for k in range(len(names)):
+                if all((min(i, k), max(i, k)) in two for i in sets[-1]):
+                    sets[-1].append(k)
+    out = []
+    for parameters in sets:
+        if len(parameters) > TOGETHER:
+            named = enumeration([names[i] for i in sorted(parameters)])
+            subject = named if len(parameters) <= NAMED else f"{len(parameters)} parameters"
+            out.append(found("alike", subject, many=True, where=where))
+            two = {pair: value for pair, value in two.items() if not set(pair) <= set(parameters)}
+    return out + [found("alike", f"{names[i]} and {names[j]}", where=where) for i, j in two]
+
+
+def _listed(directions: Sequence[str]) -> str:
+    more = f"; and {len(directions) - SHOWN} more" if len(directions) > SHOWN else ""
+    return "; ".join(directions[:SHOWN]) + more
+
+
+def direction_in_words(v: Floats, names: Sequence[str], scale: Scale | None = None) -> str:
+    """Return how parameters can be changed along a direction, in units of a scale.
+
+    >>> direction_in_words(np.array([0.5, 0.5, 0.0]), ("k1", "k2", "m"))
+    'k1 and k2 can be scaled together'
+    >>> direction_in_words(np.array([1.0, 0.0, -0.25]), ("k1", "k2", "m"))
+    'k1 and m cannot be told apart'
+    """
+    scale = scale or _relative(len(names))
+    v = v / np.abs(v).max()
+    members = np.flatnonzero(np.abs(v) > SAME).tolist()
+    if len(members) == 1:
+        return f"{names[members[0]]} can have any value"
+    amounts = (v * scale.unit)[members]
+    theta = scale.theta[members]
+    powers = amounts / np.where(theta == 0, np.inf, theta)
+    if _equal(powers):
+        return f"{_named(members, powers, names)} can be scaled together"
+    ratio = powers if scale.positive[members].all() else amounts
+    ratio = ratio / ratio[np.argmax(np.abs(ratio))]
+    named = _named(members, ratio, names)
+    for scaling in scale.scalings:
+        whole = scaling.change / scale.unit
+        along = v * (whole @ v) / (v @ v)
+        if np.linalg.norm(whole - along) <= SAME * np.linalg.norm(whole):
+            return f"{named} can scale the {scaling.of} as a whole"
+    return f"{named} cannot be told apart"
+
+
+def _equal(ratio: Floats) -> bool:
+    """Return whether all parts are the same, and not 0."""
+    return bool((ratio != 0).all() and np.ptp(ratio) <= SAME * np.abs(ratio).max())
+
+
+def _named(members: Sequence[int], ratio: Floats, names: Sequence[str]) -> str:
+    """Return the names of parameters that change in a ratio, or of those that change the most."""
+    if len(members) > PARTS and _equal(ratio) and len(members) == len(names):
+        return f"all {len(names)} parameters"
+    if len(members) <= PARTS or (_equal(ratio) and len(members) <= NAMED):
+        return enumeration([names[i] for i in members])
+    most = sorted(np.argsort(-np.abs(ratio), kind="stable")[:PARTS].tolist())
+    named = enumeration([names[members[i]] for i in most])
+    return f"{len(members)} parameters, {'among them' if _equal(ratio) else 'most of all'} {named},"

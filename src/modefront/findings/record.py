@@ -1,0 +1,78 @@
+"""Findings: kind, subject, and the numbers and names of their sentences."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from modefront.findings.catalogue import CATALOGUE, Severity
+
+PAGE = "docs/findings.md"
+"""Page that says of each kind what it means and what to do."""
+
+NUMBER = re.compile(r"\{([^{}|]*)\|([^{}|]*)\}")
+"""Words of a sentence on one subject, and on several."""
+
+
+@dataclass(frozen=True)
+class Finding:
+    """What was found.
+
+    Attributes
+    ----------
+    kind : its name in the catalogue
+    subject : what it is about: parameters, groups, modes or models
+    numbers : further values of its sentence, by name
+    many : whether the sentence is on several subjects
+    """
+
+    kind: str
+    subject: str
+    numbers: Mapping[str, Any]
+    many: bool = False
+
+    @property
+    def severity(self) -> Severity:
+        """How severe it is."""
+        return CATALOGUE[self.kind][0]
+
+    def __str__(self) -> str:
+        """Return the sentence: with a small letter first, and without a full stop."""
+        text = NUMBER.sub(lambda words: words[1 + self.many], CATALOGUE[self.kind][1])
+        return text.format(subject=self.subject, **self.numbers)
+
+    def as_plain(self) -> dict[str, Any]:
+        """Return the finding as JSON has it."""
+        named = {"kind": self.kind, "severity": self.severity.name.lower(), "subject": self.subject}
+        return named | {"numbers": dict(self.numbers), "text": str(self)}
+
+
+def found(kind: str, subject: str = "", *, many: bool = False, **numbers: Any) -> Finding:
+    """Return a finding of a kind; other keywords are the numbers of its sentence."""
+    return Finding(kind, subject, numbers, many)
+
+
+def in_order(findings: Iterable[Finding]) -> list[Finding]:
+    """Return findings in the order of the catalogue, those of a kind as they are given."""
+    order = {kind: k for k, kind in enumerate(CATALOGUE)}
+    return sorted(findings, key=lambda finding: order[finding.kind])
+
+
+def as_text(finding: Finding) -> str:
+    """Return kind, subject and numbers as a file keeps them."""
+    return json.dumps([finding.kind, finding.subject, dict(finding.numbers), finding.many])
+
+
+def from_text(text: str, sentence: str) -> Finding:
+    """Return the finding that a file keeps; of another version of the catalogue, its sentence."""
+    try:
+        kind, subject, numbers, many = json.loads(text)
+        finding = found(str(kind), str(subject), many=bool(many), **numbers)
+        if str(finding) == sentence:
+            return finding
+    except (ValueError, TypeError, KeyError, IndexError):
+        pass
+    return found("other", sentence)

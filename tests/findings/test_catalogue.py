@@ -1,0 +1,45 @@
+"""Every kind of finding is on the page of findings, with an example that its sentence makes."""
+
+from __future__ import annotations
+
+import re
+from pathlib import Path
+
+import pytest
+
+from modefront.findings.catalogue import CATALOGUE, Severity
+from modefront.findings.record import NUMBER, PAGE, as_text, found, from_text, in_order
+
+TEXT = (Path(__file__).parents[2] / PAGE).read_text(encoding="utf-8")
+EXAMPLES = dict(re.findall(r"^### (\S+)\n> (.+)$", TEXT, re.MULTILINE))
+
+
+def pattern(sentence: str, many: bool) -> str:
+    """Return the regular expression of what a sentence can say."""
+    words = NUMBER.sub(lambda match: match[1 + many], sentence)
+    parts = re.split(r"\{[a-z]+(?::[^{}]*)?\}", words)
+    return "(?s:.*)".join(map(re.escape, parts))
+
+
+def test_the_page_has_every_kind_in_the_order_of_the_catalogue() -> None:
+    assert list(EXAMPLES) == list(CATALOGUE)
+
+
+@pytest.mark.parametrize("kind", CATALOGUE)
+def test_the_example_on_the_page_is_what_the_kind_says(kind: str) -> None:
+    sentence = CATALOGUE[kind][1]
+    assert any(re.fullmatch(pattern(sentence, many), EXAMPLES[kind]) for many in (False, True))
+    assert CATALOGUE[kind][0] is Severity.DETAIL or not re.search(
+        rf"^### {kind}\n> .*\n\n#", TEXT, re.MULTILINE
+    ), "what it means, and what to do"
+
+
+def test_a_record_is_kept_whole_and_one_that_is_not_known_as_its_sentence() -> None:
+    alike = found("alike", "a, b, c and {d}", many=True, where="at nbi-1: ")
+    assert str(alike).endswith("{d} have nearly the same effect on all residuals: fix or tie all "
+                               "but one")  # fmt: skip
+    assert from_text(as_text(alike), str(alike)) == alike
+    for record in ("", "[]", '["alike", "a", {}, true]', '["else", "a", {}, true]'):
+        assert str(from_text(record, "as it was")) == "as it was"
+    assert alike.as_plain()["severity"] == "open"
+    assert in_order([alike, found("one-model")])[0].kind == "one-model"
