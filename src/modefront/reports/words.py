@@ -42,11 +42,11 @@ def topics(data: xr.Dataset) -> list[Topic]:
     def of(*severities: Severity) -> list[str]:
         return [str(finding) for finding in found if finding.severity in severities]
 
-    beware = of(Severity.FAILURE, Severity.CAUTION) or ["all models that were solved for converged"]
+    failed = of(Severity.FAILURE) or ["all models that were solved for converged"]
     all_topics = (
         Topic("", tuple(str(data.attrs.get("verdict", "")).splitlines())),
         Topic("How well the best models do", sentences(of(Severity.FIT))),
-        Topic("What to beware of", sentences([*beware, *_dominated(data)])),
+        Topic("What to beware of", sentences([*failed, *of(Severity.CAUTION), *_dominated(data)])),
         Topic("What the data leave open", (*sentences(of(Severity.OPEN)), *_open(data))),
         Topic("What was studied", tuple(_study(data))),
     )
