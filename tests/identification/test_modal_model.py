@@ -129,7 +129,7 @@ def test_lscf_finds_the_poles_of_exact_data_at_the_first_order_that_holds_them(
     omega = 2 * np.pi * f
     rate = 2 * np.pi * ARC / (omega[-1] - omega[0])
     z = generalised_frequency(omega, omega[0], rate)
-    sums = moments(H, np.ones(H.shape[1:]), z, 16)
+    sums = moments(H, np.ones(len(f)), z, 16)
     result = poles(sums, [16], omega[0], rate)[0]
     for f0, zeta in zip(THREE_STORY, THREE_STORY_DAMPING, strict=True):
         true = 2 * np.pi * f0 * (-zeta + 1j * np.sqrt(1 - zeta**2))

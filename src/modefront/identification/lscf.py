@@ -27,7 +27,7 @@ symbol               meaning
 ===================  =====================================================================
 p                    order; p times the number of references is the number of poles
 R, S, T              :math:`X^H W X`, :math:`-X^H W Y`, :math:`Y^H W Y` of one response
-w                    weights 1/var H, the mean over references
+w                    weights 1/var H, the mean over all functions
 ===================  =====================================================================
 
 Sources: Guillaume, Verboven, Vanlanduit, Van der Auweraer & Peeters, A poly-reference
@@ -84,7 +84,7 @@ class Moments:
 
     Attributes
     ----------
-    weight : (responses, lags): sum of w z^m
+    weight : (lags,): sum of w z^m
     first : (responses, references, lags): sum of w H z^m
     second : (references, references, lags): sum of w conj(H) H z^m, over all responses
     """
@@ -103,12 +103,12 @@ def generalised_frequency(omega: Floats, shift: float, rate: float) -> Complexes
 def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments:
     """Return the sums of which R, S and T are made, for lags from -highest to highest.
 
-    ``H`` is (references, responses, lines) without NaN; ``weight`` (responses, lines).
+    ``H`` is (references, responses, lines) without NaN; ``weight`` (lines,).
     """
     n_in, n_out, lines = H.shape
     weighted = (weight * H).transpose(1, 0, 2).reshape(-1, lines)
     second = np.einsum("jik,lik->jlk", (weight * H).conj(), H, optimize=True).reshape(-1, lines)
-    values = np.concatenate([weight, weighted, weighted.conj(), second])
+    values = np.concatenate([weight[None], weighted, weighted.conj(), second])
     sums = np.zeros((len(values), highest + 1), complex)
     for start in range(0, lines, PORTION):
         part = slice(start, start + PORTION)
@@ -116,12 +116,12 @@ def moments(H: Complexes, weight: Floats, z: Complexes, highest: int) -> Moments
         powers[:, 1:] = z[part, None]
         sums += values[:, part] @ np.multiply.accumulate(powers, axis=1)
     of_weight, of_first, of_conjugate, of_second = np.split(
-        sums, np.cumsum([n_out, n_out * n_in, n_out * n_in])
+        sums, np.cumsum([1, n_out * n_in, n_out * n_in])
     )
     # |z| = 1, so that sums of values with z^-m are conjugate to those of conjugate values with z^m
     square = of_second.reshape(n_in, n_in, -1)
     return Moments(
-        _both(of_weight, of_weight),
+        _both(of_weight, of_weight)[0],
         _both(of_first, of_conjugate).reshape(n_out, n_in, -1),
         _both(square, square.transpose(1, 0, 2)),
     )
@@ -165,13 +165,13 @@ def _reduced(sums: Moments, p: int) -> Complexes:
     n_in = sums.first.shape[1]
     T = _toeplitz(sums.second, p)  # (references, references, p + 1, p + 1)
     M = T.transpose(2, 0, 3, 1).reshape((p + 1) * n_in, -1)
-    for weight, first in zip(sums.weight, sums.first, strict=True):
-        value, vector = la.eigh(_toeplitz(weight, p))
-        kept = value > SINGULAR * value[-1]
-        S = _toeplitz(first, p).transpose(1, 2, 0).reshape(p + 1, -1)  # columns (power, reference)
-        half = (vector[:, kept].conj().T @ S) / np.sqrt(value[kept])[:, None]
-        M = M - half.conj().T @ half
-    return M
+    value, vector = la.eigh(_toeplitz(sums.weight, p))
+    kept = value > SINGULAR * value[-1]
+    S = _toeplitz(sums.first, p)  # (responses, references, p + 1, p + 1)
+    root = vector[:, kept].conj().T / np.sqrt(value[kept])[:, None]
+    half = root @ S.transpose(2, 0, 3, 1).reshape(p + 1, -1)
+    half = half.reshape(-1, len(M))  # columns (power, reference)
+    return M - half.conj().T @ half
 
 
 def _poles(sums: Moments, p: int, shift: float, rate: float) -> Poles:

@@ -81,7 +81,7 @@ MOST_EVALUATIONS = 40
 
 TINY = float(np.finfo(float).tiny)
 
-CHUNK = 1 << 18
+CHUNK = 1 << 20
 """Numbers in an intermediate array of products."""
 
 FEW = 6
@@ -99,7 +99,8 @@ class Problem:
     ----------
     s : (lines,) (i omega + decay) / omega_max
     H : (references, responses, lines), 0 where not measured
-    weight : of the shape of ``H``, 1/v, 0 where not measured
+    weight : of the shape of ``H``, 1/v, 0 where not measured; or (references, 1, lines) where all
+        responses share it, which makes their equations one
     order : q
     powers : powers of s of the residual terms
     decay : what an exponential window has decayed by at the end of the record, d T
@@ -117,7 +118,12 @@ class Problem:
     @cached_property
     def count(self) -> int:
         """Number of real equations."""
-        return 2 * int(np.count_nonzero(self.weight))
+        return 2 * int(np.count_nonzero(self.weights))
+
+    @property
+    def weights(self) -> Floats:
+        """The weights, of the shape of ``H``."""
+        return np.broadcast_to(self.weight, self.H.shape)
 
     @property
     def correlation(self) -> float:
@@ -159,7 +165,7 @@ class Fit:
     gradient : (alphas,) half the gradient of J
     information : (alphas, alphas) projected Gauss-Newton matrix without the term in U
     curvature : (alphas, alphas) with it
-    inverse : (responses, linear, linear) inverse of G
+    inverse : (responses, linear, linear) inverse of G; one where the responses share their weights
     Z : (responses, linear, alphas), -dc/dalpha
     unlike : (alphas,) share of each column of D, squared, that no linear parameter can make up
     evaluations : number of evaluations of the model
@@ -181,15 +187,17 @@ class Fit:
 def problem(data: FrequencyResponses, variance: Floats, level: int) -> tuple[Problem, float, float]:
     """Return the scaled problem with the units of frequency (rad/s) and of H.
 
-    ``level`` is the number of residual terms on either side of the band. Lines of which the
-    variance is not a positive number have no weight.
+    ``level`` is the number of residual terms on either side of the band. The variance is of the
+    shape of H, or (references, 1, lines); lines where it is not a positive number have no weight.
     """
     omega = 2 * np.pi * data.frequency[-1]
     measured = data.measured
     power = np.where(measured, data.H.real**2 + data.H.imag**2, 0.0).sum()
     size = float(np.sqrt(power / np.count_nonzero(measured)))
     used = measured & np.isfinite(variance) & (variance > 0)
-    weight: Floats = np.ascontiguousarray(size**2 / np.where(used, variance, np.inf))
+    if variance.shape == used.shape:
+        variance = np.where(used, variance, np.inf)
+    weight: Floats = np.ascontiguousarray(size**2 / variance)
     s = (2j * np.pi * data.frequency + data.decay) / omega
     H: Complexes = np.ascontiguousarray(np.where(used, data.H, 0) / size)
     lag = data.decay / float(np.median(np.diff(data.frequency)))
@@ -249,20 +257,29 @@ def evaluate(task: Problem, lam: Complexes, L: Complexes, held: Ints) -> Fit:
     # a second round takes back what the normal equations lost; it is small, so that its changes of
     # rho and of the cost are exact to rounding
     lost = _best(inverse, T, rho[..., :first])
-    right = np.einsum("iab,ib->ia", G, lost)
+    right = (G @ lost[..., None])[..., 0]
     c = c + lost
     rho = rho - (lost[None, :, None] @ TM)[:, :, 0]
     model = _model(lam, L, held, c, len(task.powers))
-    K = derivatives(model, E.shape[0])
-    cross = (TM @ K).sum(axis=0)
+    row, coefficient = derivatives(model, E.shape[0])
+    direct = np.zeros((row.size, row.size))
+    for j, i in np.ndindex(M.shape[:2]):
+        of_ji = coefficient[j, i : i + 1] if M.shape[1] > 1 else coefficient[j]
+        flat = of_ji.reshape(len(of_ji), -1)
+        direct += (flat.T @ flat) * M[j, i][np.ix_(row.ravel(), row.ravel())]
+    direct = direct.reshape(*row.shape, *row.shape).sum(axis=(1, 3))
+    cross = np.zeros((c.shape[0], c.shape[1], len(row)))
+    for j, part in enumerate(TM):
+        for k in range(2):
+            cross += part[..., row[:, k]] * coefficient[j, :, None, :, k]
     Z = inverse @ cross
     U = _second(model, rho, len(task.powers))
-    direct = _rows(K).T @ _rows(M @ K)
     information = direct - _rows(cross).T @ _rows(Z)
+    slope = (rho[..., row] * coefficient).sum(axis=(0, 1, 3))
     return Fit(
         model,
         cost - float(np.sum(lost * right)),
-        -(rho.reshape(-1) @ _rows(K)),
+        -slope,
         information,
         information + _rows(U).T @ _rows(inverse @ U),
         inverse,
@@ -335,7 +352,10 @@ def maximise(
 
 
 def gram(task: Problem, E: Complexes) -> Floats:
-    """Return the weighted Gram matrices of the primitives, (references, responses, Q, Q)."""
+    """Return the weighted Gram matrices of the primitives, (references, responses, Q, Q).
+
+    There is one for all responses where they share their weights.
+    """
     flat = task.weight.reshape(-1, len(task.s))
     if len(flat) <= FEW:
         return _gram_of_few(flat, E).reshape(*task.weight.shape[:2], len(E), len(E))
@@ -373,14 +393,13 @@ def leverage(task: Problem, fit: Fit) -> Floats:
     E = primitives(task, model.lam)
     T = design(model.L, len(task.powers))
     first = T.shape[1]
-    X = derivatives(model, len(E))
-    X[:, :, :first] -= np.einsum("jqa,iak->jiqk", T, fit.Z)
+    X = projected(model, T, fit.Z, len(E))
     inverse = np.linalg.pinv(fit.information, hermitian=True)
-    S = np.einsum("jiqk,kl,jipl->jiqp", X, inverse, X, optimize=True)
-    S[:, :, :first, :first] += np.einsum("jqa,iab,jpb->jiqp", T, fit.inverse, T, optimize=True)
+    S = X @ inverse @ X.swapaxes(2, 3)
+    S[:, :, :first, :first] += (T[:, None] @ fit.inverse) @ T[:, None].swapaxes(2, 3)
     p, q = np.triu_indices(len(E))
     coefficients = S[..., p, q] * np.where(p == q, 1.0, 2.0)
-    out = np.empty(task.weight.shape)
+    out = np.empty(task.H.shape)
     for lines, products in _products(E):
         out[..., lines] = coefficients @ products
     return task.weight * out / 2
@@ -412,7 +431,7 @@ def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[
     The residuals are those of combinations of the first primitives, or the data themselves.
     """
     H = task.H.reshape(-1, len(task.s))
-    weight = task.weight.reshape(H.shape)
+    weight = task.weights.reshape(H.shape)
     rho, cost = np.empty((len(H), len(E))), 0.0
     C = None if coefficients is None else coefficients.reshape(len(H), -1)
     rows = max(PORTION // len(task.s), 1)
@@ -422,7 +441,7 @@ def _project(task: Problem, E: Complexes, coefficients: Floats | None) -> tuple[
         weighted = weight[part] * r
         rho[part] = weighted.view(float) @ E.view(float).T
         cost += float(np.vdot(r, weighted).real)
-    return rho.reshape(*task.weight.shape[:2], -1), cost
+    return rho.reshape(*task.H.shape[:2], -1), cost
 
 
 def _inverse(G: Floats) -> Floats:
@@ -461,23 +480,35 @@ def free_factors(held: Ints, references: int) -> list[tuple[int, int]]:
     return [(r, j) for r, kept in enumerate(held) for j in range(references) if j != kept]
 
 
-def derivatives(model: ModalModel, functions: int) -> Floats:
-    """Return K, (references, responses, primitives, alphas): columns of D in the primitives."""
+def derivatives(model: ModalModel, functions: int) -> tuple[Ints, Floats]:
+    """Return the columns of D in the primitives, of which each has two.
+
+    They are the numbers of the primitives, (alphas, 2), and their coefficients, (references,
+    responses, alphas, 2).
+    """
     n, n_in = model.L.shape
     free = free_factors(model.held, n_in)
-    n_out = model.phi.shape[1]
-    K = np.zeros((n_in, n_out, functions, 2 * n + 2 * len(free)))
     a = model.L.T[:, None, :] * model.phi.T[None]  # (references, responses, modes)
-    base = functions - 2 * n
-    for r in range(n):
-        e, o = base + 2 * r, base + 2 * r + 1
-        K[:, :, e, 2 * r], K[:, :, o, 2 * r] = a[..., r].real, a[..., r].imag
-        K[:, :, e, 2 * r + 1], K[:, :, o, 2 * r + 1] = -a[..., r].imag, a[..., r].real
+    row = np.zeros((n + len(free), 2), int)
+    row[:n] = (functions - 2 * n + 2 * np.arange(n))[:, None] + [0, 1]
+    value = np.zeros((n_in, model.phi.shape[1], n + len(free)), complex)
+    value[..., :n] = a
     for k, (r, j) in enumerate(free, start=n):
-        phi = model.phi[r]
-        K[j, :, 2 * r, 2 * k], K[j, :, 2 * r + 1, 2 * k] = phi.real, phi.imag
-        K[j, :, 2 * r, 2 * k + 1], K[j, :, 2 * r + 1, 2 * k + 1] = -phi.imag, phi.real
-    return K
+        row[k] = 2 * r, 2 * r + 1
+        value[j, :, k] = model.phi[r]
+    turned = np.stack([value, 1j * value], axis=-1).reshape(*value.shape[:2], -1)
+    return row.repeat(2, axis=0), np.stack([turned.real, turned.imag], axis=-1)
+
+
+def projected(model: ModalModel, T: Floats, Z: Floats, functions: int) -> Floats:
+    """Return the columns of D without what Phi makes up, in (references, responses, Q, alphas)."""
+    row, coefficient = derivatives(model, functions)
+    X = np.zeros((*coefficient.shape[:2], functions, len(row)))
+    X[:, :, : T.shape[1]] = -(T[:, None] @ Z)
+    columns = np.arange(len(row))
+    for k in range(2):
+        X[:, :, row[:, k], columns] += coefficient[..., k]
+    return X
 
 
 def _second(model: ModalModel, rho: Floats, powers: int) -> Floats:

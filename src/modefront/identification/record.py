@@ -4,10 +4,31 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
+import numpy as np
+
 from modefront._typing import Complexes, Floats
 from modefront.data.responses import FrequencyResponses
 from modefront.identification.shapes import RealShape
 from modefront.identification.stabilisation import StabilisationDiagram
+
+
+@dataclass(frozen=True)
+class Evidence:
+    """What speaks for a mode, and what to look at.
+
+    Attributes
+    ----------
+    gain : how much better the fit is than that without the mode, 2 Delta J over the noise, over the
+        least that a mode needs
+    support : share of the orders of the diagram, from the first one with its pole, that have it
+    visibility : its greatest share, over all functions, in the sum of all modes at its frequency
+    flags : reasons to look at it
+    """
+
+    gain: float = np.nan
+    support: float = np.nan
+    visibility: float = np.nan
+    flags: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -22,6 +43,7 @@ class ModeEstimate:
     shape : the complex shape and the real one
     shape_std : (responses,) standard deviations of the real shape of unit norm
     participation : (references,) factors that go with the complex shape as given, before rotation
+    evidence : what speaks for it
     """
 
     pole: complex
@@ -32,6 +54,7 @@ class ModeEstimate:
     shape: RealShape
     shape_std: Floats
     participation: Complexes
+    evidence: Evidence = Evidence()
 
 
 @dataclass(frozen=True)

@@ -58,10 +58,10 @@ from modefront.identification.modal_model import (
     CHUNK,
     Fit,
     Problem,
-    derivatives,
     design,
     gram,
     primitives,
+    projected,
     synthesise,
     windowed_correlation,
 )
@@ -223,9 +223,8 @@ def _roots_of_responses(task: Problem, fit: Fit, residuals: Residuals) -> tuple[
     model = fit.model
     n, powers = len(model), len(task.powers)
     E = primitives(task, model.lam)
-    T, X = design(model.L, powers), derivatives(model, len(E))
-    first = T.shape[1]
-    X[:, :, :first] -= np.einsum("jqa,iak->jiqk", T, fit.Z)
+    T = design(model.L, powers)
+    X, first = projected(model, T, fit.Z, len(E)), T.shape[1]
     weight = task.weight
     if residuals.force.any():
         H = synthesise(task, model)
@@ -240,9 +239,9 @@ def _roots_of_responses(task: Problem, fit: Fit, residuals: Residuals) -> tuple[
     else:
         M = gram(alone, E)
     P = np.zeros((*M.shape[:3], 2 * n + X.shape[3]))
-    P[:, :, :first, : 2 * n] = np.einsum("jqa,iab->jiqb", T, fit.inverse[:, :, : 2 * n])
+    P[:, :, :first, : 2 * n] = T[:, None] @ fit.inverse[:, :, : 2 * n]
     P[..., 2 * n :] = X
-    Q = np.einsum("jiqa,jiqp,jipb->iab", P, M, P, optimize=True) / 2
+    Q = (P.swapaxes(2, 3) @ (M @ P)).sum(axis=0) / 2
     scale = np.sqrt(np.maximum(np.einsum("iaa->ia", Q), np.finfo(float).tiny))
     value, vector = np.linalg.eigh(Q / scale[:, :, None] / scale[:, None, :])
     roots = scale[:, :, None] * vector * np.sqrt(np.maximum(value, 0))[:, None, :]
@@ -285,15 +284,13 @@ def _force_influence(task: Problem, fit: Fit, force: Floats) -> Iterator[tuple[F
     """
     n, powers = len(fit.model), len(task.powers)
     E = primitives(task, fit.model.lam)
-    T, K = design(fit.model.L, powers), derivatives(fit.model, len(E))
-    first = T.shape[1]
+    T = design(fit.model.L, powers)
+    X, first = projected(fit.model, T, fit.Z, len(E)), T.shape[1]
     H = synthesise(task, fit.model)
     inverse = _inverse(fit.information)
     for j in np.flatnonzero(force).tolist():
-        X = K[j].copy()
-        X[:, :first] -= T[j] @ fit.Z
         for y in _force_products(task, E, H[j], j, force[j]):
-            alpha = inverse @ np.einsum("iqa,iqk->ak", X, y, optimize=True)
+            alpha = inverse @ np.einsum("iqa,iqk->ak", X[j], y, optimize=True)
             c = fit.inverse[:, : 2 * n] @ (T[j].T @ y[:, :first]) - fit.Z[:, : 2 * n] @ alpha
             parts = np.concatenate([c.real, c.imag], axis=2)
             yield np.hstack([alpha.real, alpha.imag]), parts[:, ::2] + 1j * parts[:, 1::2]

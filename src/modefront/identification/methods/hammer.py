@@ -1,10 +1,11 @@
-r"""From frequency response functions of one data set to its modes.
+r"""Hammer tests: from frequency response functions of one data set to its modes.
 
 1. Poles over a range of orders (`lscf`), their diagram and its clusters (`stabilisation`).
-2. The modal model from the likely clusters (`modal_model`); modes that do not pay are left out,
-   poles that do are added (`selection`), and the variance is that of the data or, where nothing
-   is known, that of the residuals (`noise`).
-3. Standard deviations (`statistics`); modes that are no modes of the structure are rejected.
+2. The modes that data need (`selection`), from principal responses with common weights, of which
+   all responses have one set of equations.
+3. The modal model (`modal_model`) of all functions, each with its own variance: that of the data
+   or, where nothing is known, that of the residuals (`noise`); the same test for every mode.
+4. Standard deviations (`statistics`), and what else speaks for a mode.
 """
 
 from __future__ import annotations
@@ -21,11 +22,13 @@ from modefront.identification import lscf, modal_model, selection
 from modefront.identification.modal_model import Fit, Problem
 from modefront.identification.noise import fitted_variance, variance_from_differences
 from modefront.identification.record import (
+    Evidence,
     FittedFunctions,
     Identification,
     ModeEstimate,
     Rejected,
 )
+from modefront.identification.shapes import auto_mac
 from modefront.identification.stabilisation import (
     MOST_DAMPING,
     Cluster,
@@ -39,8 +42,8 @@ Weighting = Literal["given", "scaled", "residuals"]
 LEAST_LINES = 20
 """Lines of a band, at least: a mode with its residual terms has twelve numbers a function."""
 
-MOST_POLES = 60
-"""Poles at the highest order: some seven for each of eight modes, as usual in diagrams."""
+MOST_POLES = 160
+"""Poles at the highest order: some four for each of forty modes."""
 
 MOST_ORDERS = 25
 """Orders of a diagram; more add no information to clusters of poles."""
@@ -54,21 +57,17 @@ PEAK_WIDTH = 20.0
 PRINCIPAL = 48
 """Principal responses from which the modes are chosen where there are more responses."""
 
-SUPPORT = 0.5
-"""Least share of the orders, from the first one with this pole, that have it."""
-
-WIDEST = 1.0
-"""Greatest standard deviation of damping over damping, and of a frequency over half its bandwidth
-or over the distance of lines."""
-
 LEAST_LEFT = 0.1
 """Least share of the noise of a line that its residual is taken to hold."""
 
-VISIBLE = 1 / 3
-"""Least share of a mode in the sum of all at its frequency, where it is greatest."""
+FEW = 0.5
+"""Share of the orders below which a mode is flagged, and phase collinearity."""
 
-LEAST_COLLINEARITY = 0.5
-"""Least phase collinearity of a mode."""
+VISIBLE = 1 / 3
+"""Share in the sum of all modes at its frequency below which a mode is flagged."""
+
+NEIGHBOURS = 0.05
+"""Relative distance of frequencies within which modes of the same shape may be one."""
 
 SEED = 20080410
 """Of the random combinations of the singular value decomposition."""
@@ -78,38 +77,40 @@ def identify(
     data: FrequencyResponses,
     band: tuple[float, float] | None = None,
     modes: int | None = None,
-    orders: Sequence[int] | None = None,
 ) -> Identification:
     """Return the modes of one data set within a band in Hz, by default all of it.
 
-    ``modes`` is their number where it is known; ``orders`` are those of the stabilisation diagram.
-    Raises ValueError where the band has too few lines or nothing was measured in it.
+    ``modes`` is their number where it is known. Raises ValueError where the band has too few lines
+    or nothing was measured in it.
     """
     data = data.within(*(band or (0.0, np.inf)))
     if len(data.frequency) < LEAST_LINES:
         raise ValueError(f"expected {LEAST_LINES} lines in the band, found {len(data.frequency)}")
     if not np.any(np.abs(np.nan_to_num(data.H)) > 0):
         raise ValueError("expected functions that are not zero, found only zeros")
-    variance = _known_variance(data)
+    kind, variance = weighting(data), _known_variance(data)
     first = variance_from_differences(data) if variance is None else variance
-    small, small_variance = _principal(data, first)
-    diagram, clusters = _diagram(small, small_variance, orders)
+    small, shared = _principal(data, first)
+    diagram, clusters = _diagram(small, shared)
+    if not data.measured[:, data.measured.any(axis=(0, 2))].all():
+        small, shared = data, first
     kept = _lines_of_choice(small.frequency, diagram)
-    small, small_variance = small.lines(kept), small_variance[..., kept]
-    task, omega, _ = modal_model.problem(small, small_variance, 1)
-    task, fit = _select(task, omega, diagram, clusters, modes, weighting(small))
+    task, omega, _ = modal_model.problem(small.lines(kept), shared[..., kept], 1)
+    task, fit = _choice(task, selection.start(task, clusters, omega), kind, modes)
     level = modal_model.RESIDUALS.index(task.powers)
     task, omega, size = modal_model.problem(data, first, level)
     model = fit.model
-    start = modal_model.evaluate(task, model.lam, model.L, model.held)
-    task = _reweighted(task, start, weighting(data))
-    if weighting(data) != "given":
-        fit = selection.refit(task, start)
-        task = _reweighted(task, fit, weighting(data))
-        start = fit
-    fit = selection.refit(task, start, modal_model.FINE, modal_model.MOST_EVALUATIONS)
-    solution = _Solution(data, task, fit, omega, size, diagram)
-    return _result(solution, clusters, modes is not None)
+    task = _reweighted(task, modal_model.evaluate(task, model.lam, model.L, model.held), kind)
+    fit = selection.refit(task, model.lam, model.L)
+    task = _reweighted(task, fit, kind)
+    fit = selection.grow(task, selection.backward(task, fit, selection.needed(task), modes), modes)
+    fine = modal_model.FINE, modal_model.MOST_EVALUATIONS
+    while True:
+        last = selection.refit(task, fit.model.lam, fit.model.L, *fine)
+        fit = selection.backward(task, last, selection.needed(task), modes)
+        if fit is last:
+            break
+    return _result(_Solution(data, task, fit, omega, size, diagram))
 
 
 def weighting(data: FrequencyResponses) -> Weighting:
@@ -133,25 +134,31 @@ def _known_variance(data: FrequencyResponses) -> Floats | None:
 
 
 def _principal(data: FrequencyResponses, variance: Floats) -> tuple[FrequencyResponses, Floats]:
-    """Return principal responses of unit variance, by a randomised singular value decomposition.
+    """Return responses over their noise, principal ones where they are many, and their variance.
 
-    Halko, Martinsson & Tropp, SIAM Rev. 53 (2011) 217-288, doi:10.1137/090771806.
+    It is that of the mean response, (references, 1, lines). The singular value decomposition is
+    randomised: Halko, Martinsson & Tropp, SIAM Rev. 53 (2011) 217-288, doi:10.1137/090771806.
     """
     n_in, n_out, lines = data.H.shape
-    if n_out <= PRINCIPAL:
-        return data, variance
-    level = np.sqrt(np.nanmedian(variance, axis=(0, 2)))
-    level = np.where(np.isfinite(level) & (level > 0), level, np.inf)
-    H = (np.where(data.measured, data.H, 0) / level[:, None]).transpose(1, 0, 2)
-    # real combinations, as complex ones would have other residues at poles of negative frequency
-    flat = np.ascontiguousarray(H).reshape(n_out, -1).view(float)
-    draws = np.random.default_rng(SEED).standard_normal((flat.shape[1], PRINCIPAL + 10))
-    basis = np.linalg.qr(flat @ draws)[0]
-    U = basis @ np.linalg.svd(basis.T @ flat, full_matrices=False)[0][:, :PRINCIPAL]
-    principal = (U.T @ flat).view(complex).reshape(PRINCIPAL, n_in, lines).transpose(1, 0, 2)
-    names = tuple(f"principal {i + 1}" for i in range(PRINCIPAL))
-    small = replace(data, H=principal, responses=names, variance=None)
-    return small, variance_from_differences(small)
+    live = data.measured.any(axis=(0, 2))
+    level = np.ones(n_out)
+    level[live] = np.sqrt(np.nanmedian(variance[:, live], axis=(0, 2)))
+    level = np.where(live & (level > 0), level, np.inf)
+    H = np.asarray(np.where(data.measured, data.H, 0) / level[:, None], complex)
+    relative = np.where(np.isfinite(variance), variance, 0) / level[:, None] ** 2
+    known = np.maximum(np.sum(relative > 0, axis=1, keepdims=True), 1)
+    shared = np.sum(relative, axis=1, keepdims=True) / known
+    shared = np.where(shared > 0, shared, np.inf)
+    names = data.responses
+    if n_out > PRINCIPAL:
+        # real combinations: complex ones would not be conjugate at conjugate poles
+        flat = np.ascontiguousarray(H.transpose(1, 0, 2)).reshape(n_out, -1).view(float)
+        draws = np.random.default_rng(SEED).standard_normal((flat.shape[1], PRINCIPAL + 10))
+        basis = np.linalg.qr(flat @ draws)[0]
+        U = basis @ np.linalg.svd(basis.T @ flat, full_matrices=False)[0][:, :PRINCIPAL]
+        H = (U.T @ flat).view(complex).reshape(PRINCIPAL, n_in, lines).transpose(1, 0, 2)
+        names = tuple(f"principal {i + 1}" for i in range(PRINCIPAL))
+    return replace(data, H=H, responses=names, variance=None), shared
 
 
 def _lines_of_choice(frequency: Floats, diagram: StabilisationDiagram) -> Bools:
@@ -172,55 +179,30 @@ def _lines_of_choice(frequency: Floats, diagram: StabilisationDiagram) -> Bools:
 
 
 def _diagram(
-    data: FrequencyResponses, variance: Floats, orders: Sequence[int] | None
+    data: FrequencyResponses, variance: Floats
 ) -> tuple[StabilisationDiagram, list[Cluster]]:
-    H = np.where(data.measured, data.H, 0)
-    weight = np.nan_to_num(1 / variance).mean(axis=0)
-    weight = weight / weight.max()
+    weight = np.mean(1 / variance, axis=(0, 1))
     omega = 2 * np.pi * data.frequency
     rate = 2 * np.pi * lscf.ARC / (omega[-1] - omega[0])
-    if orders is None:
-        most = max(MOST_POLES // H.shape[0], 6)
-        most = min(most, len(omega) // 4)
-        orders = sorted(set(np.linspace(2, most, min(MOST_ORDERS, most - 1)).astype(int).tolist()))
+    most = min(max(MOST_POLES // len(data.H), 6), len(omega) // 4)
+    orders = sorted(set(np.linspace(2, most, min(MOST_ORDERS, most - 1)).astype(int).tolist()))
     z = lscf.generalised_frequency(omega, omega[0], rate)
-    sums = lscf.moments(H, weight, z, max(orders))
+    sums = lscf.moments(data.H, weight / weight.max(), z, max(orders))
     windowed = lscf.poles(sums, orders, omega[0], rate)
     estimates = [lscf.without_decay(poles, data.decay) for poles in windowed]
     s: Complexes = np.asarray(1j * omega + data.decay, complex)
-    return stabilisation_diagram(estimates, H, s, ORDERS[data.quantity])
+    return stabilisation_diagram(estimates, data.H, s, ORDERS[data.quantity])
 
 
-def _select(
-    task: Problem,
-    omega: float,
-    diagram: StabilisationDiagram,
-    clusters: list[Cluster],
-    modes: int | None,
-    kind: Weighting,
-) -> tuple[Problem, Fit]:
+def _choice(task: Problem, fit: Fit, kind: Weighting, modes: int | None) -> tuple[Problem, Fit]:
     """Return the problem, with its residual terms and variance, and the modes that data need."""
-    fit = selection.start(task, clusters, omega, modes)
-    task = selection.choose_level(task, fit)
-    fit = selection.refit(task, fit)
-    if kind != "given":
+    for _ in range(2):
+        task = selection.choose_level(task, fit)
+        fit = selection.refit(task, fit.model.lam, fit.model.L)
         task = _reweighted(task, fit, kind)
-        fit = selection.refit(task, fit)
-    if modes is not None:
-        return task, fit
-    candidates = selection.distinct(diagram.pole) / omega
-    for _ in range(selection.MOST_ADDED):
-        fit = selection.backward(task, fit)
-        more, candidates = selection.forward(task, fit, candidates)
-        if more is fit:
-            break
-        fit = more
-        if kind != "given":
-            task = _reweighted(task, fit, kind)
-            fit = selection.refit(task, fit)
-    task = selection.choose_level(task, fit)
-    fit = selection.refit(task, fit)
-    return task, selection.backward(task, fit)
+        fit = selection.backward(task, fit, selection.needed(task), modes)
+        fit = selection.grow(task, fit, modes)
+    return task, fit
 
 
 def _reweighted(task: Problem, fit: Fit, kind: Weighting) -> Problem:
@@ -231,9 +213,13 @@ def _reweighted(task: Problem, fit: Fit, kind: Weighting) -> Problem:
     if kind == "given":
         return task
     H = modal_model.synthesise(task, fit.model)
-    used = task.weight > 0
-    left = np.maximum(1 - modal_model.leverage(task, fit), LEAST_LEFT)
-    raw = np.where(used, np.abs(task.H - H) ** 2 / left, np.nan)
+    used, raw = task.weight > 0, np.abs(task.H - H) ** 2
+    if task.weight.shape == task.H.shape:
+        raw /= np.maximum(1 - modal_model.leverage(task, fit), LEAST_LEFT)
+    else:
+        raw = raw.mean(axis=1, keepdims=True) * task.count / selection.freedom(task, fit)
+        H = np.sqrt(np.mean(np.abs(H) ** 2, axis=1, keepdims=True))
+    raw = np.where(used, raw, np.nan)
     if kind == "scaled":
         lines = np.maximum(used.sum(axis=2, keepdims=True), 1)
         factor = np.where(used, raw * task.weight, 0).sum(axis=2, keepdims=True) / lines
@@ -254,19 +240,21 @@ class _Solution:
     diagram: StabilisationDiagram
 
 
-def _result(solution: _Solution, clusters: list[Cluster], given: bool) -> Identification:
-    """Return accepted and rejected modes; ``given`` is whether their number is."""
+def _result(solution: _Solution) -> Identification:
+    """Return the modes of the last fit; those outside the band stand for residual terms."""
     task, fit, omega = solution.task, solution.fit, solution.omega
     misfit = residuals(task, fit)
     estimates = mode_estimates(task, fit, misfit, omega)
-    reasons = _reasons(solution, estimates, given)
-    kept = [mode for mode, why in zip(estimates, reasons, strict=True) if not why]
+    f = solution.data.frequency
+    reasons = [_reason(mode, f) for mode in estimates]
+    kept = [k for k, why in enumerate(reasons) if not why]
     rejected = [
         Rejected(float(mode.frequency), float(mode.damping), why)
         for mode, why in zip(estimates, reasons, strict=True)
         if why
     ]
-    rejected += _passed_over(clusters, fit.model.lam * omega)
+    evidence = _evidence(solution, estimates, kept)
+    modes = [replace(estimates[k], evidence=evidence[k]) for k in kept]
     weight = np.where(task.weight > 0, task.weight, np.nan)
     functions = FittedFunctions(
         solution.data,
@@ -275,11 +263,10 @@ def _result(solution: _Solution, clusters: list[Cluster], given: bool) -> Identi
         misfit,
         modal_model.RESIDUALS.index(task.powers),
     )
-    f = solution.data.frequency
     return Identification(
         solution.data.responses,
         (float(f[0]), float(f[-1])),
-        tuple(sorted(kept, key=lambda mode: mode.frequency)),
+        tuple(sorted(modes, key=lambda mode: mode.frequency)),
         tuple(sorted(rejected, key=lambda pole: pole.frequency)),
         solution.diagram,
         functions,
@@ -308,37 +295,44 @@ def support(diagram: StabilisationDiagram, pole: Complexes, strength: Floats) ->
     return out
 
 
-def _reasons(solution: _Solution, estimates: Sequence[ModeEstimate], given: bool) -> list[str]:
-    """Return why each mode is none; empty where it is one."""
-    task, fit, frequency = solution.task, solution.fit, solution.data.frequency
-    spacing = float(np.median(np.diff(frequency)))
-    strength = selection.gains(task, fit)
-    doubled = selection.doubles(fit.model.lam, fit.model.phi, strength)
-    shares = support(solution.diagram, fit.model.lam * solution.omega, strength)
+def _reason(mode: ModeEstimate, frequency: Floats) -> str:
+    """Return why a pole that data need stands for residual terms; empty where it is a mode."""
+    if not frequency[0] <= mode.frequency <= frequency[-1]:
+        return "outside the band"
+    return "damped too heavily for a mode" if mode.damping > MOST_DAMPING else ""
+
+
+def _evidence(
+    solution: _Solution, estimates: Sequence[ModeEstimate], kept: Sequence[int]
+) -> list[Evidence]:
+    """Return what speaks for every mode; only those that are ``kept`` are neighbours."""
+    task, fit = solution.task, solution.fit
+    gain = selection.gains(task, fit)
+    shares = support(solution.diagram, fit.model.lam * solution.omega, gain)
+    visible, mac = _visibility(task, fit), auto_mac(fit.model.phi)
+    spacing = float(np.median(np.diff(solution.data.frequency)))
     out = []
-    for mode, double, share, seen in zip(
-        estimates, doubled, shares, _visibility(task, fit), strict=True
-    ):
+    for r, mode in enumerate(estimates):
+        flags = []
+        if shares[r] < FEW:
+            flags.append(f"on {shares[r]:.0%} of the orders")
+        if visible[r] < VISIBLE:
+            flags.append(f"at most {visible[r]:.0%} of any function at its frequency")
+        if mode.shape.collinearity < FEW:
+            flags.append(f"no common phase: MPC {mode.shape.collinearity:.2f}")
         half = max(mode.damping * mode.frequency, spacing)
-        why = ""
-        if not frequency[0] <= mode.frequency <= frequency[-1]:
-            why = "outside the band"
-        elif mode.damping > MOST_DAMPING:
-            why = "damped too heavily for a mode"
-        elif double:
-            why = "doubles a stronger mode of the same shape"
-        elif mode.frequency_std > WIDEST * half or mode.damping_std > WIDEST * mode.damping:
-            why = (
-                f"not determined: {mode.frequency_std:.2g} Hz, damping {mode.damping_std:.2g} "
-                "standard deviation"
-            )
-        elif share < SUPPORT and not given:
-            why = f"on {share:.0%} of the orders only"
-        elif mode.shape.collinearity < LEAST_COLLINEARITY:
-            why = f"its shape has no common phase: phase collinearity {mode.shape.collinearity:.2f}"
-        elif seen < VISIBLE and not given:
-            why = f"at most {seen:.0%} of any function at its own frequency"
-        out.append(why)
+        if mode.frequency_std > half or mode.damping_std > mode.damping:
+            flags.append("frequency or damping hardly determined")
+        for k in kept:
+            other = estimates[k].frequency
+            near = k != r and abs(other - mode.frequency) < NEIGHBOURS * mode.frequency
+            if near and len(fit.model.phi[r]) > 1 and mac[r, k] > selection.SAME:
+                flags.append(
+                    f"shape of {other:.5g} Hz (MAC {mac[r, k]:.2f}): one peak split in two, or "
+                    "sensors that cannot tell them apart"
+                )
+        least = selection.needed(task)
+        out.append(Evidence(gain[r] / least, shares[r], visible[r], tuple(flags)))
     return out
 
 
@@ -356,18 +350,4 @@ def _visibility(task: Problem, fit: Fit) -> Floats:
         parts = np.abs(a.real * E[::2, r] + a.imag * E[1::2, r])
         share = parts[..., r] / np.maximum(parts.sum(axis=-1), np.finfo(float).tiny)
         out[r] = share[measured].max(initial=0.0)
-    return out
-
-
-def _passed_over(clusters: Sequence[Cluster], poles: Complexes) -> list[Rejected]:
-    """Return the clusters that the likelihood did not need, none of the poles being near."""
-    out = []
-    for cluster in clusters:
-        reach = np.maximum(0.02 * abs(cluster.pole), -poles.real)
-        if cluster.size >= selection.LEAST_ORDERS and not (abs(cluster.pole - poles) < reach).any():
-            frequency, damping = (
-                abs(cluster.pole) / (2 * np.pi),
-                -cluster.pole.real / abs(cluster.pole),
-            )
-            out.append(Rejected(frequency, damping, "the data do not need it"))
     return out

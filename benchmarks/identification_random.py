@@ -1,0 +1,140 @@
+"""Random hammer tests of 3 to 40 modes, by two generators, and how many modes are found.
+
+``python benchmarks/identification_random.py FIRST LAST [GENERATOR]`` prints for the seeds FIRST to
+LAST the modes found, missed and false, the share of errors within 90 % intervals, and the processor
+time. ``modal`` makes functions from random modes; ``time`` is `identification_in_time`, and
+``dense`` has 25 modes, 50 sensors and 2 references. Modes that the data cannot show are
+counted apart: their residues at the noise of the mean are below what noise alone gives in the band.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from collections.abc import Callable
+from typing import Any
+
+import identification_in_time
+import numpy as np
+from scipy.optimize import linear_sum_assignment
+
+from modefront.data.responses import frequency_responses
+from modefront.identification.methods.hammer import identify
+
+
+def modal(seed: int, size: tuple[int, int, int] | None = None) -> dict[str, Any]:
+    """Return frequencies, functions of five blows and the modes of a random test."""
+    rng = np.random.default_rng([seed, 37])
+    modes, sensors, references = size or (
+        int(rng.integers(3, 41)),
+        int(rng.integers(4, 51)),
+        int(rng.integers(1, 4)),
+    )
+    f = np.arange(5.0, 105.0, 0.0625)
+    f0, zeta = np.sort(rng.uniform(8, 100, modes)), np.exp(rng.uniform(-5.3, -3.9, modes))
+    phi = rng.standard_normal((modes, sensors))
+    phi /= np.linalg.norm(phi, axis=1)[:, None]
+    points = rng.choice(sensors, references, False)
+    s, omega = 2j * np.pi * f, 2 * np.pi * f0[:, None]
+    G = s**2 / (s**2 + 2 * zeta[:, None] * omega * s + omega**2)
+    H = np.einsum("rj,ri,rk->jik", phi[:, points], phi, G, optimize=True)
+    level = np.exp(rng.uniform(np.log(0.005), np.log(0.2)))
+    rms = np.sqrt(np.mean(np.abs(H) ** 2, axis=-1, keepdims=True))
+    shape = (5, *H.shape)
+    noise = rng.standard_normal(shape) + 1j * rng.standard_normal(shape)
+    return {
+        "frequency": f,
+        "H": H + level * rms * noise / np.sqrt(2),
+        "quantity": "accelerance",
+        "f0": f0,
+        "zeta": zeta,
+        "phi": phi,
+        "factors": phi[:, points],
+    }
+
+
+GENERATORS: dict[str, Callable[[int], dict[str, Any]]] = {
+    "modal": modal,
+    "time": identification_in_time.hammer_test,
+    "dense": lambda seed: modal(seed, (25, 50, 2)),
+    "wide": lambda seed: modal(seed, (20, 200, 2)),
+}
+
+
+def energy(test: dict[str, Any]) -> Any:
+    """Return what each mode alone explains over the variance of the mean, (modes,).
+
+    The part that other modes could explain if their poles and residues were others is left out.
+    """
+    order = {"receptance": 0, "accelerance": 2}[test["quantity"]]
+    s = 2j * np.pi * test["frequency"]
+    omega = 2 * np.pi * test["f0"][:, None]
+    G = s**order / (s**2 + 2 * test["zeta"][:, None] * omega * s + omega**2)
+    pole = omega * (-test["zeta"][:, None] + 1j * np.sqrt(1 - test["zeta"][:, None] ** 2))
+    single = s**order / (s - pole)
+    for r in range(len(G)):
+        others = np.delete(np.arange(len(G)), r)
+        A = np.concatenate([single[others], (single / (s - pole))[others]]).T
+        A = A / np.linalg.norm(A, axis=0)
+        G[r] = G[r] - A @ np.linalg.lstsq(A, G[r], rcond=None)[0]
+    v = test["H"].var(axis=0, ddof=1).mean(axis=-1) / len(test["H"])
+    a = np.abs(np.einsum("rj,ri->rji", test["factors"], test["phi"])) ** 2 / v
+    return a.sum(axis=(1, 2)) * np.sum(np.abs(G) ** 2, axis=1)
+
+
+def scored(test: dict[str, Any], modes: Any) -> tuple[list[int], list[int], list[list[float]]]:
+    """Return true modes that were missed, false modes, and errors over standard deviations."""
+    f, true = np.array([mode.frequency for mode in modes]), test["f0"]
+    unit = test["phi"] / np.linalg.norm(test["phi"], axis=1)[:, None]
+    u = np.array([mode.shape.shape for mode in modes]).reshape(len(f), unit.shape[1])
+    mac = (unit @ u.T) ** 2
+    width = np.maximum(2 * test["zeta"] * true, 0.005 * true)
+    distance = np.abs(true[:, None] - f) / width[:, None] + 1 - mac
+    rows, columns = linear_sum_assignment(np.minimum(distance, 10.0))
+    pairs = [(r, c) for r, c in zip(rows, columns, strict=True) if distance[r, c] < 1.8]
+    errors: list[list[float]] = [[], [], []]
+    for r, c in pairs:
+        mode, sign = modes[c], np.sign(unit[r] @ u[c])
+        errors[0].append((mode.frequency - true[r]) / mode.frequency_std)
+        errors[1].append((mode.damping - test["zeta"][r]) / mode.damping_std)
+        errors[2].extend((u[c] - sign * unit[r]) / mode.shape_std)
+    missed = sorted(set(range(len(true))) - {r for r, _ in pairs})
+    return missed, sorted(set(range(len(f))) - {c for _, c in pairs}), errors
+
+
+def main(first: int, last: int, generator: str) -> None:
+    total, errors = np.zeros(6), [np.zeros(0) for _ in range(3)]
+    print("seed modes sensors refs  found missed hidden false  CPU s  what")
+    for seed in range(first, last + 1):
+        test = GENERATORS[generator](seed)
+        data = frequency_responses(test["frequency"], test["H"], test["quantity"])
+        before = time.process_time()
+        modes = identify(data).modes
+        spent = time.process_time() - before
+        missed, false, parts = scored(test, modes)
+        n_in, n_out = test["H"].shape[1:3]
+        # noise alone: the greatest singular value of a residue, over the band
+        least = (np.sqrt(n_in) + np.sqrt(n_out)) ** 2 + 2 * np.log(len(test["frequency"]))
+        hidden = [r for r in missed if energy(test)[r] < 2 * least]
+        missed = [r for r in missed if r not in hidden]
+        n = len(test["f0"])
+        counts = (n - len(hidden), n - len(missed) - len(hidden), len(missed), len(hidden))
+        total += (*counts, len(false), spent)
+        errors = [np.append(a, b) for a, b in zip(errors, parts, strict=True)]
+        what = [f"missed {test['f0'][r]:.2f} ({energy(test)[r]:.0f}/{least:.0f})" for r in missed]
+        what += [f"false {modes[c].frequency:.2f}" for c in false]
+        print(
+            f"{seed:4} {n:5} {n_out:7} {n_in:4} {counts[1]:6} {counts[2]:6} {counts[3]:6} "
+            f"{len(false):5} {spent:6.1f}  {'; '.join(what)}",
+            flush=True,
+        )
+    held = [f"{np.mean(np.abs(z) < 1.645):.1%} ({np.std(z):.2f})" for z in errors]
+    print(
+        f"{generator}: found {total[1]:.0f} of {total[0]:.0f} ({total[1] / total[0]:.1%}), "
+        f"{total[3]:.0f} more hidden, false {total[4]:.0f}; 90 % intervals of frequency, damping, "
+        f"shapes hold {', '.join(held)}; {total[5]:.0f} s"
+    )
+
+
+if __name__ == "__main__":
+    main(int(sys.argv[1]), int(sys.argv[2]), sys.argv[3] if len(sys.argv) > 3 else "modal")
