@@ -190,7 +190,7 @@ def compared(model: ReducedModel, thetas: Floats) -> list[Comparison]:
     certificates = model.certifier().certify(
         [(theta, requested) for theta in thetas], MODES + SPARE
     )
-    basis, pencil, out = model.ready().space.basis, model.full.pencil, []
+    basis, pencil, out = model.basis, model.full.pencil, []
     for theta, certificate in zip(thetas, certificates, strict=True):
         K, M = pencil.K.at(theta).toarray(), pencil.M.at(theta).toarray()
         X = scipy.linalg.eigh(M, K)[1][:, ::-1]

@@ -176,7 +176,7 @@ def requests_of(result: xr.Dataset) -> list[tuple[Floats, Ints]]:
 
 def sharpness(full: MatrixModel, model: ReducedModel, result: xr.Dataset) -> Floats:
     """Return estimated errors over true ones, wherever these can be told from rounding."""
-    basis = model.ready().space.basis
+    basis = model.basis
     models = requests_of(result)
     ratios = []
     for (theta, r), certificate in zip(models, model.certifier().certify(models), strict=True):

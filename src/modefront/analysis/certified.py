@@ -1,12 +1,12 @@
 r"""The work of a study on a reduced model, until every reported model holds in the full one.
 
-A round does all of the work in the basis at hand. Then snapshots are taken of those models that are
-the farthest from all others, as long as they lack more than a tenth of the tolerance (half of it
-after later rounds), and the next round starts from what is known. Minima that may be the best ones
-are among them, and so are models that a later round has moved. Where nothing is lacking, every
-model that is reported gets its certificate, and where one is above the tolerance, a snapshot is
-taken there. Minima that cannot be the best ones, whatever their errors are, are exempt from the
-tolerance. A poor basis may mislead the search, which is repeated after a single snapshot then.
+A round does all of the work in the basis at hand. Then snapshots are taken of those models of which
+the basis lacks most, as long as they lack more than a tenth of the tolerance (half of it after
+later rounds), and the next round starts from what is known. Minima that may be the best ones are
+among them. Where nothing is lacking, every model that is reported gets its certificate, and where
+one is above the tolerance, a snapshot is taken there. Minima that cannot be the best ones, whatever
+their errors are, are exempt from the tolerance. A poor basis may mislead the search, which is
+repeated after a single snapshot then.
 
 The tasks of every round have a turn of their own, and its snapshots are among them, so that an
 interrupted run goes on with the same digits.
@@ -24,9 +24,8 @@ from modefront._typing import Floats, Ints
 from modefront.errors import ModelError, UnfinishedError
 from modefront.front.front import Front
 from modefront.front.point import Point
-from modefront.models.reduced.certificate import FOUND, Certificate
-from modefront.models.reduced.certifier import Certifier
-from modefront.models.reduced.model import ReducedModel, SnapshotRequest
+from modefront.models.reduced.certificate import Certificate, Certifier
+from modefront.models.reduced.model import WORST, ReducedModel, SnapshotRequest
 from modefront.optim.lexicographic import EXACT
 from modefront.optim.scalarisation import LogSum
 from modefront.optim.sqp import Solution
@@ -44,24 +43,10 @@ ROUNDS = 8
 AHEAD = 5
 """Snapshots between two rounds at most, each of one or more models."""
 
-MODELS = 6
-"""Models of which a snapshot is taken together, at most."""
-
-TOGETHER = 4
-"""Models that get their certificates together, unless a model is large. Of 2,000 DOFs, 26 models in
-shares of 26, 4 and 1 take 0.33, 0.27 and 0.38 s."""
-
-LARGE = 20_000
-"""Degrees of freedom above which a model is large."""
-
 AIM, LATER = 0.1, 0.5
 """Error, over the tolerance, below which models need no snapshot after the first round: derivatives
 of modes, and with them the parameters, are less exact than eigenvalues. And after later ones, where
 a few models have moved, and a snapshot costs another round."""
-
-ELSEWHERE = 0.05
-"""Distance over the ranges from all models of the round before, from which on the errors of a model
-are looked at before certificates."""
 
 CLOSE = 1e-2
 """Relative excess of a minimum over the best one, up to which errors of the basis may have
@@ -108,44 +93,40 @@ def certified_front(problem: UpdatingProblem, search: Search, work: Executor) ->
     if model is None:
         return search(work=work, known=None)
     model.restart()
-    front: Front | None = None
-    taken = _take_some(model, "first", model.first, [], work)
-    if taken.added and not taken.full:
+    first = _take(model, "first", 1, model.first, work)
+    if first is None or not first.added:
+        raise UnfinishedError("the model cannot be solved at the nominal parameters")
+    columns = first.columns
+    if columns < model.capacity:
         (lacking,) = work.run([Task(("probe-basis",), _lacking, (problem, model), in_process=True)])
         if lacking:
             request = SnapshotRequest(np.array(lacking), _lowest(problem))
-            _take_some(model, "probes", request, [], work)
+            probed = _take(model, "probes", 1, request, work)
+            columns = probed.columns if probed else columns
+    known: Front | None = None
     for number in range(1, ROUNDS + 1):
-        if not taken.added:
-            break
         here = Within(work, turn=("round", number))
         work.expect({"snapshot": 1, "certificate": 1})
-        known = front if taken.error <= POOR else None
-        before, front = front, search(work=here, known=known)
-        if taken.full:
-            break
+        front = search(work=here, known=known)
         candidates = _candidates(problem, front)
-        if not taken.enough or _has_moved(problem, before, front):
-            enough = (LATER if known else AIM) * model.tolerance
-            request = _farthest(model, candidates, enough)
-            taken = _take_some(model, "ahead", request, candidates, here)
-            if not taken.enough or taken.added:
-                continue
-        front = _with_errors(problem, model, front, here)
-        needed = {
-            _key(solution): solution
-            for solution in [*_of_the_front(front), *_rivals(problem, front)]
-        }
-        wrong = [solution for solution in needed.values() if _error(solution) > model.tolerance]
-        if not wrong:
-            return front
-        worst = _snap(sorted(wrong, key=_error, reverse=True)[:MODELS], 0.0)
-        if not all(map(np.isfinite, map(_error, wrong))):
-            worst = replace(worst, modes=max(worst.modes, _lowest(problem)))
-        taken = _take_some(model, "worst", worst, candidates, here)
-    if front is None:
-        raise UnfinishedError("the model cannot be solved at the nominal parameters")
-    return _with_errors(problem, model, front, work)
+        enough = (LATER if known else AIM) * model.tolerance
+        is_last = number == ROUNDS or columns >= model.capacity
+        taken = [] if is_last else _improve(model, candidates, enough, here)
+        if not taken:
+            front = _with_errors(problem, model, front, here)
+            wrong = _wrong(problem, model, front)
+            if not wrong or is_last:
+                break
+            worst = _snapshot(wrong, 0.0)
+            if not all(map(np.isfinite, map(_error, wrong))):
+                worst = replace(worst, modes=max(worst.modes, _lowest(problem)))
+            last = _take(model, "worst", 1, worst, here)
+            if last is None or not last.added:
+                break
+            taken = [last]
+        columns = taken[-1].columns
+        known = front if max(each.error for each in taken) <= POOR else None
+    return front
 
 
 def certified_points(
@@ -188,52 +169,37 @@ def _reduced(problem: UpdatingProblem) -> ReducedModel | None:
     return problem.model if isinstance(problem.model, ReducedModel) else None
 
 
-@dataclass(frozen=True)
-class _Taken:
-    """Outcome of all snapshots.
+def _improve(
+    model: ReducedModel, candidates: Sequence[Solution], enough: float, work: Executor
+) -> list[SnapshotTaken]:
+    """Take snapshots of the candidates that the basis knows least, until it knows all of them.
 
-    Attributes
-    ----------
-    error : the greatest relative error of an eigenvalue that the first of them found
-    added : whether they added anything to the basis
-    enough : whether the last one found nothing to add
-    full : whether there is no room for more
+    Those that added something to the basis are returned.
     """
-
-    error: float
-    added: bool
-    enough: bool
-    full: bool
-
-
-def _take_some(
-    model: ReducedModel,
-    name: str,
-    request: SnapshotRequest,
-    candidates: Sequence[Solution],
-    work: Executor,
-) -> _Taken:
-    """Take a snapshot, and others that the candidates for the next round would need next."""
-    error, added = np.inf, False
+    out: list[SnapshotTaken] = []
     for count in range(AHEAD):
-        before = model.snapshots
-        task = Task(("snapshot", name, count + 1), _take, (model, request), in_process=True)
-        (taken,) = work.run([task])
-        if taken is None:
-            return _Taken(error, added, enough=False, full=False)
+        taken = _take(model, "ahead", count + 1, _snapshot(candidates, enough), work)
+        if taken is None or not taken.added:
+            break
+        out.append(taken)
+        if taken.error > POOR or taken.columns >= model.capacity:
+            break
+    return out
+
+
+def _take(
+    model: ReducedModel, name: str, number: int, request: SnapshotRequest, work: Executor
+) -> SnapshotTaken | None:
+    """Take a snapshot in a task of its own; None where none of its models can be solved."""
+    before = model.snapshots
+    task = Task(("snapshot", name, number), _taken, (model, request), in_process=True)
+    (taken,) = work.run([task])
+    if taken is not None:
         model.resume([*before, replace(request, modes=taken.modes)])
-        error = taken.error if count == 0 else error
-        if taken.error < request.enough:
-            return _Taken(error, added, enough=True, full=False)
-        added = added or taken.added > 0
-        full = taken.columns >= model.capacity
-        if not candidates or full or error > POOR or not taken.added:
-            return _Taken(error, added, enough=False, full=full)
-        request = _farthest(model, candidates, request.enough or AIM * model.tolerance)
-    return _Taken(error, added, enough=False, full=False)
+    return taken
 
 
-def _take(model: ReducedModel, request: SnapshotRequest) -> SnapshotTaken | None:
+def _taken(model: ReducedModel, request: SnapshotRequest) -> SnapshotTaken | None:
     """Take a snapshot, which changes the basis of the model.
 
     Where none of its models can be solved, the basis learns that, so that it is not searched there
@@ -253,10 +219,17 @@ def _take(model: ReducedModel, request: SnapshotRequest) -> SnapshotTaken | None
     return SnapshotTaken(float(error), columns, columns - before, modes)
 
 
-def _snap(solutions: Sequence[Solution], enough: float) -> SnapshotRequest:
+def _snapshot(solutions: Sequence[Solution], enough: float) -> SnapshotRequest:
     """Return the snapshot of some models, of modes up to the last one that is paired."""
     modes = max(int(_paired(solution).max()) + 1 for solution in solutions)
     return SnapshotRequest(np.array([solution.theta for solution in solutions]), modes, enough)
+
+
+def _wrong(problem: UpdatingProblem, model: ReducedModel, front: Front) -> list[Solution]:
+    """Return the worst models above the tolerance of those that have to hold."""
+    needed = {_key(x): x for x in [*_of_the_front(front), *_rivals(problem, front)]}
+    wrong = [solution for solution in needed.values() if _error(solution) > model.tolerance]
+    return sorted(wrong, key=_error, reverse=True)[:WORST]
 
 
 def _candidates(problem: UpdatingProblem, front: Front) -> list[Solution]:
@@ -272,30 +245,9 @@ def _candidates(problem: UpdatingProblem, front: Front) -> list[Solution]:
     return list({_key(solution): solution for solution in models}.values())
 
 
-def _farthest(
-    model: ReducedModel, candidates: Sequence[Solution], enough: float
-) -> SnapshotRequest:
-    """Return the snapshot of the models that are the farthest from all others, unless it is enough.
-
-    It is where their eigenvalues have relative errors below ``enough``.
-    """
-    ranked = sorted(candidates, key=lambda solution: model.distance(solution.theta), reverse=True)
-    return _snap(ranked[:MODELS], enough)
-
-
-def _has_moved(problem: UpdatingProblem, before: Front | None, front: Front) -> bool:
-    """Return whether some model of a front lies elsewhere than all models of the one before."""
-    span = problem.upper - problem.lower
-    known = np.array([x.theta for x in _reported(before)]) if before else np.zeros((0, span.size))
-    return any(
-        (np.linalg.norm((known - solution.theta) / span, axis=1) > ELSEWHERE).all()
-        for solution in _of_the_front(front)
-    )
-
-
 def _lacking(problem: UpdatingProblem, model: ReducedModel) -> list[Floats]:
     """Return models where the basis lacks modes that measured ones might be paired with."""
-    return model.lacking(_lowest(problem))[:MODELS]
+    return model.lacking(_lowest(problem))[:WORST]
 
 
 def _lowest(problem: UpdatingProblem) -> int:
@@ -345,73 +297,38 @@ def _certified(
     name: str,
     work: Executor,
 ) -> list[Solution]:
-    """Return solutions with the errors of the modes that are paired with measured ones.
-
-    They are computed in shares, which do not depend on how many processes there are. A large model
-    has one share only, which is computed in this process: no other one holds a factor of it.
-    """
-    count = len(solutions) if model.size > LARGE else TOGETHER
-    certifier = model.certifier()
-    memory = 8.0 * model.size * TOGETHER * _lowest(problem)
+    """Return solutions with the errors of the modes that are paired with measured ones."""
+    certifier = model.certifier() if solutions else None
     tasks = [
-        Task(
-            ("certificate", name, first // count + 1),
-            _with_certificates,
-            (problem, certifier, list(solutions[first : first + count])),
-            in_process=model.size > LARGE,
-            memory=memory,
-        )
-        for first in range(0, len(solutions), count)
+        Task(("certificate", name, k + 1), _with_certificate, (problem, certifier, solution))
+        for k, solution in enumerate(solutions)
     ]
-    return [solution for share in work.run(tasks) for solution in share]
+    return work.run(tasks)
 
 
-def _with_certificates(
-    problem: UpdatingProblem, certifier: Certifier, solutions: Sequence[Solution]
-) -> list[Solution]:
-    """Return solutions with the errors of the modes that are paired with measured ones.
+def _with_certificate(
+    problem: UpdatingProblem, certifier: Certifier, solution: Solution
+) -> Solution:
+    """Return a solution with the errors of the modes that are paired with measured ones.
 
     They are infinite where the full model may pair other modes: where one of those that are looked
     at is missing, or where better known modes would be paired differently.
     """
-    paired = [np.unique(_paired(solution), return_inverse=True) for solution in solutions]
-    requests = [
-        (solution.theta, modes) for solution, (modes, _) in zip(solutions, paired, strict=True)
-    ]
-    certificates = certifier.certify(requests, _lowest(problem))
-    out = []
-    for solution, certificate, (_, place) in zip(solutions, certificates, paired, strict=True):
-        errors = (certificate.eigenvalue[place], certificate.shape[place])
-        if certificate.known and not _pairs_alike(problem, solution, certificate):
-            errors = (np.full(place.shape, np.inf), np.ones(place.shape))
-        quantities = {**solution.evaluation.quantities, **dict(zip(ERRORS, errors, strict=True))}
-        out.append(
-            replace(solution, evaluation=replace(solution.evaluation, quantities=quantities))
-        )
-    return out
+    modes, place = np.unique(_paired(solution), return_inverse=True)
+    (certificate,) = certifier.certify([(solution.theta, modes)], _lowest(problem))
+    errors = (certificate.eigenvalue[place], certificate.shape[place])
+    if certificate.known and not _pairs_alike(problem, solution, certificate):
+        errors = (np.full(place.shape, np.inf), np.ones(place.shape))
+    quantities = {**solution.evaluation.quantities, **dict(zip(ERRORS, errors, strict=True))}
+    return replace(solution, evaluation=replace(solution.evaluation, quantities=quantities))
 
 
 def _pairs_alike(problem: UpdatingProblem, solution: Solution, certificate: Certificate) -> bool:
-    """Return whether modes that are known better are paired as those of the basis are.
-
-    So have modes to be that are farther away by twice as much again, since a third of the errors
-    is known for sure.
-    """
+    """Return whether modes that are known better are paired as those of the basis are."""
     count = _lowest(problem)
-    modes = problem.model.modes(solution.theta, count, derivatives=False)
-    lam, phi = certificate.lam[:count], certificate.phi[:, :count]
-    phi = phi * np.where((phi * modes.phi).sum(axis=0) < 0, -1.0, 1.0)
-    beyond = 1 / FOUND - 1
-    candidates = (
-        (lam, phi),
-        (lam + beyond * (lam - modes.lam), phi + beyond * (phi - modes.phi)),
-    )
-    for values, shapes in candidates:
-        frequency = np.sqrt(np.maximum(values, 0.0)) / (2 * np.pi)
-        pairs = match(problem.pairing, problem.data, frequency, shapes)
-        if not np.array_equal(pairs.index, _paired(solution)):
-            return False
-    return True
+    frequency = np.sqrt(np.maximum(certificate.lam[:count], 0.0)) / (2 * np.pi)
+    pairs = match(problem.pairing, problem.data, frequency, certificate.phi[:, :count])
+    return np.array_equal(pairs.index, _paired(solution))
 
 
 def _of_the_front(front: Front) -> Iterator[Solution]:

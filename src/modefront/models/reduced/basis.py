@@ -25,7 +25,6 @@ K, M      affine as in the full model, with the terms :math:`V^T K_j V`
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
-from functools import cached_property
 
 import numpy as np
 
@@ -33,32 +32,9 @@ from modefront._typing import Floats
 from modefront.linalg.affine import DenseAffine
 from modefront.linalg.pencil import Pencil
 from modefront.linalg.products import combine, combine_all, gram
-from modefront.models.reduced import completeness
-from modefront.modes.derivatives import Shifted
-from modefront.modes.sparse import lowest
 
-UNSOUND = 0.1
-"""Energy of a direction that should have the energy 1, below which it is rounding."""
-
-
-@dataclass(frozen=True, eq=False)
-class Snapshot:
-    """Modes, and the factor, of one full eigensolution.
-
-    Attributes
-    ----------
-    theta : where it was taken
-    beyond : eigenvalues below it were proved to be all among the modes
-    proved : how many there are
-    modes : (N, modes) of unit energy
-    below : the factor of K + s M, which is positive definite
-    """
-
-    theta: Floats
-    beyond: float
-    proved: int
-    modes: Floats
-    below: Shifted
+UNSOUND = 0.3
+"""Length of a direction that should have the length 1, below which it is rounding."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,39 +59,18 @@ class Basis:
         """Dimension n of the space."""
         return self.K.size
 
-    @cached_property
-    def semidefinite(self) -> bool:
-        """Whether no projected term shows that a term of K or M is indefinite."""
-        return completeness.semidefinite(self.K) and completeness.semidefinite(self.M)
-
-    @property
-    def A(self) -> Floats:
-        """The identity but for rounding, as the projected matrices give it."""
-        return self.K.at(self.theta) - self.sigma * self.M.at(self.theta)
-
     def combine(self, C: Floats) -> Floats:
         """Return V C for C of shape (n, m)."""
         return combine_all(self.blocks, C)
 
 
-def snapshot(pencil: Pencil, theta: Floats, count: int) -> Snapshot:
-    """Solve the full model for ``count`` modes or more.
-
-    Raises ModelError where the model has no such modes.
-    """
-    spectrum = lowest(pencil, theta, count)
-    below, above = spectrum.factors
-    modes = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
-    return Snapshot(theta, above.sigma, spectrum.proved, modes, below)
-
-
-def empty(pencil: Pencil, first: Snapshot) -> Basis:
-    """Return the basis without columns in the norm of the first snapshot."""
+def empty(pencil: Pencil, theta: Floats, sigma: float) -> Basis:
+    """Return the basis without columns in the norm of K - sigma M at ``theta``."""
     K, M = (
         DenseAffine(np.zeros((A.terms.shape[1], 0, 0)), A.coefficients)
         for A in (pencil.K, pencil.M)
     )
-    return Basis((), K, M, first.theta, first.below.sigma)
+    return Basis((), K, M, theta, sigma)
 
 
 def extended(
@@ -123,75 +78,27 @@ def extended(
 ) -> Basis:
     """Return the basis extended by vectors (N, m), the longest directions first.
 
-    Directions shorter than ``shortest``, and those beyond ``capacity`` columns, are left out.
+    Directions shorter than ``shortest``, and those beyond ``capacity`` columns, are left out. Of
+    the projected matrices only the new rows and columns are computed.
     """
-
-    def A(X: Floats) -> Floats:
-        theta = np.tile(basis.theta, (X.shape[1], 1))
-        return residuals(pencil, theta, np.full(X.shape[1], basis.sigma), X)
-
-    AX = A(vectors)
     W = vectors
-    if basis.columns:
-        W = vectors - basis.combine(np.vstack([gram(block, AX) for block in basis.blocks]))
-        AX = A(W)
-    space = joined(pencil, basis, W, AX, shortest, capacity)
-    n, m = basis.columns, space.columns - basis.columns
-    return _kept(basis, space, np.vstack([np.zeros((n, m)), np.eye(m)])) if m else basis
-
-
-def joined(
-    pencil: Pencil,
-    basis: Basis,
-    W: Floats,
-    AW: Floats,
-    shortest: float,
-    capacity: int | None = None,
-) -> Basis:
-    """Return a space of the basis and some vectors W (N, m), given A W, that are orthogonal to it.
-
-    What is added is orthonormal but for rounding in W, and otherwise as in `extended`. Of the
-    projected matrices only the new rows and columns are computed.
-    """
-    room = W.shape[1] if capacity is None else capacity - basis.columns
-    squares, U = np.linalg.eigh(gram(W, AW))
-    kept = np.flatnonzero(squares > shortest**2)[::-1][:room]
-    if not kept.size:
-        return basis
-    W = combine(W, U[:, kept] / np.sqrt(squares[kept]))
+    for least in (shortest, UNSOUND):  # what rounding leaves of the basis goes the second time
+        theta, sigma = np.tile(basis.theta, (W.shape[1], 1)), np.full(W.shape[1], basis.sigma)
+        AW = residuals(pencil, theta, sigma, W)
+        if basis.columns:
+            W = W - basis.combine(np.vstack([gram(block, AW) for block in basis.blocks]))
+            AW = residuals(pencil, theta, sigma, W)
+        squares, U = np.linalg.eigh(gram(W, AW))
+        kept = np.flatnonzero(squares > least**2)[::-1][: capacity - basis.columns]
+        if not kept.size:
+            return basis
+        W = combine(W, U[:, kept] / np.sqrt(squares[kept]))
     blocks = *basis.blocks, W
     K, M = (
         _bordered(reduced, full.project(blocks, W))
         for full, reduced in ((pencil.K, basis.K), (pencil.M, basis.M))
     )
     return replace(basis, blocks=blocks, K=K, M=M)
-
-
-def trimmed(basis: Basis, space: Basis, vectors: Floats, shortest: float, capacity: int) -> Basis:
-    """Return the basis with what some vectors add to it, given in a space that contains it.
-
-    ``vectors`` (columns of the space, m) are left out in part as in `extended`.
-    """
-    n = basis.columns
-    U, lengths, _ = np.linalg.svd(vectors[n:], full_matrices=False)
-    U = U[:, lengths > shortest][:, : capacity - n]
-    return _kept(basis, space, np.vstack([np.zeros((n, U.shape[1])), U])) if U.size else basis
-
-
-def _kept(basis: Basis, space: Basis, turn: Floats) -> Basis:
-    """Return the basis with ``turn`` (columns, m) of a space whose first columns it is.
-
-    What is added is orthonormal in spite of rounding.
-    """
-    n, A = basis.columns, space.A
-    turn[:n] -= A[:n] @ turn
-    squares, U = np.linalg.eigh(turn.T @ A @ turn)
-    kept = squares > UNSOUND
-    if not kept.any():
-        return basis
-    turn = turn @ (U[:, kept] / np.sqrt(squares[kept]))
-    K, M = (_turned(form, n, turn) for form in (space.K, space.M))
-    return replace(basis, blocks=(*basis.blocks, space.combine(turn)), K=K, M=M)
 
 
 def residuals(pencil: Pencil, thetas: Floats, lam: Floats, X: Floats) -> Floats:
@@ -210,10 +117,3 @@ def _bordered(reduced: DenseAffine, new: Floats) -> DenseAffine:
     top = np.concatenate([reduced.terms, across], axis=2)
     bottom = np.concatenate([across.transpose(0, 2, 1), inner], axis=2)
     return DenseAffine(np.concatenate([top, bottom], axis=1), reduced.coefficients)
-
-
-def _turned(A: DenseAffine, n: int, turn: Floats) -> DenseAffine:
-    """Return A on its first n columns and on ``turn`` (columns of A, m) of all."""
-    right = A.terms @ turn
-    new = np.concatenate([right[:, :n], turn.T @ right], axis=1)
-    return _bordered(DenseAffine(A.terms[:, :n, :n], A.coefficients), new)

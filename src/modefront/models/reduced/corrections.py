@@ -1,4 +1,4 @@
-r"""Corrections of modes and their derivatives in a basis, with the factor of another model.
+r"""What modes and their derivatives lack in a basis, with the factor of another model.
 
 For a Ritz pair :math:`(\lambda, \varphi)`, :math:`\varphi^T M \varphi = 1`, the part
 :math:`\delta` that the mode lacks solves, to leading order (Jacobi's correction),
@@ -12,14 +12,12 @@ problem lacks solves the same equation with
 
 With the factor of an earlier :math:`A = K + s M`, the space is extended by :math:`A^{-1} r`, the
 modes or derivatives are those of the reduced problem in the new space, and so on (Davidson's
-method). It contains what conjugate gradients would find for each of them, and of several models
-each profits from the others: where the stiffness of some parts of a structure changes by factors,
-most eigenvalues of :math:`A^{-1} C` are 1 or one of these. What is kept of the space is the modes
-or derivatives themselves.
+method). Of several models each profits from the others: where the stiffness of some parts of a
+structure changes by factors, most eigenvalues of :math:`A^{-1} C` are 1 or one of these. What is
+kept of the space is the modes or derivatives themselves.
 
-Residuals are orthogonal to the basis, so their solutions are orthogonal to it in A: no product
-with A is needed to extend it. A step is worth :math:`r^T A^{-1} r`, the square of the length that
-was lacking but for the condition of :math:`A^{-1} C`.
+A step is worth :math:`r^T A^{-1} r`, the square of the length that was lacking but for the
+condition of :math:`A^{-1} C`.
 
 Sources: Sleijpen & Van der Vorst 1996, doi:10.1137/S0895479894270427 (correction); Morgan & Scott
 1986, doi:10.1137/0907054 (Davidson's method with other preconditioners).
@@ -29,16 +27,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from functools import partial
-from typing import Protocol
+from typing import TypeAlias
 
 import numpy as np
 
 from modefront._typing import Floats, Ints
+from modefront.linalg.factorisation import Factorisation
 from modefront.linalg.pencil import Pencil
-from modefront.models.reduced.basis import Basis, extended, joined, residuals, trimmed
+from modefront.models.reduced.basis import Basis, extended, residuals
 from modefront.modes import dense
-from modefront.modes.derivatives import Shifted
 
 SLOWEST = 0.5
 """Ratio of steps at most that what is left is extrapolated with."""
@@ -73,109 +70,88 @@ class CorrectionRequest:
 
 
 @dataclass(frozen=True, eq=False)
-class Factor:
-    """The factor of a positive definite A = K(theta) - sigma M(theta)."""
+class _Columns:
+    """Modes or derivatives of them as a space has them, of unit energy, in columns.
 
-    theta: Floats
-    below: Shifted
+    Attributes
+    ----------
+    Y : (n, m) their coordinates
+    lam : (m,) the eigenvalue of the mode of each
+    residuals : returns those of some columns, (N, some)
+    """
 
-    def extend(
-        self,
-        pencil: Pencil,
-        space: Basis,
-        solutions: Floats,
-        right: Floats,
-        shortest: float,
-    ) -> Basis:
-        """Return a space with solutions (N, m) for residuals that are orthogonal to it.
-
-        Rounding may leave its columns a little less than orthonormal.
-        """
-        if np.array_equal(space.theta, self.theta) and space.sigma == self.below.sigma:
-            return joined(pencil, space, solutions, right, shortest)
-        return extended(pencil, space, solutions, shortest, pencil.size)
-
-
-class _KnownColumns(Protocol):
-    """Modes or derivatives of them as a space has them, of unit energy, in columns."""
-
-    @property
-    def Y(self) -> Floats:
-        """Their coordinates, (n, m)."""
-
-    @property
-    def lam(self) -> Floats:
-        """The eigenvalue of the mode of each, (m,)."""
-
-    def residuals(self, some: Ints) -> Floats:
-        """Return residuals r (N, some)."""
-
-
-@dataclass(frozen=True, eq=False)
-class _Modes:
-    """The lowest modes of several models, those of the first one first."""
-
-    pencil: Pencil
-    space: Basis
-    thetas: Floats
     Y: Floats
     lam: Floats
-
-    def residuals(self, some: Ints) -> Floats:
-        X = self.space.combine(self.Y[:, some])
-        return residuals(self.pencil, self.thetas[some], self.lam[some], X)
+    residuals: Callable[[Ints], Floats]
 
 
-def _modes(pencil: Pencil, models: Sequence[Floats], count: int, space: Basis) -> _Modes:
-    decompositions = [dense.lowest(space.K.at(theta), space.M.at(theta), count) for theta in models]
-    lam = np.concatenate([modes.lam[:count] for modes in decompositions])
-    Y = np.hstack([modes.Phi[:, :count] for modes in decompositions]) / np.sqrt(lam - space.sigma)
-    return _Modes(pencil, space, np.repeat(models, count, axis=0), Y, lam)
+_Sought: TypeAlias = Callable[[Basis], _Columns]
 
 
-@dataclass(frozen=True, eq=False)
-class _Derivatives:
-    """Derivatives of some modes by each parameter, over ``unit``, those of the first mode first."""
+def _modes(pencil: Pencil, models: Sequence[Floats], count: int) -> _Sought:
+    """Return what finds the lowest modes of several models, those of the first one first."""
+    thetas = np.repeat(models, count, axis=0)
 
-    pencil: Pencil
-    space: Basis
-    theta: Floats
-    modes: Floats
-    Y: Floats
-    lam: Floats
-    dlam: Floats
-    unit: Floats
+    def within(space: Basis) -> _Columns:
+        found = [dense.lowest(space.K.at(theta), space.M.at(theta), count) for theta in models]
+        lam = np.concatenate([modes.lam[:count] for modes in found])
+        Y = np.hstack([modes.Phi[:, :count] for modes in found]) / np.sqrt(lam - space.sigma)
+        return _Columns(
+            Y,
+            lam,
+            lambda some: residuals(pencil, thetas[some], lam[some], space.combine(Y[:, some])),
+        )
 
-    def residuals(self, some: Ints) -> Floats:
-        lam, dlam, unit, p = self.lam[some], self.dlam[some], self.unit[some], self.theta.size
-        modes, of = np.unique(some // p, return_inverse=True)
-        pencil, thetas = self.pencil, np.tile(self.theta, (some.size, 1))
-        dX, X = self.space.combine(self.Y[:, some]), self.space.combine(self.modes[:, modes])
-        R = pencil.M.each(thetas, -lam * dX - unit * dlam * X[:, of])
-        R += pencil.K.each(thetas, dX)
-        for A, factor in ((pencil.K, unit), (pencil.M, -lam * unit)):
-            if A.coefficients.exponents.any():
-                forces = A.derivatives_times(self.theta, X).reshape(len(X), -1)
-                R += forces[:, of * p + some % p] * factor
-        return R
+    return within
 
 
-def _derivatives(
-    pencil: Pencil, theta: Floats, count: int, half_range: Floats, space: Basis
-) -> _Derivatives:
-    ritz = dense.decompose(space.K.at(theta), space.M.at(theta))
-    dlam, S, *_ = dense.nelson(space.K, space.M, theta, ritz, count)
-    lam = np.repeat(ritz.lam[:count], theta.size)
-    unit = np.tile(half_range, count) / np.sqrt(lam - space.sigma)
-    dY = ritz.X @ S[:, :count].reshape(space.columns, -1) * unit
-    modes, dlam = ritz.Phi[:, :count], dlam[:count].ravel()
-    return _Derivatives(pencil, space, theta, modes, dY, lam, dlam, unit)
+def _derivatives(pencil: Pencil, theta: Floats, count: int, half_range: Floats) -> _Sought:
+    """Return what finds the derivatives of some modes by each parameter, over half its range."""
+    p = theta.size
+
+    def within(space: Basis) -> _Columns:
+        ritz = dense.decompose(space.K.at(theta), space.M.at(theta))
+        slopes, S, *_ = dense.nelson(space.K, space.M, theta, ritz, count)
+        lam, dlam = np.repeat(ritz.lam[:count], p), slopes[:count].ravel()
+        unit = np.tile(half_range, count) / np.sqrt(lam - space.sigma)
+        Y = ritz.X @ S[:, :count].reshape(space.columns, -1) * unit
+
+        def residuals_of(some: Ints) -> Floats:
+            modes, of = np.unique(some // p, return_inverse=True)
+            thetas, few, own = np.tile(theta, (some.size, 1)), unit[some], lam[some]
+            dX, X = space.combine(Y[:, some]), space.combine(ritz.Phi[:, modes])
+            R = pencil.M.each(thetas, -own * dX - few * dlam[some] * X[:, of])
+            R += pencil.K.each(thetas, dX)
+            for A, factor in ((pencil.K, few), (pencil.M, -own * few)):
+                if A.coefficients.exponents.any():
+                    forces = A.derivatives_times(theta, X).reshape(len(X), -1)
+                    R += forces[:, of * p + some % p] * factor
+            return R
+
+        return _Columns(Y, lam, residuals_of)
+
+    return within
+
+
+def lacking_lengths(
+    pencil: Pencil, basis: Basis, factor: Factorisation, thetas: Sequence[Floats], count: int
+) -> Floats:
+    r"""Return :math:`r^T A^{-1} r` (thetas,) of the worst of the ``count`` lowest modes.
+
+    That is the relative error of its eigenvalue but for the condition of :math:`A^{-1} C`.
+    """
+    worth = []
+    for some in _shares(pencil, thetas, count):
+        modes = _modes(pencil, some, count)(basis)
+        R = modes.residuals(np.arange(modes.lam.size))
+        worth.append(np.einsum("nc,nc->c", R, factor.solve(R)).reshape(-1, count).max(axis=1))
+    return np.concatenate(worth)
 
 
 def with_modes(
     pencil: Pencil,
     basis: Basis,
-    factor: Factor,
+    factor: Factorisation,
     thetas: Sequence[Floats],
     count: int,
     request: CorrectionRequest,
@@ -185,12 +161,10 @@ def with_modes(
     Returned as well are the relative errors (thetas,) that the eigenvalues had at the worst, as
     the first step tells. None where exact modes would take too many steps.
     """
-    width = max(1, together(pencil.size) // count)
     errors = []
-    for first in range(0, len(thetas), width):
-        some = thetas[first : first + width]
+    for some in _shares(pencil, thetas, count):
         columns = np.arange(len(some) * count).reshape(-1, count)
-        sought = partial(_modes, pencil, some, count)
+        sought = _modes(pencil, some, count)
         corrected = _with(pencil, basis, factor, sought, columns, request)
         if not (corrected.settled or request.share):
             return None
@@ -203,7 +177,7 @@ def with_modes(
 def with_derivatives(
     pencil: Pencil,
     basis: Basis,
-    factor: Factor,
+    factor: Factorisation,
     theta: Floats,
     count: int,
     half_range: Floats,
@@ -214,8 +188,8 @@ def with_derivatives(
     The modes themselves must be in it. Derivatives are over ``half_range`` (p,). They need not be
     exact to be of use.
     """
-    sought = partial(_derivatives, pencil, theta, count, half_range)
-    columns, width = count * theta.size, together(pencil.size)
+    sought = _derivatives(pencil, theta, count, half_range)
+    columns, width = count * theta.size, _together(pencil)
     for first in range(0, columns, width):
         some = np.arange(first, min(first + width, columns))
         basis = _with(pencil, basis, factor, sought, some[None], request).basis
@@ -241,8 +215,8 @@ class _Known:
 def _with(
     pencil: Pencil,
     basis: Basis,
-    factor: Factor,
-    sought: Callable[[Basis], _KnownColumns],
+    factor: Factorisation,
+    sought: _Sought,
     columns: Ints,
     request: CorrectionRequest,
 ) -> _Known:
@@ -255,9 +229,9 @@ def _with(
     total, last = np.zeros((2, current.lam.size))
     for step in range(STEPS):
         R = current.residuals(active)
-        Z = factor.below.factor.solve(R)
+        Z = factor.solve(R)
         worth = np.einsum("nc,nc->c", R, Z)
-        space = factor.extend(pencil, space, Z, R, request.shortest)
+        space = extended(pencil, space, Z, request.shortest, pencil.size)
         before, current = current, sought(space)
         if step == 0:
             gain = (before.lam - current.lam) / (current.lam - space.sigma)
@@ -273,10 +247,17 @@ def _with(
         if not active.size:
             break
     Y = current.Y[:, columns.ravel()]
-    kept = trimmed(basis, space, Y, request.shortest, request.capacity)
-    return _Known(kept, errors, not active.size)
+    if Y.size:
+        basis = extended(pencil, basis, space.combine(Y), request.shortest, request.capacity)
+    return _Known(basis, errors, not active.size)
 
 
-def together(size: int) -> int:
+def _shares(pencil: Pencil, thetas: Sequence[Floats], count: int) -> list[Sequence[Floats]]:
+    """Return the models in shares whose modes are corrected together."""
+    width = max(1, _together(pencil) // count)
+    return [thetas[first : first + width] for first in range(0, len(thetas), width)]
+
+
+def _together(pencil: Pencil) -> int:
     """Return how many right-hand sides are solved together."""
-    return max(FEWEST, ENTRIES // size)
+    return max(FEWEST, ENTRIES // pencil.size)

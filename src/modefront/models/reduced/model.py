@@ -10,27 +10,27 @@ from itertools import combinations
 from typing import Any
 
 import numpy as np
+import scipy.sparse.linalg
 
 from modefront._typing import Floats
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
-from modefront.linalg.factorisation import SingularMatrixError
+from modefront.linalg.factorisation import Factorisation
 from modefront.models.load_case import LoadCase, Transfer
 from modefront.models.matrices import MatrixModel
-from modefront.models.reduced import completeness
-from modefront.models.reduced.basis import Basis, Snapshot, empty, extended, snapshot
-from modefront.models.reduced.certifier import Certifier, InertiaProof, knows, reach_of
+from modefront.models.reduced.basis import Basis, empty, extended
+from modefront.models.reduced.certificate import LATER, Certifier, level
 from modefront.models.reduced.corrections import (
     CorrectionRequest,
-    Factor,
+    lacking_lengths,
     with_derivatives,
     with_modes,
 )
-from modefront.models.reduced.instability import unstable
 from modefront.modes import dense
-from modefront.modes.derivatives import Shifted
+from modefront.modes.derivatives import Spectrum
 from modefront.modes.eigensolvers import FullModes
 from modefront.modes.result import Modes
+from modefront.modes.sparse import lowest
 from modefront.work.costs import Costs, counted, spend, uncounted
 from modefront.work.transfer import shared
 
@@ -41,7 +41,8 @@ SPARE = 2
 """Modes in the basis beyond those that are used, without derivatives: they may enter later."""
 
 WIDE = 2
-"""Modes of the first snapshot over those that are used."""
+"""Modes of the first snapshot over those that are used: certificates need a level above these, and
+below the next one."""
 
 PROBES = 24
 """Factorisations at most that seek modes which enter where two parameters drop together."""
@@ -57,6 +58,15 @@ FAR = 30.0
 
 HALVINGS = 4
 """Number of times that a bound is moved halfway to the model."""
+
+WORST = 6
+"""Models of a snapshot that are corrected at once, the worst ones."""
+
+UNSTABLE = 3
+"""Directions of negative stiffness that are sought together."""
+
+NEGATIVE = 1e-8
+"""Stiffness of a direction, over that of the factor, that is no rounding."""
 
 TOLERANCE = 1e-8
 """Default relative error of eigenvalues."""
@@ -76,7 +86,8 @@ class SnapshotRequest:
     theta : (p,) parameters of the model, or (models, p)
     modes : number of modes; 0 where the stiffness matrix is indefinite, and the basis is
         to know that
-    enough : relative error of eigenvalues below which a model is left as it is
+    enough : relative error of eigenvalues below which a model is left as it is, and so is one that
+        is not among the worst; 0 where all models have to be exact, and no mode may be missing
     """
 
     theta: Floats
@@ -104,24 +115,6 @@ class _TakenSnapshot:
 
 
 @dataclass(frozen=True)
-class _Space:
-    """A basis, the last factor, and what is known of modes that are missing."""
-
-    basis: Basis
-    factor: Factor
-    proofs: tuple[InertiaProof, ...]
-
-
-@dataclass(frozen=True)
-class _State:
-    """The space of some snapshots, and the basis as the sensors see it."""
-
-    taken: tuple[_TakenSnapshot, ...]
-    space: _Space
-    sensed: Floats
-
-
-@dataclass(frozen=True)
 class _Projected:
     """The matrices in the basis of some snapshots, and the basis as the sensors see it."""
 
@@ -131,14 +124,15 @@ class _Projected:
     sensed: Floats
 
 
-# 12 fields: eight describe the basis, four are its state.
+# 13 fields: eight describe the basis, five are its state.
 @shared
 @dataclass(eq=False)
 class ReducedModel:
     """A sparse model in the basis of its modes and their derivatives at some parameters.
 
     It is a model like any other (`modefront.models.base.Model`). The first snapshot is taken at
-    the nominal parameters when it is first needed, others by `take`.
+    the nominal parameters when it is first needed, others by `take`. The factor of the first one
+    serves for all that are near enough.
 
     Attributes
     ----------
@@ -159,16 +153,19 @@ class ReducedModel:
     memory: float = MEMORY
     spare: int = 0
     _requested: tuple[SnapshotRequest, ...] = ()
-    _state: _State | None = None
-    _sent: _Projected | None = None
-    _certifier: Certifier | None = None
+    _taken: tuple[_TakenSnapshot, ...] = ()
+    _basis: Basis | None = None
+    _factor: Factorisation | None = None
+    _small: _Projected | None = None
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state with the projected matrices, and without basis and factor.
 
         Modes need no more; for anything else, snapshots are taken again when needed.
         """
-        return {**vars(self), "_state": None, "_sent": self._at_hand(), "_certifier": None}
+        small = self._projected() if self._is_at_hand else None
+        lost = {"_taken": (), "_basis": None, "_factor": None, "_small": small}
+        return {**vars(self), **lost}
 
     @property
     def version(self) -> tuple[tuple[bytes, int, float], ...]:
@@ -183,8 +180,7 @@ class ReducedModel:
     @property
     def footprint(self) -> float:
         """Bytes that the projected matrices take; nothing else is needed for modes."""
-        known = self._at_hand()
-        return 0.0 if known is None else 8.0 * 8 * known.K.size**2
+        return 8.0 * 8 * self._projected().K.size ** 2 if self._is_at_hand else 0.0
 
     @property
     def parameters(self) -> tuple[str, ...]:
@@ -228,7 +224,7 @@ class ReducedModel:
     @property
     def columns(self) -> int:
         """Columns that the basis has."""
-        return self.ready().space.basis.columns
+        return self.basis.columns
 
     @property
     def first(self) -> SnapshotRequest:
@@ -257,10 +253,11 @@ class ReducedModel:
         before = self._requested
         self._requested = (*before, what)
         try:
-            last = self.ready().taken[-1]
+            self._compute()
         except ModelError:
             self._requested = before
             raise
+        last = self._taken[len(before)]
         spend(last.costs)
         return last.error
 
@@ -268,7 +265,7 @@ class ReducedModel:
         """Return the ``count`` lowest modes at ``theta``; see `modefront.models.base.Model`."""
         if count > self.count:
             return self.full.modes(theta, count, derivatives=derivatives)
-        small = self._at_hand() or self._projected(self.ready())
+        small = self._projected()
         started = time.perf_counter()
         modes = dense.modes(small.K, small.M, small.sensed, theta, count, derivatives)
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
@@ -281,7 +278,7 @@ class ReducedModel:
         """
         if count > self.count:
             return self.full.full_modes(theta, count)
-        basis = self.ready().space.basis
+        basis = self.basis
         started = time.perf_counter()
         pairs = dense.lowest(basis.K.at(theta), basis.M.at(theta), count)
         if pairs.lam.size < count:
@@ -292,249 +289,212 @@ class ReducedModel:
         spend(Costs(reduced=1, reduced_time=time.perf_counter() - started))
         return FullModes(pairs.lam[:count], Phi, None)
 
-    def distance(self, theta: Floats) -> float:
-        """Return how far the nearest snapshot is, over the ranges of the parameters."""
-        span = self.upper - self.lower
-        thetas = [nearby for snap in self._requested if snap.modes for nearby in snap.models]
-        return float(min(np.linalg.norm((theta - nearby) / span) for nearby in thetas))
-
     def certifier(self) -> Certifier:
         """Return what judges modes of the basis."""
-        space = self.ready().space
-        if self._certifier is None or self._certifier.basis is not space.basis:
-            theta, below = space.factor.theta, space.factor.below
-            self._certifier = Certifier(
-                self.full,
-                space.basis,
-                space.proofs,
-                theta,
-                below.sigma,
-                float(np.sqrt(self.tolerance)),
-                below.factor,
-            )
-        return self._certifier
+        return Certifier(self.full, self.basis)
 
-    def lacking(self, lowest: int) -> list[Floats]:
+    def lacking(self, count: int) -> list[Floats]:
         """Return models with two parameters at their lower bounds where modes are missing.
 
         The modes at the bounds of single parameters are in the basis from the first. A mode of a
         part that is held by several others may enter only where two of these drop together, and
-        no search in the basis would ever see that. Where it is not proved that none of the
-        ``lowest`` modes does so, a factorisation tells, of the most doubtful models.
+        no search in the basis would ever see that. A factorisation tells whether one of the
+        ``count`` lowest does so, of the models where the basis has the stiffest modes.
         """
-        space = self.ready().space
-        basis, proofs, doubtful = space.basis, list(space.proofs), []
+        basis, doubtful = self.basis, []
         for pair in combinations(range(self.nominal.size), 2):
             theta = self.nominal.copy()
             theta[list(pair)] = self.lower[list(pair)]
-            try:
-                ritz = dense.lowest(basis.K.at(theta), basis.M.at(theta), lowest)
-            except ModelError:
-                continue
-            last = min(lowest, ritz.lam.size - 1) - 1
-            if last >= 0 and not knows(basis, proofs, theta, ritz.lam[last]):
-                reach = max(reach_of(basis, proof, theta) for proof in proofs) / ritz.lam[last]
-                doubtful.append((reach, pair, theta, ritz.lam, last))
+            with suppress(ModelError):
+                lam = dense.lowest(basis.K.at(theta), basis.M.at(theta), count + LATER).lam
+                if lam.size > count:
+                    doubtful.append((-lam[count - 1], pair, theta, lam))
+        chosen = sorted(doubtful, key=lambda entry: entry[:2])[:PROBES]
         return [
             theta
-            for _, _, theta, lam, last in sorted(doubtful, key=lambda entry: entry[:2])[:PROBES]
-            if self._misses(basis, theta, lam, last, proofs)
+            for *_, theta, lam in chosen
+            if level(self.full.pencil, theta, lam, count, basis.sigma) is None
         ]
 
-    def _misses(
-        self, basis: Basis, theta: Floats, lam: Floats, last: int, proofs: list[InertiaProof]
-    ) -> bool:
-        """Return whether modes below the Ritz value of the ``last`` one requested are missing.
-
-        Where that is in doubt, a factor tells, and a proof of the contrary joins the others.
-        """
-        if knows(basis, proofs, theta, lam[last]):
-            return False
-        pencil = self.full.pencil
-        below, sigma = completeness.gap_above(lam, last)
-        try:
-            factor = pencil.factor(pencil.K.at(theta).data, pencil.M.at(theta).data, sigma)
-        except SingularMatrixError:
-            return True
-        if factor.negative != below:
-            return True
-        proofs.append(InertiaProof(theta, sigma, below))
-        return False
-
-    def _at_hand(self) -> _Projected | None:
-        """Return the matrices in the basis of the requested snapshots, if they are at hand."""
-        sent, state = self._sent, self._state
-        if sent is not None and sent.snapshots is self._requested:
-            return sent
-        if state is None or len(state.taken) != len(self._requested) or not self._requested:
-            return None
-        return self._projected(state) if _begins(self._requested, state.taken) else None
-
-    def _projected(self, state: _State) -> _Projected:
-        basis = state.space.basis
-        return _Projected(self._requested, basis.K, basis.M, state.sensed)
-
-    def ready(self) -> _State:
-        """Return the basis of the requested snapshots; only those not yet in it are computed."""
+    @property
+    def basis(self) -> Basis:
+        """The basis of the snapshots in use; the nominal one is taken where there is none."""
         if not self._requested:
             self.take(self.first)
-        if self._state is not None and not _begins(self._requested, self._state.taken):
-            self._state = None
+        self._compute()
+        if self._basis is None:
+            raise ModelError("the model cannot be solved at the nominal parameters")
+        return self._basis
+
+    @property
+    def _is_at_hand(self) -> bool:
+        """Whether nothing has to be solved in full for the snapshots in use."""
+        if self._small is not None and self._small.snapshots is self._requested:
+            return True
+        known = len(self._taken) == len(self._requested) > 0
+        return known and _begins(self._requested, self._taken)
+
+    def _projected(self) -> _Projected:
+        """Return the matrices in the basis of the requested snapshots."""
+        if self._small is None or self._small.snapshots is not self._requested:
+            basis = self.basis
+            sensed = np.hstack([self.full.selection @ block for block in basis.blocks])
+            self._small = _Projected(self._requested, basis.K, basis.M, sensed)
+        return self._small
+
+    def _compute(self) -> None:
+        """Make the basis that of the requested snapshots; only those not in it are computed."""
+        if not _begins(self._requested, self._taken):
+            self._taken, self._basis, self._factor = (), None, None
         with uncounted():  # `take` counts a snapshot, once
-            while self._state is None or len(self._state.taken) < len(self._requested):
-                what = self._requested[len(self._state.taken) if self._state else 0]
+            for what in self._requested[len(self._taken) :]:
                 with counted() as costs:
-                    taken, space, error = self._added(what)
-                last = _TakenSnapshot(what, costs, error)
-                self._state = self._sensed((*taken, last), space)
-        return self._state
+                    basis, error = self._added(what)
+                self._basis = basis
+                self._taken = (*self._taken, _TakenSnapshot(what, costs, error))
 
-    def _added(self, what: SnapshotRequest) -> tuple[tuple[_TakenSnapshot, ...], _Space, float]:
-        """Return the snapshots before another one, the space with it, and the error that it found.
+    def _added(self, what: SnapshotRequest) -> tuple[Basis, float]:
+        """Return the basis with a snapshot, and the error that it found.
 
-        It is computed with the factor at hand, or with factors of its own. Models that have no
-        modes are left out. Raises ModelError where all of them have none.
+        Models near enough are corrected with the factor at hand, others solved in full. Those that
+        have no modes are left out; raises ModelError where all of them have none.
         """
-        taken = self._state.taken if self._state else ()
-        rest, solved, corrected, error = what.models, 0, 0, 0.0
-        space = self._state.space if self._state else None
-        if not space:
-            space, corrected = self._solved(None, (), rest.pop(0), what.modes)
-            solved, error = 1, np.inf
-        elif what.modes == 0:
-            space, rest, error = self._excluding(space, rest), [], np.inf
+        models, error = what.models, 0.0
+        if self._basis is None or self._factor is None:
+            basis = self._solved(None, models.pop(0), what.modes)
+            return (self._added_to(basis, models, what)[0] if models else basis), np.inf
+        if what.modes == 0:
+            return self._excluding(self._basis, self._factor, models), np.inf
+        if what.enough:
+            models, error = self._worst(self._basis, self._factor, what)
+        return self._added_to(self._basis, models, what) if models else (self._basis, error)
+
+    def _added_to(
+        self, basis: Basis, models: list[Floats], what: SnapshotRequest
+    ) -> tuple[Basis, float]:
+        """Return a basis with what some models of a snapshot add, and the error that it had."""
+        error, near = 0.0, [theta for theta in models if self._is_near(basis, theta, what)]
+        corrected = self._corrected(basis, near, what) if near else None
+        if corrected:
+            basis, error = corrected
+            models = [theta for theta in models if not any(theta is other for other in near)]
         failed = 0
-        while rest:
-            correction = self._corrected(space, rest, what)
-            if correction:
-                space, errors, rest = correction
-                corrected += int((errors >= what.enough).sum())
-                error = max(error, float(errors.max()))
-                continue
-            known, proofs = space.basis, space.proofs
-            del space
-            self._state = self._certifier = None  # its factor makes room for those of the snapshot
+        for theta in models:
             try:
-                space, _ = self._solved(known, proofs, rest.pop(0), what.modes)
-                solved, error = solved + 1, np.inf
+                basis, error = self._solved(basis, theta, what.modes), np.inf
             except ModelError:
-                space, failed = self._refactored(known, proofs), failed + 1
-                if failed == len(what.models):
-                    self._state = self._sensed(taken, space)
-                    raise
-        spend(Costs(eigenproblems=solved, corrected=corrected))
-        return taken, space, error
+                failed += 1
+        if models and failed == len(what.models):
+            raise ModelError("none of the models of a snapshot has modes")
+        return basis, error
 
-    def _sensed(self, taken: tuple[_TakenSnapshot, ...], space: _Space) -> _State:
-        sensed = np.hstack([self.full.selection @ block for block in space.basis.blocks])
-        return _State(taken, space, sensed)
+    def _worst(
+        self, basis: Basis, factor: Factorisation, what: SnapshotRequest
+    ) -> tuple[list[Floats], float]:
+        """Return the models of a snapshot that the basis knows least, and its error there."""
+        models = [theta for theta in what.models if _has_modes(basis, theta, what.modes)]
+        if not models:
+            return what.models[:WORST], np.inf
+        lengths = lacking_lengths(self.full.pencil, basis, factor, models, what.modes)
+        ranked = np.argsort(-lengths, kind="stable")[:WORST]
+        return [models[k] for k in ranked if lengths[k] >= what.enough], float(lengths.max())
 
-    def _refactored(self, basis: Basis, proofs: tuple[InertiaProof, ...]) -> _Space:
-        """Return the space with the factor in whose norm the basis is orthonormal."""
-        pencil = self.full.pencil
-        K, M = pencil.K.at(basis.theta), pencil.M.at(basis.theta)
-        below = Shifted(basis.sigma, pencil.factor(K.data, M.data, basis.sigma))
-        return _Space(basis, Factor(basis.theta, below), proofs)
-
-    def _excluding(self, space: _Space, models: list[Floats]) -> _Space:
-        """Return the space with directions in which the stiffness of some models is negative.
-
-        Raises ModelError where none is found.
-        """
-        basis, pencil = space.basis, self.full.pencil
-        directions = [unstable(pencil, basis, space.factor, theta) for theta in models]
-        some = [X for X in directions if X.shape[1]]
-        if not some:
-            raise ModelError("no direction of negative stiffness is found")
-        basis = extended(pencil, basis, np.hstack(some), self._shortest, self.capacity)
-        return _Space(basis, space.factor, space.proofs)
-
-    def _solved(
-        self,
-        known: Basis | None,
-        proofs: tuple[InertiaProof, ...],
-        theta: Floats,
-        modes: int,
-    ) -> tuple[_Space, int]:
-        """Return the space with the modes of a full solution, and how many others came with it."""
-        started = time.perf_counter()
-        pencil, count = self.full.pencil, modes + SPARE
-        taken = (
-            snapshot(pencil, theta, min(count, self.size)) if known else self._wide(theta, count)
-        )
-        lowest = taken.modes[:, : self.capacity]  # of directions of equal length, the lowest ones
-        basis = extended(
-            pencil, known or empty(pencil, taken), lowest, self._shortest, self.capacity
-        )
-        solved = time.perf_counter()
-        spend(Costs(full_time=solved - started))
-        factor = Factor(theta, taken.below)
-        basis = self._with_derivatives(basis, factor, theta, modes)
-        bounds = [] if known else self._bounds(basis, theta, taken.below.sigma)
-        basis = self._at_bounds(basis, factor, bounds)
-        spend(Costs(corrected_time=time.perf_counter() - solved))
-        return _Space(
-            basis, factor, (*proofs, InertiaProof(theta, taken.beyond, taken.proved))
-        ), len(bounds)
-
-    def _wide(self, theta: Floats, count: int) -> Snapshot:
-        """Return the first snapshot, with more modes than are used.
-
-        They may enter from above where several parameters drop, and as long as they do not, they
-        spare factorisations: none is missing up to the lowest level to which they may fall.
-        """
-        count, pencil = max(count, self.count), self.full.pencil
+    def _is_near(self, basis: Basis, theta: Floats, what: SnapshotRequest) -> bool:
+        """Return whether the factor at hand is of use for a model, and no mode is missing."""
         try:
-            return snapshot(pencil, theta, min(WIDE * count, self.size))
-        except ModelError:
-            return snapshot(pencil, theta, min(count, self.size))
-
-    def _corrected(
-        self, space: _Space, models: list[Floats], what: SnapshotRequest
-    ) -> tuple[_Space, Floats, list[Floats]] | None:
-        """Return the space with modes that need no factor of their own, and the models that do.
-
-        Returned as well are the errors that the models of these modes had. None where all models
-        need factors of their own.
-        """
-        started = time.perf_counter()
-        basis, factor, proofs = space.basis, space.factor, list(space.proofs)
-        near = [self._is_near(basis, factor, theta, what.modes, proofs) for theta in models]
-        here = [theta for theta, is_near in zip(models, near, strict=True) if is_near]
-        others = [theta for theta, is_near in zip(models, near, strict=True) if not is_near]
-        if not here:
-            return None
-        new = tuple(proofs[len(space.proofs) :])
-        count = what.modes + SPARE if new else what.modes  # all modes that a proof is of
-        request = CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
-        try:
-            augmented = with_modes(self.full.pencil, basis, factor, here, count, request)
-        except ModelError:
-            return None  # a larger space sees that a matrix is indefinite
-        if augmented is None:
-            return None
-        basis, errors = augmented
-        if errors.max() >= what.enough:
-            worst = here[int(errors.argmax())]
-            basis = self._with_derivatives(basis, factor, worst, what.modes)
-        spend(Costs(corrected_time=time.perf_counter() - started))
-        return _Space(basis, factor, (*space.proofs, *new)), errors, others
-
-    def _is_near(
-        self, basis: Basis, factor: Factor, theta: Floats, modes: int, proofs: list[InertiaProof]
-    ) -> bool:
-        """Return whether the factor at hand is of use for a snapshot, and no mode is missing."""
-        try:
-            ritz = dense.lowest(basis.K.at(theta), basis.M.at(theta), modes)
+            lam = dense.lowest(basis.K.at(theta), basis.M.at(theta), what.modes + LATER).lam
         except ModelError:
             return False
         return (
-            ritz.lam.size >= modes + 2 * SPARE
-            and completeness.condition_within(basis.K, basis.M, theta, factor.below.sigma) <= FAR
-            and not self._misses(basis, theta, ritz.lam, modes - 1, proofs)
+            lam.size > what.modes
+            and _condition(basis, theta) <= FAR
+            and (
+                what.enough > 0
+                or level(self.full.pencil, theta, lam, what.modes, basis.sigma) is not None
+            )
         )
 
-    def _with_derivatives(self, basis: Basis, factor: Factor, theta: Floats, modes: int) -> Basis:
+    def _corrected(
+        self, basis: Basis, near: list[Floats], what: SnapshotRequest
+    ) -> tuple[Basis, float] | None:
+        """Return the basis with the modes of some models, and its error before.
+
+        None where the models need factors of their own.
+        """
+        started, factor = time.perf_counter(), self._factor
+        if factor is None:
+            return None
+        request = CorrectionRequest(0.0, self._shortest, self.capacity, what.enough)
+        try:
+            known = with_modes(self.full.pencil, basis, factor, near, what.modes, request)
+        except ModelError:
+            return None  # a larger space sees that a matrix is indefinite
+        if known is None:
+            return None
+        basis, errors = known
+        count = int((errors >= what.enough).sum())
+        if count:
+            worst = near[int(errors.argmax())]
+            basis = self._with_derivatives(basis, factor, worst, what.modes)
+        spend(Costs(corrected=count, corrected_time=time.perf_counter() - started))
+        return basis, float(errors.max())
+
+    def _solved(self, known: Basis | None, theta: Floats, modes: int) -> Basis:
+        """Return the basis with the modes of a full solution and their derivatives."""
+        started = time.perf_counter()
+        pencil = self.full.pencil
+        spectrum = self._spectrum(theta, modes + SPARE, is_first=known is None)
+        below = spectrum.factors[0]
+        vectors = spectrum.Phi / np.sqrt(spectrum.lam - below.sigma)
+        del spectrum  # the other factor
+        vectors = vectors[:, : self.capacity]  # of directions of equal length, the lowest ones
+        basis = known or empty(pencil, theta, below.sigma)
+        basis = extended(pencil, basis, vectors, self._shortest, self.capacity)
+        solved = time.perf_counter()
+        spend(Costs(eigenproblems=1, full_time=solved - started))
+        basis = self._with_derivatives(basis, below.factor, theta, modes)
+        if known is None:
+            self._factor = below.factor
+            basis = self._at_bounds(basis, below.factor, self._bounds(basis, theta))
+        spend(Costs(corrected_time=time.perf_counter() - solved))
+        return basis
+
+    def _spectrum(self, theta: Floats, count: int, *, is_first: bool) -> Spectrum:
+        """Return ``count`` modes or more, the first time as many more as there are."""
+        if is_first:
+            count = max(count, self.count)
+            with suppress(ModelError):
+                return lowest(self.full.pencil, theta, min(WIDE * count, self.size))
+        return lowest(self.full.pencil, theta, min(count, self.size))
+
+    def _excluding(self, basis: Basis, factor: Factorisation, models: list[Floats]) -> Basis:
+        """Return the basis with directions in which the stiffness of some models is negative.
+
+        Raises ModelError where none is found.
+        """
+        directions = [self._unstable(basis, factor, theta) for theta in models]
+        vectors = np.hstack(directions)
+        if not vectors.shape[1]:
+            raise ModelError("no direction of negative stiffness is found")
+        return extended(self.full.pencil, basis, vectors, self._shortest, self.capacity)
+
+    def _unstable(self, basis: Basis, factor: Factorisation, theta: Floats) -> Floats:
+        """Return directions (N, k) in which K(theta) is negative; none where none is found."""
+        pencil = self.full.pencil
+        A = pencil.K.at(basis.theta) - basis.sigma * pencil.M.at(basis.theta)
+        inverse = scipy.sparse.linalg.LinearOperator(
+            A.shape, matvec=lambda x: factor.solve(x.reshape(-1, 1))[:, 0], dtype=float
+        )
+        start = np.random.default_rng(0).standard_normal(self.size)
+        nu, X = scipy.sparse.linalg.eigsh(
+            pencil.K.at(theta), UNSTABLE, A, which="SA", v0=start, tol=SHARE**2, Minv=inverse
+        )
+        found: Floats = X[:, nu < -NEGATIVE]
+        return found
+
+    def _with_derivatives(
+        self, basis: Basis, factor: Factorisation, theta: Floats, modes: int
+    ) -> Basis:
         """Return the basis of some modes with their derivatives."""
         count, half = min(modes, basis.columns - 1), (self.upper - self.lower) / 2
         request = CorrectionRequest(SHARE, self._shortest, self.capacity)
@@ -542,7 +502,7 @@ class ReducedModel:
             return basis
         return with_derivatives(self.full.pencil, basis, factor, theta, count, half, request)
 
-    def _bounds(self, basis: Basis, theta: Floats, sigma: float) -> list[Floats]:
+    def _bounds(self, basis: Basis, theta: Floats) -> list[Floats]:
         """Return the parameters with one of them at a bound, or nearer to ``theta``."""
         out = []
         for i, ends in enumerate(zip(self.lower, self.upper, strict=True)):
@@ -550,34 +510,48 @@ class ReducedModel:
                 for halving in range(HALVINGS + 1):
                     nearby = theta.copy()
                     nearby[i] += (end - theta[i]) / 2**halving
-                    if completeness.condition_within(basis.K, basis.M, nearby, sigma) <= FAR:
+                    if _condition(basis, nearby) <= FAR:
                         out.append(nearby)
                         break
         return out
 
-    def _at_bounds(self, basis: Basis, factor: Factor, bounds: list[Floats]) -> Basis:
+    def _at_bounds(self, basis: Basis, factor: Factorisation, bounds: list[Floats]) -> Basis:
         """Return the basis with the modes at some parameters, for the global search.
 
         They take no more than half of what is left of the memory.
         """
-        capacity = (basis.columns + self.capacity) // 2
         count = min(self.first.modes, basis.columns - SPARE)
         if not bounds or count < 1:
             return basis
-        request = CorrectionRequest(SHARE, COARSE, capacity)
-        try:
-            augmented = with_modes(self.full.pencil, basis, factor, bounds, count, request)
-            return augmented[0] if augmented else basis
-        except ModelError:  # a larger space sees that a matrix is indefinite at one of them
-            for theta in bounds:
-                with suppress(ModelError):
-                    augmented = with_modes(self.full.pencil, basis, factor, [theta], count, request)
-                    basis = augmented[0] if augmented else basis
-            return basis
+        request = CorrectionRequest(SHARE, COARSE, (basis.columns + self.capacity) // 2)
+        pencil = self.full.pencil
+        for some in (bounds, *([theta] for theta in bounds)):
+            # A larger space may see that a matrix is indefinite at one of them: then each alone.
+            with suppress(ModelError):
+                known = with_modes(pencil, basis, factor, some, count, request)
+                basis = known[0] if known else basis
+                spend(Costs(corrected=len(some)))
+                if some is bounds:
+                    break
+        return basis
 
     @property
     def _shortest(self) -> float:
         return SHORTEST * float(np.sqrt(self.tolerance))
+
+
+def _has_modes(basis: Basis, theta: Floats, count: int) -> bool:
+    """Return whether a model has modes in the basis."""
+    try:
+        return dense.lowest(basis.K.at(theta), basis.M.at(theta), count).lam.size >= count
+    except ModelError:
+        return False
+
+
+def _condition(basis: Basis, theta: Floats) -> float:
+    """Return the condition of K - sigma M over A in the basis; infinite where it is indefinite."""
+    values = np.linalg.eigvalsh(basis.K.at(theta) - basis.sigma * basis.M.at(theta))
+    return float(values[-1] / values[0]) if values[0] > 0 else np.inf
 
 
 def _begins(requests: Sequence[SnapshotRequest], taken: Sequence[_TakenSnapshot]) -> bool:
