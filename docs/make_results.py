@@ -10,7 +10,8 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 
-from modefront.results.schema import ATTRIBUTES, DIMENSIONS, FORMAT, VARIABLES
+from modefront.predictions import Passage, PeakResponse
+from modefront.results.schema import ATTRIBUTES, DIMENSIONS, FORMAT, variables_of
 from modefront.variables import Variable
 
 PAGE = Path(__file__).with_name("results.md")
@@ -21,7 +22,7 @@ TABLE = re.compile(r"(<!-- table: (?P<name>[^>]+?) -->\n).*?(<!-- end -->)", re.
 def tables() -> dict[str, str]:
     """Return the tables by name: one for each section of the schema, dimensions and attributes."""
     sections: dict[str, list[Variable]] = {}
-    for variable in VARIABLES.values():
+    for variable in variables_of((PeakResponse.kind, Passage.kind)).values():
         sections.setdefault(variable.section, []).append(variable)
     out = {name: variable_table(variables) for name, variables in sections.items()}
     dimensions = [[f"`{name}`", meaning] for name, meaning in DIMENSIONS.items()]

@@ -6,11 +6,13 @@ import importlib.util
 import re
 from pathlib import Path
 from types import ModuleType
+from typing import Any
 
 import pytest
 
 from modefront.front.point import Kind
-from modefront.results.schema import ATTRIBUTES, FORMAT, VARIABLES
+from modefront.predictions import Passage, PeakResponse
+from modefront.results.schema import ATTRIBUTES, FORMAT, variables_of
 
 DOCS = Path(__file__).parents[1] / "docs"
 
@@ -29,7 +31,7 @@ def test_the_page_of_results_is_what_the_schema_makes() -> None:
     text = (DOCS / "results.md").read_text(encoding="utf-8")
     assert script("make_results").page(text) == text, "run: python docs/make_results.py"
     assert f"format <!-- format -->{FORMAT};" in text
-    for name in (*VARIABLES, *ATTRIBUTES):
+    for name in (*variables_of((PeakResponse.kind, Passage.kind)), *ATTRIBUTES):
         assert f"| `{name}`" in text
 
 
@@ -67,6 +69,15 @@ def test_the_page_of_pictures_runs(tmp_path: Path, monkeypatch: pytest.MonkeyPat
     for code, _ in blocks(DOCS / "plots.md"):
         exec(compile(code, "docs/plots.md", "exec"), {})
     assert {path.name for path in tmp_path.iterdir()} == {"front.png", "modes.pdf", "modes.vtu"}
+
+
+def test_the_prediction_of_the_page_can_be_made() -> None:
+    names: dict[str, object] = {"__name__": __name__}
+    for code, _ in blocks(DOCS / "predictions.md"):
+        text = code.replace("@mf.register\n", "")
+        exec(compile(text, "docs/predictions.md", "exec", dont_inherit=True), names)
+    period: Any = names["Period"]
+    assert period("slow", 2).places == ("slow: mode 2",)
 
 
 @pytest.mark.slow

@@ -37,7 +37,9 @@ if TYPE_CHECKING:
     from modefront.predictions import Passage as Passage
     from modefront.predictions import PeakResponse as PeakResponse
     from modefront.predictions import Prediction as Prediction
+    from modefront.predictions import PredictionKind as PredictionKind
     from modefront.predictions import SoilFilter as SoilFilter
+    from modefront.predictions import register as register
     from modefront.programs.importing import import_model as import_model
     from modefront.reports.page import report as report
     from modefront.residuals.groups import Group as Group

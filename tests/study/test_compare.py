@@ -7,6 +7,8 @@ import pytest
 import xarray as xr
 
 from modefront.errors import InputError
+from modefront.predictions import Passage
+from modefront.predictions.registry import as_text
 from modefront.results.compare import compare
 from modefront.results.files import FILE
 from modefront.results.schema import ATTRIBUTES, FORMAT
@@ -69,6 +71,7 @@ def results(
     }
     data.attrs |= {"format": FORMAT, "method": "nbi", "study": "a", "version": "1"}
     data.attrs["reference"] = "optimal-weights"
+    data.attrs["prediction_kinds"] = as_text([Passage.kind])
     return data
 
 

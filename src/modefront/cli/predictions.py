@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from modefront.cli.layout import Screen
-from modefront.predictions import KINDS, Kind, ResultVariable
+from modefront.predictions.registry import RecordedPrediction, predictions_in
 
 DRAWN = ("mean", "5 %", "95 %")
 """Statistics of models drawn from the posterior that are shown."""
@@ -44,35 +44,6 @@ class Quantity:
         return ".3e" if self.logarithmic else ".5g"
 
 
-def kinds_in(data: xr.Dataset) -> list[Kind]:
-    """Return the kinds of which the results have predictions."""
-    known = [each.kind for each in KINDS]
-    return [kind for kind in known if data.sizes.get(kind.dimension)]
-
-
-def predictions_of(data: xr.Dataset, kind: Kind) -> list[tuple[str, list[int]]]:
-    """Return the predictions of a kind by name, each with the positions of its values."""
-    names = data.get(f"{kind.dimension}_name")
-    out: dict[str, list[int]] = {}
-    for i, place in enumerate(data[kind.dimension].values):
-        name = str(place).partition(":")[0] if names is None else str(names.values[i])
-        out.setdefault(name, []).append(i)
-    return list(out.items())
-
-
-def heading_of(data: xr.Dataset, kind: Kind, name: str, place: int) -> str:
-    """Return the load case and the options of a prediction in a sentence."""
-    settings = {
-        setting.name: data[setting.name].values[place]
-        for setting in kind.settings
-        if setting.name in data
-    }
-    if kind.heading is not None:
-        return kind.heading(name, settings)
-    of = [f"{setting.meaning} {settings[setting.name]}" for setting in kind.settings]
-    return ": ".join([name, *(["; ".join(of)] if of else [])])
-
-
 def print_predictions(screen: Screen, data: xr.Dataset) -> None:
     """Print all predictions of all models that are no points of the front, and their ranges."""
     if "range" not in data.sizes:
@@ -86,14 +57,9 @@ def print_predictions(screen: Screen, data: xr.Dataset) -> None:
     _print_quantities(screen, data, posterior, f"frequencies: {RANGE}", frequencies)
     for text in posterior.explained:
         screen.say(text)
-    for kind in kinds_in(data):
-        for name, positions in predictions_of(data, kind):
-            quantities = [
-                quantity for i in positions for quantity in _quantities(data, kind, name, i)
-            ]
-            heading = heading_of(data, kind, name, positions[0])
-            _print_quantities(screen, data, posterior, heading, quantities)
-            _print_check(screen, data, kind, positions)
+    for each in predictions_in(data):
+        _print_quantities(screen, data, posterior, each.heading, list(_quantities(each)))
+        _print_check(screen, data, each)
 
 
 def first_predictions(data: xr.Dataset) -> tuple[list[str], list[list[str]]]:
@@ -101,17 +67,16 @@ def first_predictions(data: xr.Dataset) -> tuple[list[str], list[list[str]]]:
     posterior = Posterior(data)
     best = _position(data, str(data.attrs["reference"]))
     rows = []
-    for kind in kinds_in(data):
-        for name, positions in predictions_of(data, kind):
-            for i in positions:
-                main = next(x for x in _quantities(data, kind, name, i) if x.ranged)
-                least, greatest, _ = data[f"{main.variable}_range"].values[:, i]
-                value = data[main.variable].values[best, i]
+    for each in predictions_in(data):
+        main = next((variable.name for variable in each.kind.ranged), "")
+        for quantity in _quantities(each):
+            if quantity.variable == main:
+                least, greatest, _ = data[f"{main}_range"].values[:, quantity.place]
                 rows.append(
                     [
-                        f"{name}, {main.name}",
-                        _number(value, ".3g"),
-                        *posterior.std(main),
+                        f"{each.name}, {quantity.name}",
+                        _number(data[main].values[best, quantity.place], ".3g"),
+                        *posterior.std(quantity),
                         f"{_number(least, '.3g')} to {_number(greatest, '.3g')}",
                     ]
                 )
@@ -170,18 +135,14 @@ class Posterior:
         return [*self.std(quantity), *(_number(x, quantity.form) for x in values)]
 
 
-def _quantities(data: xr.Dataset, kind: Kind, name: str, place: int) -> Iterator[Quantity]:
-    where = str(data[kind.dimension].values[place]).removeprefix(f"{name}: ")
-    for variable in kind.variables:
-        log = variable.logarithmic
-        std = f"posterior_{kind.dimension}_log_std" if log else f"posterior_{variable.name}_std"
-        title = f"{where}: {_title(variable)}"
-        yield Quantity(title, variable.name, place, std, log, variable.ranged)
-
-
-def _title(variable: ResultVariable) -> str:
-    """Return the title of a value."""
-    return f"{variable.key}, {variable.unit}" if variable.unit else variable.key
+def _quantities(prediction: RecordedPrediction) -> Iterator[Quantity]:
+    kind = prediction.kind
+    for i, place in zip(prediction.positions, prediction.places, strict=True):
+        for variable in kind.variables:
+            log = variable.logarithmic
+            std = f"posterior_{kind.dimension}_log_std" if log else f"posterior_{variable.name}_std"
+            title = f"{place}: {variable.title}"
+            yield Quantity(title, variable.name, i, std, log, variable.ranged)
 
 
 def _print_quantities(
@@ -211,12 +172,13 @@ def _print_quantities(
     screen.table(heading, columns, rows)
 
 
-def _print_check(screen: Screen, data: xr.Dataset, kind: Kind, positions: list[int]) -> None:
+def _print_check(screen: Screen, data: xr.Dataset, prediction: RecordedPrediction) -> None:
     """Print the comparison with finer numerics, where there is one."""
-    if kind.check is None or kind.check.label.name not in data:
+    check, positions = prediction.kind.check, prediction.positions
+    if check is None or check.label.name not in data:
         return
-    label = data[kind.check.label.name].values[positions[0]]
-    for variable in kind.check.variables:
+    label = data[check.label.name].values[positions[0]]
+    for variable in check.variables:
         values = [_number(data[variable.name].values[i], ".3f") for i in positions]
         screen.say(f"at {label}: {variable.meaning}: {', '.join(values)}")
 

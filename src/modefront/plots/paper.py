@@ -32,8 +32,8 @@ from modefront.plots import write_pictures
 from modefront.plots.along import titled
 from modefront.plots.canvas import Picture, legend, picture
 from modefront.plots.models import branches, front_of
-from modefront.plots.predictions import predictions_in
 from modefront.plots.style import COLOURS, plain
+from modefront.predictions.registry import predictions_in
 
 Studies = Sequence[tuple[str, xr.Dataset]]
 """Results with a name each."""
@@ -165,15 +165,14 @@ def predictions(studies: Studies, dimension: str) -> Picture | None:
     """Return figure 6 or 7: predictions of one kind along the front; None without any."""
     rows = []
     for k, (study, data) in enumerate(studies):
-        for kind, name, positions in predictions_in(data):
-            if kind.dimension == dimension:
-                rows += [(k, study, data, kind, name, i) for i in positions]
-    places = list(dict.fromkeys(str(data[dimension].values[i]) for _, _, data, _, _, i in rows))
+        for each in predictions_in(data):
+            if each.kind.dimension == dimension:
+                rows += [(k, study, data, each.kind.ranged[0], i) for i in each.positions]
+    places = list(dict.fromkeys(str(data[dimension].values[i]) for _, _, data, _, i in rows))
     if not places:
         return None
     figure, grid = _grid(len(places))
-    for k, study, data, kind, _, i in rows:
-        variable = kind.ranged[0]
+    for k, study, data, variable, i in rows:
         axes = grid[places.index(str(data[dimension].values[i]))]
         values = data[variable.name].values[:, i]
         if variable.logarithmic:
@@ -181,7 +180,7 @@ def predictions(studies: Studies, dimension: str) -> Picture | None:
             axes.set_yscale("log")
         _along(axes, data, values, k, study)
         titled(axes, data[dimension].values[i])
-    grid[0].set_ylabel(rows[0][3].ranged[0].key)
+    grid[0].set_ylabel(rows[0][3].key)
     legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
     return figure
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,27 +14,11 @@ from modefront.plots.along import Along, key, parallel, titled
 from modefront.plots.canvas import Picture, panels, picture
 from modefront.plots.models import is_path, reference_of, shown
 from modefront.plots.style import COLOURS, COLUMNS, plain, short
-from modefront.predictions import KINDS, Kind, ResultVariable
+from modefront.predictions import PredictionKind, ResultVariable
+from modefront.predictions.registry import RecordedPrediction, predictions_in
 
 FEW = 12
 """Values of a prediction up to which each has a panel of its own along the front."""
-
-
-def kinds_in(data: xr.Dataset) -> list[Kind]:
-    """Return the kinds of which the results have predictions."""
-    return [each.kind for each in KINDS if data.sizes.get(each.kind.dimension)]
-
-
-def predictions_in(data: xr.Dataset) -> Iterator[tuple[Kind, str, list[int]]]:
-    """Yield the kind, the name and the positions of the values of each prediction."""
-    for kind in kinds_in(data):
-        names = data.get(f"{kind.dimension}_name")
-        positions_of: dict[str, list[int]] = {}
-        for i, place in enumerate(data[kind.dimension].values):
-            name = str(place).partition(":")[0] if names is None else str(names.values[i])
-            positions_of.setdefault(name, []).append(i)
-        for name, positions in positions_of.items():
-            yield kind, name, positions
 
 
 def draw(data: xr.Dataset) -> Picture:
@@ -45,13 +29,13 @@ def draw(data: xr.Dataset) -> Picture:
     best, chosen = reference_of(data), shown(data)
     nominal = np.flatnonzero(data["kind"].values == "nominal")
     rows = []
-    for kind, name, positions in predictions_in(data):
-        for variable in kind.ranged:
-            for i in positions:
+    for each in predictions_in(data):
+        for variable in each.kind.ranged:
+            for i, place in zip(each.positions, each.places, strict=True):
                 values = data[variable.name].values[:, i]
-                place = str(data[kind.dimension].values[i]).removeprefix(f"{name}: ")
-                label = f"{name}, {place}: {variable.key}"
-                rows.append((label, values, _relative_std(data, kind, variable, i, values[best])))
+                label = f"{each.name}, {place}: {variable.key}"
+                std = _relative_std(data, each.kind, variable, i, values[best])
+                rows.append((label, values, std))
     figure = picture(6.4, 1.0 + 0.24 * max(len(rows), 1))
     axes = figure.add_subplot()
     for y, (_, values, std) in enumerate(rows):
@@ -85,7 +69,7 @@ def _wide(values: Floats) -> bool:
 
 
 def _relative_std(
-    data: xr.Dataset, kind: Kind, variable: ResultVariable, i: int, value: float
+    data: xr.Dataset, kind: PredictionKind, variable: ResultVariable, i: int, value: float
 ) -> float:
     """Return the factor of one standard deviation of the posterior; NaN for none."""
     if variable.logarithmic:
@@ -97,9 +81,8 @@ def _relative_std(
 
 def pages(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
     """Yield a name and a picture of each prediction at all models."""
-    for kind, name, positions in predictions_in(data):
-        page = _Page(data, kind, name, positions)
-        yield f"{kind.dimension} {name}", page.picture()
+    for each in predictions_in(data):
+        yield f"{each.kind.dimension} {each.name}", _Page(data, each).picture()
 
 
 @dataclass(frozen=True)
@@ -109,50 +92,36 @@ class _Page:
     Attributes
     ----------
     data : the results
-    kind, name : the prediction
-    positions : of its values along the dimension of the kind
+    of : the prediction
     """
 
     data: xr.Dataset
-    kind: Kind
-    name: str
-    positions: Sequence[int]
+    of: RecordedPrediction
 
     @property
     def variable(self) -> ResultVariable:
         """The variable that is drawn: the first one with a range, if there is any."""
-        return self.kind.ranged[0] if self.kind.ranged else self.kind.variables[0]
+        return (*self.of.kind.ranged, *self.of.kind.variables)[0]
 
     @property
     def values(self) -> Floats:
         """Values (points, positions); NaN where a logarithm has none."""
-        values = np.asarray(self.data[self.variable.name].values[:, self.positions])
+        values = np.asarray(self.data[self.variable.name].values[:, list(self.of.positions)])
         return np.where(values > 0, values, np.nan) if self.variable.logarithmic else values
-
-    @property
-    def places(self) -> list[str]:
-        """Names of the values without that of the prediction."""
-        names = self.data[self.kind.dimension].values
-        return [str(names[i]).removeprefix(f"{self.name}: ") for i in self.positions]
-
-    @property
-    def quantity(self) -> str:
-        """Label of the axis."""
-        unit = self.variable.unit
-        return f"{self.variable.key}, {unit}" if unit else self.variable.key
 
     @property
     def title(self) -> str:
         """Name of the prediction with its load case."""
-        load = self.data.get(f"{self.kind.dimension}_load")
-        return self.name if load is None else f"{self.name} ({load.values[self.positions[0]]})"
+        load = self.data.get(f"{self.of.kind.dimension}_load")
+        named = "" if load is None else f" ({load.values[self.of.positions[0]]})"
+        return f"{self.of.name}{named}"
 
     def picture(self) -> Picture:
         """Return the picture, along the front where that is a path."""
-        if not is_path(self.data) or len(self.positions) > FEW:
-            figure = picture(max(5.2, 0.4 * len(self.places)), 3.4)
+        if not is_path(self.data) or len(self.of.positions) > FEW:
+            figure = picture(max(5.2, 0.4 * len(self.of.places)), 3.4)
             axes = figure.add_subplot()
-            parallel(axes, self.data, self.values, self.places)
+            parallel(axes, self.data, self.values, self.of.places)
             key(axes, self.data)
         elif self.variable.logarithmic:
             figure = picture(4.8, 3.3)
@@ -162,7 +131,7 @@ class _Page:
             return self._panels()
         if self.variable.logarithmic and np.isfinite(self.values).any():
             axes.set_yscale("log")
-        axes.set_ylabel(self.quantity)
+        axes.set_ylabel(self.variable.title)
         figure.suptitle(plain(self.title), x=0.01, ha="left")
         return figure
 
@@ -170,8 +139,8 @@ class _Page:
         """Draw a line a level of probabilities along the front."""
         along, values = Along(self.data), self.values
         axes.set_yscale("log")
-        std = self.data.get(f"posterior_{self.kind.dimension}_log_std")
-        for k, (i, place) in enumerate(zip(self.positions, self.places, strict=True)):
+        std = self.data.get(f"posterior_{self.of.kind.dimension}_log_std")
+        for k, (i, place) in enumerate(zip(self.of.positions, self.of.places, strict=True)):
             colour = COLOURS[k % len(COLOURS)]
             along.draw(axes, values[:, k], colour, short(place))
             if std is not None:
@@ -182,16 +151,16 @@ class _Page:
     def _panels(self) -> Picture:
         """Return a panel a value along the front."""
         along, values = Along(self.data), self.values
-        figure, grid = panels(len(self.places))
+        figure, grid = panels(len(self.of.places))
         std = self.data.get(f"posterior_{self.variable.name}_std")
-        for k, (axes, place) in enumerate(zip(grid, self.places, strict=True)):
+        for k, (axes, place) in enumerate(zip(grid, self.of.places, strict=True)):
             along.draw(axes, values[:, k])
             if std is not None:
-                x, s = values[along.best, k], float(std.values[self.positions[k]])
+                x, s = values[along.best, k], float(std.values[self.of.positions[k]])
                 along.bar(axes, along.at_best(x - s, x + s))
             titled(axes, place)
             if k % COLUMNS == 0:
-                axes.set_ylabel(self.quantity)
+                axes.set_ylabel(self.variable.title)
         figure.suptitle(plain(self.title), x=0.01, ha="left")
         along.finish(figure, grid, min(COLUMNS, len(grid)))
         return figure

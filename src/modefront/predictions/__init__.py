@@ -1,26 +1,28 @@
-"""Predictions of updated models: one kind a file, all of them named here."""
+"""Predictions of updated models, one class a file; others are registered as these are."""
 
 from modefront.predictions.base import (
-    Kind,
     NumericalCheck,
     Prediction,
+    PredictionKind,
     ResultVariable,
     Setting,
 )
 from modefront.predictions.first_passage import Passage, SoilFilter
 from modefront.predictions.peak_response import PeakResponse
+from modefront.predictions.registry import known, register
 
-KINDS: tuple[type[Prediction], ...] = (PeakResponse, Passage)
-"""All kinds of predictions, in the order of their results."""
+register(PeakResponse)
+register(Passage)
 
 __all__ = [
-    "KINDS",
-    "Kind",
     "NumericalCheck",
     "Passage",
     "PeakResponse",
     "Prediction",
+    "PredictionKind",
     "ResultVariable",
     "Setting",
     "SoilFilter",
+    "known",
+    "register",
 ]

@@ -1,29 +1,53 @@
 """The interface of predictions: records of options for which models are evaluated.
 
-A kind of predictions is a frozen dataclass whose fields are the keys of its table in a study file
-(`modefront.options`), and that says itself how its values are reported. A new kind is a file beside
-this one, and a line in `modefront.predictions`.
+A prediction is a frozen dataclass whose fields are the keys of its table in a study file
+(`modefront.options`), and that says itself how its values are reported: the `PredictionKind` of its
+class is written into the results, where all that show them read it. `modefront.register` makes a
+class from anywhere known to study files.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+import re
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Any, ClassVar, Protocol, Self
+from typing import Annotated, Any, ClassVar, Literal, Protocol, Self
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import ModalData
-from modefront.errors import Fault
+from modefront.errors import Fault, refuse
 from modefront.models.base import Model
+from modefront.options import TRUE_OR_FALSE, Requirement, check_fields, each_once, text
 from modefront.residuals.problem import UpdatingProblem
-from modefront.variables import Values, Variable
+from modefront.variables import Variable
+
+IDENTIFIER = Requirement(
+    "a name of small letters, digits and _, a letter first",
+    lambda value: isinstance(value, str) and bool(re.fullmatch("[a-z][a-z0-9_]*", value)),
+)
+WORDS = text("words in one line")
+ANY_WORDS = Requirement(
+    "words in one line, or none",
+    lambda value: isinstance(value, str) and (not value or value.isprintable()),
+)
+
+
+def _all_of(record: type, words: str) -> Requirement:
+    """Return the requirement of a sequence of records."""
+    return Requirement(
+        f"a tuple of {words}",
+        lambda value: isinstance(value, list) and all(isinstance(x, record) for x in value),
+        tuple,
+    )
 
 
 @dataclass(frozen=True)
 class ResultVariable:
     """A variable of the results that a prediction has one value of for each model and place.
+
+    Raises InputError for values that are not possible.
 
     Attributes
     ----------
@@ -37,39 +61,33 @@ class ResultVariable:
     mean : what its mean over the posterior is called; empty for no name of its own
     """
 
-    name: str
-    key: str
-    meaning: str
-    unit: str = ""
-    ranged: bool = True
-    symbol: str = ""
-    mean: str = ""
+    name: Annotated[str, IDENTIFIER]
+    key: Annotated[str, WORDS]
+    meaning: Annotated[str, WORDS]
+    unit: Annotated[str, ANY_WORDS] = ""
+    ranged: Annotated[bool, TRUE_OR_FALSE] = True
+    symbol: Annotated[str, ANY_WORDS] = ""
+    mean: Annotated[str, ANY_WORDS] = ""
+
+    def __post_init__(self) -> None:
+        check_fields(self)
 
     @property
     def logarithmic(self) -> bool:
         """Whether its logarithm is linearised."""
         return bool(self.symbol)
 
-
-@dataclass(frozen=True)
-class NumericalCheck:
-    """A comparison with finer numerics, made at the reference model.
-
-    Attributes
-    ----------
-    name : of its tasks
-    variables : the results of the comparison
-    label : the variable that holds the label of the model
-    """
-
-    name: str
-    variables: tuple[ResultVariable, ...]
-    label: ResultVariable
+    @property
+    def title(self) -> str:
+        """What its values are called in a table, with their unit."""
+        return f"{self.key}, {self.unit}" if self.unit else self.key
 
 
 @dataclass(frozen=True)
 class Setting:
     """An option of predictions, as a variable of the results.
+
+    Raises InputError for values that are not possible.
 
     Attributes
     ----------
@@ -80,38 +98,80 @@ class Setting:
     dimensions : of a single value; none for a number or text
     """
 
-    name: str
-    meaning: str
-    values: Values = "number"
-    unit: str = ""
-    dimensions: tuple[str, ...] = ()
+    name: Annotated[str, IDENTIFIER]
+    meaning: Annotated[str, WORDS]
+    values: Literal["number", "count", "truth", "text"] = "number"
+    unit: Annotated[str, ANY_WORDS] = ""
+    dimensions: Annotated[tuple[str, ...], _all_of(str, "names of dimensions")] = ()
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+VARIABLES = _all_of(ResultVariable, "ResultVariable")
+SETTINGS = _all_of(Setting, "Setting")
 
 
 @dataclass(frozen=True)
-class Kind:
-    """Table, result variables and wording of all predictions of a kind.
+class NumericalCheck:
+    """A comparison with finer numerics, made at the reference model.
+
+    Raises InputError for values that are not possible.
+
+    Attributes
+    ----------
+    name : of its tasks
+    variables : the results of the comparison
+    label : the variable that holds the label of the model
+    """
+
+    name: Annotated[str, WORDS]
+    variables: Annotated[tuple[ResultVariable, ...], VARIABLES]
+    label: ResultVariable
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+
+
+@dataclass(frozen=True)
+class PredictionKind:
+    """Table, result variables and wording of all predictions of a class.
+
+    Raises InputError for values that are not possible, alone or together.
 
     Attributes
     ----------
     table : name of its tables in a study file, ``[[predict.<table>]]``
-    dimension : of its result variables, one place a value of each prediction
+    dimension : of its result variables, one place a value of each prediction; their names and those
+        of settings begin with it and ``_``
     variables : of the results, one value a model and place; the first is missing where all are
-    settings : options that the results repeat, one value a place
+    settings : options that the results repeat, one value a place; pictures name that of
+        ``<dimension>_load``, if there is one
     absent : wording for models that can be solved and have no value
     undefined : why there may be no standard deviation, besides models that cannot be solved
     check : a comparison with finer numerics; None where there is none
-    heading : returns a prediction's options in a sentence, from its name and the values of its
-        settings by their variables; None for the settings with their meanings
     """
 
-    table: str
-    dimension: str
-    variables: tuple[ResultVariable, ...]
-    settings: tuple[Setting, ...] = ()
-    absent: str = "have no value"
-    undefined: str = "have no such value"
+    table: Annotated[str, IDENTIFIER]
+    dimension: Annotated[str, IDENTIFIER]
+    variables: Annotated[tuple[ResultVariable, ...], VARIABLES]
+    settings: Annotated[tuple[Setting, ...], SETTINGS] = ()
+    absent: Annotated[str, WORDS] = "have no value"
+    undefined: Annotated[str, WORDS] = "have no such value"
     check: NumericalCheck | None = None
-    heading: Callable[[str, Mapping[str, Any]], str] | None = None
+
+    def __post_init__(self) -> None:
+        check_fields(self)
+        variables = list(self.variables)
+        if self.check:
+            variables += [*self.check.variables, self.check.label]
+        names = [*(x.name for x in variables), *(x.name for x in self.settings)]
+        start = f"{self.dimension}_"
+        faults = each_once("variables", [*names, f"{start}name", f"{start}heading"])
+        if not self.variables:
+            faults.append(Fault("", "variables", "at least one", "none"))
+        strange = [name for name in names if not name.startswith(start)]
+        refuse([*faults, *(Fault("", "name", f"one that begins with {start}", x) for x in strange)])
 
     @property
     def ranged(self) -> tuple[ResultVariable, ...]:
@@ -137,6 +197,9 @@ class Kind:
         for x in self.ranged:
             over = f"of {x.name} over the Pareto-optimal models"
             yield Variable(f"{x.name}_range", ("range", *dimension), over, unit=x.unit)
+        yield Variable(f"{self.dimension}_name", dimension, "name of the prediction", "text")
+        heading = "its options in a sentence"
+        yield Variable(f"{self.dimension}_heading", dimension, heading, "text", since=3)
         for setting in self.settings:
             dimensions = (*dimension, *setting.dimensions)
             yield Variable(
@@ -187,7 +250,7 @@ class Prediction(Protocol):
     kind : variables of the results and wording, the same for all predictions of the class
     """
 
-    kind: ClassVar[Kind]
+    kind: ClassVar[PredictionKind]
 
     @property
     def name(self) -> str:
@@ -196,6 +259,10 @@ class Prediction(Protocol):
     @property
     def places(self) -> tuple[str, ...]:
         """Names of its values, the coordinates of its dimension."""
+
+    @property
+    def heading(self) -> str:
+        """The name with load case and options, in a sentence."""
 
     @property
     def settings(self) -> Mapping[str, Sequence[Any]]:

@@ -7,7 +7,7 @@ import os
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from itertools import pairwise
-from typing import Annotated, Any, ClassVar, Literal, Self
+from typing import Annotated, ClassVar, Literal, Self
 
 import numpy as np
 
@@ -25,7 +25,7 @@ from modefront.options import (
     one_of,
     whole,
 )
-from modefront.predictions.base import Kind, NumericalCheck, ResultVariable, Setting
+from modefront.predictions.base import NumericalCheck, PredictionKind, ResultVariable, Setting
 from modefront.predictions.load_model import (
     ABOVE,
     MEASURED,
@@ -125,17 +125,6 @@ class SoilFilter:
 FILTER = nested("a table { frequency, damping }, a Kanai-Tajimi filter", SoilFilter)
 
 
-def _heading(name: str, settings: Mapping[str, Any]) -> str:
-    """Return the options of the prediction in a sentence."""
-    of = {key.removeprefix("failure_"): value for key, value in settings.items()}
-    return (
-        f"{name}: {of['load']}; probability that any response leaves [-level, level] (two-sided "
-        f"barrier) within {of['duration']:g} s, at rest at first; {of['sided']} spectral density "
-        f"{of['density']:g}, time step {of['step']:g} s, {of['samples']} samples "
-        f"({of['method']}), {of['modes']} modes, damping {of['damping']}"
-    )
-
-
 # 16 fields: the keys of a table of a study file.
 @dataclass(frozen=True)
 class Passage:
@@ -180,7 +169,7 @@ class Passage:
     modes: ModeCount | None = None
     damping: Damping = MEASURED
 
-    kind: ClassVar = Kind(
+    kind: ClassVar = PredictionKind(
         "first_passage",
         "failure",
         (
@@ -200,7 +189,6 @@ class Passage:
             ),
         ),
         (
-            Setting("failure_name", "name of the prediction", "text"),
             Setting("failure_level", "barrier, two-sided"),
             Setting("failure_samples", "samples a model", "count"),
             Setting("failure_method", "method of estimation", "text"),
@@ -229,7 +217,6 @@ class Passage:
             ),
             ResultVariable("failure_halved_at", "label", "label of the model of that ratio"),
         ),
-        heading=_heading,
     )
 
     def __post_init__(self) -> None:
@@ -258,11 +245,22 @@ class Passage:
         return tuple(f"{self.name}: {level:.12g}" for level in self.levels)
 
     @property
+    def heading(self) -> str:
+        """Name, load case and options in a sentence."""
+        loads = self.loads
+        return (
+            f"{self.name}: {loads.load}; probability that any response leaves [-level, level] "
+            f"(two-sided barrier) within {self.duration:g} s, at rest at first; "
+            f"{SIDES[self.sided].value} spectral density {self.density:g}, time step "
+            f"{filled(self.step, 'step'):g} s, {self.samples} samples ({self.method}), "
+            f"{self.modes} modes, damping {loads.damped}"
+        )
+
+    @property
     def settings(self) -> Mapping[str, Sequence[object]]:
         """Values of the kind's settings, one a place, by the name of the variable."""
         loads = self.loads
         values = {
-            "failure_name": self.name,
             "failure_samples": self.samples,
             "failure_method": self.method,
             "failure_duration": self.duration,

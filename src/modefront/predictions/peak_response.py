@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
-from typing import Annotated, Any, ClassVar, Self
+from typing import Annotated, ClassVar, Self
 
 import numpy as np
 
@@ -14,7 +14,7 @@ from modefront.data.modal import ModalData
 from modefront.errors import Fault, refuse
 from modefront.models.base import Model
 from modefront.options import TRUE_OR_FALSE, check_fields, numbers, one_of
-from modefront.predictions.base import Kind, ResultVariable, Setting
+from modefront.predictions.base import PredictionKind, ResultVariable, Setting
 from modefront.predictions.load_model import (
     ABOVE,
     MEASURED,
@@ -43,15 +43,6 @@ BAND = numbers(
     "[lowest, highest] frequency in Hz, 0 <= lowest < highest",
     lambda x: len(x) == 2 and 0 <= x[0] < x[1],
 )
-
-
-def _heading(name: str, settings: Mapping[str, Any]) -> str:
-    """Return the options of the prediction in a sentence."""
-    low, high = settings["frf_band"]
-    return (
-        f"{name}: {settings['frf_load']}; {settings['frf_quantity']}, greatest peak from {low:g} "
-        f"to {high:g} Hz, {settings['frf_modes']} modes, damping {settings['frf_damping']}"
-    )
 
 
 @dataclass(frozen=True)
@@ -84,7 +75,7 @@ class PeakResponse:
     modes: ModeCount | None = None
     damping: Damping = MEASURED
 
-    kind: ClassVar = Kind(
+    kind: ClassVar = PredictionKind(
         "frf",
         "frf",
         (
@@ -92,7 +83,6 @@ class PeakResponse:
             ResultVariable("frf_peak_frequency", "frequency", "frequency of that peak", "Hz"),
         ),
         (
-            Setting("frf_name", "name of the prediction", "text"),
             Setting("frf_quantity", "response over load", "text"),
             Setting("frf_band", "band in which peaks are sought", unit="Hz", dimensions=("bound",)),
             Setting("frf_load", "load case", "text"),
@@ -101,7 +91,6 @@ class PeakResponse:
         ),
         absent="have no peak",
         undefined="have no such peak",
-        heading=_heading,
     )
 
     def __post_init__(self) -> None:
@@ -126,11 +115,19 @@ class PeakResponse:
         return tuple(f"{self.name}: {response}" for response in self.response)
 
     @property
+    def heading(self) -> str:
+        """Name, load case and options in a sentence."""
+        loads, (low, high) = self.loads, filled(self.band, "band")
+        return (
+            f"{self.name}: {loads.load}; {self.quantity}, greatest peak from {low:g} to {high:g} "
+            f"Hz, {self.modes} modes, damping {loads.damped}"
+        )
+
+    @property
     def settings(self) -> Mapping[str, Sequence[object]]:
         """Values of the kind's settings, one a place, by the name of the variable."""
         loads = self.loads
         values = {
-            "frf_name": self.name,
             "frf_quantity": self.quantity,
             "frf_band": self.band,
             "frf_load": loads.load,

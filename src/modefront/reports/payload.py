@@ -18,7 +18,8 @@ import xarray as xr
 
 from modefront._typing import Floats
 from modefront._version import __version__
-from modefront.predictions import KINDS, ResultVariable
+from modefront.predictions import ResultVariable
+from modefront.predictions.registry import RecordedPrediction, predictions_in
 from modefront.reports.words import texts, topics
 from modefront.results.compare import short_names
 from modefront.results.selection import front_points
@@ -206,19 +207,16 @@ def _geometry(data: xr.Dataset, arrays: _Arrays) -> dict[str, Any] | None:
 
 def _predictions(data: xr.Dataset) -> Iterator[dict[str, Any]]:
     """Yield every quantity that all models predict, one a place."""
-    for kind in (each.kind for each in KINDS):
-        if kind.dimension not in data.sizes:
-            continue
-        places = texts(data[kind.dimension].values)
-        for k, place in enumerate(places):
-            for variable in kind.ranged:
-                yield _prediction(data, kind.dimension, variable, k, place)
+    for prediction in predictions_in(data):
+        for k in prediction.positions:
+            for variable in prediction.kind.ranged:
+                yield _prediction(data, prediction, variable, k)
 
 
 def _prediction(
-    data: xr.Dataset, dimension: str, variable: ResultVariable, k: int, place: str
+    data: xr.Dataset, prediction: RecordedPrediction, variable: ResultVariable, k: int
 ) -> dict[str, Any]:
-    name = variable.name
+    name, dimension = variable.name, prediction.kind.dimension
     start = f"posterior_{dimension}_log" if variable.logarithmic else f"posterior_{name}"
     std = data.get(f"{start}_std")
     drawn = data.get(f"posterior_{name}")
@@ -229,8 +227,8 @@ def _prediction(
         if "5 %" in statistic and "95 %" in statistic:
             ends = drawn.values[[statistic.index("5 %"), statistic.index("95 %")], k]
     return {
-        "title": str(data[f"{dimension}_name"].values[k]) if f"{dimension}_name" in data else "",
-        "place": place,
+        "title": prediction.name,
+        "place": str(data[dimension].values[k]),
         "quantity": variable.key,
         "unit": variable.unit,
         "log": variable.logarithmic,

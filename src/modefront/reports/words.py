@@ -11,7 +11,7 @@ import xarray as xr
 
 from modefront.findings.catalogue import Severity
 from modefront.front.methods import METHODS
-from modefront.predictions import KINDS
+from modefront.predictions.registry import kinds_in
 from modefront.results.remarks import findings_of
 from modefront.results.selection import front_points
 
@@ -104,9 +104,7 @@ def _open(data: xr.Dataset) -> Iterator[str]:
 def _spread(data: xr.Dataset) -> Iterator[str]:
     """Yield the spread of predictions, with its meaning."""
     widest: list[tuple[float, str]] = []
-    for kind in (each.kind for each in KINDS):
-        if kind.dimension not in data.sizes:
-            continue
+    for kind in kinds_in(data):
         for variable in kind.ranged:
             ratio = data[f"{variable.name}_range"].values[2]
             places = texts(data[kind.dimension].values)

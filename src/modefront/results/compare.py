@@ -24,7 +24,7 @@ from scipy.spatial.distance import cdist, pdist, squareform
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError
-from modefront.predictions import KINDS
+from modefront.predictions.registry import kinds_in
 from modefront.results.files import read_dataset
 from modefront.results.selection import front_points
 
@@ -266,7 +266,7 @@ def _predictions(models: xr.Dataset, reference: xr.Dataset) -> list[Spread]:
     out = []
     for name in PREDICTED:
         out += _spreads(f"{name} ", "mode", name, models, reference)
-    for kind in (each.kind for each in KINDS):
+    for kind in kinds_in(models):
         for variable in kind.ranged:
             if variable.name in models:
                 dimension = kind.dimension

@@ -16,7 +16,7 @@ from modefront.outputs import output
 from modefront.results.checksum import NAME as CHECKSUM
 from modefront.results.checksum import checksum
 from modefront.results.remarks import CHANGED
-from modefront.results.schema import FORMAT, VARIABLES, faults, missing
+from modefront.results.schema import FORMAT, faults, missing, variables_in
 from modefront.results.soundness import unsound
 from modefront.text import NAME, clean
 
@@ -54,7 +54,7 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
             f"format {clean(version, NAME)}, of another version of modefront: run the study again"
         )
         raise InputError(Fault(str(path), "attribute 'format'", expected, text))
-    found = [*faults(data), *(missing(data) if whole else ())] or list(unsound(data))
+    found = list(faults(data)) or list(missing(data) if whole else ()) or list(unsound(data))
     wrong = [Fault(str(path), *parts) for parts in found]
     if wrong:
         raise InputError(wrong)
@@ -98,8 +98,9 @@ def _read(path: Path) -> xr.Dataset:
 def _plain(data: xr.Dataset) -> xr.Dataset:
     """Return results in which truth is true or false, and no text holds orders to a terminal."""
     changed: dict[str, xr.Variable] = {}
+    variables = variables_in(data)
     for name, variable in data.variables.items():
-        known = VARIABLES.get(str(name))
+        known = variables.get(str(name))
         if known is not None and known.values == "truth" and variable.dtype != bool:
             changed[str(name)] = variable.astype(bool)
         if variable.dtype.kind in "UOT":

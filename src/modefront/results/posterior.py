@@ -14,7 +14,8 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found, from_text
-from modefront.predictions import Kind, Prediction, ResultVariable
+from modefront.predictions import Prediction, PredictionKind, ResultVariable
+from modefront.predictions.registry import kinds_in
 from modefront.predictions.runner import Predicted, PredictionRunner
 from modefront.results.analysis import Values, left_open
 from modefront.results.findings import as_values
@@ -111,7 +112,7 @@ def with_posterior(
     kept = zip(data["finding"].values.tolist(), data["finding_record"].values, strict=True)
     values |= as_values([*(from_text(str(text), each) for each, text in kept), *limits])
     data = data.drop_vars(["finding", "finding_record"])
-    return data.assign(described(values)).assign_coords(coordinates)
+    return data.assign(described(values, kinds_in(data))).assign_coords(coordinates)
 
 
 def _reference(data: xr.Dataset) -> int:
@@ -172,7 +173,7 @@ def _covariance(
     return out
 
 
-def _scatter(kind: Kind, variable: ResultVariable, middle: Floats, C: Floats) -> Values:
+def _scatter(kind: PredictionKind, variable: ResultVariable, middle: Floats, C: Floats) -> Values:
     """Return the standard deviation and covariance of a variable, and of its logarithm."""
     std, name = np.sqrt(np.diag(C)), f"posterior_{variable.name}"
     if not variable.logarithmic:

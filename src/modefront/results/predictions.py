@@ -9,7 +9,8 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Floats
-from modefront.predictions import KINDS, Kind, Prediction
+from modefront.predictions import Prediction, PredictionKind
+from modefront.predictions.registry import ATTRIBUTE, as_text
 from modefront.predictions.runner import PredictionRunner
 from modefront.results.analysis import Values
 from modefront.results.schema import described
@@ -23,11 +24,12 @@ def extent(predictions: Sequence[Prediction], models: int) -> dict[str, int]:
     return {"predict": sum(models + (each.kind.check is not None) for each in predictions)}
 
 
-def by_kind(predictions: Sequence[Prediction]) -> Iterator[tuple[Kind, list[Prediction]]]:
-    """Yield the kinds of which there are predictions, with these."""
-    for kind in (each.kind for each in KINDS):
-        if chosen := [prediction for prediction in predictions if prediction.kind is kind]:
-            yield kind, chosen
+def by_kind(
+    predictions: Sequence[Prediction],
+) -> Iterator[tuple[PredictionKind, list[Prediction]]]:
+    """Yield the kinds of predictions in their order, each with these."""
+    for kind in dict.fromkeys(each.kind for each in predictions):
+        yield kind, [each for each in predictions if each.kind == kind]
 
 
 def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
@@ -49,6 +51,9 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
         for setting in kind.settings:
             every = (prediction.settings[setting.name] for prediction in predictions)
             values[setting.name] = list(chain.from_iterable(every))
+        for name in ("name", "heading"):
+            every = ([getattr(each, name)] * len(each.places) for each in predictions)
+            values[f"{kind.dimension}_{name}"] = list(chain.from_iterable(every))
         if kind.check:
             checks = [runner.checked(each, *reference) for each in predictions]
             for variable in kind.check.variables:
@@ -56,11 +61,13 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
             places = sum(len(prediction.places) for prediction in predictions)
             values[kind.check.label.name] = [reference[0]] * places
         coordinates[kind.dimension] = list(chain.from_iterable(x.places for x in predictions))
-    return data.assign(described(values)).assign_coords(coordinates)
+    kinds = [kind for kind, _ in by_kind(runner.predictions)]
+    out = data.assign(described(values, kinds)).assign_coords(coordinates)
+    return out.assign_attrs({ATTRIBUTE: as_text(kinds)})
 
 
 def _of_points(
-    kind: Kind, rows: Sequence[Sequence[Mapping[str, Floats]]], optimal: Bools
+    kind: PredictionKind, rows: Sequence[Sequence[Mapping[str, Floats]]], optimal: Bools
 ) -> Values:
     """Return the values at all points, (points, places), and their ranges over the optimal ones."""
     out: Values = {}

@@ -2,24 +2,29 @@
 
 `VARIABLES` and `ATTRIBUTES` are the one place where results are described. The attributes of the
 variables in ``results.nc``, the checks when a file is read and the tables of ``docs/results.md``
-are made from them. Kinds of predictions describe their own variables (`modefront.predictions`).
+are made from them. Kinds of predictions describe their own variables (`modefront.predictions`), and
+results hold these descriptions.
 """
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 import numpy as np
-import xarray as xr
 
 from modefront._typing import Ints
+from modefront.errors import Fault, InputError
 from modefront.optim.problem import AT_BOUND
-from modefront.predictions import KINDS
+from modefront.predictions.base import PredictionKind
+from modefront.predictions.registry import ATTRIBUTE, kinds_from, kinds_in
 from modefront.variables import Values, Variable
 
-FORMAT = 2
+if TYPE_CHECKING:
+    import xarray as xr
+
+FORMAT = 3
 """Version of the schema: raised when a variable changes its meaning, or a required one is added."""
 
 DTYPES: Mapping[Values, str] = {"number": "fiu", "count": "iuf", "truth": "biu", "text": "UOST"}
@@ -524,8 +529,6 @@ def _predictions() -> Iterator[Variable]:
         "of the frequencies over the Pareto-optimal models",
         unit="Hz",
     )
-    for kind in (prediction.kind for prediction in KINDS):
-        yield from kind.schema
     yield Variable(
         "draw_theta",
         ("draw", "parameter"),
@@ -610,7 +613,7 @@ VARIABLES: Mapping[str, Variable] = {
     )
     for variable in _in(section, variables)
 }
-"""Variables by name."""
+"""Variables by name, without those of predictions."""
 
 ATTRIBUTES: Mapping[str, Attribute] = {
     attribute.name: attribute
@@ -636,6 +639,7 @@ ATTRIBUTES: Mapping[str, Attribute] = {
             "text",
             required=True,
         ),
+        Attribute(ATTRIBUTE, "kinds of the predictions, in JSON", "text", since=3),
         Attribute(
             "front_is_a_point", "1 where one model is the best in every group", required=True
         ),
@@ -684,16 +688,42 @@ def derived(values: Mapping[str, Any]) -> dict[str, object]:
     return {x.name: x.value(values) for x in VARIABLES.values() if x.value is not None}
 
 
+def variables_of(kinds: Iterable[PredictionKind]) -> dict[str, Variable]:
+    """Return all variables by name, with those of kinds of predictions.
+
+    Raises InputError where a kind has a variable or dimension that others have.
+    """
+    out, dimensions = dict(VARIABLES), set(DIMENSIONS)
+    for kind in kinds:
+        place = f"predictions of the kind '{kind.table}'"
+        if kind.dimension in dimensions:
+            expected = "a dimension that nothing else of the results has"
+            raise InputError(Fault("", place, expected, f"'{kind.dimension}'"))
+        dimensions.add(kind.dimension)
+        for variable in _in(PREDICTIONS, kind.schema):
+            if variable.name in out:
+                expected = "variables that nothing else of the results has"
+                raise InputError(Fault("", place, expected, f"'{variable.name}'"))
+            out[variable.name] = variable
+    return out
+
+
+def variables_in(data: xr.Dataset) -> dict[str, Variable]:
+    """Return the variables that sound results may have, by name."""
+    return variables_of(kinds_in(data))
+
+
 def described(
-    values: Mapping[str, object],
+    values: Mapping[str, object], kinds: Iterable[PredictionKind] = ()
 ) -> dict[str, tuple[tuple[str, ...], np.ndarray, dict[str, str]]]:
     """Return values as variables of a dataset, with the attributes of the schema.
 
-    Raises KeyError for a variable that the schema does not know.
+    Variables of predictions are those of their ``kinds``. Raises KeyError for a variable that the
+    schema does not know.
     """
-    out = {}
+    out, known = {}, variables_of(kinds)
     for name, value in values.items():
-        variable = VARIABLES[name]
+        variable = known[name]
         kind = str if variable.values == "text" else None
         out[name] = (variable.dimensions, np.asarray(value, dtype=kind), variable.attributes)
     return out
@@ -715,7 +745,12 @@ def faults(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
         if names.dims != (name,) or names.dtype.kind not in kinds:
             found = f"{names.dtype} of the dimensions {', '.join(map(str, names.dims))}"
             yield f"coordinate '{name}'", DIMENSIONS[name], found
-    for name, variable in VARIABLES.items():
+    try:
+        variables = variables_of(kinds_from(str(data.attrs.get(ATTRIBUTE, ""))))
+    except ValueError as error:
+        yield f"attribute '{ATTRIBUTE}'", "kinds of predictions in JSON", str(error)
+        return
+    for name, variable in variables.items():
         if name not in data:
             if variable.required:
                 yield f"variable '{name}'", variable.meaning, "nothing"
@@ -734,7 +769,7 @@ def faults(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
 def missing(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
     """Yield variables and coordinates without which others of a dataset cannot be shown."""
     sets: dict[str, list[str]] = {}
-    for name, variable in VARIABLES.items():
+    for name, variable in variables_in(data).items():
         if variable.together:
             sets.setdefault(variable.together, []).append(name)
     for names in sets.values():
@@ -742,7 +777,10 @@ def missing(data: xr.Dataset) -> Iterator[tuple[str, str, str]]:
         missing = [name for name in names if name not in data]
         if present and missing:
             yield f"variable '{missing[0]}'", f"it, as there is '{present[0]}'", "nothing"
-    kinds = [prediction.kind.dimension for prediction in KINDS]
+    kinds = [kind.dimension for kind in kinds_in(data)]
+    for name in kinds:
+        if name not in data.dims:
+            yield f"dimension '{name}'", f"it, as '{ATTRIBUTE}' has it", "nothing"
     for name in ("range", "statistic", "quantile", "set", "sensor", *kinds):
         if name in data.dims and name not in data.coords:
             yield f"coordinate '{name}'", DIMENSIONS.get(name, "names of its places"), "nothing"

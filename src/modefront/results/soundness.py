@@ -12,7 +12,7 @@ import numpy as np
 import xarray as xr
 
 from modefront.front.point import REFERENCES, Kind
-from modefront.results.schema import ATTRIBUTES, DIMENSIONS, VARIABLES
+from modefront.results.schema import ATTRIBUTES, DIMENSIONS, variables_in
 from modefront.text import NAME, clean
 
 FINITE = (
@@ -93,11 +93,12 @@ def _texts(data: xr.Dataset) -> Iterator[Fault]:
 
 
 def _numbers(data: xr.Dataset) -> Iterator[Fault]:
-    for name in ("mode", *VARIABLES):
+    variables = variables_in(data)
+    for name in ("mode", *variables):
         if name not in data or data[name].dtype.kind not in "fiub":
             continue
         place, values = _variable(data, name), data[name].values
-        kind = VARIABLES[name].values if name in VARIABLES else "count"
+        kind = variables[name].values if name in variables else "count"
         if kind == "truth" and not np.isin(values, (0, 1)).all():
             yield place, "truth values, 0 or 1", _first(values, ~np.isin(values, (0, 1)))
         elif kind == "count":

@@ -19,6 +19,7 @@ from modefront.models.parameters import Parameter, parameters_of
 from modefront.options import check_fields, each_once, text, whole
 from modefront.predictions import Prediction
 from modefront.residuals.problem import UpdatingProblem
+from modefront.results.schema import variables_of
 from modefront.study.labels import labels_of
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
@@ -108,6 +109,10 @@ class Study:
         yield from self.uncertainty.faults(self.problem.data)
         yield from undrawn(self.uncertainty, len(self.predictions))
         yield from each_once("predictions", [prediction.name for prediction in self.predictions])
+        try:
+            variables_of(dict.fromkeys(prediction.kind for prediction in self.predictions))
+        except InputError as error:
+            yield from error.faults
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:

@@ -9,7 +9,7 @@ from modefront.errors import InputError
 from modefront.findings.knowledge import enumeration
 from modefront.models.base import Model
 from modefront.options import each_once
-from modefront.predictions import KINDS, Prediction
+from modefront.predictions import Prediction, known
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.tables.options import note, read_record
 from modefront.toml import Table, has_name
@@ -20,16 +20,20 @@ Drafts = Sequence[tuple[Table, Prediction]]
 
 def read_predictions(root: Table, model: Model | None, data: ModalData | None) -> Drafts:
     """Return the predictions that a study asks for, as far as nothing is wrong with them."""
-    expected = f"tables {enumeration([f'[[predict.{kind.kind.table}]]' for kind in KINDS])}"
-    table = root.table("predict", expected, None)
+    if "predict" not in root.values:
+        root.requested.append("predict")
+        return []
+    classes = known()
+    expected = f"tables {enumeration([f'[[predict.{each.kind.table}]]' for each in classes])}"
+    table = root.table("predict", expected)
     if table is None:
         return []
     out: list[tuple[Table, Prediction]] = []
     names = []
-    for kind in KINDS:
-        for each in table.tables(kind.kind.table, required=False):
+    for prediction_class in classes:
+        for each in table.tables(prediction_class.kind.table, required=False):
             names += [each.values["name"]] if has_name(each) else []
-            prediction = read_record(each, kind)
+            prediction = read_record(each, prediction_class)
             if prediction is None:
                 continue
             if model is not None and data is not None:

@@ -1,0 +1,168 @@
+"""Classes of predictions that study files may name, and those that results hold."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Iterable, Iterator
+from dataclasses import asdict, dataclass, is_dataclass
+from functools import cache
+from importlib.metadata import entry_points
+from typing import TYPE_CHECKING, Any, TypeVar
+
+from modefront.errors import Fault, InputError, reason, refuse
+from modefront.options import each_once
+from modefront.predictions.base import (
+    NumericalCheck,
+    Prediction,
+    PredictionKind,
+    ResultVariable,
+    Setting,
+)
+from modefront.text import NAME, clean
+
+if TYPE_CHECKING:
+    import xarray as xr
+
+GROUP = "modefront.predictions"
+"""Entry points by which installed packages bring classes of predictions."""
+
+ATTRIBUTE = "prediction_kinds"
+"""Attribute of results that holds the kinds of their predictions, in JSON."""
+
+C = TypeVar("C", bound=type)
+
+_classes: dict[str, type[Prediction]] = {}
+
+
+def register(prediction: C) -> C:
+    """Make a class of predictions known to study files, and return it.
+
+    Parameters
+    ----------
+    prediction
+        A frozen dataclass with what `Prediction` has; ``kind.table`` names its tables. Of a class
+        that was registered before, under the same name in the same module, it takes the place.
+
+    Raises
+    ------
+    InputError
+        Where it is no such class, or its tables are those of another one.
+    """
+    refuse(_faults(prediction))
+    added: Any = prediction
+    _classes[added.kind.table] = added
+    return prediction
+
+
+def _faults(prediction: Any) -> Iterator[Fault]:
+    """Yield what a class lacks to be one of predictions."""
+    place = f"prediction class {getattr(prediction, '__qualname__', prediction)!s}"
+    if not (isinstance(prediction, type) and is_dataclass(prediction)):
+        yield Fault("", place, "a frozen dataclass", clean(repr(prediction), NAME))
+        return
+    kind = getattr(prediction, "kind", None)
+    if not isinstance(kind, PredictionKind):
+        yield Fault("", place, "an attribute kind, a PredictionKind", clean(repr(kind), NAME))
+        return
+    methods = ("places", "heading", "settings", "faults", "complete", "evaluate", "check")
+    missing = [name for name in methods if not hasattr(prediction, name)]
+    if "name" not in prediction.__dataclass_fields__:
+        missing.append("name")
+    if missing:
+        yield Fault("", place, "what modefront.Prediction has", f"no {', '.join(missing)}")
+    other = _classes.get(kind.table)
+    if other is not None and (other.__module__, other.__qualname__) != (
+        prediction.__module__,
+        prediction.__qualname__,
+    ):
+        yield Fault("", place, "a table of its own", f"'{kind.table}', of {other.__qualname__}")
+
+
+def known() -> tuple[type[Prediction], ...]:
+    """Return all classes that study files may name.
+
+    Raises InputError for an entry point of an installed package that brings none.
+    """
+    _load_entry_points()
+    return tuple(_classes.values())
+
+
+@cache
+def _load_entry_points() -> None:
+    for each in entry_points(group=GROUP):
+        try:
+            register(each.load())
+        except InputError:
+            raise
+        except Exception as error:  # the package of another may raise anything
+            place = f"entry point '{each.name}' = {each.value} of {GROUP}"
+            raise InputError(Fault("", place, "a class of predictions", reason(error))) from None
+
+
+def as_text(kinds: Iterable[PredictionKind]) -> str:
+    """Return kinds in JSON."""
+    return json.dumps([asdict(kind) for kind in kinds])
+
+
+@cache
+def kinds_from(text: str) -> tuple[PredictionKind, ...]:
+    """Return kinds from JSON; raises ValueError for what `as_text` does not make."""
+    try:
+        kinds = tuple(_kind(**values) for values in json.loads(text)) if text else ()
+        refuse(each_once("dimension", [kind.dimension for kind in kinds]))
+    except (TypeError, KeyError, RecursionError, InputError) as error:
+        raise ValueError(clean(str(error), NAME)) from None
+    return kinds
+
+
+def _kind(variables: Any, settings: Any, check: Any, **values: Any) -> PredictionKind:
+    if check is not None:
+        compared = tuple(ResultVariable(**each) for each in check["variables"])
+        check = NumericalCheck(check["name"], compared, ResultVariable(**check["label"]))
+    return PredictionKind(
+        variables=tuple(ResultVariable(**each) for each in variables),
+        settings=tuple(Setting(**each) for each in settings),
+        check=check,
+        **values,
+    )
+
+
+def kinds_in(data: xr.Dataset) -> tuple[PredictionKind, ...]:
+    """Return the kinds of which sound results have predictions."""
+    return kinds_from(str(data.attrs.get(ATTRIBUTE, "")))
+
+
+@dataclass(frozen=True)
+class RecordedPrediction:
+    """A prediction in results.
+
+    Attributes
+    ----------
+    kind : what it is
+    name : of the prediction
+    heading : its load case and options
+    positions : of its values along the dimension of the kind
+    places : names of these values, without that of the prediction
+    """
+
+    kind: PredictionKind
+    name: str
+    heading: str
+    positions: tuple[int, ...]
+    places: tuple[str, ...]
+
+
+def predictions_in(data: xr.Dataset) -> Iterator[RecordedPrediction]:
+    """Yield the predictions of sound results."""
+    for kind in kinds_in(data):
+        start = kind.dimension
+        names, places = data[f"{start}_name"].values.tolist(), data[start].values.tolist()
+        for name in dict.fromkeys(names):
+            chosen = tuple(i for i, each in enumerate(names) if each == name)
+            yield RecordedPrediction(
+                kind,
+                str(name),
+                str(data[f"{start}_heading"].values[chosen[0]]),
+                chosen,
+                tuple(str(places[i]).removeprefix(f"{name}: ") for i in chosen),
+            )
