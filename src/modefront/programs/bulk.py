@@ -11,7 +11,6 @@ import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
 from functools import cached_property
-from itertools import chain
 from pathlib import Path
 
 import numpy as np
@@ -23,30 +22,19 @@ from modefront.programs.base import wrong
 from modefront.programs.dmig import real
 from modefront.programs.mesh import ProgramMesh, mesh_of, refuse_unknown_nodes
 
-_ELEMENTS = {  # nodes begin at this field, as many of them are corners, of this kind
-    "CQUAD4": (3, 4, "quad"),
-    "CQUADR": (3, 4, "quad"),
-    "CQUAD8": (3, 4, "quad"),
-    "CTRIA3": (3, 3, "triangle"),
-    "CTRIAR": (3, 3, "triangle"),
-    "CTRIA6": (3, 3, "triangle"),
-    "CSHEAR": (3, 4, "quad"),
-    "CBAR": (3, 2, "line"),
-    "CBEAM": (3, 2, "line"),
-    "CROD": (3, 2, "line"),
-    "CTUBE": (3, 2, "line"),
-    "CONROD": (2, 2, "line"),
-    "CBUSH": (3, 2, "line"),
-    "CHEXA": (3, 8, "hexahedron"),
-    "CPENTA": (3, 6, "wedge"),
-    "CTETRA": (3, 4, "tetra"),
-    "CPYRAM": (3, 5, "pyramid"),
+_ELEMENTS = {  # field where nodes begin, number of corners and of nodes, cell, what it makes stiff
+    **dict.fromkeys(("CQUAD4", "CQUADR", "CSHEAR"), (3, 4, 4, "quad", "shell")),
+    **dict.fromkeys(("CTRIA3", "CTRIAR"), (3, 3, 3, "triangle", "shell")),
+    "CQUAD8": (3, 4, 8, "quad", "shell"),
+    "CTRIA6": (3, 3, 6, "triangle", "shell"),
+    **dict.fromkeys(("CBAR", "CBEAM", "CBUSH"), (3, 2, 2, "line", "all")),
+    **dict.fromkeys(("CROD", "CTUBE"), (3, 2, 2, "line", "rod")),
+    "CONROD": (2, 2, 2, "line", "rod"),
+    "CHEXA": (3, 8, 20, "hexahedron", "solid"),
+    "CPENTA": (3, 6, 15, "wedge", "solid"),
+    "CTETRA": (3, 4, 10, "tetra", "solid"),
+    "CPYRAM": (3, 5, 13, "pyramid", "solid"),
 }
-_FULL = {"CBAR", "CBEAM", "CBUSH"}
-_RODS = {"CROD", "CTUBE", "CONROD"}
-_SOLIDS = {"CHEXA", "CPENTA", "CTETRA", "CPYRAM"}
-_SHELL_EXTRA = {"CQUAD8": 4, "CTRIA6": 3}
-_SOLID_NODES = {"CHEXA": 20, "CPENTA": 15, "CTETRA": 10, "CPYRAM": 13}
 
 FLAT = 1e-8
 """Stiffness of a direction, over the greatest at its node, below which AUTOSPC holds it."""
@@ -54,7 +42,7 @@ FLAT = 1e-8
 Dof = tuple[int, int]
 
 
-# 17 fields: one for each kind of entry of a deck.
+# 13 fields: one for each kind of entry of a deck.
 @dataclass
 class Bulk:
     """Nodes, elements and constraints of a deck, as they are collected while it is read.
@@ -63,39 +51,44 @@ class Bulk:
     ----------
     nodes : coordinates by number; NaN for those in another than the basic system
     scalar : scalar points
-    cells : corners of elements by the type of the cell; ``elements``, ``shells`` and ``rods`` nodes
-    stiff : stiffness of the translations and rotations of nodes, but for shells and rods
+    elements : name and nodes by number
+    springs : nodes and components that springs hold
+    links : nodes that a spring or a constraint joins
     held : supports that the case control chooses, node and component
     supports, constraints, added : sets of SPC and MPC by number, and the sets of which others are
     followers : dependent degrees of freedom
     omitted : OMIT; kept : ASET, empty for all
-    singular : components that no element makes stiff
     turned : nodes whose directions are those of a system of their own
-    links : nodes that an element or a spring joins
     """
 
     nodes: dict[int, Floats] = field(default_factory=dict)
     scalar: set[int] = field(default_factory=set)
-    cells: dict[str, list[list[int]]] = field(default_factory=dict)
-    elements: dict[int, list[int]] = field(default_factory=dict)
-    stiff: dict[int, Floats] = field(default_factory=dict)
+    elements: dict[int, tuple[str, list[int]]] = field(default_factory=dict)
+    springs: list[Dof] = field(default_factory=list)
+    links: list[tuple[int, ...]] = field(default_factory=list)
     held: set[Dof] = field(default_factory=set)
     supports: dict[int, set[Dof]] = field(default_factory=dict)
-    added: dict[int, list[int]] = field(default_factory=dict)
     constraints: dict[int, set[Dof]] = field(default_factory=dict)
+    added: dict[int, list[int]] = field(default_factory=dict)
     followers: set[Dof] = field(default_factory=set)
     omitted: set[Dof] = field(default_factory=set)
     kept: set[Dof] = field(default_factory=set)
     turned: set[int] = field(default_factory=set)
-    links: list[tuple[int, ...]] = field(default_factory=list)
-    shells: list[tuple[str, list[int]]] = field(default_factory=list)
-    rods: list[list[int]] = field(default_factory=list)
-    singular: set[Dof] = field(default_factory=set)
 
     @cached_property
     def mesh(self) -> ProgramMesh:
         """Nodes and elements."""
-        return mesh_of(self.nodes, self.cells)
+        cells: dict[str, list[list[int]]] = {}
+        for name, nodes in self.elements.values():
+            _, corners, _, cell, _ = _ELEMENTS[name]
+            if len(nodes) >= corners:
+                cells.setdefault(cell, []).append(nodes[:corners])
+        return mesh_of(self.nodes, cells)
+
+    @property
+    def joined(self) -> list[tuple[int, ...]]:
+        """Nodes that an element, a spring or a constraint joins."""
+        return [*self.links, *(tuple(nodes) for _, nodes in self.elements.values())]
 
     def dofs(self, *, reduced: bool, singular: bool) -> list[Dof]:
         """Return nodes and components in the order of matrices: of the a-set, or of all nodes.
@@ -107,8 +100,46 @@ class Bulk:
         if not reduced:
             return every
         gone = self.held | self.followers | self.omitted
-        gone |= set() if singular else self.singular
+        gone |= set() if singular else self._singular()
         return [dof for dof in every if dof not in gone and (not self.kept or dof in self.kept)]
+
+    def _singular(self) -> set[Dof]:
+        """Return the components that no element makes stiff, as AUTOSPC finds them."""
+        stiff = {n: np.zeros((2, 3, 3)) for n in self.nodes}  # translations, rotations
+        for name, nodes in self.elements.values():
+            added = self._stiffness(name, nodes)
+            for n in stiff.keys() & set(nodes):
+                stiff[n] += added
+        for n, component in self.springs:
+            if n in stiff:
+                part, axis = divmod(component - 1, 3)
+                stiff[n][part, axis, axis] += 1.0
+        out: set[Dof] = set()
+        for n, blocks in stiff.items():
+            for part, block in enumerate(blocks):
+                values, vectors = np.linalg.eigh(block)
+                soft = vectors[:, values <= FLAT * max(values[-1], 1.0)]
+                for _ in range(soft.shape[1]):  # the component closest to what is soft, one by one
+                    component = int(np.argmax((soft**2).sum(axis=1)))
+                    out.add((n, 3 * part + component + 1))
+                    soft = soft @ null_space(soft[[component]])
+        return out
+
+    def _stiffness(self, name: str, nodes: list[int]) -> Floats:
+        """Return which translations and rotations (2, 3, 3) of its nodes an element makes stiff."""
+        _, corners, _, _, kind = _ELEMENTS[name]
+        points = [self.nodes[n] for n in nodes[:corners] if n in self.nodes]
+        known = [x for x in points if np.isfinite(x).all()]
+        one, none = np.eye(3), np.zeros((3, 3))
+        if kind == "rod":
+            axis = known[1] - known[0] if len(known) == 2 else np.zeros(3)
+            axis = axis / (np.linalg.norm(axis) or 1.0)
+            return np.array([np.outer(axis, axis)] * 2)
+        if kind == "shell" and len(known) > 2:
+            normal = np.cross(known[2] - known[0], known[-1] - known[1])
+            normal /= np.linalg.norm(normal) or 1.0
+            return np.array([one, one - np.outer(normal, normal)])
+        return np.array([one, none if kind == "solid" else one])
 
 
 def read_bulk(path: Path) -> Bulk:
@@ -140,10 +171,10 @@ def read_bulk(path: Path) -> Bulk:
         if not content.nodes and not content.scalar:
             raise wrong(path, "entries GRID of nodes", "none")
         known = content.nodes.keys() | content.scalar
-        refuse_unknown_nodes(path, known, chain.from_iterable(content.elements.values()))
+        used = (node for _, nodes in content.elements.values() for node in nodes)
+        refuse_unknown_nodes(path, known, used)
     content.held |= _sets(content.supports, content.added, _chosen(control, "SPC"))
     content.followers |= _sets(content.constraints, content.added, _chosen(control, "MPC"))
-    content.singular = _singular(content)
     return content
 
 
@@ -221,6 +252,17 @@ def _listed(fields: Iterable[str]) -> list[int]:
     return out
 
 
+def _all_of(components: str, fields: Iterable[str]) -> set[Dof]:
+    """Return some components of all nodes of a list; 0 of scalar points."""
+    return {(n, c) for n in _listed(fields) for c in _components(components or "0")}
+
+
+def _pairs(card: list[str], first: int, step: int) -> set[Dof]:
+    """Return the components of nodes that follow each other in an entry, each with its node."""
+    places = (k for k in range(first, len(card) - 1, step) if card[k])
+    return {(int(card[k]), c) for k in places for c in _components(card[k + 1] or "0")}
+
+
 def _take(content: Bulk, card: list[str], default: list[str]) -> None:
     """Take one entry."""
     name = card[0]
@@ -240,13 +282,7 @@ def _take(content: Bulk, card: list[str], default: list[str]) -> None:
         _support(content, card)
     elif name in ("ASET1", "OMIT1", "ASET", "OMIT"):
         target = content.kept if name.startswith("ASET") else content.omitted
-        if name.endswith("1"):
-            nodes = _listed(card[2:])
-            target.update((n, c) for n in nodes for c in _components(card[1] or "0"))
-        else:
-            for k in range(1, len(card) - 1, 2):
-                if card[k]:
-                    target.update((int(card[k]), c) for c in _components(card[k + 1] or "0"))
+        target |= _all_of(card[1], card[2:]) if name.endswith("1") else _pairs(card, 1, 2)
 
 
 def _grid(content: Bulk, card: list[str], default: list[str]) -> None:
@@ -265,51 +301,26 @@ def _grid(content: Bulk, card: list[str], default: list[str]) -> None:
 
 
 def _element(content: Bulk, card: list[str]) -> None:
-    name = card[0]
-    first, corners, kind = _ELEMENTS[name]
-    count = _SOLID_NODES.get(name, corners + _SHELL_EXTRA.get(name, 0))
-    nodes = [n for n in map(_whole, card[first : first + count]) if n]
-    if int(card[1]) in content.elements:
-        raise ValueError(f"element {card[1]} again")
-    content.elements[int(card[1])] = nodes
+    name, number = card[0], int(card[1])
+    first, corners, most, _, _ = _ELEMENTS[name]
+    nodes = [n for n in map(_whole, card[first : first + most]) if n]
+    if number in content.elements:
+        raise ValueError(f"element {number} again")
     if len(nodes) < corners and name != "CBUSH":  # one end of it may be the ground
         raise ValueError(f"{len(nodes)} nodes of {corners}")
-    if len(nodes) >= corners:
-        content.cells.setdefault(kind, []).append(nodes[:corners])
-    content.links.append(tuple(nodes))
-    if name in _FULL:
-        for n in nodes:
-            _stiffen(content, n, np.eye(3), np.eye(3))
-    elif name in _RODS:
-        content.rods.append(nodes)
-    elif name in _SOLIDS:
-        for n in nodes:
-            _stiffen(content, n, np.eye(3), np.zeros((3, 3)))
-    else:
-        content.shells.append((name, nodes))
-
-
-def _stiffen(content: Bulk, node: int, u: Floats, r: Floats) -> None:
-    block = content.stiff.setdefault(node, np.zeros((2, 3, 3)))
-    block += np.array([u, r])
+    content.elements[number] = name, nodes
 
 
 def _spring(content: Bulk, card: list[str]) -> None:
     """Take CELAS1 to CELAS4: ends are a node and a component, or scalar points."""
     if card[0].endswith(("3", "4")):
-        ends = [(_whole(_at(card, 3)), 0), (_whole(_at(card, 4)), 0)]
+        ends = [(_whole(_at(card, k)), 0) for k in (3, 4)]
         content.scalar.update(n for n, _ in ends if n)
     else:
         ends = [(_whole(_at(card, k)), _whole(_at(card, k + 1))) for k in (3, 5)]
     content.links.append(tuple(n for n, _ in ends if n))
-    if card[0].startswith("CDAMP"):
-        return
-    for node, component in ends:
-        if node and component:
-            blocks = np.zeros((2, 3, 3))
-            axis = component - 1
-            blocks[axis // 3, axis % 3, axis % 3] = 1.0
-            _stiffen(content, node, blocks[0], blocks[1])
+    if not card[0].startswith("CDAMP"):
+        content.springs += [(node, component) for node, component in ends if node and component]
 
 
 def _rigid(content: Bulk, card: list[str]) -> None:
@@ -338,13 +349,9 @@ def _support(content: Bulk, card: list[str]) -> None:
     if card[0] in ("SPCADD", "MPCADD"):
         content.added.setdefault(number, []).extend(_listed(card[2:]))
     elif card[0] == "SPC1":
-        held = content.supports.setdefault(number, set())
-        held.update((n, c) for n in _listed(card[3:]) for c in _components(card[2] or "0"))
+        content.supports.setdefault(number, set()).update(_all_of(card[2], card[3:]))
     elif card[0] == "SPC":
-        held = content.supports.setdefault(number, set())
-        for k in (2, 5):
-            if _at(card, k):
-                held.update((int(card[k]), c) for c in _components(_at(card, k + 1) or "0"))
+        content.supports.setdefault(number, set()).update(_pairs(card[:8], 2, 3))
     else:
         dependent = int(card[2]), _whole(_at(card, 3))
         content.constraints.setdefault(number, set()).add(dependent)
@@ -358,36 +365,3 @@ def _sets(table: dict[int, set[Dof]], added: dict[int, list[int]], chosen: int |
         return set().union(*table.values()) if len(table) == 1 else set()
     names = [chosen, *added.get(chosen, [])]
     return set().union(*(table.get(name, set()) for name in names))
-
-
-def _singular(content: Bulk) -> set[Dof]:
-    """Return the components that no element makes stiff, as AUTOSPC finds them."""
-    for _, nodes in content.shells:
-        corners = [content.nodes.get(n) for n in nodes[:4]]
-        known = [x for x in corners if x is not None and np.isfinite(x).all()]
-        normal = np.zeros(3)
-        if len(known) >= 3:
-            far = known[3] - known[1] if len(known) == 4 else known[2] - known[1]
-            normal = np.cross(known[2] - known[0], far)
-            normal /= np.linalg.norm(normal) or 1.0
-        for n in nodes:
-            _stiffen(content, n, np.eye(3), np.eye(3) - np.outer(normal, normal))
-    for nodes in content.rods:
-        ends = [content.nodes.get(n) for n in nodes]
-        known = [x for x in ends if x is not None and np.isfinite(x).all()]
-        if len(known) == 2:
-            axis = known[1] - known[0]
-            axis = axis / (np.linalg.norm(axis) or 1.0)
-            for n in nodes:
-                _stiffen(content, n, np.outer(axis, axis), np.outer(axis, axis))
-    out: set[Dof] = set()
-    for n in content.nodes:
-        blocks = content.stiff.get(n, np.zeros((2, 3, 3)))
-        for part, block in enumerate(blocks):
-            values, vectors = np.linalg.eigh(block)
-            soft = vectors[:, values <= FLAT * max(values[-1], 1.0)]
-            for _ in range(soft.shape[1]):  # the component closest to what is soft, one by one
-                component = int(np.argmax((soft**2).sum(axis=1)))
-                out.add((n, 3 * part + component + 1))
-                soft = soft @ null_space(soft[[component]])
-    return out

@@ -181,7 +181,7 @@ def _near_supports(deck: Bulk, dofs: DofTable, free: Bools) -> Bools:
     held |= deck.turned | {n for n, _ in deck.followers} | set(deck.scalar)
     near = set(held)
     for _ in range(2 if deck.followers else 1):  # followers join elements of their masters
-        near |= {n for link in deck.links if near.intersection(link) for n in link}
+        near |= {n for link in deck.joined if near.intersection(link) for n in link}
     out: Bools = np.isin(dofs.node, list(near))
     return out
 
