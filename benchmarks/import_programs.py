@@ -28,7 +28,7 @@ import scipy.sparse
 
 from modefront.programs import PROGRAMS
 from modefront.programs.base import JobOptions
-from modefront.programs.importing import Request, read_jobs, write_study
+from modefront.programs.importing import import_model
 
 Array = npt.NDArray[np.float64]
 
@@ -186,9 +186,8 @@ def measure(program: str, job: Path, out: multiprocessing.Queue[tuple[float, ...
 def measure_import(program: str, job: Path, out: multiprocessing.Queue[tuple[float, ...]]) -> None:
     """Import a job and a run with one parameter, write the study, and report time and memory."""
     clock, processor = time.perf_counter(), time.process_time()
-    runs = [("E", job.with_name("run"))]
-    imported = read_jobs(Request(PROGRAMS[program], job, runs, modes=0))
-    write_study(imported, program, job.with_name("study"))
+    imported = import_model(program, job, {"E": job.with_name("run")}, modes=0)
+    imported.write(job.with_name("study"))
     times = time.process_time() - processor, time.perf_counter() - clock
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     terms = imported.terms

@@ -64,15 +64,15 @@ def file_size(path: Path, expected: str, most: int | None = None) -> int:
     try:
         status = path.stat()
     except (FileNotFoundError, NotADirectoryError):
-        raise _wrong(path, expected, "no such file") from None
+        raise wrong(path, expected, "no such file") from None
     except (OSError, ValueError) as error:  # ValueError where the name holds a null
-        raise _wrong(path, expected, reason(error)) from None
+        raise wrong(path, expected, reason(error)) from None
     for is_kind, words in KINDS:
         if is_kind(status.st_mode):
-            raise _wrong(path, expected, words)
+            raise wrong(path, expected, words)
     if most is not None and status.st_size > most:
         limit = f"{expected} of up to {most / MEGABYTE:g} MB"
-        raise _wrong(path, limit, f"{status.st_size / MEGABYTE:.6g} MB")
+        raise wrong(path, limit, f"{status.st_size / MEGABYTE:.6g} MB")
     return status.st_size
 
 
@@ -86,7 +86,7 @@ def read_text_bytes(path: Path, expected: str, most: int) -> bytes:
         refuse_holes(path, expected, size)
         return path.read_bytes()
     except (OSError, MemoryError) as error:
-        raise _wrong(path, expected, reason(error)) from None
+        raise wrong(path, expected, reason(error)) from None
 
 
 def refuse_holes(path: Path, expected: str, size: int) -> None:
@@ -99,7 +99,7 @@ def refuse_holes(path: Path, expected: str, size: int) -> None:
             stream.seek(k * (size - SAMPLE) // (SAMPLES - 1))
             empty += not stream.read(SAMPLE).strip(b"\0")
     if empty > SAMPLES // 2:
-        raise _wrong(path, expected, "zeros in most places: a file with holes, or torn")
+        raise wrong(path, expected, "zeros in most places: a file with holes, or torn")
 
 
 def is_hdf5(path: Path) -> bool:
@@ -134,14 +134,27 @@ def available_memory() -> int:
     return memory
 
 
-def _wrong(path: Path, expected: str, found: str) -> InputError:
-    return InputError(Fault(str(path), "file", expected, found))
+def wrong(path: Path, expected: str, found: str, place: str = "file") -> InputError:
+    """Return the error of a file, or of a place in it."""
+    return InputError(Fault(str(path), place, expected, found))
 
 
 NUMBER = re.compile(r"[+-]?0*([0-9]*)(?:[.,]([0-9]*))?(?:[eE]([+-]?[0-9]*))?")
 """Digits of a number before and behind its point, and its exponent."""
 
+BARE = re.compile(r"(?<=[0-9.])([+-][0-9]+)$")
+"""An exponent without its letter, as Fortran writes it where three digits leave no room."""
+
 ENDED = "whole lines to the end"
+
+
+def fortran(text: str) -> float:
+    """Return a number as Fortran writes it; raises ValueError for anything else.
+
+    >>> [fortran(text) for text in (" 1.5", "1.5+3", "1.5D3", "-1.00000-100")]
+    [1.5, 1500.0, 1500.0, -1e-100]
+    """
+    return float(BARE.sub(r"E\1", text.strip().upper().replace("D", "E")))
 
 
 def counted(file: object, place: str, what: str, declared: int, found: float) -> None:
@@ -171,7 +184,7 @@ def first_repeated(row: Ints, column: Ints, columns: int) -> int | None:
 def ended(path: Path) -> None:
     """Raise InputError where a file of lines of numbers does not end with the end of a line."""
     if _last(path) not in b"\r\n":
-        raise InputError(Fault(str(path), "last line", ENDED, "a file that is cut off"))
+        raise wrong(path, ENDED, "a file that is cut off", "last line")
 
 
 def _last(path: Path) -> bytes:
@@ -196,7 +209,7 @@ def ended_column(path: Path, column: Iterable[str]) -> None:
     if not others or last[k] < max(alike[k]) or last[2] < max(alike[2]):
         found = f"{texts[-1].strip()!r} without the end of its line: is the file cut off?"
         expected = f"{ENDED}, or a last number with as many digits as the others in its column"
-        raise InputError(Fault(str(path), "last line", expected, found))
+        raise wrong(path, expected, found, "last line")
 
 
 def _lengths(text: str) -> tuple[int, int, int]:

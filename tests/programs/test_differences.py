@@ -21,10 +21,8 @@ from program_files import (
 )
 
 from modefront.errors import InputError
-from modefront.programs import PROGRAMS
-from modefront.programs.base import JobOptions
 from modefront.programs.differences import Quantity, all_terms
-from modefront.programs.importing import Imported, Request, model_of, read_jobs
+from modefront.programs.importing import Imported, import_model, model_of
 
 
 def jobs(folder: Path, runs: Mapping[str, Mapping[str, float]]) -> None:
@@ -41,16 +39,20 @@ def imported(
     functions: Mapping[str, Sequence[str]] | None = None,
     checks: Sequence[tuple[str, Mapping[str, float]]] = (),
 ) -> Imported:
-    request = Request(
-        PROGRAMS[program],
+    parameters: dict[str, list[Path]] = {}
+    for name, run in runs:
+        parameters.setdefault(name, []).append(folder / run)
+    given: dict[str, list[float]] = {}
+    for name, factor in factors:
+        given.setdefault(name, []).append(factor)
+    return import_model(
+        program,
         folder / "base",
-        [(name, folder / run) for name, run in runs],
-        factors,
-        functions or {},
-        [(folder / run, values) for run, values in checks],
-        JobOptions(),
+        parameters,
+        factors=given,
+        functions=functions,
+        checks=[(folder / run, values) for run, values in checks],
     )
-    return read_jobs(request)
 
 
 def matrix_of(result: Imported, quantity: Quantity, theta: Sequence[float]) -> Array:

@@ -10,8 +10,7 @@ from pathlib import Path
 
 import pytest
 
-from modefront.programs import PROGRAMS
-from modefront.programs.importing import Request, read_jobs
+from modefront.programs.importing import import_model
 
 PAGE = Path(__file__).parents[2] / "docs" / "import.md"
 
@@ -63,9 +62,9 @@ def test_opensees_hands_over_its_matrices(tmp_path: Path) -> None:
     command = [sys.executable, "model.py"]
     done = subprocess.run(command, cwd=tmp_path, check=True, capture_output=True, text=True)
     frequencies = [float(x) for x in done.stdout.split()[:4]]
-    runs = [("E", tmp_path / "E"), ("k", tmp_path / "k")]
+    runs = {"E": tmp_path / "E", "k": tmp_path / "k"}
     checks = [(tmp_path / "check", {"E": 0.7, "k": 3.0})]
-    result = read_jobs(Request(PROGRAMS["opensees"], tmp_path / "base", runs, checks=checks))
+    result = import_model("opensees", tmp_path / "base", runs, checks=checks)
     assert result.frequencies is not None
     assert result.frequencies[:4] == pytest.approx(frequencies, rel=1e-8)
     assert result.errors[0] < 1e-14

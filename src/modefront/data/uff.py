@@ -22,7 +22,7 @@ from modefront._typing import Complexes, Floats
 from modefront.data.blows import Blow, Contents
 from modefront.data.channels import Channel
 from modefront.errors import Fault, InputError, reason
-from modefront.inputs import MOST_DATA, counted, read_text_bytes
+from modefront.inputs import MOST_DATA, counted, fortran, read_text_bytes
 from modefront.outputs import write_text
 
 FRF, COHERENCE, TIME = 4, 6, 1
@@ -49,9 +49,6 @@ KNOWN = (15, 55, 58, 2411, 2420)
 
 BLANK = b" \t\r\n\0\x1a"
 """Bytes that may stand behind the last dataset."""
-
-BARE = re.compile(r"(?<=[0-9.])([+-][0-9]{3})(?![0-9.])")
-"""An exponent of three digits, as Fortran writes it."""
 
 NEXT = re.compile(r"(?<=[0-9.])(?=[+-][0-9]*\.)")
 """Beginning of a number that follows on another one without a blank."""
@@ -271,8 +268,7 @@ def reals(text: str) -> list[float]:
     >>> reals(" 1.5D+00-2.50000E+00 1.00000-100")
     [1.5, -2.5, 1e-100]
     """
-    plain = BARE.sub(r"E\1", NEXT.sub(" ", text.replace("D", "E").replace("d", "e")))
-    return [float(word) for word in plain.split()]
+    return [fortran(word) for word in NEXT.sub(" ", text).split()]
 
 
 def _function(content: bytes, block: Block, file: str) -> _Function:

@@ -17,7 +17,15 @@ import scipy.sparse
 
 from modefront._typing import Bools
 from modefront.errors import Fault, InputError, suggestion
-from modefront.inputs import available_memory, counted, ended, file_size, first_repeated, is_hdf5
+from modefront.inputs import (
+    available_memory,
+    counted,
+    ended,
+    file_size,
+    first_repeated,
+    is_hdf5,
+    wrong,
+)
 from modefront.isolated import IsolatedError, Read, isolated
 from modefront.rounding import LARGEST, SYMMETRY
 
@@ -50,16 +58,16 @@ def read_entries(
     """
     form = form or path.suffix
     if form not in READERS:
-        raise _wrong(path, f"a name that ends in {', '.join(READERS)}", f"'{path.name}'")
+        raise wrong(path, f"a name that ends in {', '.join(READERS)}", f"'{path.name}'")
     if name is not None and form not in NAMED:
         expected = "a .mat file, as only these have names for matrices"
-        raise _wrong(path, expected, f"'{path.name}'")
+        raise wrong(path, expected, f"'{path.name}'")
     file_size(path, "a matrix")
     arguments = (form, name or "", "square" if square else "")
     try:
         arrays, shape = isolated(f"{__name__}:entries", path, arguments=arguments)
     except IsolatedError as error:
-        raise _wrong(path, "a readable matrix", str(error)) from None
+        raise wrong(path, "a readable matrix", str(error)) from None
     places = arrays["row"], arrays["column"]
     return scipy.sparse.coo_array((arrays["data"], places), shape=tuple(shape))
 
@@ -90,7 +98,7 @@ def read_matrix(path: Path | str, name: str | None = None) -> scipy.sparse.coo_a
         worst = int(np.argmax(np.abs(difference.data)))
         i, j = int(difference.row[worst]), int(difference.col[worst])
         rows = A.tocsr()
-        raise _wrong(
+        raise wrong(
             path,
             "a symmetric matrix",
             f"{rows[i, j]:.6g}, and {rows[j, i]:.6g} across the diagonal",
@@ -106,11 +114,7 @@ def _check_entries(path: Path, A: scipy.sparse.coo_array, refused: Bools, expect
     if refused.any():
         first = int(np.argmax(refused))
         place = f"row {A.row[first]}, column {A.col[first]} (from 0)"
-        raise _wrong(path, expected, f"{A.data[first]:g}", place)
-
-
-def _wrong(path: Path, expected: str, found: str, place: str = "file") -> InputError:
-    return InputError(Fault(str(path), place, expected, found))
+        raise wrong(path, expected, f"{A.data[first]:g}", place)
 
 
 # In the process that reads files
@@ -127,7 +131,7 @@ def entries(path: Path, form: str, name: str, square: str) -> Read:
     if matrix.dtype.kind not in "biufc":
         raise ValueError(f"'{name}' is no matrix of numbers: {matrix.dtype}")
     if matrix.dtype.kind == "c":
-        raise _wrong(path, "real numbers", str(matrix.dtype))
+        raise wrong(path, "real numbers", str(matrix.dtype))
     if isinstance(matrix, np.ndarray):
         matrix = matrix.astype(float)  # of any order and precision
     A = scipy.sparse.coo_array(matrix)
@@ -135,7 +139,7 @@ def entries(path: Path, form: str, name: str, square: str) -> Read:
     if need > free:
         expected = f"a matrix that fits into the {free / 1e9:.3g} GB of memory that are free"
         found = f"{A.nnz} entries in {A.shape[0]} rows, which take {need / 1e9:.3g} GB"
-        raise _wrong(path, expected, found)
+        raise wrong(path, expected, found)
     return {"row": A.row, "column": A.col, "data": A.data.astype(float)}, list(A.shape)
 
 
@@ -143,7 +147,7 @@ def _check_shape(path: Path, shape: tuple[int, ...], square: str = "square") -> 
     """Raise InputError for other than matrices, and for such as cannot be solved."""
     if len(shape) != 2 or (square and shape[0] != shape[1]) or 0 in shape:
         found = " x ".join(map(str, shape)) or "a single number"
-        raise InputError(Fault(str(path), "file", "a square matrix", found))
+        raise wrong(path, "a square matrix", found)
     if shape[0] > MOST:
         raise ValueError(f"{shape[0]} rows, more than {MOST}")
 
@@ -193,7 +197,7 @@ def _numpy_npy(path: Path, _: str) -> Any:
             raise ValueError("no array of NumPy, or one that is cut off") from None
         counted(path, "file", "bytes of values", stream.tell(), path.stat().st_size)
     if array.dtype.kind not in "biufc":
-        raise InputError(Fault(str(path), "file", "real numbers", str(array.dtype)))
+        raise wrong(path, "real numbers", str(array.dtype))
     return array
 
 
@@ -235,11 +239,11 @@ def _chosen(path: Path, name: str, shapes: Mapping[str, tuple[int, ...]]) -> str
         matrices = [key for key, shape in shapes.items() if len(shape) == 2 and min(shape) > 1]
         if len(matrices) != 1:
             expected = 'one matrix, or { file = "...", name = "..." } to say which'
-            raise InputError(Fault(str(path), "file", expected, ", ".join(matrices) or "none"))
+            raise wrong(path, expected, ", ".join(matrices) or "none")
         name = matrices[0]
     if name not in shapes:
         expected = "the name of a variable in it"
-        raise InputError(Fault(str(path), "file", expected, suggestion(name, list(shapes))))
+        raise wrong(path, expected, suggestion(name, list(shapes)))
     return name
 
 

@@ -15,8 +15,9 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Bools, Ints
+from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
-from modefront.programs.base import JobOptions, Matrix, wrong
+from modefront.programs.base import JobOptions, Matrix
 from modefront.programs.inp import deck_of
 from modefront.programs.mesh import ProgramMesh
 from modefront.programs.reading import (

@@ -28,10 +28,10 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Floats, Ints
-from modefront.inputs import counted
+from modefront.inputs import counted, wrong
 from modefront.models.dofs import DofTable
 from modefront.models.files import read_entries
-from modefront.programs.base import JobOptions, wrong
+from modefront.programs.base import JobOptions
 from modefront.programs.reading import (
     Entries,
     Listed,

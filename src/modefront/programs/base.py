@@ -9,7 +9,7 @@ from typing import TypeAlias
 import numpy as np
 import scipy.sparse
 
-from modefront.errors import Fault, InputError
+from modefront.inputs import wrong
 from modefront.isolated import IsolatedError, isolated
 from modefront.models.dofs import DofTable
 from modefront.programs.mesh import ProgramMesh, mesh_from
@@ -113,8 +113,3 @@ def whole(triangle: Matrix) -> Matrix:
     """Return the symmetric matrix of an upper triangle."""
     strict = scipy.sparse.triu(triangle, k=1, format="csr")
     return Matrix(triangle + strict.T)
-
-
-def wrong(path: Path, expected: str, found: str, place: str = "file") -> InputError:
-    """Return the error of a file, or of a place in it."""
-    return InputError(Fault(str(path), place, expected, found))

@@ -18,8 +18,7 @@ from scipy.linalg import null_space
 
 from modefront._typing import Floats
 from modefront.errors import reason
-from modefront.programs.base import wrong
-from modefront.programs.dmig import real
+from modefront.inputs import fortran, wrong
 from modefront.programs.mesh import ProgramMesh, mesh_of, refuse_unknown_nodes
 
 _ELEMENTS = {  # field where nodes begin, number of corners and of nodes, cell, what it makes stiff
@@ -293,7 +292,7 @@ def _grid(content: Bulk, card: list[str], default: list[str]) -> None:
     content.held.update((number, c) for c in _components(held))
     if _whole(_at(card, 7) or default[1]):
         content.turned.add(number)
-    point = [real(x) if x else 0.0 for x in (_at(card, 3), _at(card, 4), _at(card, 5))]
+    point = [fortran(x) if x else 0.0 for x in (_at(card, 3), _at(card, 4), _at(card, 5))]
     if not np.isfinite(point).all():
         raise ValueError(f"coordinates {', '.join(card[3:6])}")
     system = _whole(_at(card, 2) or default[0])

@@ -21,8 +21,9 @@ from pathlib import Path
 import numpy as np
 
 from modefront._typing import Ints
+from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
-from modefront.programs.base import JobOptions, wrong
+from modefront.programs.base import JobOptions
 from modefront.programs.inp import Deck, deck_of
 from modefront.programs.reading import (
     Entries,

@@ -12,7 +12,7 @@ from dataclasses import asdict, dataclass
 from pathlib import Path
 
 from modefront.errors import Fault, InputError, reason
-from modefront.inputs import file_size
+from modefront.inputs import file_size, fortran
 from modefront.outputs import write_text
 
 NUMBER = re.compile(r"(?<![\w.])[+-]?(?:\d+\.?\d*|\.\d+)(?:[EeDd][+-]?\d+|[+-]\d+)?(?![\w.])")
@@ -55,7 +55,7 @@ class Change:
         """Return the line with its numbers times a factor."""
         out = self.text
         for first, last in reversed(self.spans):
-            out = f"{out[:first]}{_pointed(_value(out[first:last]) * factor)}{out[last:]}"
+            out = f"{out[:first]}{_pointed(fortran(out[first:last]) * factor)}{out[last:]}"
         return out
 
 
@@ -87,7 +87,7 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
     for number, old, new in _different_lines(nominal, run)[1]:
         if old.lstrip().startswith(COMMENTS):
             continue
-        before, after = ([_value(x) for x in NUMBER.findall(text)] for text in (old, new))
+        before, after = ([fortran(x) for x in NUMBER.findall(text)] for text in (old, new))
         if len(before) != len(after) or _rest(NUMBER.sub("#", old)) != _rest(NUMBER.sub("#", new)):
             return None
         for x, y in zip(before, after, strict=True):
@@ -126,7 +126,7 @@ def _scaled(old: str, new: str, factor: float) -> tuple[tuple[int, int], ...]:
         return ()
     spans = []
     for a, b in zip(before, after, strict=True):
-        x, y = _value(a[0]), _value(b[0])
+        x, y = fortran(a[0]), fortran(b[0])
         if x == y:
             continue
         if x == 0 or abs(y / x / factor - 1) > SAME:
@@ -137,11 +137,6 @@ def _scaled(old: str, new: str, factor: float) -> tuple[tuple[int, int], ...]:
 
 def _rest(text: str) -> str:
     return "".join(text.split())
-
-
-def _value(text: str) -> float:
-    text = re.sub("[Dd]", "E", text)
-    return float(re.sub(r"(?<=[\d.])([+-]\d+)$", r"E\1", text))
 
 
 def write_changes(path: Path, changes: Sequence[Change]) -> None:

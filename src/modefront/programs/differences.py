@@ -35,7 +35,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
-from modefront.errors import Fault, InputError
+from modefront.errors import InputError, wrong
 from modefront.linalg.affine import Monomials
 from modefront.models.dofs import DofTable
 from modefront.models.terms import BASE, term_exponents
@@ -143,7 +143,7 @@ class Differences:
             changed = self._changed(run.values)
             expected = f"other matrices than those of '{self.nominal.name}', as {changed}"
             found = "the same: did the run fail, or is the change below the digits of the files?"
-            raise _wrong(run.label, expected, found)
+            raise wrong(run.label, expected, found)
         self.precision = max(self.precision, run.job.precision)
         self._runs.append((run.values, differences))
 
@@ -204,9 +204,9 @@ class Differences:
                     f"at least {of_parameter.size} runs with other values for the terms {terms}"
                 )
                 found = f"{np.linalg.matrix_rank(c[:, of_parameter])} that tell them apart"
-                raise _wrong(f"--parameter {name}", expected, found)
+                raise wrong(f"--parameter {name}", expected, found)
         if c.shape[1] == 0 or np.linalg.matrix_rank(c) < c.shape[1]:
-            raise _wrong("--parameter", f"runs that tell {c.shape[1]} terms apart", f"{len(c)}")
+            raise wrong("--parameter", f"runs that tell {c.shape[1]} terms apart", f"{len(c)}")
 
     def _combined(
         self, weights: Floats, differences: Sequence[Matrix], A: Matrix, noise: float
@@ -220,7 +220,7 @@ class Differences:
     def _term(self, name: str, matrices: Mapping[Quantity, Matrix]) -> Term:
         if not matrices:
             expected = f"a term '{name}' of the stiffness or the mass"
-            raise _wrong("--function" if name not in self.parameters else name, expected, "zeros")
+            raise wrong("--function" if name not in self.parameters else name, expected, "zeros")
         quantity: Quantity = "stiffness" if "stiffness" in matrices else "mass"
         term, A = matrices[quantity], self._matrix(quantity)
         rank = _reduced(term, A, ROUNDING * self.precision)[1]
@@ -243,10 +243,10 @@ class Differences:
                 if quantity in term.matrices:
                     E = E - shift * term.matrices[quantity]
             noise = ROUNDING * max(self.precision, run.job.precision)
-            wrong = _beyond(E.tocsr(), A, noise * max(1.0, float(np.abs(shifts).max(initial=1.0))))
+            far = _beyond(E.tocsr(), A, noise * max(1.0, float(np.abs(shifts).max(initial=1.0))))
             scale = np.abs(change.data).max(initial=0.0)
-            if wrong.nnz and np.abs(wrong.data).max() > AFFINE * scale:
-                raise self._not_affine(run, terms, quantity, wrong, scale)
+            if far.nnz and np.abs(far.data).max() > AFFINE * scale:
+                raise self._not_affine(run, terms, quantity, far, scale)
             greatest = np.abs(A.data).max(initial=0.0) or 1.0
             worst = max(worst, float(np.abs(E.tocsr().data).max(initial=0.0) / greatest))
         return worst
@@ -263,13 +263,13 @@ class Differences:
             k = int(np.argmax(np.abs(entries.data)))
             place = terms.dofs.label(int(entries.row[k]))
             expected = f"only {', '.join(moved)} to differ from '{self.nominal.name}'"
-            return _wrong(run.label, expected, f"other changes of the {quantity}, at {place}")
+            return wrong(run.label, expected, f"other changes of the {quantity}, at {place}")
         names = " and ".join(f"'{name}'" for name in guilty)
         functions = f"--function {guilty[0]}={guilty[0]},{guilty[0]}^3"
         if len(guilty) > 1:
             functions = f"--function {guilty[0]}={'*'.join(guilty)}"
         greatest = float(np.abs(E.data).max() / scale)
-        return _wrong(
+        return wrong(
             run.label,
             f"matrices that are affine in {names} to {AFFINE:g} (or functions of it that are "
             f"declared, as in {functions}, with as many runs)",
@@ -300,7 +300,7 @@ def matching(nominal: Job, job: Job, label: str) -> Ints | None:
     """
     before, after = nominal.dofs, job.dofs
     if before.size != after.size and not (nominal.labelled and job.labelled):
-        raise _wrong(
+        raise wrong(
             label, f"{before.size} degrees of freedom, as '{nominal.name}' has", f"{after.size}"
         )
     if not (nominal.labelled and job.labelled):
@@ -331,10 +331,10 @@ def _unmatched(nominal: Job, job: Job, label: str) -> InputError:
     missing, more = (sorted(tables[a].keys() - tables[b].keys()) for a, b in ((0, 1), (1, 0)))
     expected = f"the degrees of freedom of '{nominal.name}' ({nominal.size})"
     if missing:
-        return _wrong(label, expected, f"none at {nominal.dofs.label(tables[0][missing[0]])}")
+        return wrong(label, expected, f"none at {nominal.dofs.label(tables[0][missing[0]])}")
     if more:
-        return _wrong(label, expected, f"one at {job.dofs.label(tables[1][more[0]])}, {job.size}")
-    return _wrong(label, expected, f"{job.size}, other numbers of them at the same nodes")
+        return wrong(label, expected, f"one at {job.dofs.label(tables[1][more[0]])}, {job.size}")
+    return wrong(label, expected, f"{job.size}, other numbers of them at the same nodes")
 
 
 def reordered(A: Matrix, order: Ints | None) -> Matrix:
@@ -414,7 +414,3 @@ def all_terms(terms: Terms, quantity: Quantity) -> dict[str, Matrix]:
     return out | {
         term.name: term.matrices[quantity] for term in terms.terms if quantity in term.matrices
     }
-
-
-def _wrong(place: str, expected: str, found: str) -> InputError:
-    return InputError(Fault("", place, expected, found))

@@ -16,8 +16,7 @@ import numpy as np
 
 from modefront._typing import Floats, Ints
 from modefront.errors import reason
-from modefront.inputs import ended
-from modefront.programs.base import wrong
+from modefront.inputs import ended, fortran, wrong
 
 COMPLEX = (3, 4)
 """Types of complex numbers in the header."""
@@ -82,7 +81,7 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
     precision = 10.0 ** -_digits([text for each in texts.values() for text in each[: 10**4]])
     for each, labels in rows.items():
         try:
-            values = np.array([real(text) for text in texts[each]])
+            values = np.array([fortran(text) for text in texts[each]])
         except ValueError as error:
             raise wrong(path, "numbers in the fourth field", reason(error)) from None
         table = np.array(labels, dtype=np.intp).reshape(-1, 4)
@@ -95,16 +94,6 @@ def _label(path: Path, place: str, node: str, component: str) -> tuple[int, int]
         return int(node), int(component)
     except ValueError as error:
         raise wrong(path, "nodes and components in fields of 16", reason(error), place) from None
-
-
-def real(text: str) -> float:
-    """Return a number as Nastran writes it: ``1.5``, ``1.5+3``, ``1.5D3``, ``1.5E+3``."""
-    text = text.strip().upper().replace("D", "E")
-    if "E" not in text:
-        sign = max(text.rfind("+"), text.rfind("-"))
-        if sign > 0:
-            text = f"{text[:sign]}E{text[sign:]}"
-    return float(text)
 
 
 def _digits(texts: Sequence[str]) -> int:

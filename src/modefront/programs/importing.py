@@ -7,9 +7,8 @@ import re
 import shutil
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import scipy.sparse
@@ -23,7 +22,7 @@ from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.terms import exponents_of, form_of
 from modefront.outputs import output, write_text
 from modefront.programs import PROGRAMS
-from modefront.programs.base import Job, JobOptions, Program, whole
+from modefront.programs.base import Job, JobOptions, whole
 from modefront.programs.changes import Change, changes, other_factor, write_changes
 from modefront.programs.condense import condensed
 from modefront.programs.differences import (
@@ -47,32 +46,6 @@ SHOWN = 6
 
 BOUNDS = (0.5, 2.0)
 """Bounds of the parameters in the study that is written."""
-
-
-@dataclass(frozen=True)
-class Request:
-    """Jobs, parameters and options of an import.
-
-    Attributes
-    ----------
-    program : who made the jobs
-    nominal : the job at the nominal values
-    runs : name of a parameter and its job, in the order of the command line
-    factors : name of a parameter and its value in its runs, in their order
-    functions : terms of a parameter in place of itself, by its name
-    checks : job and values of parameters in it
-    options : what holds for all jobs
-    modes : frequencies to compute; None for a few, unless the model is large
-    """
-
-    program: Program
-    nominal: Path
-    runs: Sequence[tuple[str, Path]]
-    factors: Sequence[tuple[str, float]] = ()
-    functions: Mapping[str, Sequence[str]] = field(default_factory=dict)
-    checks: Sequence[tuple[Path, Mapping[str, float]]] = ()
-    options: JobOptions = field(default_factory=JobOptions)
-    modes: int | None = None
 
 
 JobFiles = Path | str | Sequence[Path | str]
@@ -160,50 +133,25 @@ def import_model(
         found = suggestion(program, list(PROGRAMS))
         raise InputError(Fault("", "program", f"one of {', '.join(PROGRAMS)}", found))
 
-    def listed(values: Mapping[str, Any], one: tuple[type, ...]) -> list[tuple[str, Any]]:
-        return [
-            (name, value)
-            for name, given in values.items()
-            for value in ([given] if isinstance(given, one) else given)
-        ]
-
-    request = Request(
-        PROGRAMS[program],
-        Path(base),
-        [(name, Path(job)) for name, job in listed(parameters, (str, Path))],
-        listed(factors or {}, (int, float)),
-        functions or {},
-        [(Path(job), values) for job, values in checks],
-        options or JobOptions(),
-        modes,
-    )
-    return replace(read_jobs(request, progress), program=program)
-
-
-def read_jobs(request: Request, progress: Callable[[str], None] = lambda _: None) -> Imported:
-    """Return the terms that the jobs of a request determine.
-
-    Raises InputError for jobs that cannot be read, do not belong together, or are not affine.
-    """
-    names = tuple(dict.fromkeys(name for name, _ in request.runs))
-    terms = _term_names(names, request.functions)
-    values = _values(request, names)
-    progress(f"reading {request.nominal}")
-    nominal = request.program.job(request.nominal, request.options)
+    form, nominal_path, options = PROGRAMS[program], Path(base), options or JobOptions()
+    names, functions = tuple(parameters), functions or {}
+    terms = _term_names(names, functions)
+    runs = _runs(parameters, factors or {}, checks)
+    progress(f"reading {nominal_path}")
+    nominal = form.job(nominal_path, options)
     differences = Differences(nominal, names, terms)
-    for (_, path), theta in zip(request.runs, values, strict=True):
+    for _, path, theta in runs:
         progress(f"reading {path}")
-        job = request.program.job(path, request.options)
-        differences.add(Run(str(path), job, theta))
+        differences.add(Run(str(path), form.job(path, options), theta))
     identified = differences.terms()
     errors = []
-    for path, given in request.checks:
-        progress(f"checking with {path}")
+    for other, given in checks:
+        progress(f"checking with {other}")
         theta = np.array([given.get(name, 1.0) for name in names])
-        job = request.program.job(path, request.options)
-        errors.append(differences.check(identified, Run(str(path), job, theta)))
+        run = Run(str(other), form.job(Path(other), options), theta)
+        errors.append(differences.check(identified, run))
     notes = list(nominal.notes)
-    if request.program.eliminates:
+    if form.eliminates:
         identified, gone, stayed = condensed(identified)
         if gone:
             notes.append(
@@ -214,25 +162,26 @@ def read_jobs(request: Request, progress: Callable[[str], None] = lambda _: None
                 f"{stayed} degrees of freedom of the program are kept, without nodes: they have "
                 "mass, or several terms act on them, so that to eliminate them were not exact"
             )
-    frequencies, floating = _frequencies(identified, request.modes, notes, progress)
-    changed = _changes(request, names, values, notes)
+    frequencies, floating = _frequencies(identified, modes, notes, progress)
+    changed = _changes(nominal_path, runs, notes)
     return Imported(
-        nominal, identified, frequencies, floating, tuple(errors), tuple(notes), changed
+        *(nominal, identified, frequencies, floating, tuple(errors), tuple(notes), changed),
+        program=program,
     )
 
 
 def _changes(
-    request: Request, names: Sequence[str], values: Sequence[Floats], notes: list[str]
+    nominal: Path, runs: Sequence[tuple[str, Path, Floats]], notes: list[str]
 ) -> tuple[Change, ...]:
     """Return the lines of the deck that the first run of each parameter changes.
 
     Notes where decks differ by another factor than the one that is given.
     """
     out: dict[str, list[Change]] = {}
-    for (name, path), theta in zip(request.runs, values, strict=True):
-        factor = float(theta[names.index(name)])
-        out.setdefault(name, changes(name, request.nominal, path, factor))
-        other = other_factor(request.nominal, path, factor)
+    for name, path, theta in runs:
+        factor = float(theta[theta != 1][0])
+        out.setdefault(name, changes(name, nominal, path, factor))
+        other = other_factor(nominal, path, factor)
         if other is not None:
             notes.append(
                 f"{name}: the decks differ by a factor of {other[0]:g} (line {other[1]}), but the "
@@ -261,34 +210,43 @@ def _term_names(names: Sequence[str], functions: Mapping[str, Sequence[str]]) ->
     return list(dict.fromkeys(every))
 
 
-def _values(request: Request, names: Sequence[str]) -> list[Floats]:
-    """Return the values of all parameters in every run."""
-    given: dict[str, list[float]] = {name: [] for name in names}
-    faults = []
-    for name, factor in request.factors:
-        if name not in given:
-            faults.append(Fault("", "--factor", "a parameter", suggestion(name, names)))
-        elif not 0 < factor < np.inf or factor == 1:
-            faults.append(
-                Fault("", f"--factor {name}", "a factor above 0, and not 1", f"{factor:g}")
-            )
-        else:
-            given[name].append(factor)
-    for _, values in request.checks:
-        unknown = [name for name in values if name not in given]
-        faults += [Fault("", "--check", "a parameter", suggestion(x, names)) for x in unknown]
-    refuse(faults)
-    out, taken = [], dict.fromkeys(names, 0)
-    for name, _ in request.runs:
-        count = sum(1 for other, _ in request.runs if other == name)
-        factors = given[name] or ([FACTOR] if count == 1 else [])
-        if len(factors) != count:
-            expected = f"{count} factors, one for each of its runs"
-            raise InputError(Fault("", f"--factor {name}", expected, str(len(given[name]))))
-        theta = np.ones(len(names))
-        theta[names.index(name)] = factors[taken[name]]
-        taken[name] += 1
-        out.append(theta)
+def _runs(
+    parameters: Mapping[str, JobFiles],
+    factors: Mapping[str, float | Sequence[float]],
+    checks: Sequence[tuple[Path | str, Mapping[str, float]]],
+) -> list[tuple[str, Path, Floats]]:
+    """Return parameter, job and values of all parameters of every run."""
+    names = list(parameters)
+    given = {name: [x] if isinstance(x, int | float) else list(x) for name, x in factors.items()}
+    places = [("--factor", name) for name in given]
+    places += [("--check", name) for _, values in checks for name in values]
+    expected = "a factor above 0, and not 1"
+    refuse(
+        [
+            *(
+                Fault("", option, "a parameter", suggestion(name, names))
+                for option, name in places
+                if name not in names
+            ),
+            *(
+                Fault("", f"--factor {name}", expected, f"{factor:g}")
+                for name, each in given.items()
+                for factor in each
+                if name in names and (not 0 < factor < np.inf or factor == 1)
+            ),
+        ]
+    )
+    out = []
+    for k, (name, jobs) in enumerate(parameters.items()):
+        paths = [jobs] if isinstance(jobs, str | Path) else list(jobs)
+        values = given.get(name) or ([FACTOR] if len(paths) == 1 else [])
+        if len(values) != len(paths):
+            expected = f"{len(paths)} factors, one for each of its runs"
+            raise InputError(Fault("", f"--factor {name}", expected, str(len(given.get(name, [])))))
+        for path, factor in zip(paths, values, strict=True):
+            theta = np.ones(len(names))
+            theta[k] = factor
+            out.append((name, Path(path), theta))
     return out
 
 

@@ -5,14 +5,14 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable, Iterator
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import reason
-from modefront.inputs import ended
-from modefront.programs.base import wrong
+from modefront.inputs import ended, wrong
 from modefront.programs.mesh import CORNERS, ProgramMesh, mesh_of, refuse_unknown_nodes
 
 DEEPEST = 20
@@ -45,42 +45,61 @@ _MORE = ("INCLUDE", "NGEN", "NFILL", "NCOPY", "NMAP")
 
 @dataclass
 class Deck:
-    """Nodes, elements and constraints of a deck.
+    """Nodes, elements and constraints of a deck, as they are collected while it is read.
 
     Attributes
     ----------
-    mesh : nodes and elements
-    held : node and direction, from 1, of every support
+    nodes : coordinates by number
+    cells : corners of elements by the type of the cell
+    sets : nodes by the name of their set
+    supports : node or set, first and last direction, from 1
+    elements : numbers
     expanded : nodes of elements that CalculiX makes solids of
     others : nodes of all other elements
-    rigid : nodes of rigid bodies, as far as sets of nodes list them
-    references : reference nodes of rigid bodies and couplings
+    bodies : nodes of rigid bodies, or their sets
+    guides : reference nodes of rigid bodies and couplings, or their sets
     parts : whether nodes are numbered in parts, so that their numbers are not those of matrices
     """
-
-    mesh: ProgramMesh
-    held: frozenset[tuple[int, int]]
-    expanded: frozenset[int]
-    others: frozenset[int]
-    rigid: frozenset[int]
-    references: frozenset[int]
-    parts: bool
-
-
-@dataclass
-class _Content:
-    """Entries collected while a deck is read."""
 
     nodes: dict[int, Floats] = field(default_factory=dict)
     cells: dict[str, list[list[int]]] = field(default_factory=dict)
     sets: dict[str, list[int]] = field(default_factory=dict)
-    held: list[tuple[str, int, int]] = field(default_factory=list)
+    supports: list[tuple[str, int, int]] = field(default_factory=list)
+    elements: set[int] = field(default_factory=set)
     expanded: set[int] = field(default_factory=set)
     others: set[int] = field(default_factory=set)
     bodies: list[str] = field(default_factory=list)
-    references: list[str] = field(default_factory=list)
-    elements: set[int] = field(default_factory=set)
+    guides: list[str] = field(default_factory=list)
     parts: bool = False
+
+    @cached_property
+    def mesh(self) -> ProgramMesh:
+        """Nodes and elements."""
+        return mesh_of(self.nodes, self.cells)
+
+    @cached_property
+    def held(self) -> set[tuple[int, int]]:
+        """Node and direction, from 1, of every support."""
+        return {
+            (node, direction)
+            for name, first, last in self.supports
+            for node in self._nodes_of([name])
+            for direction in range(first, last + 1)
+        }
+
+    @cached_property
+    def rigid(self) -> set[int]:
+        """Nodes of rigid bodies, as far as sets of nodes list them."""
+        return set(self._nodes_of(self.bodies))
+
+    @cached_property
+    def references(self) -> set[int]:
+        """Reference nodes of rigid bodies and couplings."""
+        return set(self._nodes_of(self.guides))
+
+    def _nodes_of(self, names: Iterable[str]) -> Iterator[int]:
+        for name in names:
+            yield from [int(name)] if name.isdigit() else self.sets.get(name.upper(), [])
 
 
 def read_deck(path: Path) -> Deck:
@@ -89,7 +108,7 @@ def read_deck(path: Path) -> Deck:
     Raises OSError where it cannot be read, and InputError for lines of nodes, elements and
     supports that cannot be understood.
     """
-    content = _Content()
+    deck = Deck()
     if not path.is_file():
         raise FileNotFoundError(f"no file {path.name}")
     ended(path)
@@ -97,39 +116,20 @@ def read_deck(path: Path) -> Deck:
     for keyword, options, rows in _blocks(path):
         if take := _TAKEN.get(keyword):
             try:
-                take(content, options, rows)
+                take(deck, options, rows)
             except ValueError as error:
                 expected = f"lines of *{keyword} with all of their numbers"
                 raise wrong(path, expected, reason(error), f"*{keyword}") from None
         elif keyword in ("RIGID BODY", "COUPLING"):
-            content.bodies.append(options.get("NSET", ""))
-            content.references += [options.get(name, "") for name in ("REF NODE", "ROT NODE")]
+            deck.bodies.append(options.get("NSET", ""))
+            deck.guides += [options.get(name, "") for name in ("REF NODE", "ROT NODE")]
         elif keyword in ("PART", "INSTANCE"):
-            content.parts = True
+            deck.parts = True
         elif keyword in _MORE:
             more = True
-    if not content.parts and not more:
-        refuse_unknown_nodes(path, content.nodes, content.expanded | content.others)
-
-    def nodes_of(names: Iterable[str]) -> Iterator[int]:
-        for name in names:
-            yield from [int(name)] if name.isdigit() else content.sets.get(name.upper(), [])
-
-    held = {
-        (node, direction)
-        for name, first, last in content.held
-        for node in nodes_of([name])
-        for direction in range(first, last + 1)
-    }
-    return Deck(
-        mesh_of(content.nodes, content.cells),
-        frozenset(held),
-        frozenset(content.expanded),
-        frozenset(content.others),
-        frozenset(nodes_of(content.bodies)),
-        frozenset(nodes_of(content.references)),
-        content.parts,
-    )
+    if not deck.parts and not more:
+        refuse_unknown_nodes(path, deck.nodes, deck.expanded | deck.others)
+    return deck
 
 
 def deck_of(path: Path, notes: list[str], missing: str = "") -> Deck | None:
@@ -178,18 +178,18 @@ def _keyword(text: str) -> tuple[str, dict[str, str]]:
     return name.strip().upper(), options
 
 
-def _nodes(content: _Content, options: dict[str, str], rows: list[list[str]]) -> None:
+def _nodes(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None:
     for row in rows:
         number = int(row[0])
         point = [float(x) if x else 0.0 for x in row[1:4]]
         if not np.isfinite(point).all():
             raise ValueError(f"{', '.join(row)!r}")
-        content.nodes[number] = np.array(point + [0.0] * (3 - len(point)))
+        deck.nodes[number] = np.array(point + [0.0] * (3 - len(point)))
         if "NSET" in options:
-            content.sets.setdefault(options["NSET"].upper(), []).append(number)
+            deck.sets.setdefault(options["NSET"].upper(), []).append(number)
 
 
-def _elements(content: _Content, options: dict[str, str], rows: list[list[str]]) -> None:
+def _elements(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None:
     if not (name := options.get("TYPE", "").upper()):
         raise ValueError("no TYPE of the elements")
     cell = next((cell for pattern, cell in _TYPES if re.match(pattern, name)), None)
@@ -202,22 +202,22 @@ def _elements(content: _Content, options: dict[str, str], rows: list[list[str]])
             joined.append(numbers[: count + 1] if count else numbers)
             numbers = []
     joined += [numbers] if numbers else []
-    target = content.expanded if _EXPANDED.match(name) else content.others
+    target = deck.expanded if _EXPANDED.match(name) else deck.others
     for number, *nodes in joined:
-        if (count and len(nodes) != count) or (number in content.elements and not content.parts):
+        if (count and len(nodes) != count) or (number in deck.elements and not deck.parts):
             raise ValueError(f"{len(nodes)} nodes of element {number}, or that element again")
-        content.elements.add(number)
+        deck.elements.add(number)
         target.update(n for n in nodes if n)  # ends of networks are 0
         if _MIDDLE.match(name) and len(nodes) == 3:
             nodes = [nodes[0], nodes[2]]
         if cell and len(nodes) >= CORNERS[cell]:
-            content.cells.setdefault(cell, []).append(nodes[: CORNERS[cell]])
+            deck.cells.setdefault(cell, []).append(nodes[: CORNERS[cell]])
 
 
-def _add_set(content: _Content, options: dict[str, str], rows: list[list[str]]) -> None:
+def _add_set(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None:
     if not options.get("NSET") or not rows:
         raise ValueError("no name NSET of the set, or no nodes in it")
-    chosen = content.sets.setdefault(options["NSET"].upper(), [])
+    chosen = deck.sets.setdefault(options["NSET"].upper(), [])
     for row in rows:
         items = [x for x in row if x]
         if "GENERATE" in options and all(x.isdigit() for x in items) and len(items) > 1:
@@ -227,21 +227,21 @@ def _add_set(content: _Content, options: dict[str, str], rows: list[list[str]]) 
         for item in items:
             if not (item.isdigit() or item[0].isalpha() or item[0] in '_"'):
                 raise ValueError(f"{item!r} in place of a node or the name of a set")
-            chosen += [int(item)] if item.isdigit() else content.sets.get(item.upper(), [])
+            chosen += [int(item)] if item.isdigit() else deck.sets.get(item.upper(), [])
 
 
-def _boundary(content: _Content, _: dict[str, str], rows: list[list[str]]) -> None:
+def _boundary(deck: Deck, _: dict[str, str], rows: list[list[str]]) -> None:
     named = {"ENCASTRE": (1, 6), "PINNED": (1, 3)}
     for row in rows:
         if len(row) < 2 or not (row[1].isdigit() or row[1][:1].isalpha()):
             raise ValueError(f"{', '.join(row)!r}")
         if row[1].upper() in named:
-            content.held.append((row[0], *named[row[1].upper()]))
+            deck.supports.append((row[0], *named[row[1].upper()]))
             continue
         last = row[2] if len(row) > 2 and row[2] else row[1]
         value = row[3] if len(row) > 3 else ""
         if row[1].isdigit() and last.isdigit() and not value.strip("0.+-eE "):
-            content.held.append((row[0], int(row[1]), min(int(last), 6)))
+            deck.supports.append((row[0], int(row[1]), min(int(last), 6)))
 
 
 _TAKEN = {"NODE": _nodes, "ELEMENT": _elements, "NSET": _add_set, "BOUNDARY": _boundary}

@@ -15,8 +15,9 @@ import numpy as np
 
 from modefront._typing import Bools, Ints
 from modefront.errors import reason
+from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
-from modefront.programs.base import JobOptions, Matrix, whole, wrong
+from modefront.programs.base import JobOptions, Matrix, whole
 from modefront.programs.bulk import Bulk, read_bulk
 from modefront.programs.dmig import DmigMatrix, read_dmig
 from modefront.programs.mesh import ProgramMesh

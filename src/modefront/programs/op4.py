@@ -22,8 +22,7 @@ from pathlib import Path
 import numpy as np
 
 from modefront.errors import reason
-from modefront.inputs import counted
-from modefront.programs.base import wrong
+from modefront.inputs import counted, wrong
 from modefront.programs.reading import Entries, fixed_width
 
 STRING = 65536

@@ -14,10 +14,10 @@ from typing import Any
 import numpy as np
 
 from modefront.errors import reason
-from modefront.inputs import ended, once
+from modefront.inputs import ended, once, wrong
 from modefront.models.dofs import read_dofs
 from modefront.models.files import read_entries
-from modefront.programs.base import JobOptions, wrong
+from modefront.programs.base import JobOptions
 from modefront.programs.mesh import ProgramMesh, mesh_of, refuse_unknown_nodes
 from modefront.programs.reading import Entries, Listed, existing
 

@@ -8,7 +8,6 @@ are whole, finite and symmetric, and without what is held.
 from __future__ import annotations
 
 import importlib
-import re
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -19,10 +18,10 @@ import scipy.sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.errors import reason
-from modefront.inputs import ended, file_size, first_repeated
+from modefront.inputs import ended, file_size, first_repeated, fortran, wrong
 from modefront.isolated import Read
 from modefront.models.dofs import DofTable, read_dofs
-from modefront.programs.base import JobOptions, Matrix, wrong
+from modefront.programs.base import JobOptions, Matrix
 from modefront.programs.mesh import ProgramMesh, arrays_of
 from modefront.rounding import LARGEST, SYMMETRY
 
@@ -194,10 +193,6 @@ def existing(path: Path, expected: str, advice: str) -> Path:
     raise wrong(path, f"{expected} ({advice})", "an empty one")
 
 
-BARE = re.compile(rb"(\d)([+-]\d{3})$")
-"""An exponent of three digits, as Fortran writes it."""
-
-
 def coordinates(path: Path) -> Entries:
     """Return the entries of a file of lines ``row column value``, counted from 1.
 
@@ -243,5 +238,5 @@ def fixed_width(text: bytes, width: int) -> Floats:
     try:
         out: Floats = array.astype(float)
     except ValueError:
-        out = np.array([float(BARE.sub(rb"\1E\2", field)) for field in array.tolist()])
+        out = np.array([fortran(field.decode("latin-1")) for field in array.tolist()])
     return out
