@@ -28,7 +28,7 @@ def test_the_example_gives_the_modal_data_it_comes_with(tmp_path: Path) -> None:
     np.testing.assert_allclose(result.shape, kept.shape, atol=1e-5)
     assert (result.frequency_std > 0).all()
     assert (result.shape_std > 0).all()
-    assert "residual of each function" in text
+    assert "next: modefront identify" in text
     report = json.loads((tmp_path / "again-identification.json").read_text())
     assert [len(identified["modes"]) for identified in report["sets"]] == [3, 3, 3]
 
@@ -62,3 +62,27 @@ def test_wrong_input_is_named(tmp_path: Path, arguments: list[str], message: str
     write_example("hammer-test", tmp_path)
     with pytest.raises(InputError, match=message):
         _invoke(tmp_path / "test-m0.toml", *arguments)
+
+
+def test_modes_are_chosen_by_hand(tmp_path: Path) -> None:
+    write_example("hammer-test", tmp_path)
+    test, output = tmp_path / "test-m0.toml", tmp_path / "o.csv"
+    _invoke(test, "-o", output, "--keep", "1,2", "--drop", "1", "--seed", "18.5")
+    found = read_csv(output)
+    assert found.frequency.shape == (3, 1)
+    report = json.loads((tmp_path / "o-identification.json").read_text())
+    assert "left out by hand" in [x["reason"] for x in report["sets"][0]["rejected"]]
+    with pytest.raises(InputError, match="numbers of modes, from 1 to 3"):
+        _invoke(test, "-o", output, "--drop", "9")
+    with pytest.raises(InputError, match="frequencies within the band"):
+        _invoke(test, "-o", output, "--seed", "900")
+
+
+def test_a_mode_at_a_seed_stays_and_is_flagged(tmp_path: Path) -> None:
+    write_example("hammer-test", tmp_path)
+    functions, output = tmp_path / "m0-set1-floor3.csv", tmp_path / "o.csv"
+    _invoke(functions, "-o", output, "--seed", "9,4.7")
+    report = json.loads((tmp_path / "o-identification.json").read_text())
+    (modes,) = [each["modes"] for each in report["sets"]]
+    assert len(modes) == 4
+    assert any("kept by hand" in flag for mode in modes for flag in mode["flags"])

@@ -1,10 +1,9 @@
-"""``modefront identify``: tables and warnings of an identification."""
+"""``modefront identify``: the table of modes, what to look at, and the next command."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
-
-import numpy as np
 
 from modefront.cli.layout import Screen
 from modefront.cli.terminal import say
@@ -12,40 +11,50 @@ from modefront.errors import UnfinishedError
 from modefront.identification.modal_test import IdentifiedTest, identify, writable
 from modefront.identification.sets import CombinedModes
 
-WORST = 10
-"""Functions whose residuals are listed: those that are fitted worst; a file beside holds all."""
+MOST_FINDINGS = 8
+"""Lines of what to look at; a file beside holds all."""
 
 
+# 7 arguments: the options of the command.
 def run_identify(
-    path: Path, output: Path, band: tuple[float, float] | None, figures: Path | None
+    path: Path,
+    output: Path,
+    band: tuple[float, float] | None,
+    figures: Path | None,
+    *,
+    keep: Sequence[int] = (),
+    drop: Sequence[int] = (),
+    seeds: Sequence[float] = (),
 ) -> None:
     """Identify the modes of a test and write them; print what was found.
 
     Raises InputError where the input is wrong, and UnfinishedError where no mode was found.
     """
     writable(output)
-    test = identify(path, band)
+    test = identify(path, band, keep=keep, drop=drop, seeds=seeds)
     screen = Screen.of_output()
     written = [] if test.modes is None else test.write(output)
     if figures is not None:
         from modefront.plots.identification import write_figures
 
         written += write_figures(test.names, test.identified, figures)
-    for text in test.warnings:
-        say(f"warning: {text}", err=True)
-    for name, identification in zip(test.names, test.identified, strict=True):
-        rejected = [
-            [pole.reason, f"{pole.frequency:.6g}", f"{100 * pole.damping:.3g}"]
-            for pole in identification.rejected
-        ]
-        screen.table(f"rejected, set {name}", ["why", "frequency Hz", "damping %"], rejected)
     if test.modes is not None:
         _print_modes(screen, test, test.modes)
-        _print_residuals(screen, test)
+    findings = test.warnings
+    more = len(findings) > MOST_FINDINGS
+    for text in findings[: MOST_FINDINGS - more]:
+        say(f"warning: {text}", err=True)
+    if more:
+        rest = len(findings) - MOST_FINDINGS + 1
+        say(f'and {rest} more warnings: "warnings" in …-identification.json', err=True)
     for file in written:
         say(f"wrote {file}")
     if test.modes is None:
-        raise UnfinishedError("no mode was found in the band; what was rejected is listed above")
+        raise UnfinishedError("no mode was found in the band: is it right? --seed places modes")
+    if figures is None:
+        say(f"next: modefront identify {path} -o {output} --figures pictures, and look at them")
+    else:
+        say(f'next: [data] file = "{output}" in study.toml, then modefront check study.toml')
 
 
 def _print_modes(screen: Screen, test: IdentifiedTest, modes: CombinedModes) -> None:
@@ -53,42 +62,23 @@ def _print_modes(screen: Screen, test: IdentifiedTest, modes: CombinedModes) -> 
     for k, name in enumerate(test.names):
         for r, number in enumerate(modes.index[k]):
             if number < 0:
-                rows.append([name, str(r + 1), "not found", *[""] * 5])
+                rows.append([name, str(r + 1), "not found", *[""] * 7])
                 continue
-            shape = test.identified[k].modes[number].shape
+            mode = test.identified[k].modes[number]
+            evidence = mode.evidence
             rows.append(
                 [
                     name,
-                    str(r + 1),
+                    str(r + 1) + " !" * bool(evidence.flags),
                     f"{modes.frequency[k, r]:.6g}",
                     f"{modes.frequency_std[k, r]:.2g}",
                     f"{100 * modes.damping[k, r]:.4g}",
                     f"{100 * modes.damping_std[k, r]:.2g}",
-                    f"{shape.collinearity:.4f}",
-                    f"{shape.loss:.2%}",
+                    f"{evidence.gain:.1f}" if evidence.gain < 10 else f"{evidence.gain:.0f}",
+                    f"{evidence.support:.0%}",
+                    f"{evidence.visibility:.0%}",
+                    f"{mode.shape.collinearity:.2f}",
                 ]
             )
-    columns = ["frequency Hz", "std", "damping %", "std", "MPC", "real shape loses"]
+    columns = ["frequency Hz", "std", "damping %", "std", "evidence", "orders", "seen", "MPC"]
     screen.table("modes", ["set", "mode", *columns], rows, keys=2)
-    for r, (f, zeta) in enumerate(modes.spread):
-        if f or zeta:
-            screen.say(
-                f"mode {r + 1}: the sets differ by more than their own standard deviations: "
-                f"{f:.2g} Hz, damping {100 * zeta:.2g} % between sets are included"
-            )
-
-
-def _print_residuals(screen: Screen, test: IdentifiedTest) -> None:
-    listed = []
-    for name, each in zip(test.names, test.identified, strict=True):
-        for (j, i), share in np.ndenumerate(each.functions.residuals.share):
-            shown = f"{share:.2%}" if np.isfinite(share) else "not measured"
-            functions = [name, each.functions.data.references[j], each.responses[i], shown]
-            listed.append((float(np.nan_to_num(share)), functions))
-    listed.sort(key=lambda row: -row[0])
-    title = "residual of each function over its norm, the greatest first"
-    columns = ["set", "reference", "response", "residual"]
-    screen.table(title, columns, [row for _, row in listed[:WORST]], keys=3)
-    rest = len(listed) - WORST
-    if rest > 0:
-        screen.say(f"and {rest} smaller ones: all are in the file …-identification.json")

@@ -34,6 +34,23 @@ OK, UNDONE, WRONG_INPUT, INTERRUPTED = 0, 1, 2, 130
 """Exit statuses; 130 is that of shells for an interrupt."""
 
 
+class Numbers(click.ParamType[Any]):
+    """Numbers with commas between them."""
+
+    name = "numbers"
+
+    def __init__(self, kind: type[int] | type[float]) -> None:
+        """Take the kind of the numbers."""
+        self.kind = kind
+
+    def convert(self, value: Any, param: Any, ctx: Any) -> tuple[float, ...]:
+        """Return the numbers; a word that is none is wrong usage."""
+        try:
+            return tuple(self.kind(word) for word in str(value).split(","))
+        except ValueError:
+            self.fail(f"expected numbers with commas between them, found {value!r}", param, ctx)
+
+
 @click.group(invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="modefront")
 @click.pass_context
@@ -263,15 +280,24 @@ def report(directories: tuple[Path, ...], output: Path | None, figures: Path | N
     type=click.Path(path_type=Path),
     help="Folder for the stabilisation diagram, the synthesised functions and the auto-MAC.",
 )
+@click.option("--keep", type=Numbers(int), metavar="1,2,…", help="Modes that stay, of the table.")
+@click.option("--drop", type=Numbers(int), metavar="7,…", help="Modes that do not stay.")
+@click.option(
+    "--seed",
+    "seeds",
+    type=Numbers(float),
+    metavar="4.6,13.8",
+    help="Frequencies in Hz at which there is to be a mode, whatever its evidence.",
+)
 def identify(
-    test: Path, output: Path, band: tuple[float, float] | None, figures: Path | None
+    test: Path, output: Path, band: tuple[float, float] | None, figures: Path | None, **chosen: Any
 ) -> None:
     """Turn the frequency response functions of TEST into modal data."""
     from modefront.cli.identify import run_identify
 
     if band and band[0] >= band[1]:
         raise click.UsageError(f"--band: expected LOW below HIGH, found {band[0]:g} {band[1]:g}")
-    run_identify(test, output, band, figures)
+    run_identify(test, output, band, figures, **{k: v or () for k, v in chosen.items()})
 
 
 @cli.command("import")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -20,7 +20,7 @@ from modefront.data.uff import write_uff55
 from modefront.errors import Fault, InputError, UnfinishedError
 from modefront.identification.methods.hammer import LEAST_LINES
 from modefront.identification.methods.hammer import identify as identify_set
-from modefront.identification.record import Identification
+from modefront.identification.record import Identification, Rejected
 from modefront.identification.sets import CombinedModes, combine, modal_data_of
 from modefront.outputs import write_text
 
@@ -60,14 +60,32 @@ class IdentifiedTest:
 
     @property
     def warnings(self) -> list[str]:
-        """What is to be looked at: in the files, and in the fit of each data set."""
+        """What is to be looked at: in the modes, the files, and the fit of each data set."""
+        modes = [
+            f"mode {r + 1} of set {name!r}: {'; '.join(each.modes[k].evidence.flags)}"
+            for name, each, of_set in zip(
+                self.names, self.identified, self.modes.index if self.modes else (), strict=False
+            )
+            for r, k in enumerate(of_set)
+            if k >= 0 and each.modes[k].evidence.flags
+        ]
+        spread = (
+            []
+            if self.modes is None
+            else [
+                f"mode {r}: the sets differ by more than their own standard deviations: "
+                f"{f:.2g} Hz, damping {100 * zeta:.2g} % between sets are included"
+                for r, (f, zeta) in enumerate(self.modes.spread, 1)
+                if f or zeta
+            ]
+        )
         read = [text for part in self.test.sets for text in part.assembled.warnings]
         fitted = [
             f"set {name!r}: {text}"
             for name, identification in zip(self.names, self.identified, strict=True)
             for text in _warnings(identification)
         ]
-        return read + fitted
+        return modes + spread + read + fitted
 
     def write(self, path: Path | str) -> list[Path]:
         """Write modal data, in ``.uff`` as dataset 55, and all else beside it; return the files.
@@ -97,7 +115,7 @@ class IdentifiedTest:
             {"name": name} | _plain_set(identification)
             for name, identification in zip(self.names, self.identified, strict=True)
         ]
-        return {"test": self.test.name, "sets": sets}
+        return {"test": self.test.name, "warnings": self.warnings, "sets": sets}
 
     def __repr__(self) -> str:
         """Return the modes, a line each, and the first warnings."""
@@ -119,7 +137,14 @@ class IdentifiedTest:
     _repr_html_ = as_html
 
 
-def identify(test: Path | str, band: tuple[float, float] | None = None) -> IdentifiedTest:
+def identify(
+    test: Path | str,
+    band: tuple[float, float] | None = None,
+    *,
+    keep: Sequence[int] = (),
+    drop: Sequence[int] = (),
+    seeds: Sequence[float] = (),
+) -> IdentifiedTest:
     """Return the modes of a modal test.
 
     Parameters
@@ -128,20 +153,59 @@ def identify(test: Path | str, band: tuple[float, float] | None = None) -> Ident
         File of the test: TOML, a universal file, or CSV with frequency response functions.
     band
         Least and greatest frequency in Hz; that of the test file, or all lines, unless given.
+    keep, drop
+        Numbers of the modes that stay alone, and that do not, by the table without these options.
+    seeds
+        Frequencies in Hz at which there is to be a mode, whatever its evidence.
 
     Raises
     ------
     InputError
-        For files that are wrong, and for a band without lines or functions.
+        For files that are wrong, a band without lines or functions, modes that are none.
     """
     path = Path(test)
     read = read_test(path)
     band = band or read.band
     _check_band(path, read, band)
-    identified = tuple(identify_set(part.assembled.data, band, read.modes) for part in read.sets)
+    low, high = band or (0.0, np.inf)
+    for f in seeds:
+        if not low <= f <= high:
+            expected = f"frequencies within the band, {low:g} to {high:g} Hz"
+            raise InputError(Fault(str(path), "--seed", expected, f"{f:g}"))
+    identified = [identify_set(part.assembled.data, band, read.modes, seeds) for part in read.sets]
     names = [part.name for part in read.sets]
-    found = any(identification.modes for identification in identified)
-    return IdentifiedTest(read, identified, combine(names, identified) if found else None)
+    if (keep or drop) and any(each.modes for each in identified):
+        identified = _chosen(path, identified, combine(names, identified).index, keep, drop)
+    found = any(each.modes for each in identified)
+    return IdentifiedTest(read, tuple(identified), combine(names, identified) if found else None)
+
+
+def _chosen(
+    path: Path,
+    identified: Sequence[Identification],
+    index: Sequence[Sequence[int]],
+    keep: Sequence[int],
+    drop: Sequence[int],
+) -> list[Identification]:
+    """Return the identifications with the modes that were chosen; the others stay in the fits."""
+    count = len(index[0])
+    for option, numbers in (("--keep", keep), ("--drop", drop)):
+        for number in numbers:
+            if not 1 <= number <= count:
+                expected = f"numbers of modes, from 1 to {count}"
+                raise InputError(Fault(str(path), option, expected, str(number)))
+    chosen = set(keep or range(1, count + 1)) - set(drop)
+    out = []
+    for each, of_set in zip(identified, index, strict=True):
+        kept = {of_set[number - 1] for number in chosen}
+        modes = tuple(mode for k, mode in enumerate(each.modes) if k in kept)
+        gone = [
+            Rejected(float(mode.frequency), float(mode.damping), "left out by hand")
+            for k, mode in enumerate(each.modes)
+            if k not in kept
+        ]
+        out.append(replace(each, modes=modes, rejected=(*each.rejected, *gone)))
+    return out
 
 
 def writable(path: Path | str) -> Path:
@@ -249,6 +313,10 @@ def _plain_set(identification: Identification) -> dict[str, Any]:
                 "phase_collinearity": mode.shape.collinearity,
                 "loss": mode.shape.loss,
                 "participation": _pairs(mode.participation),
+                "evidence": mode.evidence.gain,
+                "support": mode.evidence.support,
+                "visibility": mode.evidence.visibility,
+                "flags": list(mode.evidence.flags),
             }
             for mode in identification.modes
         ],

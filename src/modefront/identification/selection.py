@@ -245,6 +245,23 @@ def standing_out(
     return lam[chosen], L[chosen]
 
 
+def seeded(task: Problem, fit: Fit, omega: Floats) -> tuple[Complexes, Complexes]:
+    """Return the poles of a fit and one at each frequency that lies in no bandwidth of theirs.
+
+    Also returns their participation factors; the damping is that which explains most of the
+    residuals.
+    """
+    lam, gain, factors = explained(task, task.H - synthesise(task, fit.model))
+    out, L = fit.model.lam, fit.model.L
+    for each in omega:
+        if (np.abs(np.abs(out) - each) < -out.real).any():
+            continue
+        near = np.where(np.abs(lam.imag - each) <= -lam.real, gain, -1.0).argmax()
+        out = np.append(out, complex(lam[near].real, each))
+        L = np.vstack([L, factors[near]])
+    return out, L
+
+
 def alike(pole: complex, others: Complexes) -> Floats:
     """Return the squared correlation of a pole's function with those of others."""
     out: Floats = 4 * pole.real * others.real / np.abs(pole + others.conj()) ** 2

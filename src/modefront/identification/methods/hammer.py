@@ -77,11 +77,13 @@ def identify(
     data: FrequencyResponses,
     band: tuple[float, float] | None = None,
     modes: int | None = None,
+    seeds: Sequence[float] = (),
 ) -> Identification:
     """Return the modes of one data set within a band in Hz, by default all of it.
 
-    ``modes`` is their number where it is known. Raises ValueError where the band has too few lines
-    or nothing was measured in it.
+    ``modes`` is their number where it is known; ``seeds`` are frequencies in Hz at which a mode is
+    kept whatever its evidence. Raises ValueError where the band has too few lines or nothing was
+    measured in it.
     """
     data = data.within(*(band or (0.0, np.inf)))
     if len(data.frequency) < LEAST_LINES:
@@ -110,6 +112,9 @@ def identify(
         fit = selection.backward(task, last, selection.needed(task), modes)
         if fit is last:
             break
+    if len(seeds):
+        start = selection.seeded(task, fit, 2 * np.pi * np.array(seeds) / omega)
+        fit = selection.refit(task, *start, *fine)
     return _result(_Solution(data, task, fit, omega, size, diagram))
 
 
@@ -307,13 +312,15 @@ def _evidence(
 ) -> list[Evidence]:
     """Return what speaks for every mode; only those that are ``kept`` are neighbours."""
     task, fit = solution.task, solution.fit
-    gain = selection.gains(task, fit)
+    gain, least = selection.gains(task, fit), selection.needed(task)
     shares = support(solution.diagram, fit.model.lam * solution.omega, gain)
     visible, mac = _visibility(task, fit), auto_mac(fit.model.phi)
     spacing = float(np.median(np.diff(solution.data.frequency)))
     out = []
     for r, mode in enumerate(estimates):
         flags = []
+        if gain[r] < least:
+            flags.append("kept by hand: noise alone may explain as much")
         if shares[r] < FEW:
             flags.append(f"on {shares[r]:.0%} of the orders")
         if visible[r] < VISIBLE:
@@ -331,7 +338,6 @@ def _evidence(
                     f"shape of {other:.5g} Hz (MAC {mac[r, k]:.2f}): one peak split in two, or "
                     "sensors that cannot tell them apart"
                 )
-        least = selection.needed(task)
         out.append(Evidence(gain[r] / least, shares[r], visible[r], tuple(flags)))
     return out
 
