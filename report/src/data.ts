@@ -67,6 +67,10 @@ export interface Front {
   macStd: Row[] | null;
   posterior: { theta: Row; frequency: Row; mac: Row } | null;
   bounds: Row[];
+  /** Ends of the 90 % interval of each parameter. */
+  interval: Row[] | null;
+  /** Error that is expected of each group. */
+  noise: Row;
   measured: Row;
   measuredStd: Row;
   ends: Row[];

@@ -33,8 +33,8 @@ function page(report: Report): void {
     const tables = tablesView(state);
     tables.classList.add("wide");
     views.replaceChildren(
-      h("div", { class: "column" }, ...left, below[0]),
-      h("div", { class: "column" }, ...right, ...below.slice(1)),
+      h("div", { class: "column" }, ...left, below[2]),
+      h("div", { class: "column" }, ...right, ...below.slice(0, 2)),
       ...(predictions ? [predictions] : []),
       tables,
     );
@@ -61,6 +61,7 @@ function page(report: Report): void {
     node,
   );
   keys(state);
+  printing();
   state.tell();
 }
 
@@ -144,6 +145,25 @@ function walker(state: State): HTMLElement {
   );
 }
 
+/** Opens all that is folded before the page is printed, makes tables fit, and undoes it after. */
+function printing(): void {
+  const WIDTH = 600; // of what A4 shows, in px
+  let opened: HTMLDetailsElement[] = [];
+  const tables = (): HTMLTableElement[] => [...document.querySelectorAll<HTMLTableElement>(".scroll table")];
+  window.addEventListener("beforeprint", () => {
+    opened = [...document.querySelectorAll<HTMLDetailsElement>("details:not([open])")];
+    for (const details of opened) {
+      details.open = true;
+      details.dispatchEvent(new Event("toggle")); // what is filled when it is opened, is filled now
+    }
+    for (const table of tables()) table.style.zoom = String(Math.min(1, WIDTH / table.scrollWidth));
+  });
+  window.addEventListener("afterprint", () => {
+    opened.forEach((details) => (details.open = false));
+    for (const table of tables()) table.style.zoom = "";
+  });
+}
+
 /** Arrow keys walk along the front wherever they mean nothing else; Escape clears selections. */
 function keys(state: State): void {
   document.addEventListener("keydown", (event) => {
@@ -165,15 +185,18 @@ function summary(state: State): HTMLElement {
   for (const { heading, sentences } of front.words) {
     const [first, ...rest] = sentences;
     if (first === undefined) continue;
-    const isList = sentences.length > 1 || heading !== "";
+    if (!heading) {
+      view.append(h("div", { class: "answer" }, ...sentences.map((text) => h("p", {}, text))));
+      continue;
+    }
     const count = shown(sentences);
     const list = (some: string[]): HTMLElement => h("ul", {}, ...some.map((text) => h("li", {}, text)));
     view.append(
       h(
         "div",
         { class: "topic" },
-        heading ? h("h3", {}, heading) : null,
-        isList ? list([first, ...rest].slice(0, count)) : h("p", {}, first),
+        h("h3", {}, heading),
+        list([first, ...rest].slice(0, count)),
         sentences.length > count
           ? h(
               "details",
@@ -185,6 +208,9 @@ function summary(state: State): HTMLElement {
       ),
     );
   }
+  view.append(
+    h("p", { class: "note" }, "What each sentence means, and what to do: docs/findings.md of modefront."),
+  );
   return view;
 }
 

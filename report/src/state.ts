@@ -18,7 +18,7 @@ export class State {
   private readonly studies: (() => void)[] = [];
 
   constructor(readonly report: Report) {
-    this.point = nearestOnFront(this.current, this.current.reference);
+    this.point = this.current.reference;
   }
 
   /** The study at hand. */

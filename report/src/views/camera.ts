@@ -6,7 +6,7 @@ export class Camera {
   elevation = 0.32;
   zoom = 1;
   /** Room about the body, over its size. */
-  room = 1.08;
+  room = 1;
 
   constructor(
     readonly centre: [number, number, number],

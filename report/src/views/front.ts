@@ -96,6 +96,9 @@ export function frontView(state: State, aspiration: Aspiration, tip: Tip): HTMLE
       { class: "lede" },
       "Every mark is a model. e = √(J / a) is the relative error of a group of a measured properties; ",
       `better models lie towards the ${groups.length === 2 ? "lower left" : "left"}. `,
+      state.current.noise.every((x) => x !== null)
+        ? "Within the shaded field, models differ from the reference by less than noise. "
+        : "",
       "Click a model, or drag across the chart to select a range.",
     ),
     controls,

@@ -14,12 +14,20 @@ export function parametersView(state: State, tip: Tip): HTMLElement {
   const rows = front.parameters.map((name, j): Strip => {
     const std = (i: number): number | null =>
       (i === front.reference ? front.posterior?.theta[j] : null) ?? front.thetaStd?.[i]?.[j] ?? null;
+    const [low, high] = front.interval?.[j] ?? [null, null];
+    const interval: [number, number] | null = low === null || high === null ? null : [low, high];
+    const [from, to] = front.bounds[j];
     return {
       name,
       value: (i) => front.theta[i][j],
-      std,
+      std: (i) => (interval && i === front.reference ? null : std(i)),
+      domain: from === null || to === null ? undefined : [from, to],
+      interval,
       text: (i) => {
         const value = number(front.theta[i][j], 4);
+        if (interval && i === front.reference) {
+          return `${value} (${number(interval[0], 3)}–${number(interval[1], 3)})`;
+        }
         const scatter = std(i);
         if (scatter === null) return value;
         return Number.isFinite(scatter) ? `${value} ± ${number(scatter, 2)}` : `${value}, open`;
@@ -45,7 +53,11 @@ export function parametersView(state: State, tip: Tip): HTMLElement {
     h(
       "p",
       { class: "lede" },
-      "Short lines are points of the front, the dot is the chosen model",
+      "Each line goes from bound to bound. ",
+      front.interval
+        ? `The broad one is the 90 % interval of the data around ${front.label[front.reference]}; s`
+        : "S",
+      "hort ones are points of the front, the dot is the chosen model",
       hasStd
         ? ", ± its standard deviation by errors of the data; “open” is what no data determine."
         : ". Nothing is known of the errors of the data, so there are no standard deviations.",

@@ -30,12 +30,24 @@ export function scatter(state: State, options: Options): { svg: SVGSVGElement; u
   const isLog = state.scale === "log";
   const value = (front: Front, i: number, axis: 0 | 1): number | null =>
     front[state.quantity][i][groups[axis]];
+  /** Values about the reference that differ from it by less than noise, half of what is expected. */
+  const noise = (axis: 0 | 1): [number, number] | null => {
+    const front = state.current;
+    const expected = front.noise[groups[axis]];
+    const at = front.error[front.reference]?.[groups[axis]];
+    if (expected === null || at === null || at === undefined || !Number.isFinite(expected)) return null;
+    const ends = [Math.max(isLog ? 0.01 * at : 0, at - expected / 4), at + expected / 4];
+    return ends.map((e) =>
+      state.quantity === "error" ? e : fromError(front, groups[axis], e),
+    ) as [number, number];
+  };
   const axes = ([0, 1] as const).map((axis) => {
     const range: [number, number] =
       axis === 0
         ? [margin.left, width - margin.right]
         : [height - margin.bottom, margin.top];
-    return scale(shown(fronts, (front, i) => value(front, i, axis), isLog), range, state.scale);
+    const near = shown(fronts, (front, i) => value(front, i, axis), isLog);
+    return scale([...near, ...(noise(axis) ?? [])], range, state.scale);
   }) as [Scale, Scale];
   const [x, y] = axes;
   const symbol = state.quantity === "error" ? "error of" : "J of";
@@ -51,6 +63,14 @@ export function scatter(state: State, options: Options): { svg: SVGSVGElement; u
     bottom(x, height - margin.bottom, margin.top, names[0]),
     left(y, margin.left, width - margin.right, names[1]),
   );
+  const [across, along] = [noise(0), noise(1)];
+  if (across && along) {
+    const [x0, x1] = across.map((v) => x(v));
+    const [y1, y0] = along.map((v) => y(v));
+    svg.append(
+      s("rect", { class: "band", x: x0, y: y0, width: Math.max(3, x1 - x0), height: Math.max(3, y1 - y0) }),
+    );
+  }
   const brushes = s("g", { class: "brush" });
   const lines = s("g", { class: "lines" });
   const marks = s("g", {});

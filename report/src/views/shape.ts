@@ -25,7 +25,7 @@ export function shapeView(state: State): HTMLElement {
   const geometry = front.geometry ?? row(front);
   const body = solid(geometry);
   const camera = new Camera(body.centre, body.radius);
-  if (geometry.kind === "chain") camera.room = 1.25; // for arrows beside the floors
+  if (geometry.kind === "chain") camera.room = 1.02; // names of sensors stand beside the floors
   if (geometry.kind === "sensors") {
     camera.azimuth = -Math.PI / 2;
     camera.elevation = 0;
@@ -328,7 +328,7 @@ export function shapeView(state: State): HTMLElement {
   sized(stage, (w) => {
     width = w;
     panelWidth = Math.floor(w / 2);
-    height = Math.max(220, Math.min(420, Math.round(0.95 * panelWidth)));
+    height = Math.max(220, Math.min(560, Math.round(1.08 * panelWidth)));
     stage.style.height = `${height}px`;
     draw();
   });

@@ -1,6 +1,7 @@
 // Rows of strips: a value of every model on each, the chosen one joined across the rows.
 
 import { brushX, type D3BrushEvent } from "d3-brush";
+import { scaleLinear } from "d3-scale";
 import { select } from "d3-selection";
 import { scale, ticks, type Scale } from "../axes";
 import { s } from "../dom";
@@ -20,6 +21,10 @@ export interface Strip {
   /** Text beside the strip for a point. */
   text: (point: number) => string;
   log?: boolean;
+  /** Ends of the axis; those of the values unless given. */
+  domain?: [number, number];
+  /** Ends of an interval that is drawn as a broad line. */
+  interval?: [number, number] | null;
 }
 
 interface Options {
@@ -49,7 +54,9 @@ export function strips(
   const narrow = options.width < 460;
   const longest = Math.max(8, ...rows.map((row) => row.name.length));
   const most = narrow ? 92 : Math.max(112, 0.3 * options.width);
-  const margin = { left: Math.min(most, 20 + LETTER * longest), right: narrow ? 92 : 150, top: 8 };
+  const widest = Math.max(8, ...rows.flatMap((row) => points.map((i) => row.text(i).length)));
+  const right = Math.min(14 + 6.8 * widest, 0.45 * options.width);
+  const margin = { left: Math.min(most, 20 + LETTER * longest), right, top: 8 };
   const names = rows.map((row) => wrapped(row.name, Math.floor((margin.left - 16) / LETTER)));
   const high = Math.max(ROW, ...names.map((lines) => LINE * lines.length + 8));
   const height = margin.top + rows.length * high + (options.shared ? 30 : 8);
@@ -61,7 +68,9 @@ export function strips(
       ...(options.shared ? [0] : []),
     ]);
   const axes: Scale[] = rows.map((row) =>
-    scale(pool(options.shared ? rows : [row]), span, row.log ? "log" : "linear"),
+    row.domain
+      ? scaleLinear(row.domain, span)
+      : scale(pool(options.shared ? rows : [row]), span, row.log ? "log" : "linear"),
   );
   const svg = s("svg", {
     width: options.width,
@@ -88,7 +97,20 @@ export function strips(
       g.append(s("rect", { class: "band", x: a, y: y - 13, width: Math.max(1, b - a), height: 26 }));
     }
     g.append(s("line", { class: "base", x1: span[0], x2: span[1], y1: y, y2: y }));
-    if (options.shared) {
+    if (row.interval) {
+      const [a, b] = row.interval.map((v) => axis(v));
+      g.append(
+        s("line", { class: "interval", x1: a, x2: Math.max(b, a + 3), y1: y, y2: y, "data-name": row.name }),
+      );
+    }
+    if (row.domain) {
+      row.domain.forEach((t, end) =>
+        g.append(
+          s("line", { class: "tick", x1: axis(t), x2: axis(t), y1: y - 5, y2: y + 5 }),
+          s("text", { class: "tiny", x: axis(t), y: y + 18, "text-anchor": end ? "end" : "start" }, tick(t)),
+        ),
+      );
+    } else if (options.shared) {
       g.append(s("line", { class: "zero", x1: axis(0), x2: axis(0), y1: y - 15, y2: y + 15 }));
     } else {
       for (const t of ticks(axis, 84)) {
@@ -216,7 +238,8 @@ export function strips(
       bars[k].setAttribute("x1", String(axes[k](Math.max(low, v - (std as number)))));
       bars[k].setAttribute("x2", String(axes[k](Math.min(high, v + (std as number)))));
     });
-    path.setAttribute("d", joined(state.point));
+    // Rows of different scales are not joined: a line between them would mean nothing.
+    if (options.shared || options.lines) path.setAttribute("d", joined(state.point));
   };
   update();
   return { svg, update };

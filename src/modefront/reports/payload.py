@@ -135,6 +135,8 @@ def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
             else None
         ),
         "bounds": plain(data["bounds"].values),
+        "interval": plain(data["interval"].values[:, [0, -1]]) if "interval" in data else None,
+        "noise": plain(_noise(data)),
         "measured": plain(data["measured_frequency"].values),
         "measuredStd": plain(_measured_std(data)),
         "ends": _optional(data, "end_objective") or [],
@@ -168,6 +170,16 @@ def _texts(data: xr.Dataset, name: str) -> list[str]:
 
 def _optional(data: xr.Dataset, name: str) -> Any:
     return plain(data[name].values) if name in data else None
+
+
+def _noise(data: xr.Dataset) -> Floats:
+    """Return the error that is expected of each group at the reference; NaN where unknown."""
+    chosen = data["label"].values == data.attrs["reference"]
+    if "misfit" not in data or not chosen.any():
+        return np.full(data.sizes["group"], np.nan)
+    misfit = data["misfit"].values
+    error = data["error"].values[chosen][0]
+    return np.divide(error, misfit, out=np.full(error.shape, np.nan), where=misfit > 0)
 
 
 def _measured_std(data: xr.Dataset) -> Floats:
