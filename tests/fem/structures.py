@@ -13,7 +13,7 @@ from modefront._typing import Floats, Ints
 from modefront.fem.elements.beam import beam
 from modefront.fem.elements.common import ElementMatrices
 from modefront.fem.elements.shapes import CUBE_EDGES, TETRAHEDRON_EDGES, WEDGE_EDGES, Edges
-from modefront.fem.elements.shell import shell
+from modefront.fem.elements.shell import directors, shell
 from modefront.fem.elements.solid import solid
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
@@ -78,6 +78,11 @@ def _beam(X: Floats, r: Floats) -> ElementMatrices:
     return beam(X, STEEL, SECTION, side, r)
 
 
+def _shell(X: Floats, thickness: float, offset: float) -> ElementMatrices:
+    (d,) = directors(X.reshape(-1, 3), [np.arange(len(X) * len(X[0])).reshape(len(X), -1)])
+    return shell(X, d, STEEL, thickness, offset)
+
+
 # name: (nodes, directions of each node, element)
 ELEMENTS: dict[str, tuple[Floats, int, Callable[[Floats], ElementMatrices]]] = {
     "beam": (np.array([[0, 0, 0], [1.0, 0.5, 0.2]]), 6, lambda X: _beam(X, np.zeros((2, 3)))),
@@ -89,22 +94,22 @@ ELEMENTS: dict[str, tuple[Floats, int, Callable[[Floats], ElementMatrices]]] = {
     "triangle": (
         np.array([[0, 0, 0], [1.1, 0.2, 0], [0.3, 0.8, 0]]),
         6,
-        lambda X: shell(X, STEEL, 0.1, 0.0),
+        lambda X: _shell(X, 0.1, 0.0),
     ),
     "triangle, eccentric": (
         np.array([[0, 0, 0], [1.1, 0.2, 0], [0.3, 0.8, 0]]),
         6,
-        lambda X: shell(X, STEEL, 0.1, 0.3),
+        lambda X: _shell(X, 0.1, 0.3),
     ),
     "quadrilateral": (
         np.array([[0, 0, 0], [1.1, 0.2, 0], [0.9, 1.2, 0], [-0.2, 0.8, 0]]),
         6,
-        lambda X: shell(X, STEEL, 0.1, 0.0),
+        lambda X: _shell(X, 0.1, 0.0),
     ),
     "quadrilateral, warped": (
         np.array([[0, 0, 0.2], [1.1, 0.2, -0.1], [0.9, 1.2, 0.1], [-0.2, 0.8, 0]]),
         6,
-        lambda X: shell(X, STEEL, 0.1, -0.2),
+        lambda X: _shell(X, 0.1, -0.2),
     ),
     **{
         name: (X, 3, lambda X: solid(X, STEEL))

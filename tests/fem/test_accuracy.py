@@ -76,12 +76,24 @@ def test_beam_is_exact_in_statics_with_one_element() -> None:
     assert spsolve(K, F * (np.arange(6) == 3))[3] == pytest.approx(F * L / STEEL.G / section.J)
 
 
-def _plate_errors(n: int, amplitude: float, seed: int, triangles: bool) -> Floats:
-    """Relative errors of four frequencies of a simply supported square, h / a = 1/200."""
+def mindlin(h: float, k2: float) -> float:
+    """Circular frequency of a simply supported steel plate with shear at the wave number sqrt(k2).
+
+    (S k2 - m w2)(D k2 + S - r w2) = S^2 k2 (R. D. Mindlin 1951, doi:10.1115/1.4010217).
+    """
+    D, S = STEEL.E * h**3 / (12 * (1 - STEEL.nu**2)), 5 / 6 * STEEL.G * h
+    m, r = STEEL.rho * h, STEEL.rho * h**3 / 12
+    c = [m * r, -(m * (D * k2 + S) + r * S * k2), S * D * k2**2]
+    return float(np.sqrt(np.roots(c).min()))
+
+
+def _plate_errors(
+    n: int, amplitude: float, seed: int, triangles: bool, h: float = 1 / 200
+) -> Floats:
+    """Relative errors of four frequencies of a simply supported square of thickness h."""
     X, cells = fem.grids.plate(1.0, 1.0, n, n)
     X = move_inner(X, np.array([1 / n, 1 / n, 0]), amplitude, seed)
     cells = fem.grids.triangles(cells) if triangles else cells
-    h = 1 / 200
     edges_x, edges_y = boundary(X, (0,)), boundary(X, (1,))
     supports = (
         fem.Support(np.arange(len(X)), ("x", "y", "rz")),
@@ -89,8 +101,7 @@ def _plate_errors(n: int, amplitude: float, seed: int, triangles: bool) -> Float
         fem.Support(edges_y, ("z", "ry")),
     )
     model = fem.assemble(fem.Structure(X, (fem.Shells("p", cells, STEEL, h),), supports))
-    stiffness = STEEL.E * h**2 / (12 * (1 - STEEL.nu**2) * STEEL.rho)
-    theory = np.pi**2 * np.array([2, 5, 5, 8]) * np.sqrt(stiffness)
+    theory = [mindlin(h, k2) for k2 in np.pi**2 * np.array([2, 5, 5, 8])]
     return np.asarray(frequencies(model, 4) / theory - 1)
 
 
@@ -102,7 +113,7 @@ def test_thin_plate_on_a_distorted_mesh(triangles: bool, seed: int) -> None:
 
 @pytest.mark.parametrize("triangles", [False, True])
 def test_thin_plate_converges_with_order_2(triangles: bool) -> None:
-    errors = [_plate_errors(n, 0.2, 1, triangles) for n in (6, 12, 24)]
+    errors = [_plate_errors(n, 0.2, 1, triangles) for n in (8, 16, 32)]
     for mode in range(4):
         assert np.all(rate([e[mode] for e in errors]) > 1.6)
 
@@ -161,7 +172,8 @@ def test_twisted_beam_of_warped_shells() -> None:
 
 
 def test_cylindrical_roof_under_its_weight() -> None:
-    # Scordelis-Lo roof in the same collection: 0.3024 at the middle of the free edge.
+    # Scordelis-Lo roof in the same collection, 0.3006 at the middle of the free edge where shells
+    # are refined (T. Belytschko et al., doi:10.1016/0045-7825(85)90035-0).
     n, R, L, t = 16, 25.0, 50.0, 0.25
     X, cells = fem.grids.plate(L / 2, np.radians(40), n, n)
     s, a = X[:, 0], X[:, 1]
@@ -178,7 +190,7 @@ def test_cylindrical_roof_under_its_weight() -> None:
     weight = np.where(model.dofs.free[:, 1] == 2, 1.0, 0.0)
     load = model.mass.at(np.zeros(0)) @ weight * (-90.0 / t)
     u = spsolve(model.stiffness.at(np.zeros(0)).tocsc(), load)
-    assert (model.selection @ u)[0] == pytest.approx(-0.3024, rel=0.01)
+    assert (model.selection @ u)[0] == pytest.approx(-0.3006, rel=0.01)
 
 
 def test_cantilever_of_bricks_with_one_through_the_thickness() -> None:

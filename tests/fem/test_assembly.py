@@ -72,6 +72,7 @@ PARAMETERS = (
 @given(st.tuples(*[positive] * 6))
 def test_affine_form_is_the_direct_build(values: tuple[float, ...]) -> None:
     theta = np.array(values)
+    theta[2] = 1.0  # shells of another thickness have another share of shear
     affine = fem.assemble(replace(_frame(np.ones(6)), parameters=PARAMETERS))
     direct = fem.assemble(_frame(theta))
     for result, expected in (
@@ -79,6 +80,30 @@ def test_affine_form_is_the_direct_build(values: tuple[float, ...]) -> None:
         (affine.mass.at(theta), direct.mass.at(NONE)),
     ):
         assert abs(result - expected).max() < 1e-11 * abs(expected).max()
+
+
+def test_another_thickness_is_nearly_the_direct_build() -> None:
+    X, cells = fem.grids.plate(1.0, 1.0, 8, 8)
+    held = (fem.Support(np.flatnonzero(X[:, 0] == 0)),)
+
+    def model(thickness: float) -> fem.StructureMatrices:
+        shells = (fem.Shells("p", cells, STEEL, thickness),)
+        return fem.assemble(fem.Structure(X, shells, held, parameters=(scaled,)))
+
+    scaled = fem.Parameter("t", "thickness", ("p",))
+    for factor, rel in ((1.1, 2e-4), (2.0, 5e-3)):
+        affine, theta = model(0.01), np.array([factor])
+        w = np.sqrt(
+            sparse.linalg.eigsh(
+                affine.stiffness.at(theta),
+                4,
+                affine.mass.at(theta),
+                sigma=0.0,
+                return_eigenvectors=False,
+            )
+        )
+        direct = frequencies(model(0.01 * factor), 4)
+        assert np.sort(w) == pytest.approx(direct, rel=rel)
 
 
 def test_terms_are_merged_and_the_constant_comes_first() -> None:

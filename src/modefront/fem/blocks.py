@@ -6,7 +6,7 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.fem.check import (
     ALONG,
     COINCIDENT,
@@ -20,7 +20,7 @@ from modefront.fem.check import (
 )
 from modefront.fem.elements.beam import beam
 from modefront.fem.elements.point import lumped_mass, spring
-from modefront.fem.elements.shell import shell
+from modefront.fem.elements.shell import directors, shell
 from modefront.fem.elements.solid import SOLIDS, solid
 from modefront.fem.scatter import Block
 from modefront.fem.section import Checks, FemError
@@ -39,20 +39,25 @@ def element_blocks(
     X: Floats, groups: Sequence[Beams | Shells | Solids], checks: Checks
 ) -> list[Block]:
     """One block for each group of elements in which nothing is wrong."""
-    blocks = (checks.attempt(_elements, X, group) for group in groups)
+    shells = [each for each in groups if isinstance(each, Shells)]
+    cells = [checks.attempt(_shell_cells, X, each) for each in shells]
+    sound = [each for each in cells if each is not None]
+    d = iter(directors(X, sound) if sound else ())
+    blocks: list[Block | None] = [
+        _shells(X, group, each, next(d))
+        for group, each in zip(shells, cells, strict=True)
+        if each is not None
+    ]
+    for group in groups:
+        if isinstance(group, Beams):
+            blocks.append(checks.attempt(_beams, X, group))
+        elif isinstance(group, Solids):
+            blocks.append(checks.attempt(_solids, X, group))
     return [block for block in blocks if block is not None]
 
 
-def _elements(X: Floats, group: Beams | Shells | Solids) -> Block:
+def _beams(X: Floats, group: Beams) -> Block:
     place = f"group {group.name!r}"
-    if isinstance(group, Beams):
-        return _beams(X, group, place)
-    if isinstance(group, Shells):
-        return _shells(X, group, place)
-    return _solids(X, group, place)
-
-
-def _beams(X: Floats, group: Beams, place: str) -> Block:
     cells = cell_array(group.cells, (2,), len(X), place)
     r = np.asarray(group.offsets, dtype=float)
     if r.shape != (2, 3):
@@ -84,16 +89,21 @@ def _beams(X: Floats, group: Beams, place: str) -> Block:
     return Block(group.name, cells, SIX, beam(X[cells], group.material, section, orientation, r))
 
 
-def _shells(X: Floats, group: Shells, place: str) -> Block:
+def _shell_cells(X: Floats, group: Shells) -> Ints:
+    place = f"group {group.name!r}"
     cells = cell_array(group.cells, (3, 4), len(X), place)
     check_positive(group.thickness, "thickness", place)
     check_sizes(shell_sizes(X[cells]), cells, "area", place)
-    return Block(
-        group.name, cells, SIX, shell(X[cells], group.material, group.thickness, group.offset)
-    )
+    return cells
 
 
-def _solids(X: Floats, group: Solids, place: str) -> Block:
+def _shells(X: Floats, group: Shells, cells: Ints, d: Floats) -> Block:
+    matrices = shell(X[cells], d, group.material, group.thickness, group.offset)
+    return Block(group.name, cells, SIX, matrices)
+
+
+def _solids(X: Floats, group: Solids) -> Block:
+    place = f"group {group.name!r}"
     if np.ndim(group.cells) == 2 and np.shape(group.cells)[1] == 4:
         raise FemError(
             f"{place}: tetrahedra of 4 nodes are far too stiff in bending; mesh with second-order"

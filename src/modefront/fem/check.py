@@ -14,8 +14,8 @@ import numpy.typing as npt
 
 from modefront._typing import Floats, Ints
 from modefront.fem.dofs import direction_indices
-from modefront.fem.elements import shell
-from modefront.fem.elements.shapes import SQUARE_4, jacobian
+from modefront.fem.elements.shapes import jacobian
+from modefront.fem.elements.shell import corner_normals
 from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import Direction, Parameter, Shells, Structure
@@ -114,18 +114,13 @@ def check_sizes(relative: Floats, cells: Ints, what: str, place: str) -> None:
 
 
 def shell_sizes(X: Floats) -> Floats:
-    """Smallest relative det J of each shell X (elements, 3 or 4, 3)."""
-    extent = np.linalg.norm(np.ptp(X, axis=1), axis=1)
-    extent = np.where(extent > 0, extent, 1)
-    if X.shape[1] == 3:
-        normal = np.cross(X[:, 1] - X[:, 0], X[:, 2] - X[:, 0])
-        return np.asarray(np.linalg.norm(normal, axis=1) / extent**2)
-    normal = np.cross(X[:, 2] - X[:, 0], X[:, 3] - X[:, 1])
-    flat = np.linalg.norm(normal, axis=1) <= FLAT * extent**2
-    safe = np.where(flat[:, None, None], np.pad(SQUARE_4.nodes, ((0, 0), (0, 1))), X)
-    x, _ = shell.project(safe, shell.axes(safe))
-    det = np.linalg.det(jacobian(x, SQUARE_4.shape(SQUARE_4.nodes)[1])).min(1)
-    return np.where(flat, 0.0, det / extent**2)
+    """Smallest relative area at a corner of each shell X (elements, 3 or 4, 3)."""
+    extent = np.linalg.norm(np.ptp(X, axis=1), axis=1)[:, None]
+    corners = corner_normals(X / np.where(extent > 0, extent, 1)[..., None])
+    normal = corners.sum(1, keepdims=True)
+    length = np.linalg.norm(normal, axis=2, keepdims=True)
+    normal = np.divide(normal, length, out=np.zeros_like(normal), where=length > FLAT)
+    return np.asarray((corners * normal).sum(2).min(1))
 
 
 def solid_sizes(X: Floats) -> Floats:

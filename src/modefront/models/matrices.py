@@ -14,7 +14,6 @@ import scipy.sparse
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse, suggestion, wrong
-from modefront.fem.element_limits import Limits
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Factorisation, Symbolic
 from modefront.linalg.pencil import Pencil, pencil
@@ -74,7 +73,7 @@ class MatrixModel:
     outputs : weights (N,) of the degrees of freedom at places that are no sensors, by name
     base : motion (N,) of the degrees of freedom with the base, by the name of its direction
     floating : whether the stiffness matrix may be singular: rigid-body modes are wanted
-    limits : what the elements cannot do of which the matrices are made
+    limits : warnings on the elements of which the matrices are made
     geometry : where the degrees of freedom are in space; None where that is not known
     """
 
@@ -86,7 +85,7 @@ class MatrixModel:
     outputs: Mapping[str, Floats] = field(default_factory=dict)
     base: Mapping[str, Floats] = field(default_factory=dict)
     floating: bool = True
-    limits: Limits = field(default_factory=Limits)
+    limits: tuple[str, ...] = ()
     geometry: Geometry | None = None
 
     @property

@@ -13,8 +13,7 @@ from modefront.diagnosis.diagnose import diagnose
 from modefront.diagnosis.pairs import BeyondCandidates, DistantPair, UnseenMode
 from modefront.diagnosis.places import UnusedGroup
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
-from modefront.diagnosis.sets import SetFactor
-from modefront.diagnosis.units import DampingInPercent, FrequencyFactor, OtherQuantity
+from modefront.diagnosis.units import DampingInPercent
 from modefront.diagnosis.words import Mistake
 from modefront.diagnosis.words import in_words as mistake_in_words
 from modefront.errors import Fault, InputError, ModelError
@@ -38,7 +37,7 @@ from modefront.identifiability.combinations import (
 )
 from modefront.identifiability.scale import Scale, scale_at
 from modefront.inputs import available_memory
-from modefront.models.base import full_of
+from modefront.models.base import Model, full_of
 from modefront.models.matrices import MatrixModel
 from modefront.optim.problem import Evaluation
 from modefront.residuals.problem import UpdatingProblem
@@ -51,8 +50,6 @@ MANY = 100
 KEPT = 500
 """Models that a search keeps with their second derivatives, some."""
 
-UNITS = (FrequencyFactor, OtherQuantity, SetFactor)
-"""Mistakes with which measured frequencies say nothing of the elements."""
 
 HARMLESS = (DampingInPercent, UnusedGroup, DistantPair, BeyondCandidates, UnseenMode)
 """Mistakes that leave the residuals as they are, or that need not be mistakes."""
@@ -124,7 +121,7 @@ def check(study: Study) -> Findings:
         *_coincident(problem, nominal),
         *_at_bounds(problem),
         *_infeasible_bounds(problem),
-        *_of_elements(problem, beside, is_in_hz=not any(isinstance(x, UNITS) for x in mistakes)),
+        *_of_elements(problem.model),
         *_many(problem),
     ]
     agreement = compared(problem)
@@ -192,16 +189,10 @@ def _many(problem: UpdatingProblem) -> list[str]:
     ]
 
 
-def _of_elements(problem: UpdatingProblem, beside: Comparison, *, is_in_hz: bool) -> list[str]:
-    """Warn of elements that are too thick, skew, distorted or curved for the measured modes.
-
-    Where measured frequencies are not in Hz, those of the paired modes stand for them.
-    """
-    model = full_of(problem.model)
-    if not isinstance(model, MatrixModel):
-        return []
-    measured = problem.data.mean_frequency if is_in_hz else beside.frequency[beside.pairs.index]
-    return model.limits.warnings(float(measured[np.isfinite(measured)].max(initial=0.0)))
+def _of_elements(model: Model) -> Sequence[str]:
+    """Warn of elements that are too coarse, small or distorted."""
+    full = full_of(model)
+    return full.limits if isinstance(full, MatrixModel) else ()
 
 
 def _at_bounds(problem: UpdatingProblem) -> list[str]:

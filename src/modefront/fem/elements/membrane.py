@@ -1,28 +1,33 @@
-r"""Membrane parts of flat shells, with a drilling rotation at every node.
+r"""Membrane part of shells: triangles with curved sides and a drilling rotation at every node.
 
-Quadrilateral: bilinear displacements u, four incompatible modes and a bilinear rotation
-theta that follows the rotation of the body,
+The triangle is that of C. A. Felippa, doi:10.1016/S0045-7825(03)00253-6, exact in pure bending in
+its plane for any aspect ratio, with two free parameters,
 
-    Pi = 1/2 int eps^T D eps dA + 1/2 G int (theta - omega(u))^2 dA,
-    omega = (v,x - u,y) / 2.
+    K = A B^T D B + 3/4 beta T^T K_theta T,   B = L^T / A,
 
-Both integrals see the incompatible modes 1 - xi^2 and 1 - eta^2 (so a rectangle in pure
-bending is exact and its rotation free of a penalty); their gradients are taken with the
-Jacobian J0 of the centre, scaled by det J0 / det J, and so have no mean: the patch test holds
-on any mesh. The modes are condensed out. Sources: R. L. Taylor, P. J. Beresford,
-E. L. Wilson, doi:10.1002/nme.1620100602; T. J. R. Hughes, F. Brezzi,
-doi:10.1016/0045-7825(89)90124-2.
+L with alpha. Any alpha and beta > 0 pass the patch test; alpha = 3/2, beta = (1 - 4 nu^2) / 2 are
+optimal in a plane. On curved shells the terms of the drilling rotations resist bending without
+stretch, the more the coarser the elements; both parameters are multiplied by
 
-Triangle: the optimal triangle of the ANDES family, which is exact in pure bending for any
-aspect ratio: K = L D L^T / A + 3/4 beta0 T^T K_theta T with the free parameters of
-C. A. Felippa, doi:10.1016/S0045-7825(03)00253-6 (the "OPT" instance).
+    f = 1 / (1 + (c / t)^2),   c = max |(d_j - d_i) . e|,   e = x_j - x_i,
+
+which leaves of that a share of the bending stiffness that no element size increases.
+
+A side that is a chord of the shell stretches where the shell only bends: the side between two
+directors is taken as the shallow cubic with the slopes a = -d . s at its ends, s = e / |e|,
+
+    eps = s . (u_j - u_i) / |e| + (a_i (4 da_i - da_j) + a_j (4 da_j - da_i)) / 30,
+
+with da = -(v . s + d . (u_j - u_i)_across / |e|), the change of slope beside that of the chord (K.
+Marguerre 1938). The strains of the three sides beyond those of the chords are added to B.
 
 ========  ===================================================
 symbol    meaning
 ========  ===================================================
-x         corners in the plane, (elements, 3 or 4, 2)
+x         corners in the plane (elements, 3, 2)
+d, v      directors in local axes, and their increments
 D         plane stress (3, 3)
-K         per unit thickness; DOFs u, v, theta node by node
+A         area
 ========  ===================================================
 """
 
@@ -31,86 +36,85 @@ from __future__ import annotations
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.fem.elements.common import condense, plane_stress, symmetric
-from modefront.fem.elements.shapes import SQUARE_4, gauss_box, gradients, jacobian
+from modefront.fem.elements.common import plane_stress
+from modefront.fem.elements.plate import Rows, Triangles
+from modefront.fem.section import Material
+
+DISTORTIONS = [np.roll([[1.0, 2, 1], [0, 1, -1], [-1, -1, -2]], (n, n), (0, 1)) for n in range(3)]
+"""Natural strains at the corners by hierarchical rotations, with Felippa's optimal parameters."""
 
 
-def quadrilateral(x: Floats, E: float, nu: float) -> Floats:
-    """Stiffness (elements, 12, 12) per unit thickness of quadrilaterals x (elements, 4, 2)."""
-    xi, w = gauss_box(2, 2)
-    N, dN = SQUARE_4.shape(xi)
-    g, det = gradients(x, dN)
-    J0 = jacobian(x, SQUARE_4.shape(np.zeros((1, 2)))[1])
-    bubbles = np.zeros((len(xi), 2, 2))
-    bubbles[:, [0, 1], [0, 1]] = -2 * xi
-    g_modes = np.linalg.solve(J0, np.swapaxes(bubbles, 1, 2)[None])
-    g_modes = g_modes * (np.linalg.det(J0) / det)[..., None, None]
-
-    S = np.zeros((*det.shape, 4, 16))
-    for u, gradient in ((S[..., 0:12:3], g), (S[..., 12:16:2], g_modes)):
-        u[..., 0, :], u[..., 2, :], u[..., 3, :] = (
-            gradient[..., 0, :],
-            gradient[..., 1, :],
-            gradient[..., 1, :] / 2,
-        )
-    for v, gradient in ((S[..., 1:12:3], g), (S[..., 13:16:2], g_modes)):
-        v[..., 1, :], v[..., 2, :], v[..., 3, :] = (
-            gradient[..., 1, :],
-            gradient[..., 0, :],
-            -gradient[..., 0, :] / 2,
-        )
-    S[..., 3, 2:12:3] = N
-    D = np.zeros((4, 4))
-    D[:3, :3] = plane_stress(E, nu)
-    D[3, 3] = E / (2 * (1 + nu))
-    DS = (D @ S) * (det * w)[..., None, None]
-    count = len(x)
-    return condense(np.swapaxes(S.reshape(count, -1, 16), 1, 2) @ DS.reshape(count, -1, 16), 12)
+def membrane(each: Triangles, t: float, material: Material) -> Rows:
+    """Return rows of strains and of drilling rotations, per thickness."""
+    D, nu = plane_stress(material.E, material.nu), material.nu
+    rise = [abs(e @ (each.d[:, j] - each.d[:, i])[..., None]) for i, j, e in each.sides()]
+    share = 1 / (1 + (np.max(rise, axis=0) / t) ** 2)[:, 0, 0]
+    in_plane = np.stack([each.U[:, :, 0], each.U[:, :, 1], each.theta], 2)
+    in_plane = in_plane.reshape(len(share), 9, -1)
+    B = basic_strain(each.x, 1.5 * share) @ in_plane + curved_sides(each)
+    T, K_theta = higher_stiffness(each.x, D)
+    beta = 0.75 * max((1 - 4 * nu**2) / 2, 0.01) * share[:, None, None]
+    weights = np.stack([np.broadcast_to(D, K_theta.shape), beta * K_theta], 1)
+    return each.integrand(np.stack([B, T @ in_plane], 1), 2 * weights)
 
 
-def triangle(x: Floats, E: float, nu: float) -> Floats:
-    """Stiffness (elements, 9, 9) per unit thickness of triangles x (elements, 3, 2)."""
-    D = plane_stress(E, nu)
-    count = len(x)
+def curved_sides(each: Triangles) -> Floats:
+    """Return the strains (elements, 3, n) of curved sides beyond those of their chords."""
+    strains, natural = [], []
+    for i, j, e in each.sides():
+        L = np.linalg.norm(e, axis=2, keepdims=True)
+        s = e / L
+        a, da = [], []
+        for n in (i, j):
+            d = each.d[:, n, None]
+            a.append(-(d * s).sum(2))
+            across = (d + a[-1][..., None] * s) / L
+            da.append(-(s @ each.V[:, n] + across @ (each.U[:, j] - each.U[:, i]))[:, 0])
+        strains.append((a[0] * (4 * da[0] - da[1]) + a[1] * (4 * da[1] - da[0])) / 30)
+        x, y = s[:, 0, 0], s[:, 0, 1]
+        natural.append(np.stack([x**2, y**2, x * y], 1))
+    return np.asarray(np.linalg.solve(np.stack(natural, 1), np.stack(strains, 1)))
+
+
+def basic_strain(x: Floats, alpha: Floats) -> Floats:
+    """Return B (elements, 3, 9) with alpha (elements,), DOFs u, v, theta node by node."""
     # In Felippa's notation x_ij = x_i - x_j; node k of the cyclic triple (i, j, k).
     d = x[:, :, None] - x[:, None]
     X, Y = d[..., 0], d[..., 1]
-    A = (X[:, 1, 0] * Y[:, 2, 0] - X[:, 2, 0] * Y[:, 1, 0]) / 2
-    l2 = np.stack([(d[:, i, j] ** 2).sum(-1) for i, j in ((1, 0), (2, 1), (0, 2))], -1)
-
-    alpha = 1.5
-    L = np.zeros((count, 3, 3, 3))
+    L = np.zeros((len(x), 3, 3, 3))
     for n in range(3):
         j, k = (n + 1) % 3, (n + 2) % 3
         y_jk, x_kj = Y[:, j, k], X[:, k, j]
-        L[:, n, 0, 0] = L[:, n, 1, 2] = y_jk
-        L[:, n, 1, 1] = L[:, n, 0, 2] = x_kj
-        L[:, n, 2, 0] = alpha / 6 * y_jk * (Y[:, n, k] - Y[:, j, n])
-        L[:, n, 2, 1] = alpha / 6 * x_kj * (X[:, k, n] - X[:, n, j])
-        L[:, n, 2, 2] = alpha / 3 * (X[:, k, n] * Y[:, n, k] - X[:, n, j] * Y[:, j, n])
-    L = L.reshape(count, 9, 3) / 2
-    K_basic = L @ D @ np.swapaxes(L, 1, 2) / A[:, None, None]
+        L[:, 0, n, 0] = L[:, 2, n, 1] = y_jk
+        L[:, 1, n, 1] = L[:, 2, n, 0] = x_kj
+        L[:, 0, n, 2] = alpha / 6 * y_jk * (Y[:, n, k] - Y[:, j, n])
+        L[:, 1, n, 2] = alpha / 6 * x_kj * (X[:, k, n] - X[:, n, j])
+        L[:, 2, n, 2] = alpha / 3 * (X[:, k, n] * Y[:, n, k] - X[:, n, j] * Y[:, j, n])
+    twice_A = X[:, 1, 0] * Y[:, 2, 0] - X[:, 2, 0] * Y[:, 1, 0]
+    return np.asarray(L.reshape(-1, 3, 9) / twice_A[:, None, None])
 
-    T = np.zeros((count, 3, 9))
+
+def higher_stiffness(x: Floats, D: Floats) -> tuple[Floats, Floats]:
+    """Return T (elements, 3, 9), DOFs u, v, theta node by node, and K_theta (elements, 3, 3)."""
+    d = x[:, :, None] - x[:, None]
+    X, Y = d[..., 0], d[..., 1]
+    A = ((X[:, 1, 0] * Y[:, 2, 0] - X[:, 2, 0] * Y[:, 1, 0]) / 2)[:, None, None]
+    l2 = np.stack([(d[:, i, j] ** 2).sum(-1) for i, j in ((1, 0), (2, 1), (0, 2))], -1)
+    T = np.zeros((len(x), 3, 9))
+    T_e = np.zeros((len(x), 3, 3))
     for n in range(3):
         j, k = (n + 1) % 3, (n + 2) % 3
-        T[:, :, 3 * n] = (X[:, k, j] / (4 * A))[:, None]
-        T[:, :, 3 * n + 1] = (Y[:, k, j] / (4 * A))[:, None]
+        T[:, :, 3 * n] = X[:, k, j, None] / (4 * A[..., 0])
+        T[:, :, 3 * n + 1] = Y[:, k, j, None] / (4 * A[..., 0])
         T[:, n, 3 * n + 2] = 1
-    T_e = np.zeros((count, 3, 3))
-    for m, (i, j, k) in enumerate(((0, 1, 2), (1, 2, 0), (2, 0, 1))):
-        # Side m joins i and j; its natural strain in terms of the other two sides.
-        T_e[:, 0, m] = Y[:, j, k] * Y[:, i, k] * l2[:, m]
-        T_e[:, 1, m] = X[:, j, k] * X[:, i, k] * l2[:, m]
-        T_e[:, 2, m] = (Y[:, j, k] * X[:, k, i] + X[:, k, j] * Y[:, i, k]) * l2[:, m]
-    T_e /= (4 * A**2)[:, None, None]
+        # Side n joins n and j; its natural strain in terms of the other two sides.
+        T_e[:, 0, n] = Y[:, j, k] * Y[:, n, k] * l2[:, n]
+        T_e[:, 1, n] = X[:, j, k] * X[:, n, k] * l2[:, n]
+        T_e[:, 2, n] = (Y[:, j, k] * X[:, k, n] + X[:, k, j] * Y[:, n, k]) * l2[:, n]
+    T_e /= 4 * A**2
     D_natural = np.swapaxes(T_e, 1, 2) @ D @ T_e
-    b = np.array([[1.0, 2, 1], [0, 1, -1], [-1, -1, -2]])
-    corner = [np.roll(b, (n, n), (0, 1)) for n in range(3)]
-    K_theta = np.zeros((count, 3, 3))
+    K_theta = np.zeros((len(x), 3, 3))
     for n in range(3):
-        Q = (corner[n] + corner[(n + 1) % 3]) / 2 * (2 * A[:, None, None] / 3) / l2[:, :, None]
+        Q = (DISTORTIONS[n] + DISTORTIONS[(n + 1) % 3]) / 3 * A / l2[:, :, None]
         K_theta += np.swapaxes(Q, 1, 2) @ D_natural @ Q
-    K_theta *= A[:, None, None]
-    beta0 = max((1 - 4 * nu**2) / 2, 0.01)
-    return symmetric(K_basic + 0.75 * beta0 * np.swapaxes(T, 1, 2) @ K_theta @ T)
+    return T, K_theta

@@ -1,134 +1,145 @@
-r"""Bending parts of flat shells: discrete Kirchhoff triangle and quadrilateral.
+r"""Bending, shear and mass of shells: triangles with directors at their corners.
 
-The slopes beta = -grad w are quadratic on the element. Their corner values are the nodal
-rotations, beta = (r_y, -r_x); at the midpoint of the side e = x_j - x_i the normal slope is
-the mean of the ends and the tangential one that of a cubic w:
+A point at z along the director d moves by u + z v, v = omega x d. In the plane of the triangle,
 
-    beta_mid = b - 3/2 e / |e|^2 (e . b + w_j - w_i),    b = (beta_i + beta_j) / 2.
+    kappa = sym(grad v + grad d . grad u),   gamma = v + d . grad u,
 
-Transverse shear is zero by construction, so nothing can lock, and beta is continuous, so a
-constant curvature is exact on any mesh. K = t^3 int kappa^T D/12 kappa dA. Sources:
-J. L. Batoz, K. J. Bathe, L. W. Ho, doi:10.1002/nme.1620151205; J. L. Batoz, M. Ben Tahar,
-doi:10.1002/nme.1620181106.
+do not see rigid motions, and v bends more than linearly along the sides e, s = e / |e|:
 
-The mass of w needs w inside. Each side carries its cubic, blended into the element,
+    v = sum N_a v_a + sum_sides 4 N_i N_j c s,   gamma_k = d . (u_j - u_i) / |e| + s . v + 2/3 c
 
-    w = sum N_i w_i + sum_sides f (A + B s),   A = (a_i - a_j) / 4,
-    B = (w_j - w_i - a_i - a_j) / 4,   a = grad w . e / 2,
+with means of the ends for d and v. Equilibrium of moment and shear force along the side gives c,
 
-with s from -1 to 1 along the side and f = 1 - s^2 there, zero on the other sides. The error
-of a frequency then is that of the stiffness; with bilinear w alone it is (k h)^2 / 12 more in
-each direction. Rotary inertia takes the slopes as linear between the nodes.
+    c = -3/2 gamma_0 / (1 + phi),   phi = 2 (t / |e|)^2 / (kappa_s (1 - nu)),   kappa_s = 5/6,
 
-========  ==========================================================
+gamma_0 being gamma_k without c; gamma_k = gamma_0 phi / (1 + phi) then vanishes in thin shells,
+where the triangle is that of discrete Kirchhoff constraints, and nothing can lock. Inside, gamma is
+the field with constant components gamma_k along the sides. phi is that of the nominal thickness: at
+others, K(t) = t K_shear + t^3 K_bending is the same element with this share of c. Sources: J. L.
+Batoz, K. J. Bathe, L. W. Ho, doi:10.1002/nme.1620151205; I. Katili, doi:10.1002/nme.1620361107.
+
+The mass has the bows 4 N_i N_j e . (v_j - v_i) / 8 of the sides beside linear deflections. The
+error of a frequency then is that of the stiffness; with linear deflections alone it is (k h)^2 / 12
+more. Rotary inertia has linear v.
+
+========  ============================================================
 symbol    meaning
-========  ==========================================================
-x         corners in the plane, (elements, 3 or 4, 2)
-kappa     (beta_x,x, beta_y,y, beta_x,y + beta_y,x)
-K, M      DOFs w, r_x, r_y node by node
-========  ==========================================================
+========  ============================================================
+x         corners in the plane (elements, 3, 2)
+U, V      rows of u and v at each corner, by the DOFs
+g         gradients of N (elements, 2, 3)
+H         gradient of v and grad d . grad u
+========  ============================================================
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+from dataclasses import dataclass
+from functools import cached_property
+
 import numpy as np
+from scipy.linalg import block_diag
 
 from modefront._typing import Floats
-from modefront.fem.elements.common import plane_stress, symmetric
-from modefront.fem.elements.shapes import (
-    SQUARE_4,
-    SQUARE_8,
-    SQUARE_EDGES,
-    TRIANGLE_3,
-    TRIANGLE_6,
-    TRIANGLE_EDGES,
-    gauss_box,
-    gauss_simplex,
-    gradients,
-    jacobian,
-)
+from modefront.fem.elements.common import plane_stress
+from modefront.fem.elements.shapes import TRIANGLE_3, TRIANGLE_6, TRIANGLE_EDGES, gauss_simplex
+from modefront.fem.section import Material
+
+KAPPA = 5 / 6
+"""Shear factor of a plate."""
+
+MIDDLES = TRIANGLE_6.nodes[3:]
+"""Midpoints of the sides: with equal weights, a quadrature rule of degree 2."""
 
 
-def slopes(x: Floats) -> Floats:
-    """Map (elements, 2 corners, 2, 3 corners) from DOFs to beta at corners and midpoints."""
-    count, corners = x.shape[:2]
-    H = np.zeros((count, 2 * corners, 2, 3 * corners))
-    n = np.arange(corners)
-    H[:, n, 0, 3 * n + 2] = 1
-    H[:, n, 1, 3 * n + 1] = -1
-    for i in range(corners):
-        j = (i + 1) % corners
-        e = x[:, j] - x[:, i]
-        mean = (H[:, i] + H[:, j]) / 2
-        gap = np.einsum("ed,edk->ek", e, mean)
-        gap[:, 3 * j] += 1
-        gap[:, 3 * i] -= 1
-        scale = 1.5 * e / (e**2).sum(-1, keepdims=True)
-        H[:, corners + i] = mean - scale[:, :, None] * gap[:, None, :]
-    return H
+def _means() -> tuple[Floats, Floats]:
+    """Return the means of products of linear functions and bows in u, and in v over 12."""
+    xi, w = gauss_simplex(3, 2)
+    N = np.concatenate([TRIANGLE_3.shape(xi)[0], TRIANGLE_6.shape(xi)[0][:, 3:]], 1)
+    mean = 2 * (N * w[:, None]).T @ N
+    linear = mean[:3, :3]
+    return block_diag(linear, linear, mean), block_diag(linear, linear, linear) / 12
 
 
-def bending(x: Floats, E: float, nu: float) -> Floats:
-    """Stiffness (elements, 3 corners, 3 corners) per thickness cubed."""
-    count, corners = x.shape[:2]
-    if corners == 3:
-        xi, w = gauss_simplex(2, 2)
-        dN, dN_slopes = TRIANGLE_3.shape(xi)[1], TRIANGLE_6.shape(xi)[1]
-    else:
-        xi, w = gauss_box(2, 2)
-        dN, dN_slopes = SQUARE_4.shape(xi)[1], SQUARE_8.shape(xi)[1]
-    J = jacobian(x, dN)
-    weight = w * np.linalg.det(J)
-    g = np.linalg.solve(J, np.swapaxes(dN_slopes, 1, 2)[None])
-    H = slopes(x)
-    flat = H.reshape(count, 2 * corners, -1)
-    d = (g.reshape(count, -1, 2 * corners) @ flat).reshape(count, len(w), 2, 2, 3 * corners)
-    kappa = np.stack([d[:, :, 0, 0], d[:, :, 1, 1], d[:, :, 1, 0] + d[:, :, 0, 1]], 2)
-    moment = (plane_stress(E, nu) / 12 @ kappa) * weight[..., None, None]
-    kappa = kappa.reshape(count, -1, 3 * corners)
-    return symmetric(np.swapaxes(kappa, 1, 2) @ moment.reshape(kappa.shape))
+TRANSLATION, ROTARY = _means()
 
 
-def deflection(x: Floats, xi: Floats) -> Floats:
-    """Interpolation of w (elements, points, 3 corners) at the reference points xi."""
-    count, corners = x.shape[:2]
-    if corners == 3:
-        N = TRIANGLE_3.shape(xi)[0]
-        sides = [(4 * N[:, i] * N[:, j], N[:, j] - N[:, i]) for i, j in TRIANGLE_EDGES]
-    else:
-        N = SQUARE_4.shape(xi)[0]
-        u, v = xi.T
-        sides = [
-            ((1 - u**2) * (1 - v) / 2, u),
-            ((1 - v**2) * (1 + u) / 2, v),
-            ((1 - u**2) * (1 + v) / 2, -u),
-            ((1 - v**2) * (1 - u) / 2, -v),
-        ]
-    W = np.zeros((count, len(xi), 3 * corners))
-    W[:, :, ::3] = N
-    for (f, s), (i, j) in zip(sides, TRIANGLE_EDGES if corners == 3 else SQUARE_EDGES, strict=True):
-        e = x[:, None, j] - x[:, None, i]
-        for node, sign, w_sign in ((i, 1, -1), (j, -1, 1)):
-            # grad w = (-r_y, r_x) at the node; a = grad w . e / 2.
-            factor = f * (sign - s) / 8
-            W[:, :, 3 * node] += w_sign * f * s / 4
-            W[:, :, 3 * node + 1] += factor * e[..., 1]
-            W[:, :, 3 * node + 2] -= factor * e[..., 0]
-    return W
+Rows = tuple[Floats, Floats]
+"""Rows B (elements, points, rows, n) and weights D (elements, points, rows, rows) of B^T D B."""
 
 
-def translational(x: Floats) -> Floats:
-    """Mass (elements, 3 corners, 3 corners) of w per density and thickness."""
-    xi, w = gauss_simplex(4, 2) if x.shape[1] == 3 else gauss_box(4, 2)
-    dN = (TRIANGLE_3 if x.shape[1] == 3 else SQUARE_4).shape(xi)[1]
-    weight = w * np.linalg.det(jacobian(x, dN))
-    W = deflection(x, xi)
-    return symmetric(np.swapaxes(W, 1, 2) @ (W * weight[..., None]))
+@dataclass(frozen=True)
+class Triangles:
+    """Triangles in local axes with rows of what happens at their corners, by n DOFs.
+
+    Attributes
+    ----------
+    x : corners in their plane (elements, 3, 2), counter-clockwise
+    d : directors (elements, 3, 3)
+    U, V : displacements, and increments of the directors (elements, 3 corners, 3, n)
+    theta : drilling rotations (elements, 3 corners, n)
+    share : factor on all integrals
+    """
+
+    x: Floats
+    d: Floats
+    U: Floats
+    V: Floats
+    theta: Floats
+    share: float
+
+    @cached_property
+    def J(self) -> Floats:
+        """Jacobian (elements, 1, 2, 2)."""
+        return (self.x[:, 1:] - self.x[:, :1])[:, None]
+
+    def integrand(self, B: Floats, D: Floats) -> Rows:
+        """Return B (elements, points, rows, n) and D (elements, points, rows, rows) times weight.
+
+        The weights of the points are equal.
+        """
+        weight = self.share * np.linalg.det(self.J) / 2 / B.shape[1]
+        return B, np.repeat(weight, B.shape[1], axis=1)[..., None, None] * D
+
+    def sides(self) -> Iterator[tuple[int, int, Floats]]:
+        """Ends i and j, and e (elements, 1, 3), of each side."""
+        for i, j in TRIANGLE_EDGES:
+            yield i, j, np.pad(self.x[:, j] - self.x[:, i], ((0, 0), (0, 1)))[:, None]
 
 
-def linear_mass(x: Floats) -> Floats:
-    """Integrals of N_i N_j (elements, corners, corners) for the linear shape functions."""
-    xi, w = gauss_simplex(2, 2) if x.shape[1] == 3 else gauss_box(3, 2)
-    N, dN = (TRIANGLE_3 if x.shape[1] == 3 else SQUARE_4).shape(xi)
-    weight = w * gradients(x, dN)[1]
-    return np.asarray(np.einsum("eg,gi,gj->eij", weight, N, N, optimize=True))
+def bending_and_shear(each: Triangles, t: float, material: Material) -> tuple[Rows, Rows]:
+    """Return rows of bending, per thickness cubed, and of shear, per thickness."""
+    count, nu = len(each.x), material.nu
+    D = plane_stress(material.E, nu)
+    N, dN = TRIANGLE_3.shape(MIDDLES)
+    inverse = np.linalg.inv(each.J)
+    g = inverse[:, 0] @ dN[0].T
+    grad_u, grad_v = (
+        (g @ rows.reshape(count, 3, -1)).reshape(count, 2, 3, -1) for rows in (each.U, each.V)
+    )
+    H = grad_v[:, :, :2] + (g @ each.d)[:, None] @ grad_u
+    kappa = np.stack([H[:, 0, 0], H[:, 1, 1], H[:, 0, 1] + H[:, 1, 0]], 1)[:, None]
+    g_mid = inverse @ np.swapaxes(TRIANGLE_6.shape(MIDDLES)[1][:, 3:], 1, 2)
+    bulges, shears, bulge_strains, edges = [], [], [], []
+    for k, (i, j, e) in enumerate(each.sides()):
+        L2 = (e**2).sum(2)
+        rise = (each.d[:, i] + each.d[:, j])[:, None] / 2 @ (each.U[:, j] - each.U[:, i])
+        gamma = (rise + e @ (each.V[:, i] + each.V[:, j]) / 2)[:, 0]
+        phi = 2 / (KAPPA * (1 - nu)) * t**2 / L2
+        bulges.append(-1.5 / (1 + phi) / L2 * gamma)
+        shears.append(phi / (1 + phi) * gamma)
+        (gx, gy), (ex, ey) = np.moveaxis(g_mid[..., k], 2, 0), np.moveaxis(e[..., :2], 2, 0)
+        bulge_strains.append(np.stack([gx * ex, gy * ey, gx * ey + gy * ex], -1))
+        edges.append(N[:, i, None] * dN[:, j] - N[:, j, None] * dN[:, i])
+    kappa = kappa + np.stack(bulge_strains, -1) @ np.stack(bulges, 1)[:, None]
+    gamma = inverse @ np.stack(edges, -1) @ np.stack(shears, 1)[:, None]
+    return each.integrand(kappa, D / 12), each.integrand(gamma, KAPPA * D[2, 2] * np.eye(2))
+
+
+def mass(each: Triangles) -> tuple[Rows, Rows]:
+    """Return rows of u, per density and thickness, and of v, per density and thickness cubed."""
+    bows = [(e @ (each.V[:, j] - each.V[:, i]) / 8)[:, 0] for i, j, e in each.sides()]
+    u = np.concatenate([each.U[:, :, 0], each.U[:, :, 1], each.U[:, :, 2], np.stack(bows, 1)], 1)
+    v = np.concatenate([each.V[:, :, 0], each.V[:, :, 1], each.V[:, :, 2]], 1)
+    return each.integrand(u[:, None], TRANSLATION), each.integrand(v[:, None], ROTARY)
