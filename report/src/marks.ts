@@ -38,7 +38,7 @@ const WORDS: Record<string, string> = {
 };
 
 /** Kinds that stand beside the front, in the order in which they are drawn. */
-export const BESIDE = Object.keys(WORDS);
+export const BESIDE = Object.keys(WORDS).filter((kind) => !isOfPart(kind));
 
 /** Returns the colour of a model: of its front where there are several, else of its branch. */
 export function colour(fronts: number, front: number, piece: number): string {

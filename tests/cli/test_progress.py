@@ -39,16 +39,24 @@ def test_work_inside_a_long_task_is_seen_and_the_time_goes_on() -> None:
     assert len(first) <= 80
     assert first.startswith("a study of a bridge ")
     assert first.rstrip().endswith("2 of about 27 tasks  0:00:30")
-    words = "front, search 7 of at most 60, iteration 12, 143 models solved, about 70 s left"
+    words = "front, search 7 of at most 60, iteration 12, 143 models solved, 70 s or more"
     assert second == words
     with listening(lines.hear):
         note("search 8 of at most 60")
     assert "search 8 of at most 60, 143 models" in drawn(lines, 80)[1], "a new one has no steps yet"
     lines.take(State("front", 3, 0, 27, 30.0, 50.0))
     now = 40.0
-    assert drawn(lines, 80)[1] == "front, 143 models solved, about 40 s left"
+    assert drawn(lines, 80)[1] == "front, 143 models solved, 40 s or more"
     lines.end()
     assert drawn(lines, 80)[0].rstrip().endswith(" 3 tasks  0:00:40")
+
+
+def test_what_is_not_known_of_the_time_is_not_said() -> None:
+    lines = _Lines("a study", Costs(), lambda: 0.0, began=0.0)
+    lines.take(State("predict", 3, 1, 9, 0.0, 40.0, (2, 8)))
+    assert drawn(lines, 80)[1] == "predictions 2 of about 8, about 40 s left"
+    lines.take(State("edges", 349, 1, 384, 0.0, 19.0, (349, 350), surpassed=True))
+    assert drawn(lines, 80)[1] == "edges and weighted models 349, longer than expected"
 
 
 def test_nothing_is_cut_in_a_narrow_terminal() -> None:
@@ -57,7 +65,7 @@ def test_nothing_is_cut_in_a_narrow_terminal() -> None:
     lines.hear("search 12 of at most 1000000")
     text = " ".join(" ".join(drawn(lines, 40)).split())
     assert "…" not in text
-    assert "completeness of the basis, search 12 of at most 1000000, about 83 min left" in text
+    assert "completeness of the basis, search 12 of at most 1000000, 83 min or more" in text
 
 
 def test_a_log_has_a_line_a_stage() -> None:

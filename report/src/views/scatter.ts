@@ -7,7 +7,7 @@ import { bottom, left, scale, type Scale } from "../axes";
 import type { Front } from "../data";
 import { s } from "../dom";
 import { number } from "../format";
-import { className, colour, isBeside, outline } from "../marks";
+import { className, colour, isBeside, isOfPart, outline } from "../marks";
 import { optimal, type State } from "../state";
 
 const FAR = 3;
@@ -100,7 +100,7 @@ export function scatter(state: State, options: Options): { svg: SVGSVGElement; u
     );
     if (front.groups.length === 2) lines.append(...paths);
     // Points of the front are drawn last: they are what is walked along.
-    const behind = front.label.map((_, i) => i).filter((i) => isBeside(front.kind[i]));
+    const behind = front.label.map((_, i) => i).filter((i) => isBeside(front.kind[i]) && !isOfPart(front.kind[i]));
     const order = [...behind, ...front.order];
     for (const i of order) {
       const [px, py, inside] = place(front, i);

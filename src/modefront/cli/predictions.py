@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from modefront.cli.layout import Screen
+from modefront.front.point import INTERNAL
 from modefront.predictions.registry import RecordedPrediction, predictions_in
 
 DRAWN = ("mean", "5 %", "95 %")
@@ -152,7 +153,7 @@ def _print_quantities(
     heading: str,
     quantities: list[Quantity],
 ) -> None:
-    named = np.flatnonzero(data["kind"].values != "front").tolist()
+    named = [i for i, kind in enumerate(data["kind"].values) if kind not in {"front", *INTERNAL}]
     rows = []
     for quantity in quantities:
         values = data[quantity.variable].values[:, quantity.place]

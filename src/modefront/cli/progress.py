@@ -47,6 +47,11 @@ TITLES: Mapping[str, str] = {
 }
 """Stages of a run in words."""
 
+SEARCHES = frozenset(
+    ("edges", "near", "front", "gap", "most-probable", "manifold", "identifiable", "probe-basis")
+)
+"""Stages that go on for as long as they find something: what is left is known from below only."""
+
 WIDTH = 24
 """Characters of a study's name in the bar, so that all fits into 80 columns."""
 
@@ -139,23 +144,15 @@ class _Lines:
             return f"done, {self.costs.model_evaluations} models solved"
         if self.state is None or not self.state.stage:
             return "starting"
-        parts = [TITLES.get(self.state.stage, self.state.stage)]
+        parts = [_stage(self.state)]
         if self.step:
             parts.append(self.step)
         if self.iteration:
             parts.append(self.iteration)
         if self.costs.model_evaluations:
             parts.append(f"{self.costs.model_evaluations} models solved")
-        left = self._left()
-        if left is not None and left >= 1:
-            parts.append(f"about {_left_in_words(left)} left")
-        return ", ".join(parts)
-
-    def _left(self) -> float | None:
-        """Return the seconds that are left, which go down while a task takes long."""
-        if self.state is None or self.state.left is None:
-            return None
-        return self.state.left - (self.clock() - self.taken)
+        left = _left(self.state, self.clock() - self.taken)
+        return ", ".join([*parts, left] if left else parts)
 
 
 class _Log:
@@ -167,11 +164,33 @@ class _Log:
     def __call__(self, state: State) -> None:
         if state.stage and state.stage != self.stage:
             self.stage = state.stage
-            words = TITLES.get(state.stage, state.stage)
-            if state.left is not None and state.left >= 1:
-                words += f", about {_left_in_words(state.left)} left"
+            left = _left(state)
+            words = ", ".join([TITLES.get(state.stage, state.stage), *([left] if left else [])])
             text = f"{self.title}: {state.done} of about {state.expected} tasks done: {words}"
             self.screen.print(text, markup=False, highlight=False, soft_wrap=True)
+
+
+def _stage(state: State) -> str:
+    """Return the stage, and how many of its tasks are done."""
+    done, expected = state.of_stage
+    title = TITLES.get(state.stage, state.stage)
+    if expected < 2:
+        return title
+    return f"{title} {done}" if state.surpassed else f"{title} {done} of about {expected}"
+
+
+def _left(state: State, since: float = 0.0) -> str:
+    """Return what is known of the time that is left, ``since`` seconds after the state was so.
+
+    It is known from below only where a search goes on, and not at all where there are more tasks
+    than were expected.
+    """
+    if state.left is None or state.left - since < 1:
+        return ""
+    if state.surpassed:
+        return "longer than expected"
+    left = _left_in_words(state.left - since)
+    return f"{left} or more" if state.stage in SEARCHES else f"about {left} left"
 
 
 def _clock(seconds: float) -> str:

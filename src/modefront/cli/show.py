@@ -11,7 +11,6 @@ import numpy as np
 import xarray as xr
 from rich.console import Console
 
-from modefront.cli.costs import cost_lines
 from modefront.cli.layout import BLANK, Line, Screen
 from modefront.cli.lists import LISTS, print_lists
 from modefront.cli.overview import models_in, predictions_in
@@ -51,9 +50,25 @@ def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
     for line in _verdict(data):
         screen.say(line)
     findings = digest(headlines(data), f"modefront show --findings {folder}")
-    for line in [*findings, *cost_lines(costs)]:
+    for line in [*findings, *_costs(costs)]:
         screen.say(line, start="  ")
     screen.say(f"next: modefront show {folder}")
+
+
+def _costs(costs: Costs) -> list[str]:
+    """Return how many models this run has solved, and the time that took."""
+    out = [f"this time: {costs.eigenproblems} full eigensolutions in {costs.full_time:.3g} s"]
+    if costs.corrected:
+        out.append(
+            f"{costs.corrected} corrected with their factors, and derivatives, "
+            f"in {costs.corrected_time:.3g} s"
+        )
+    if costs.reduced:
+        out.append(
+            f"{costs.reduced} reduced solutions in {costs.reduced_time:.3g} s, "
+            f"{costs.certificates} certificates in {costs.certificate_time:.3g} s"
+        )
+    return out
 
 
 def _verdict(data: xr.Dataset) -> list[str]:

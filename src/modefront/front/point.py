@@ -28,6 +28,9 @@ class Kind(Enum):
 WEIGHTED = (Kind.GIVEN, Kind.EQUAL, Kind.MOST_PROBABLE)
 """Kinds of models of which the solution has the weights that were used."""
 
+INTERNAL = frozenset((Kind.IDENTIFIABLE.value, Kind.IDENTIFIABLE_EDGE.value))
+"""Kinds of points that tables and figures leave out unless all points are asked for."""
+
 REFERENCES = (Kind.MOST_PROBABLE, Kind.OPTIMAL, Kind.EQUAL)
 """Kinds that the data prefer, the first of them that there is."""
 

@@ -18,7 +18,7 @@ from matplotlib.axes import Axes
 from matplotlib.lines import Line2D
 
 from modefront._typing import Floats
-from modefront.front.point import Kind
+from modefront.front.point import INTERNAL, Kind
 from modefront.plots.canvas import Picture, picture
 from modefront.plots.models import front_of, is_path, reference_of, shown
 from modefront.plots.style import COLOURS, MAP, plain, short
@@ -40,7 +40,7 @@ class Along:
         kinds = data["kind"].values
         self.front = front_of(data)
         edge = Kind.EDGE.value if self.front.size else ""
-        self.others = np.flatnonzero((kinds != Kind.FRONT.value) & (kinds != edge))
+        self.others = np.flatnonzero(~np.isin(kinds, [Kind.FRONT.value, edge, *INTERNAL]))
         self.best = reference_of(data)
         self.pareto = np.asarray(data["pareto"].values, dtype=np.bool_)
         step = max(1.6, 0.08 * self.front.size)

@@ -35,16 +35,14 @@ def series(data: xr.Dataset) -> Iterator[Series]:
     kind, pareto = data["kind"].values, data["pareto"].values.astype(bool)
     reference = data["label"].values == data.attrs["reference"]
     front = kind == Kind.FRONT.value
-    part = np.isin(kind, [Kind.IDENTIFIABLE.value, Kind.IDENTIFIABLE_EDGE.value])
     weighted = np.isin(kind, [each.value for each in WEIGHTED]) & ~reference
     best = next(
         (each.value for each in REFERENCES if (kind[reference] == each.value).any()), "reference"
     )
-    blue, red, green, *_, yellow = COLOURS
+    blue, red, *_, yellow = COLOURS
     for name, chosen, marks in (
         ("dominated", front & ~pareto, {"marker": "o", "mfc": "w", "mec": blue, "ms": 4.5}),
         ("Pareto optimal", front & pareto, {"marker": "o", "color": blue, "ms": 4.5}),
-        ("identifiable part", part, {"marker": "^", "mfc": "none", "mec": green, "ms": 5}),
         (
             "edge",
             kind == Kind.EDGE.value,

@@ -30,6 +30,9 @@ from modefront.work.costs import uncounted
 STARTS = 12
 """Searches that an edge usually takes."""
 
+WITHIN = 3.0
+"""Factor within which the estimate is right where searches end before their budget."""
+
 SHORT = 30.0
 """Seconds up to which no advice on a shorter run is given."""
 
@@ -79,6 +82,7 @@ class Estimate:
     steps : seconds for the quadratic programmes of all steps
     advice : what would make the run shorter, that of the longest part first; none for short runs
     stages : seconds of a task of the stages of a run
+    budget : seconds of a search that spends all of its evaluations
     """
 
     seconds: float
@@ -87,6 +91,7 @@ class Estimate:
     steps: float
     advice: tuple[str, ...]
     stages: Mapping[str, float]
+    budget: float = 0.0
 
     @property
     def text(self) -> str:
@@ -95,9 +100,10 @@ class Estimate:
         share = f", {duration(predicted)} for predictions" if predicted > self.seconds / 10 else ""
         if self.steps > self.seconds / 10:
             share += f", {duration(self.steps)} for steps in so many parameters"
+        least, most = self.seconds / WITHIN, max(WITHIN * self.seconds, self.budget)
         return (
-            f"a run takes about {duration(self.seconds)} (roughly {_round(self.evaluations)} "
-            f"models at {duration(self.each)} each{share}; within a factor of 3)"
+            f"a run takes {duration(least)} to {duration(most)}: the number of minima decides "
+            f"(roughly {_round(self.evaluations)} models at {duration(self.each)} each{share})"
         )
 
 
@@ -125,9 +131,9 @@ def estimate(study: Study) -> Estimate | None:
     for part in parts:
         share = part.seconds / max(tasks.get(part.stage, 1), 1)
         stages[part.stage] = stages.get(part.stage, 0.0) + share
-    return Estimate(
-        seconds, evaluations, each, steps, tuple(advice) if seconds > SHORT else (), stages
-    )
+    budget = seconds + (each + step) * study.search.evaluations
+    long_enough = tuple(advice) if seconds > SHORT else ()
+    return Estimate(seconds, evaluations, each, steps, long_enough, stages, budget)
 
 
 def expected_tasks(study: Study) -> dict[str, int]:

@@ -30,6 +30,8 @@ class State:
     expected : tasks in all, as far as is known; never less than those done and running
     elapsed : seconds since the run began
     left : estimated seconds until it ends; None for as long as nothing is known of it
+    of_stage : tasks of this stage that are done, and expected
+    surpassed : whether this stage has more tasks than were expected
     """
 
     stage: str
@@ -38,6 +40,8 @@ class State:
     expected: int
     elapsed: float
     left: float | None
+    of_stage: tuple[int, int] = (0, 0)
+    surpassed: bool = False
 
 
 def ignore(_: State) -> None:
@@ -102,9 +106,11 @@ class Progress:
         done, running = sum(self._done.values()), sum(self._running.values())
         extents = self._extents()
         elapsed = 0.0 if self._began is None else self.clock() - self._began
-        return State(
-            self._stage, done, running, sum(extents.values()), elapsed, self._left(extents)
-        )
+        at_hand = self._done.get(self._stage, 0), extents.get(self._stage, 0)
+        surpassed = self._met(self._stage) > self._expected.get(self._stage, 0)
+        left = self._left(extents)
+        all_tasks = sum(extents.values())
+        return State(self._stage, done, running, all_tasks, elapsed, left, at_hand, surpassed)
 
     def _extents(self) -> dict[str, int]:
         """Return how many tasks each stage has, as far as is known."""
