@@ -199,7 +199,7 @@ def test_files_of_any_kind_of_model_are_part_of_the_digest(
         return chain(parameters, [1.0, 1.0], k, stiffness_parameters=["theta1", "theta2"])
 
     kinds = {"springs": ModelKind("springs", read_springs)}
-    monkeypatch.setattr("modefront.study.tables.model.KINDS", kinds)
+    monkeypatch.setattr("modefront.study.tables.KINDS", kinds)
     parameters = "".join(
         f'[[parameter]]\nname = "theta{i}"\nnominal = 1.0\nbounds = [0.5, 2.0]\n' for i in (1, 2)
     )

@@ -17,7 +17,8 @@ from modefront.fem.section import FemError
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
-from modefront.toml import Table, describe
+from modefront.options import shown
+from modefront.toml import Table
 
 NEAR = 0.01
 """Distance of a sensor from the node of the test that is its own, over the size of the test."""
@@ -113,7 +114,7 @@ def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | 
             places.fault(name, f"one of {_listed(modes)}", suggestion(value, modes.measured))
         return place
     if not isinstance(value, dict):
-        places.fault(name, 'node and direction, such as "12Z"', describe(value))
+        places.fault(name, 'node and direction, such as "12Z"', shown(value))
         return None
     inner = places.table(name)
     if inner is None:
