@@ -14,7 +14,7 @@ import modefront
 LAYERS = (
     ("_lazy", "_typing", "_version", "brief", "outputs", "rounding", "text"),
     ("errors", "variables"),
-    ("complete", "inputs", "hdf5"),
+    ("complete", "families", "inputs", "hdf5"),
     ("isolated", "options"),
     ("toml", "linalg", "response", "work"),
     ("data", "fem", "modes", "optim", "reliability"),
@@ -27,7 +27,7 @@ LAYERS = (
     ("analysis", "diagnosis"),
     ("plots",),
     ("results",),
-    ("reports", "exports"),
+    ("reports",),
     ("study",),
     ("cli",),
     ("__init__", "__main__"),

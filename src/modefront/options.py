@@ -1,10 +1,10 @@
 """Options that check themselves, with the same words in Python and in a file.
 
 An option is a field of a frozen dataclass. Its annotation has its requirement: a ``Literal``, or
-``Annotated`` with a `Requirement`; ``None`` besides, where the annotation has it. `check_fields`,
-called from ``__post_init__``, compares all fields with their requirements and brings their values
-into plain Python: the same record is made from TOML (`modefront.toml.Table`), from literals and
-from numpy scalars.
+``Annotated`` with a `Requirement`, or with a function that returns one when it is needed; ``None``
+besides, where the annotation has it. `check_fields`, called from ``__post_init__``, compares all
+fields with their requirements and brings their values into plain Python: the same record is made
+from TOML (`modefront.toml.Table`), from literals and from numpy scalars.
 """
 
 from __future__ import annotations
@@ -128,8 +128,8 @@ def _requirement(hint: Any) -> Requirement | None:
     if get_origin(hint) is Literal:
         return one_of(*get_args(hint))
     if get_origin(hint) is Annotated:
-        requirements = (each for each in get_args(hint)[1:] if isinstance(each, Requirement))
-        return next(requirements, None)
+        given = (each() if callable(each) else each for each in get_args(hint)[1:])
+        return next((each for each in given if isinstance(each, Requirement)), None)
     if get_origin(hint) in (types.UnionType, typing.Union):
         known = (_requirement(part) for part in get_args(hint))
         return next((each for each in known if each is not None), None)

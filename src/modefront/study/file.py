@@ -36,6 +36,7 @@ from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 
 
+# Many lines: a line or two for each table of the file.
 def load(path: Path | str) -> Study:
     """Return the study that a file describes.
 

@@ -17,7 +17,7 @@ from modefront.models.base import Model
 from modefront.models.parameters import Parameter
 from modefront.models.reduced.options import Reduction
 from modefront.options import each_once, options
-from modefront.predictions import Prediction, known
+from modefront.predictions import CLASSES, Prediction
 from modefront.residuals.base import Scale
 from modefront.residuals.groups import MODE_NUMBERS, Group, are_mode_numbers, faults
 from modefront.residuals.kinds import KINDS as RESIDUALS
@@ -102,10 +102,7 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
     for table in tables:
         name = table.text("name", "the name of the group") or ""
         before = len(root.faults)
-        modes = {
-            kind.name: table.take(kind.name, MODE_NUMBERS, are_mode_numbers, [])
-            for kind in RESIDUALS
-        }
+        modes = {name: table.take(name, MODE_NUMBERS, are_mode_numbers, []) for name in RESIDUALS}
         are_read = len(root.faults) == before
         group = Group(name, scale=table.choice("scale", get_args(Scale), "measured"), **modes)
         table.close()
@@ -122,9 +119,9 @@ def read_groups(root: Table, data: ModalData | None) -> tuple[Group, ...]:
             equal.append(Fault("", "[[group]]", expected, f"'{name}'"))
         held.setdefault(members, name)
     if data is not None:
-        count = sum(int(kind.measured(data).sum()) for kind in RESIDUALS)
+        count = sum(int(kind.measured(data).sum()) for kind in RESIDUALS.values())
         if len(tables) > count:
-            nouns = " and ".join(kind.plural for kind in RESIDUALS)
+            nouns = " and ".join(kind.plural for kind in RESIDUALS.values())
             expected = f"at most {count} groups, as many as measured {nouns}"
             root.fault("[[group]]", expected, str(len(tables)))
     root.note([*equal, *each_once("[[group]]", names_of(tables))])
@@ -150,15 +147,14 @@ def read_predictions(root: Table, model: Model | None, data: ModalData | None) -
     if "predict" not in root.values:
         root.requested.append("predict")
         return []
-    classes = known()
-    expected = f"tables {enumeration([f'[[predict.{each.kind.table}]]' for each in classes])}"
+    expected = f"tables {enumeration([f'[[predict.{name}]]' for name in CLASSES])}"
     table = root.table("predict", expected)
     if table is None:
         return []
     out: list[tuple[Table, Prediction]] = []
     names = []
-    for prediction_class in classes:
-        for each in table.tables(prediction_class.kind.table, required=False):
+    for key, prediction_class in CLASSES.items():
+        for each in table.tables(key, required=False):
             names += names_of([each])
             prediction = each.record(prediction_class)
             if prediction is None:
