@@ -141,7 +141,7 @@ WRONG = [
     (
         '"steel"\nthickness',
         '"iron"\nthickness',
-        "material: expected one of 'steel', found the text",
+        "material: expected one of 'steel', found 'iron'",
     ),
     (
         "thickness = 0.01",
@@ -155,7 +155,7 @@ WRONG = [
         "offset: expected a distance, found nan",
     ),
     (SECTION, "", "section: expected a table with shape = rectangle,  ... found nothing"),
-    ('"rectangle"', '"square"', "section shape: expected one of 'rectangle' ... found the text"),
+    ('"rectangle"', '"square"', "section shape: expected one of 'rectangle' ... found 'square'"),
     ("b_y = 0.02", "b_y = 0", "section b_y: expected a number above 0, found 0"),
     ("b_y = 0.02, ", "", "section b_y: expected a number above 0, found nothing"),
     (
