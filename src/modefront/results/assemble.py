@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Bools, Floats, Ints
 from modefront.analysis.certified import certificate_values
 from modefront.analysis.front import FrontAnalysis
 from modefront.front.dominance import nondominated, undominated
@@ -16,11 +16,12 @@ from modefront.front.front import Front
 from modefront.front.gaps import branch_numbers
 from modefront.front.methods import METHODS
 from modefront.front.point import WEIGHTED, Kind, label
+from modefront.optim.problem import AT_BOUND
 from modefront.optim.sqp import Solution
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values, analysis_values, determinations
 from modefront.results.findings import as_values, findings
-from modefront.results.schema import FORMAT, derived, described
+from modefront.results.schema import FORMAT, described
 
 ITERATED = "iterated-weights"
 """Name of the fixed point of the iteration of the weights, among the minima."""
@@ -34,7 +35,6 @@ def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     determined = determinations(problem, front)
     values |= analysis_values(problem, front, analysis, determined)
     values |= as_values(findings(problem, front, analysis, determined))
-    values |= derived(values)
     groups, parameters = list(problem.objectives), list(problem.model.parameters)
     return xr.Dataset(
         described(values),
@@ -55,6 +55,7 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     points, n = front.points, len(problem.objectives)
     solutions = [point.solution for point in points]
     a, J = problem.properties, _stack([x.J for x in solutions], n)
+    theta = _thetas(solutions, problem)
     equivalent = [
         model.J
         for _, manifolds in analysis.manifolds
@@ -66,19 +67,28 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
         "kind": [point.kind.value for point in points],
         "pareto": _pareto(front, J, _stack(equivalent, n)),
         "dominated_among_front": _dominated_among_front(front, J),
-        "theta": _thetas(solutions, problem),
+        "theta": theta,
         "objective": J,
+        "error": np.sqrt(J / a),
         "weight": _weights(front, J, a),
         "stationary_weight": _shares(_stack([x.weights for x in solutions], n), front.scale),
         "converged": [x.converged for x in solutions],
         "status": [x.status.name.lower() for x in solutions],
         "evaluations": [x.evaluations for x in solutions],
+        "at_bound": _at_bound(problem, theta),
     }
     modes = len(problem.data.modes)
     unknown = np.full(modes, np.nan)
     for name in ("frequency", "mac", "paired_mode", "coincident"):
         out[name] = _stack([x.evaluation.quantities.get(name, unknown) for x in solutions], modes)
     return out | certificate_values(problem, solutions)
+
+
+def _at_bound(problem: UpdatingProblem, theta: Floats) -> Ints:
+    """Return -1 where parameters (points, p) are at the lower bound, 1 at the upper one, else 0."""
+    margin = AT_BOUND * (problem.upper - problem.lower)
+    side = np.where(theta >= problem.upper - margin, 1, 0)
+    return np.where(theta <= problem.lower + margin, -1, side)
 
 
 def _data(problem: UpdatingProblem, front: Front) -> Values:

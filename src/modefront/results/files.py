@@ -16,8 +16,8 @@ from modefront.outputs import output
 from modefront.results.checksum import NAME as CHECKSUM
 from modefront.results.checksum import checksum
 from modefront.results.remarks import CHANGED
-from modefront.results.schema import FORMAT, faults, missing, variables_in
-from modefront.results.soundness import unsound
+from modefront.results.schema import FORMAT, variables_in
+from modefront.results.soundness import faults
 from modefront.text import NAME, clean
 
 FILE = "results.nc"
@@ -54,8 +54,7 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
             f"format {clean(version, NAME)}, of another version of modefront: run the study again"
         )
         raise InputError(Fault(str(path), "attribute 'format'", expected, text))
-    found = list(faults(data)) or list(missing(data) if whole else ()) or list(unsound(data))
-    wrong = [Fault(str(path), *parts) for parts in found]
+    wrong = [Fault(str(path), *parts) for parts in faults(data, whole=whole)]
     if wrong:
         raise InputError(wrong)
     kept = data.attrs.pop(CHECKSUM, "")
