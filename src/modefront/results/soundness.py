@@ -13,6 +13,7 @@ import xarray as xr
 from modefront.front.point import REFERENCES, Kind
 from modefront.predictions.registry import ATTRIBUTE, kinds_from, kinds_in
 from modefront.results.schema import ATTRIBUTES, DIMENSIONS, variables_in, variables_of
+from modefront.results.selection import preferred
 from modefront.text import NAME, clean
 from modefront.variables import Values
 
@@ -210,9 +211,9 @@ def _of_file(data: xr.Dataset) -> Iterator[Wrong]:
             yield f"attribute '{name}'", "a whole number of 0 or more", str(value)
     if "certified" in data and "eigenvalue_tolerance" not in data.attrs:
         yield "attribute 'eigenvalue_tolerance'", "it, as there is 'certified'", "nothing"
-    reference = str(data.attrs["reference"])
-    if reference not in data["label"].values:
-        yield "attribute 'reference'", "the label of a point", clean(repr(reference), NAME)
+    if preferred(data) not in data["label"].values:
+        found = clean(repr(str(data.attrs["reference"])), NAME)
+        yield "attribute 'reference'", "the label of a point", found
 
 
 def _place(data: xr.Dataset, name: object) -> str:
