@@ -17,6 +17,13 @@ export function number(x: number | null | undefined, digits = 4): string {
   return text.replace(/-/g, MINUS);
 }
 
+/** Returns an interval in digits that tell its ends apart. */
+export function between([low, high]: [number, number]): string {
+  const apart = Math.ceil(Math.log10(Math.max(Math.abs(low), Math.abs(high)) / (high - low))) + 1;
+  const digits = Math.min(Math.max(3, Number.isFinite(apart) ? apart : 3), 9);
+  return `${number(low, digits)}–${number(high, digits)}`;
+}
+
 /** Returns a number with so many digits behind the point. */
 export function fixed(x: number | null | undefined, digits: number, signed = false): string {
   if (x === null || x === undefined || !Number.isFinite(x)) return number(x);

@@ -23,6 +23,15 @@ def brief(record: Any) -> str:
     return "\n".join([type(record).__name__, *lines[:MOST], *more])
 
 
+def brief_model(model: Any) -> str:
+    """Return the class of a model and its sizes, as its ``__repr__``."""
+    p, k = len(model.parameters), len(model.sensors)
+    return (
+        f"{type(model).__name__}({p} parameter{'s' * (p != 1)}, {model.size} degrees of freedom, "
+        f"{k} sensor{'s' * (k != 1)})"
+    )
+
+
 def as_html(record: Any) -> str:
     """Return the representation of a record for a notebook, as its ``_repr_html_``."""
     return f"<pre>{html.escape(repr(record))}</pre>"
@@ -30,7 +39,9 @@ def as_html(record: Any) -> str:
 
 def _short(value: Any) -> str:
     """Return a value in a line: numbers and texts, or how many and of what."""
-    if isinstance(value, str | bytes | int | float | type(None)):
+    if isinstance(value, float):
+        return f"{value:.6g}"
+    if isinstance(value, str | bytes | int | type(None)):
         return repr(value)
     shape = getattr(value, "shape", None)
     if shape is not None:

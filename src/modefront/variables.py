@@ -2,9 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import dataclass
-from typing import Any, Literal
+from typing import Literal
 
 Values = Literal["number", "count", "truth", "text"]
 """Types of values of a variable."""
@@ -25,7 +24,6 @@ class Variable:
     required : whether every file of results has it
     since : first format that has it
     together : name of variables of which a file has all or none; empty for a variable alone
-    value : returns its values from those of other variables by name; None where they are assembled
     """
 
     name: str
@@ -37,7 +35,6 @@ class Variable:
     required: bool = False
     since: int = 1
     together: str = ""
-    value: Callable[[Mapping[str, Any]], object] | None = None
 
     @property
     def attributes(self) -> dict[str, str]:

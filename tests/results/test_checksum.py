@@ -16,8 +16,7 @@ from refusals import command
 
 import modefront as mf
 from modefront.reports.words import topics
-from modefront.results.checksum import checksum
-from modefront.results.files import FILE, read_dataset, write
+from modefront.results.files import FILE, checksum, read_dataset, write
 from modefront.results.remarks import headlines
 
 SAYS = "results.nc has values that do not fit its checksum"

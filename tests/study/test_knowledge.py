@@ -313,7 +313,6 @@ def test_a_study_runs_on_with_the_same_digits_and_shows_all(
     out = " ".join(capsys.readouterr().out.split())
     for text in (
         "scatter by errors of the data: standard deviations, linearised",
-        "warning",
         "scatter over data drawn again: standard deviations",
         "posterior around optimal-weights",
         "k1 and k2 can be scaled together: no shape changes",

@@ -1,7 +1,7 @@
 // Parameters of all models, a row each.
 
 import { h, section, sized } from "../dom";
-import { number } from "../format";
+import { between, number } from "../format";
 import type { State } from "../state";
 import { strips, type Strip } from "./strips";
 import type { Tip } from "./tip";
@@ -26,7 +26,7 @@ export function parametersView(state: State, tip: Tip): HTMLElement {
       text: (i) => {
         const value = number(front.theta[i][j], 4);
         if (interval && i === front.reference) {
-          return `${value} (${number(interval[0], 3)}–${number(interval[1], 3)})`;
+          return `${value} (${between(interval)})`;
         }
         const scatter = std(i);
         if (scatter === null) return value;

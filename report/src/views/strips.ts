@@ -1,4 +1,4 @@
-// Rows of strips: a value of every model on each, the chosen one joined across the rows.
+// Rows of strips: a value of every model on each.
 
 import { brushX, type D3BrushEvent } from "d3-brush";
 import { scaleLinear } from "d3-scale";
@@ -238,8 +238,8 @@ export function strips(
       bars[k].setAttribute("x1", String(axes[k](Math.max(low, v - (std as number)))));
       bars[k].setAttribute("x2", String(axes[k](Math.min(high, v + (std as number)))));
     });
-    // Rows of different scales are not joined: a line between them would mean nothing.
-    if (options.shared || options.lines) path.setAttribute("d", joined(state.point));
+    // Rows are joined where there are lines of all models; else a line would mean nothing.
+    if (options.lines) path.setAttribute("d", joined(state.point));
   };
   update();
   return { svg, update };

@@ -31,7 +31,8 @@ interface Drawn {
 
 /** Returns a renderer that draws with WebGL; raises where there is none. */
 export function webgl(canvas: HTMLCanvasElement, solid: Solid, panels: number): Renderer {
-  const renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true });
+  // What is drawn is kept, so that it is printed.
+  const renderer = new WebGLRenderer({ canvas, antialias: true, alpha: true, preserveDrawingBuffer: true });
   renderer.setPixelRatio(Math.min(2, window.devicePixelRatio));
   renderer.setScissorTest(true);
   const drawn = Array.from({ length: panels }, () => scene(solid));

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from modefront.cli.layout import Screen
-from modefront.cli.terminal import say
+from modefront.cli.terminal import say, say_next
 from modefront.errors import UnfinishedError
 from modefront.identification.modal_test import IdentifiedTest, identify, writable
 from modefront.identification.sets import CombinedModes
@@ -52,7 +52,7 @@ def run_identify(
     if test.modes is None:
         raise UnfinishedError("no mode was found in the band: is it right? --seed places modes")
     if figures is None:
-        say(f"next: modefront identify {path} -o {output} --figures pictures, and look at them")
+        say_next("identify", path, "-o", output, "--figures", "pictures")
     else:
         say(f'next: [data] file = "{output}" in study.toml, then modefront check study.toml')
 

@@ -11,6 +11,7 @@ import re
 from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
+import numpy as np
 from rich.cells import cell_len, chop_cells
 from rich.console import Console
 from rich.text import Text
@@ -32,6 +33,20 @@ Line = tuple[str, str]
 """A line with its style."""
 
 BLANK: Line = ("", "")
+
+
+def number(value: float, form: str, none: str = "none") -> str:
+    """Return a number in a format; ``none`` for NaN."""
+    return none if np.isnan(value) else format(float(value), form)
+
+
+def plural(count: int, noun: str) -> str:
+    """Return a count with its noun.
+
+    >>> plural(1, "model"), plural(2, "model")
+    ('1 model', '2 models')
+    """
+    return f"{count} {noun}{'s' * (count != 1)}"
 
 
 class _Output(Console):

@@ -10,7 +10,7 @@ import os
 import signal
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator, Mapping
 from contextlib import AbstractContextManager, ExitStack, contextmanager, nullcontext, suppress
 from dataclasses import replace
 from pathlib import Path
@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING, Any
 import click
 
 from modefront._version import __version__
-from modefront.cli.terminal import complain, prepare, say, usage
+from modefront.cli.terminal import complain, prepare, say, say_next, usage
 from modefront.errors import InputError, UnfinishedError, reason
 from modefront.text import one_line
 
@@ -51,6 +51,25 @@ class Numbers(click.ParamType[Any]):
             self.fail(f"expected numbers with commas between them, found {value!r}", param, ctx)
 
 
+LISTS: Mapping[str, str] = {
+    "models": "The main models.",
+    "points": "All models.",
+    "minima": "All minima.",
+    "uncertainty": "All deviations.",
+    "predictions": "All predictions.",
+    "findings": "All findings.",
+}
+"""Full lists that ``show`` prints."""
+
+
+def _full_lists(command: Callable[..., None]) -> Callable[..., None]:
+    """Return a command with an option for each of `LISTS`."""
+    for name, text in reversed(LISTS.items()):
+        option = click.option(f"--{name}", "lists", flag_value=name, multiple=True, help=text)
+        command = option(command)
+    return command
+
+
 @click.group(invoke_without_command=True, context_settings={"help_option_names": ["-h", "--help"]})
 @click.version_option(__version__, prog_name="modefront")
 @click.pass_context
@@ -69,7 +88,7 @@ def init(directory: Path, example: str) -> None:
 
     for path in write_example(example, directory):
         say(f"wrote {path}")
-    say(f"next: modefront check {directory / 'study.toml'}")
+    say_next("check", directory / "study.toml")
 
 
 @cli.command()
@@ -95,7 +114,7 @@ def check(study: Path, every: bool) -> None:
     if not findings.sound:
         cause = findings.derivative_cause
         raise UnfinishedError(f"the derivatives differ from finite differences {cause}")
-    say(f"next: modefront run {study}")
+    say_next("run", study)
 
 
 @cli.command()
@@ -172,16 +191,7 @@ def run(
     show_default=True,
     help="Format of the pictures.",
 )
-@click.option("--models", "lists", flag_value="models", multiple=True, help="The main models.")
-@click.option("--points", "lists", flag_value="points", multiple=True, help="All models.")
-@click.option("--minima", "lists", flag_value="minima", multiple=True, help="All minima.")
-@click.option(
-    "--uncertainty", "lists", flag_value="uncertainty", multiple=True, help="All deviations."
-)
-@click.option(
-    "--predictions", "lists", flag_value="predictions", multiple=True, help="All predictions."
-)
-@click.option("--findings", "lists", flag_value="findings", multiple=True, help="All findings.")
+@_full_lists
 @click.option("--all", "every", is_flag=True, help="All of these lists.")
 def show(
     directory: Path,
@@ -191,8 +201,7 @@ def show(
     lists: tuple[str, ...],
     every: bool,
 ) -> None:
-    """Print the results in DIRECTORY: the main models and findings, or full lists of these."""
-    from modefront.cli.lists import LISTS
+    """Print the results in DIRECTORY, or full lists of them."""
     from modefront.cli.show import as_json, print_results
     from modefront.results.files import read_dataset
 
@@ -206,7 +215,7 @@ def show(
     if form == "json":
         print(as_json(data))
     else:
-        print_results(data, tuple(LISTS) if every else lists)
+        print_results(data, tuple(LISTS) if every else lists, directory)
 
 
 @cli.command()
@@ -385,7 +394,7 @@ def import_(program: str, base: Path, output: Path, **given: Any) -> None:
 def export(
     directory: Path, point: str | None, study: Path | None, output: Path | None, modes: int | None
 ) -> None:
-    """Write a model of the results in DIRECTORY: parameters, matrices, mode shapes."""
+    """Write a model of results: parameters, matrices, mode shapes."""
     from modefront.study.export import export as write_model
 
     exported = write_model(directory, output, point=point, study=study, modes=modes)

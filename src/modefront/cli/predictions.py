@@ -8,14 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 import xarray as xr
 
-from modefront.cli.layout import Screen
+from modefront.cli.layout import Line, Screen, number, plural
+from modefront.cli.overview import reference
 from modefront.front.point import INTERNAL
 from modefront.predictions.registry import RecordedPrediction, predictions_in
+from modefront.results.selection import preferred
 
 DRAWN = ("mean", "5 %", "95 %")
 """Statistics of models drawn from the posterior that are shown."""
-
-RANGE = "range over the Pareto-optimal models; spread is greatest over least"
 
 
 @dataclass(frozen=True)
@@ -36,13 +36,32 @@ class Quantity:
     variable: str
     place: int
     std: str
-    logarithmic: bool
+    logarithmic: bool = False
     ranged: bool = True
 
-    @property
-    def form(self) -> str:
-        """Format of its values."""
-        return ".3e" if self.logarithmic else ".5g"
+    def deviation(self, data: xr.Dataset) -> str:
+        """Return the standard deviation by the posterior, that of a logarithm as a factor."""
+        if self.std not in data or not self.ranged:
+            return ""
+        std = float(data[self.std].values[self.place])
+        shown = f"×÷ {np.exp(std):.3g}" if self.logarithmic else f"± {std:.3g}"
+        return "none" if np.isnan(std) else shown
+
+    def row(self, data: xr.Dataset, models: list[int]) -> list[str]:
+        """Return its range over the Pareto-optimal models, its posterior, and ``models``."""
+        values, form = data[self.variable].values[:, self.place], ".2g"
+        known = values[np.isfinite(values)]
+        extent = ["", number(known.max() if known.size else np.nan, form), ""]
+        drawn = [""] * len(_drawn(data))
+        if self.ranged:
+            form = ".3e" if self.logarithmic else ".5g"
+            *ends, spread = data[f"{self.variable}_range"].values[:, self.place]
+            extent = [*(number(x, form) for x in ends), number(spread, ".4g")]
+            if f"posterior_{self.variable}" in data:
+                posterior = data[f"posterior_{self.variable}"].values[:, self.place]
+                drawn = [number(posterior[k], form) for k in _drawn(data)]
+        std = [self.deviation(data)] * ("posterior_frequency_std" in data)
+        return [self.name, *extent, *std, *drawn, *(number(values[i], form) for i in models)]
 
 
 def print_predictions(screen: Screen, data: xr.Dataset) -> None:
@@ -50,143 +69,67 @@ def print_predictions(screen: Screen, data: xr.Dataset) -> None:
     if "range" not in data.sizes:
         screen.say("The study asks for no predictions.")
         return
-    posterior = Posterior(data)
+    best, linear = preferred(data), "posterior_frequency_std" in data
+    kinds = data["kind"].values
+    models = [i for i, kind in enumerate(kinds) if kind not in {"front", *INTERNAL}]
+    columns = ["", "minimum", "maximum", "spread", *["posterior"] * linear]
+    columns += [f"drawn {data['statistic'].values[k]}" for k in _drawn(data)]
+    columns += [str(data["label"].values[i]) for i in models]
     frequencies = [
-        Quantity(f"f{r}, Hz", "frequency", i, "posterior_frequency_std", False)
+        Quantity(f"f{r}, Hz", "frequency", i, "posterior_frequency_std")
         for i, r in enumerate(data["mode"].values)
     ]
-    _print_quantities(screen, data, posterior, f"frequencies: {RANGE}", frequencies)
-    for text in posterior.explained:
-        screen.say(text)
+    title = "frequencies: range over the Pareto-optimal models; spread is greatest over least"
+    screen.table(title, columns, [x.row(data, models) for x in frequencies])
+    if linear:
+        screen.say(
+            f"posterior: standard deviation around {best}; of P as a factor, e to that of ln P"
+        )
+    if _drawn(data):
+        drawn = plural(data.sizes["draw"], "model")
+        screen.say(
+            f"drawn: over {drawn} of the posterior; the mean of P is the robust failure probability"
+        )
     for each in predictions_in(data):
-        _print_quantities(screen, data, posterior, each.heading, list(_quantities(each)))
-        _print_check(screen, data, each)
+        screen.table(each.heading, columns, [x.row(data, models) for x in _quantities(each)])
+        check = each.kind.check
+        if check is not None and check.label.name in data:
+            label = data[check.label.name].values[each.positions[0]]
+            for x in check.variables:
+                values = [number(data[x.name].values[i], ".3f") for i in each.positions]
+                screen.say(f"at {label}: {x.meaning}: {', '.join(values)}")
 
 
-def first_predictions(data: xr.Dataset) -> tuple[list[str], list[list[str]]]:
-    """Return columns and rows of a short table: the main quantity of each prediction."""
-    posterior = Posterior(data)
-    best = _position(data, str(data.attrs["reference"]))
-    rows = []
+def predictions_in_short(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Line]:
+    """Return the lines of the main quantities of the first predictions, ``most`` of them.
+
+    ``full`` is the command that prints all.
+    """
+    best, rows = reference(data), []
     for each in predictions_in(data):
         main = next((variable.name for variable in each.kind.ranged), "")
-        for quantity in _quantities(each):
-            if quantity.variable == main:
-                least, greatest, _ = data[f"{main}_range"].values[:, quantity.place]
-                rows.append(
-                    [
-                        f"{each.name}, {quantity.name}",
-                        _number(data[main].values[best, quantity.place], ".3g"),
-                        *posterior.std(quantity),
-                        f"{_number(least, '.3g')} to {_number(greatest, '.3g')}",
-                    ]
-                )
-    columns = [str(data.attrs["reference"]), *posterior.columns[: posterior.known]]
-    return ["", *columns, "least to greatest"], rows
+        for x in _quantities(each):
+            if x.variable == main:
+                least, greatest, _ = data[f"{main}_range"].values[:, x.place]
+                value = number(data[main].values[best, x.place], ".3g")
+                ends = f"{number(least, '.3g')} to {number(greatest, '.3g')}"
+                rows.append([f"{each.name}, {x.name}", f"{value} {x.deviation(data)}", ends])
+    columns = ["", preferred(data), "Pareto-optimal models"]
+    out = screen.grid("predictions", columns, rows[:most])
+    rest = len(rows) - most
+    return out + (screen.sentence(f"and {rest} more: {full}") if rest > 0 else [])
 
 
-class Posterior:
-    """Scatter of predictions by the posterior, and models drawn from it, as columns."""
-
-    def __init__(self, data: xr.Dataset) -> None:
-        self.data = data
-        self.known = "posterior_frequency_std" in data
-        statistics = data["statistic"].values.tolist() if "statistic" in data.sizes else []
-        self.drawn = [statistics.index(x) for x in DRAWN if x in statistics]
-
-    @property
-    def columns(self) -> list[str]:
-        """Titles."""
-        return ["posterior"] * self.known + [f"drawn {x}" for x in DRAWN[: len(self.drawn)]]
-
-    @property
-    def explained(self) -> list[str]:
-        """Headings of the columns."""
-        out = []
-        if self.known:
-            out.append(
-                f"posterior: standard deviation around {self.data.attrs['reference']}; of P as a "
-                "factor, e to that of ln P"
-            )
-        if self.drawn:
-            out.append(
-                f"drawn: over {self.data.sizes['draw']} models drawn from the posterior; the mean "
-                "of P is the robust failure probability"
-            )
-        return out
-
-    def std(self, quantity: Quantity) -> list[str]:
-        """Return the standard deviation of a prediction, that of a logarithm as a factor."""
-        if not self.known:
-            return []
-        std = self.data.get(quantity.std)
-        if std is None or not quantity.ranged:
-            return [""]
-        x = float(std.values[quantity.place])
-        shown = np.exp(x) if quantity.logarithmic else x
-        sign = "×÷" if quantity.logarithmic else "±"
-        return ["none" if np.isnan(x) else f"{sign} {shown:.3g}"]
-
-    def row(self, quantity: Quantity) -> list[str]:
-        """Return the cells of one prediction."""
-        drawn = self.data.get(f"posterior_{quantity.variable}")
-        if drawn is None or not quantity.ranged:
-            return [*self.std(quantity), *[""] * len(self.drawn)]
-        values = drawn.values[self.drawn, quantity.place]
-        return [*self.std(quantity), *(_number(x, quantity.form) for x in values)]
+def _drawn(data: xr.Dataset) -> list[int]:
+    """Return the positions of the statistics that are shown."""
+    statistics = data["statistic"].values.tolist() if "statistic" in data.sizes else []
+    return [statistics.index(x) for x in DRAWN if x in statistics]
 
 
 def _quantities(prediction: RecordedPrediction) -> Iterator[Quantity]:
     kind = prediction.kind
     for i, place in zip(prediction.positions, prediction.places, strict=True):
-        for variable in kind.variables:
-            log = variable.logarithmic
-            std = f"posterior_{kind.dimension}_log_std" if log else f"posterior_{variable.name}_std"
-            title = f"{place}: {variable.title}"
-            yield Quantity(title, variable.name, i, std, log, variable.ranged)
-
-
-def _print_quantities(
-    screen: Screen,
-    data: xr.Dataset,
-    posterior: Posterior,
-    heading: str,
-    quantities: list[Quantity],
-) -> None:
-    named = [i for i, kind in enumerate(data["kind"].values) if kind not in {"front", *INTERNAL}]
-    rows = []
-    for quantity in quantities:
-        values = data[quantity.variable].values[:, quantity.place]
-        if quantity.ranged:
-            least, greatest, spread = data[f"{quantity.variable}_range"].values[:, quantity.place]
-            extent = [_number(least, quantity.form), _number(greatest, quantity.form)]
-            extent.append(_number(spread, ".4g"))
-        else:
-            known = values[np.isfinite(values)]
-            greatest = known.max() if known.size else np.nan
-            extent = ["", _number(float(greatest), ".2g"), ""]
-        form = quantity.form if quantity.ranged else ".2g"
-        cells = [_number(values[i], form) for i in named]
-        rows.append([quantity.name, *extent, *posterior.row(quantity), *cells])
-    labels = [str(data["label"].values[i]) for i in named]
-    columns = ["", "minimum", "maximum", "spread", *posterior.columns, *labels]
-    screen.table(heading, columns, rows)
-
-
-def _print_check(screen: Screen, data: xr.Dataset, prediction: RecordedPrediction) -> None:
-    """Print the comparison with finer numerics, where there is one."""
-    check, positions = prediction.kind.check, prediction.positions
-    if check is None or check.label.name not in data:
-        return
-    label = data[check.label.name].values[positions[0]]
-    for variable in check.variables:
-        values = [_number(data[variable.name].values[i], ".3f") for i in positions]
-        screen.say(f"at {label}: {variable.meaning}: {', '.join(values)}")
-
-
-def _position(data: xr.Dataset, label: str) -> int:
-    return [str(x) for x in data["label"].values].index(label)
-
-
-def _number(value: float, form: str) -> str:
-    return "none" if np.isnan(value) else format(float(value), form)
+        for x in kind.variables:
+            std = f"posterior_{kind.dimension}_log" if x.logarithmic else f"posterior_{x.name}"
+            title = f"{place}: {x.title}"
+            yield Quantity(title, x.name, i, f"{std}_std", x.logarithmic, x.ranged)

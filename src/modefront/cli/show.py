@@ -12,24 +12,26 @@ import xarray as xr
 from rich.console import Console
 
 from modefront.cli.layout import BLANK, Line, Screen
-from modefront.cli.lists import LISTS, print_lists
-from modefront.cli.overview import models_in, predictions_in
-from modefront.cli.predictions import first_predictions
+from modefront.cli.lists import LISTS
+from modefront.cli.overview import models_in
+from modefront.cli.predictions import predictions_in_short
+from modefront.cli.terminal import command, say_next
+from modefront.findings.catalogue import Severity
 from modefront.findings.record import PAGE
 from modefront.results.remarks import digest, findings_of, headlines
 from modefront.study.estimate import Estimate
 from modefront.work.costs import Costs
 
-HEIGHT = 48
+HEIGHT = 40
 """Lines of the first screen, about."""
 
-LONGER, SHORTER = 32, 25
-"""Lines for the table of models, without and with predictions."""
+TABLE = 14
+"""Lines of the first screen for the table of models, at least."""
 
 PREDICTIONS = 4
 """Predictions on the first screen."""
 
-LEAST = 8
+LEAST = 6
 """Lines of the first screen for findings, at least."""
 
 
@@ -46,62 +48,53 @@ def say_estimate(expected: Estimate | None, *, err: bool = False) -> None:
 def print_summary(data: xr.Dataset, folder: Path, costs: Costs) -> None:
     """Print what a run has found and what this run of it has cost, in a few lines."""
     screen = Screen.of_output()
-    screen.say(f"{data.attrs.get('study', '')}: results in {folder}")
-    for line in _verdict(data):
-        screen.say(line)
-    findings = digest(headlines(data), f"modefront show --findings {folder}")
-    for line in [*findings, *_costs(costs)]:
+    screen.say(f"{data.attrs.get('study', '')}: results in {folder}", style="bold")
+    failures = [str(x) for x in findings_of(data) if x.severity is Severity.FAILURE]
+    said = verdict_of(data)
+    whole = command("show", folder, "--findings")
+    for line in [*said, *failures] if said else digest(headlines(data), whole):
         screen.say(line, start="  ")
-    screen.say(f"next: modefront show {folder}")
-
-
-def _costs(costs: Costs) -> list[str]:
-    """Return how many models this run has solved, and the time that took."""
-    out = [f"this time: {costs.eigenproblems} full eigensolutions in {costs.full_time:.3g} s"]
+    spent = f"this time: {costs.eigenproblems} full eigensolutions in {costs.full_time:.3g} s"
     if costs.corrected:
-        out.append(
-            f"{costs.corrected} corrected with their factors, and derivatives, "
-            f"in {costs.corrected_time:.3g} s"
-        )
+        spent += f", {costs.corrected} corrected in {costs.corrected_time:.3g} s"
     if costs.reduced:
-        out.append(
-            f"{costs.reduced} reduced solutions in {costs.reduced_time:.3g} s, "
-            f"{costs.certificates} certificates in {costs.certificate_time:.3g} s"
-        )
-    return out
+        spent += f", {costs.reduced} reduced in {costs.reduced_time:.3g} s"
+        spent += f", {costs.certificates} certificates in {costs.certificate_time:.3g} s"
+    screen.say(spent)
+    say_next("show", folder)
 
 
-def _verdict(data: xr.Dataset) -> list[str]:
+def verdict_of(data: xr.Dataset) -> list[str]:
     """Return the sentences of the first answer."""
     return str(data.attrs.get("verdict", "")).splitlines()
 
 
-def print_results(data: xr.Dataset, lists: Sequence[str] = ()) -> None:
-    """Print the first screen of results, or the full lists of these names (`LISTS`)."""
-    screen = Screen.of_output()
-    attrs = data.attrs
+def print_results(
+    data: xr.Dataset, lists: Sequence[str] = (), folder: Path | str = "DIRECTORY"
+) -> None:
+    """Print the first screen of the results in a folder, or the full lists of these names."""
+    screen, attrs = Screen.of_output(), data.attrs
     title = screen.sentence(attrs.get("study") or "results", style="bold")
-    title += screen.sentence(
-        f"modefront {attrs['version']}, method {attrs['method']}, seed {attrs['seed']}"
-    )
     if lists:
-        screen.show(title)
-        print_lists(screen, data, lists)
+        by = f"modefront {attrs['version']}, method {attrs['method']}, seed {attrs['seed']}"
+        screen.show([*title, *screen.sentence(by)])
+        for name in (name for name in LISTS if name in lists):
+            LISTS[name](screen, data)
         return
-    predicted = "range" in data.sizes
-    said = [line for text in _verdict(data) for line in screen.sentence(text)]
-    lines = [*title, *said, BLANK, *models_in(screen, data, SHORTER if predicted else LONGER)]
+    show, predicted = command("show", folder), "range" in data.sizes
+    said = [line for text in verdict_of(data) for line in screen.sentence(text)]
     if predicted:
-        lines += [BLANK, *predictions_in(screen, *first_predictions(data), PREDICTIONS)]
-    options = [f"--{name}" for name in LISTS if name != "predictions" or predicted]
-    last = screen.sentence(f"full lists: modefront show {' '.join(options)}, or --all")
-    last += screen.sentence(f"what each finding means, and what to do: {PAGE}")
-    lines.append(BLANK)
-    lines += _findings(screen, data, max(HEIGHT - len(lines) - len(last) - 1, LEAST))
-    screen.show([*lines, BLANK, *last])
+        full = f"{show} --predictions"
+        said += [BLANK, *predictions_in_short(screen, data, PREDICTIONS, full)]
+    most = max(HEIGHT - len(title) - len(said) - LEAST - 6, TABLE)
+    lines = [*title, *said, BLANK, *models_in(screen, data, most, f"{show} --models")]
+    room = max(HEIGHT - len(lines) - 5, LEAST)
+    screen.show([*lines, BLANK, *_findings(screen, data, room, f"{show} --findings"), BLANK])
+    screen.say(f"what a finding means: {PAGE}")
+    screen.show([(f"all: {show} --all", ""), (f"next: {command('report', folder)}", "")])
 
 
-def _findings(screen: Screen, data: xr.Dataset, most: int) -> list[Line]:
+def _findings(screen: Screen, data: xr.Dataset, most: int, full: str) -> list[Line]:
     """Return the first findings, in ``most`` lines or in those of the first two where more."""
     sentences = headlines(data)
     blocks = [screen.sentence(text, start="- ") for text in sentences]
@@ -112,22 +105,20 @@ def _findings(screen: Screen, data: xr.Dataset, most: int) -> list[Line]:
     while count < len(blocks) and (count < 2 or len(out) + len(blocks[count]) < most):
         out += blocks[count]
         count += 1
-    *_, more = digest(sentences, "modefront show --findings", count)
+    *_, more = digest(sentences, full, count)
     return [*out, *screen.sentence(more, start="- ")]
 
 
 def as_json(data: xr.Dataset) -> str:
     """Return the dataset as JSON: attributes, and each variable with dimensions and values."""
-    variables: dict[str, Any] = {
-        str(name): {"dimensions": list(map(str, value.dims)), "values": as_plain(value.values)}
-        for name, value in {**data.coords, **data.data_vars}.items()
-    }
-    attributes = {str(key): as_plain(np.asarray(value)) for key, value in data.attrs.items()}
     found = findings_of(data, full=True)
     sections = {
-        "verdict": _verdict(data),
-        "attributes": attributes,
-        "variables": variables,
+        "verdict": verdict_of(data),
+        "attributes": {str(k): as_plain(np.asarray(value)) for k, value in data.attrs.items()},
+        "variables": {
+            str(name): {"dimensions": list(map(str, x.dims)), "values": as_plain(x.values)}
+            for name, x in {**data.coords, **data.data_vars}.items()
+        },
         "remarks": [str(finding) for finding in found],
         "findings": [finding.as_plain() for finding in found],
     }
@@ -135,11 +126,11 @@ def as_json(data: xr.Dataset) -> str:
 
 
 def as_plain(values: Any) -> Any:
-    """Return arrays as lists; what is not a number becomes null, as JSON has no NaN."""
+    """Return what JSON has: arrays as lists, records as objects, null for what is no number."""
+    if isinstance(values, dict):
+        return {key: as_plain(value) for key, value in values.items()}
     if isinstance(values, np.ndarray):
         values = values.tolist()
-    if isinstance(values, list):
+    if isinstance(values, list | tuple):
         return [as_plain(value) for value in values]
-    if isinstance(values, float) and not np.isfinite(values):
-        return None
-    return values
+    return None if isinstance(values, float) and not np.isfinite(values) else values

@@ -5,19 +5,9 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from rich import box
-from rich.console import Console
 from rich.table import Table
 
 from modefront.text import NAME, clean
-
-_WIDTH = 1100
-"""Characters of a line where output is no terminal: no table is cut."""
-
-
-def console() -> Console:
-    """Return a console that does not cut tables where output is no terminal."""
-    screen = Console(highlight=False)
-    return screen if screen.is_terminal else Console(highlight=False, width=_WIDTH)
 
 
 def table(title: str, columns: Sequence[str]) -> Table:

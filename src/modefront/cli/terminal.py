@@ -23,6 +23,21 @@ def say(text: str, *, err: bool = False) -> None:
     print(clean(text), file=sys.stderr if err else sys.stdout)
 
 
+def command(*words: object) -> str:
+    """Return a command to be pasted.
+
+    >>> command("show", "my results", "--all")
+    'modefront show "my results" --all'
+    """
+    quoted = [f'"{word}"' if " " in str(word) else str(word) for word in words]
+    return " ".join(["modefront", *quoted])
+
+
+def say_next(*words: object) -> None:
+    """Print the next command, in one line that can be pasted."""
+    say(f"next: {command(*words)}")
+
+
 def complain(text: str) -> None:
     """Print a message on standard error: lines of clean text, of limited length."""
     lines = shortened(text, MOST_CHARACTERS).split("\n")

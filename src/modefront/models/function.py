@@ -18,6 +18,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.brief import as_html, brief_model
 from modefront.errors import refuse, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.models.checked_function import CheckedFunction, MatrixFunction, Tangent
@@ -30,7 +31,7 @@ from modefront.work.transfer import shared
 
 
 @shared
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class FunctionModel:
     """A model whose matrices are a function of the parameters; `function_model` makes it.
 
@@ -42,6 +43,9 @@ class FunctionModel:
 
     function: CheckedFunction
     nominal: MatrixModel
+
+    __repr__ = brief_model
+    _repr_html_ = as_html
 
     @property
     def parameters(self) -> tuple[str, ...]:

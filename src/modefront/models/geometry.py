@@ -11,6 +11,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats, Ints
+from modefront.brief import as_html, brief
 
 
 @dataclass(frozen=True, eq=False)
@@ -29,7 +30,7 @@ class Cells:
     nodes: Ints
 
 
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class Geometry:
     """Nodes, cells and sensors of a model, and how its degrees of freedom move the nodes.
 
@@ -47,6 +48,9 @@ class Geometry:
     motion: scipy.sparse.csr_array
     sensor_nodes: Ints
     sensor_directions: Floats
+
+    __repr__ = brief
+    _repr_html_ = as_html
 
     def weights(self, nodes: Ints, directions: Floats) -> scipy.sparse.csr_array:
         """Return weights (sensors, N) of sensors at nodes along ``directions`` (sensors, 3)."""

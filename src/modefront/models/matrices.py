@@ -13,6 +13,7 @@ import numpy as np
 import scipy.sparse
 
 from modefront._typing import Floats
+from modefront.brief import as_html, brief_model
 from modefront.errors import Fault, refuse, suggestion, wrong
 from modefront.linalg.affine import DenseAffine, Monomials, SparseAffine, sparse_affine
 from modefront.linalg.factorisation import Factorisation, Symbolic
@@ -60,7 +61,7 @@ def _eigenproblem() -> Iterator[None]:
 
 
 @shared
-@dataclass(frozen=True, eq=False)
+@dataclass(frozen=True, eq=False, repr=False)
 class MatrixModel:
     """A model with affine stiffness and mass matrices, both dense or both sparse.
 
@@ -87,6 +88,9 @@ class MatrixModel:
     floating: bool = True
     limits: tuple[str, ...] = ()
     geometry: Geometry | None = None
+
+    __repr__ = brief_model
+    _repr_html_ = as_html
 
     @property
     def size(self) -> int:

@@ -22,7 +22,7 @@ from modefront.predictions import ResultVariable
 from modefront.predictions.registry import RecordedPrediction, predictions_in
 from modefront.reports.words import texts, topics
 from modefront.results.compare import short_names
-from modefront.results.selection import front_points
+from modefront.results.selection import front_points, preferred
 
 INFINITE = 10**400
 """An integer that JavaScript reads as Infinity, for which JSON has no word."""
@@ -112,7 +112,7 @@ def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
         "inputs": str(data.attrs.get("inputs", "")),
         "version": str(data.attrs["version"]),
         "method": str(data.attrs["method"]),
-        "reference": labels.index(str(data.attrs["reference"])),
+        "reference": labels.index(preferred(data)),
         "nominal": kinds.index("nominal") if "nominal" in kinds else None,
         "groups": _texts(data, "group"),
         "parameters": _texts(data, "parameter"),
@@ -174,7 +174,7 @@ def _optional(data: xr.Dataset, name: str) -> Any:
 
 def _noise(data: xr.Dataset) -> Floats:
     """Return the error that is expected of each group at the reference; NaN where unknown."""
-    chosen = data["label"].values == data.attrs["reference"]
+    chosen = data["label"].values == preferred(data)
     if "misfit" not in data or not chosen.any():
         return np.full(data.sizes["group"], np.nan)
     misfit = data["misfit"].values

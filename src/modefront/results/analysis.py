@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -21,7 +21,6 @@ from modefront.identifiability.combinations import (
     without_effect,
 )
 from modefront.identifiability.scale import Scale, scale_at
-from modefront.optim.sqp import Solution
 from modefront.residuals.problem import UpdatingProblem
 from modefront.rounding import TINY
 from modefront.uncertainty.prediction import linear
@@ -59,19 +58,17 @@ class Determination:
 
 def determinations(problem: UpdatingProblem, front: Front) -> list[Determination]:
     """Return the determined combinations of parameters at the reference, then at each edge."""
-    groups = problem.groups
     out = []
+    data = [(group.name, i) for i, group in enumerate(problem.groups)]
+    every = [*data, (ALL, None)] if len(data) > 1 else data
     for point in [front.reference, *of_kind(front.points, Kind.EDGE)]:
         evaluation = point.solution.evaluation
         weights = optimal_weights(problem.properties, evaluation.J)
         scale = scale_at(problem, evaluation.theta)
         idle = without_effect(problem, evaluation, scale)
         combinations = [
-            (group.name, combinations_at(problem, evaluation, i, weights, scale))
-            for i, group in enumerate(groups)
+            (name, combinations_at(problem, evaluation, i, weights, scale)) for name, i in every
         ]
-        if len(groups) > 1:
-            combinations.append((ALL, combinations_at(problem, evaluation, None, weights, scale)))
         effects = gram(evaluation, weights, scale)
         effects[idle] = effects[:, idle] = 0.0
         out.append(Determination(point, scale, idle, combinations, effects))
@@ -85,9 +82,14 @@ def analysis_values(
     determined: Sequence[Determination],
 ) -> Values:
     """Return the values; ``front`` holds all points, those of ``analysis`` too."""
+    boundary = METHODS[front.method].programme == "boundary"
+    parts = {Kind.FRONT: "whole" if boundary else ""}
+    parts |= dict.fromkeys((Kind.IDENTIFIABLE, Kind.IDENTIFIABLE_EDGE), "identifiable")
+    part = analysis.identifiable
     return {
+        "front_part": [parts.get(point.kind, "") for point in front.points],
+        "flat": part.flat if part else np.zeros(len(problem.objectives), dtype=int),
         **_identifiability(determined),
-        **_flat(problem, front, analysis),
         **_equivalent(problem, analysis),
         **_scatter(problem, front, analysis),
         **_posterior(front, analysis),
@@ -102,28 +104,18 @@ def _identifiability(determined: Sequence[Determination]) -> Values:
         for name, combinations in each.combinations
         for combination in combinations
     ]
+    at, of, combinations, unit = zip(*rows, strict=True)
     effects = determined[0].effects
-    active = [j for j in range(len(effects)) if effects[j, j] > 0]
+    active = np.flatnonzero(np.diag(effects) > 0).tolist()
     return {
-        "combination_at": [row[0] for row in rows],
-        "combination_of": [row[1] for row in rows],
-        "combination_direction": np.array([row[2].direction for row in rows]),
-        "combination_unit": np.array([row[3] for row in rows]),
-        "combination_sensitivity": [row[2].sensitivity for row in rows],
-        "combination_share": [row[2].share for row in rows],
+        "combination_at": at,
+        "combination_of": of,
+        "combination_direction": [x.direction for x in combinations],
+        "combination_unit": unit,
+        "combination_sensitivity": [x.sensitivity for x in combinations],
+        "combination_share": [x.share for x in combinations],
         "collinearity": cosines(effects),
         "collinearity_index": index(effects, active) if active else np.nan,
-    }
-
-
-def _flat(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:
-    boundary = METHODS[front.method].programme == "boundary"
-    parts = {Kind.FRONT: "whole" if boundary else ""}
-    parts |= dict.fromkeys((Kind.IDENTIFIABLE, Kind.IDENTIFIABLE_EDGE), "identifiable")
-    part = analysis.identifiable
-    return {
-        "front_part": [parts.get(point.kind, "") for point in front.points],
-        "flat": part.flat if part else np.zeros(len(problem.objectives), dtype=int),
     }
 
 
@@ -136,12 +128,12 @@ def _equivalent(problem: UpdatingProblem, analysis: FrontAnalysis) -> Values:
     ]
     p, n = len(problem.model.parameters), len(problem.objectives)
     return {
-        "equal_of": [row[0] for row in rows],
-        "equal_manifold": np.array([row[1] for row in rows], dtype=int),
-        "equal_dimension": np.array([row[2].dimension for row in rows], dtype=int),
-        "equal_extent": [row[2].extent.name.lower() for row in rows],
-        "equal_theta": np.array([row[3].theta for row in rows]).reshape(-1, p),
-        "equal_objective": np.array([row[3].J for row in rows]).reshape(-1, n),
+        "equal_of": [name for name, *_ in rows],
+        "equal_manifold": np.array([number for _, number, *_ in rows], dtype=int),
+        "equal_dimension": np.array([x.dimension for _, _, x, _ in rows], dtype=int),
+        "equal_extent": [x.extent.name.lower() for _, _, x, _ in rows],
+        "equal_theta": np.array([model.theta for *_, model in rows]).reshape(-1, p),
+        "equal_objective": np.array([model.J for *_, model in rows]).reshape(-1, n),
     }
 
 
@@ -150,10 +142,9 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
         return {}
     labels = [point.label for point in front.points]
     m, n, p = len(labels), len(problem.objectives), len(problem.model.parameters)
-    r = len(problem.data.modes)
     theta, J = np.full((m, p, p), np.nan), np.full((m, n, n), np.nan)
     theta_std = np.full((m, p), np.nan)
-    predicted = {name: np.full((m, r), np.nan) for name in ("frequency", "mac")}
+    predicted = {x: np.full((m, len(problem.data.modes)), np.nan) for x in ("frequency", "mac")}
     warned = [""] * m
     for i, name in enumerate(labels):
         scatter = analysis.scatter.get(name)
@@ -171,8 +162,7 @@ def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) ->
         "theta_covariance": theta,
         "objective_std": np.sqrt(np.einsum("mii->mi", J)),
         "objective_covariance": J,
-        "frequency_std": predicted["frequency"],
-        "mac_std": predicted["mac"],
+        **{f"{name}_std": values for name, values in predicted.items()},
         "scatter_doubt": warned,
     }
 
@@ -192,41 +182,38 @@ def _posterior(front: Front, analysis: FrontAnalysis) -> Values:
     posterior = analysis.posterior
     if posterior is None:
         return {}
-    slopes = analysis.slopes[front.reference.label]
-    return {
+    out: Values = {
         "posterior_std": _std(posterior.covariance, posterior.free),
         "posterior_covariance": posterior.covariance,
-        "posterior_frequency_std": _roots(linear(posterior.covariance, slopes["frequency"])),
-        "posterior_mac_std": _roots(linear(posterior.covariance, slopes["mac"])),
     }
-
-
-def _roots(covariance: Floats) -> Floats:
-    """Return standard deviations; rounding may leave a variance below 0."""
-    return np.sqrt(np.maximum(np.diag(covariance), 0.0))
+    for name in ("frequency", "mac"):
+        slopes = analysis.slopes[front.reference.label][name]
+        variance = np.diag(linear(posterior.covariance, slopes))
+        # Rounding may leave a variance below 0.
+        out[f"posterior_{name}_std"] = np.sqrt(np.maximum(variance, 0.0))
+    return out
 
 
 def _replicates(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:
+    """Return the solutions with data drawn again, NaN where one did not converge."""
     if not analysis.replicates:
         return {}
     p, n = len(problem.model.parameters), len(problem.objectives)
     solutions = [[each.get(x.label) for x in front.points] for each in analysis.replicates]
-    theta = _stacked(solutions, p, lambda solution: solution.theta)
-    J = _stacked(solutions, n, lambda solution: solution.J)
+    nothing = np.full(p + n, np.nan)
+    both = np.array(
+        [
+            [np.concatenate([x.theta, x.J]) if x and x.converged else nothing for x in row]
+            for row in solutions
+        ]
+    )
+    theta, J = both[..., :p], both[..., p:]
     return {
         "bootstrap_theta": theta,
         "bootstrap_objective": J,
         "bootstrap_theta_std": _spread(theta),
         "bootstrap_objective_std": _spread(J),
     }
-
-
-def _stacked(
-    rows: Sequence[Sequence[Solution | None]], width: int, of: Callable[[Solution], Floats]
-) -> Floats:
-    """Return values (replicates, points, width), NaN where a solution did not converge."""
-    nothing = np.full(width, np.nan)
-    return np.array([[of(x) if x and x.converged else nothing for x in row] for row in rows])
 
 
 def _spread(values: Floats) -> Floats:

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Bools, Floats, Ints
 from modefront.analysis.certified import certificate_values
 from modefront.analysis.front import FrontAnalysis
 from modefront.front.dominance import nondominated, undominated
@@ -16,11 +16,12 @@ from modefront.front.front import Front
 from modefront.front.gaps import branch_numbers
 from modefront.front.methods import METHODS
 from modefront.front.point import WEIGHTED, Kind, label
+from modefront.optim.problem import AT_BOUND
 from modefront.optim.sqp import Solution
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values, analysis_values, determinations
 from modefront.results.findings import as_values, findings
-from modefront.results.schema import FORMAT, derived, described
+from modefront.results.schema import FORMAT, described
 
 ITERATED = "iterated-weights"
 """Name of the fixed point of the iteration of the weights, among the minima."""
@@ -30,11 +31,10 @@ def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
     """Return a front and its analysis as a dataset with names, units and meanings."""
     front = replace(front, points=[*front.points, *analysis.points])
     values = _points(problem, front, analysis) | _data(problem, front) | _minima(problem, front)
-    values |= _branches(front) | lattice_values(front)
+    values |= _branches(problem, front) | lattice_values(front)
     determined = determinations(problem, front)
     values |= analysis_values(problem, front, analysis, determined)
     values |= as_values(findings(problem, front, analysis, determined))
-    values |= derived(values)
     groups, parameters = list(problem.objectives), list(problem.model.parameters)
     return xr.Dataset(
         described(values),
@@ -52,33 +52,40 @@ def dataset(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
 
 def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Values:
     """Return the models with their objectives and modes."""
-    points, n = front.points, len(problem.objectives)
+    points, n, modes = front.points, len(problem.objectives), len(problem.data.modes)
     solutions = [point.solution for point in points]
-    a, J = problem.properties, _stack([x.J for x in solutions], n)
-    equivalent = [
-        model.J
-        for _, manifolds in analysis.manifolds
-        for each in manifolds
-        for model in each.models
-    ]
-    out: Values = {
+    theta, J = _theta_and_J(problem, solutions)
+    a = problem.properties
+    known = [x.J for _, manifolds in analysis.manifolds for each in manifolds for x in each.models]
+    unknown = np.full(modes, np.nan)
+    names = ("frequency", "mac", "paired_mode", "coincident")
+    return {
         "label": [point.label for point in points],
         "kind": [point.kind.value for point in points],
-        "pareto": _pareto(front, J, _stack(equivalent, n)),
+        "pareto": _pareto(front, J, _stack(known, n)),
         "dominated_among_front": _dominated_among_front(front, J),
-        "theta": _thetas(solutions, problem),
+        "theta": theta,
         "objective": J,
+        "error": np.sqrt(J / a),
         "weight": _weights(front, J, a),
         "stationary_weight": _shares(_stack([x.weights for x in solutions], n), front.scale),
         "converged": [x.converged for x in solutions],
         "status": [x.status.name.lower() for x in solutions],
         "evaluations": [x.evaluations for x in solutions],
+        "at_bound": _at_bound(problem, theta),
+        **{
+            name: _stack([x.evaluation.quantities.get(name, unknown) for x in solutions], modes)
+            for name in names
+        },
+        **certificate_values(problem, solutions),
     }
-    modes = len(problem.data.modes)
-    unknown = np.full(modes, np.nan)
-    for name in ("frequency", "mac", "paired_mode", "coincident"):
-        out[name] = _stack([x.evaluation.quantities.get(name, unknown) for x in solutions], modes)
-    return out | certificate_values(problem, solutions)
+
+
+def _at_bound(problem: UpdatingProblem, theta: Floats) -> Ints:
+    """Return -1 where parameters (points, p) are at the lower bound, 1 at the upper one, else 0."""
+    margin = AT_BOUND * (problem.upper - problem.lower)
+    side = np.where(theta >= problem.upper - margin, 1, 0)
+    return np.where(theta <= problem.lower + margin, -1, side)
 
 
 def _data(problem: UpdatingProblem, front: Front) -> Values:
@@ -102,29 +109,29 @@ def _minima(problem: UpdatingProblem, front: Front) -> Values:
     if front.iterated:
         minima.append((ITERATED, front.iterated))
     solutions = [minimum for _, minimum in minima]
+    theta, J = _theta_and_J(problem, solutions)
     return {
         "minimum_of": [name for name, _ in minima],
-        "minimum_theta": _thetas(solutions, problem),
-        "minimum_objective": _stack([x.J for x in solutions], len(problem.objectives)),
+        "minimum_theta": theta,
+        "minimum_objective": J,
         "minimum_converged": [x.converged for x in solutions],
         **certificate_values(problem, solutions, "minimum_"),
     }
 
 
-def _branches(front: Front) -> Values:
+def _branches(problem: UpdatingProblem, front: Front) -> Values:
     """Return the branches of a front of two objectives, and where they end at its gaps."""
     if len(front.edges) != 2 or METHODS[front.method].programme != "boundary":
         return {}
-    J = _stack([point.solution.J for point in front.points], 2)
-    p = front.points[0].solution.theta.size
+    J = _theta_and_J(problem, [point.solution for point in front.points])[1]
     ends = [end for gap in front.gaps for end in (gap.end, gap.start)]
+    theta, J_ends = _theta_and_J(problem, ends)
     names = [name for i in range(len(front.gaps)) for name in (f"end-{i + 1}", f"start-{i + 2}")]
-    nothing = np.full(2, np.nan)
     return {
         "piece": branch_numbers(J, nondominated(J), front.gaps),
         "end_label": names,
-        "end_theta": _stack([np.full(p, np.nan) if x is None else x.theta for x in ends], p),
-        "end_objective": _stack([nothing if x is None else x.J for x in ends], 2),
+        "end_theta": theta,
+        "end_objective": J_ends,
         "end_converged": np.array([x is not None for x in ends], dtype=bool),
     }
 
@@ -143,14 +150,13 @@ def _pareto(front: Front, J: Floats, others: Floats) -> Bools:
     All evaluated models are known, minima and ends of branches too. An end that another branch
     dominates at the same level counts for the points next to it only.
     """
+    n = J.shape[1]
     minima = [solution.J for edge in front.edges for solution in edge.minima]
     minima += [solution.J for gap in front.gaps for solution in gap.ends]
     minima += [solution.J for solution in front.optimal]
-    n = J.shape[1]
     known = np.vstack([J, front.known.reshape(-1, n), _stack(minima, n), others])
     # Of a front that is a point, the ranges over models as good as each other are rounding.
-    scale = front.sizes if front.scale is None else front.scale
-    return undominated(J, known, scale)
+    return undominated(J, known, front.sizes if front.scale is None else front.scale)
 
 
 def _dominated_among_front(front: Front, J: Floats) -> Bools:
@@ -178,8 +184,14 @@ def _stack(rows: Sequence[Floats], width: int) -> Floats:
     return np.array(rows, dtype=float).reshape(len(rows), width)
 
 
-def _thetas(solutions: Sequence[Solution], problem: UpdatingProblem) -> Floats:
-    return _stack([solution.theta for solution in solutions], len(problem.model.parameters))
+def _theta_and_J(
+    problem: UpdatingProblem, solutions: Sequence[Solution | None]
+) -> tuple[Floats, Floats]:
+    """Return parameters (solutions, p) and objectives (solutions, n), NaN where there is none."""
+    p, n = len(problem.model.parameters), len(problem.objectives)
+    theta = [np.full(p, np.nan) if x is None else x.theta for x in solutions]
+    J = [np.full(n, np.nan) if x is None else x.J for x in solutions]
+    return _stack(theta, p), _stack(J, n)
 
 
 def _shares(weights: Floats, scale: Floats | None) -> Floats:

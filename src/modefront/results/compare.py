@@ -11,9 +11,9 @@ points of the front is never left out.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import combinations
+from itertools import chain, combinations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -24,15 +24,13 @@ from scipy.spatial.distance import cdist, pdist, squareform
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError
+from modefront.front.point import Kind
 from modefront.predictions.registry import kinds_in
 from modefront.results.files import read_dataset
-from modefront.results.selection import front_points
+from modefront.results.selection import front_points, preferred
 
 if TYPE_CHECKING:
     import pandas as pd
-
-PREDICTED = ("frequency", "mac")
-"""Predictions of the modes that every file of results holds."""
 
 
 @dataclass(frozen=True)
@@ -133,18 +131,15 @@ class Comparison:
         """One column a study, one row a quantity of its front."""
         import pandas as pd
 
-        columns = [
-            [x.points, x.length, x.distance, x.reference, x.reference_distance] for x in self.fronts
-        ]
-        rows = [
-            "Pareto-optimal points",
-            "length of the front",
-            "least distance from origin",
-            "reference model",
-            "its distance from origin",
-        ]
+        rows = {
+            "Pareto-optimal points": [x.points for x in self.fronts],
+            "length of the front": [x.length for x in self.fronts],
+            "least distance from origin": [x.distance for x in self.fronts],
+            "reference model": [x.reference for x in self.fronts],
+            "its distance from origin": [x.reference_distance for x in self.fronts],
+        }
         names = short_names([x.name for x in self.fronts])
-        return pd.DataFrame(dict(zip(names, columns, strict=True)), index=pd.Index(rows))
+        return pd.DataFrame(rows, index=names, dtype=object).T
 
     def __repr__(self) -> str:
         """Return the table."""
@@ -217,7 +212,7 @@ def _optimal(data: xr.Dataset) -> xr.Dataset:
     """Return the Pareto-optimal points of the front; its one point where it is no more."""
     front = front_points(data)
     if front.size == 0:
-        front = np.flatnonzero(data["kind"].values == "edge")[:1]
+        front = np.flatnonzero(data["kind"].values == Kind.EDGE.value)[:1]
     return data.isel(point=front[data["pareto"].values[front]] if front.size > 1 else front)
 
 
@@ -227,22 +222,31 @@ def _best(data: xr.Dataset) -> xr.Dataset:
     return data.isel(point=best) if best.size else _optimal(data)
 
 
+def _reference(data: xr.Dataset) -> xr.Dataset:
+    """Return the model that the data prefer; the first one of results that do not name it."""
+    labels, name = data["label"].values.tolist(), preferred(data)
+    return data.isel(point=labels.index(name) if name in labels else 0)
+
+
 def _length(data: xr.Dataset) -> float:
     front = _optimal(data)
-    e = front["error"].values
-    if len(e) < 2:
-        return 0.0
-    lengths = squareform(pdist(e))
+    lengths = squareform(pdist(front["error"].values))
     if "piece" in front:
         piece = front["piece"].values
         lengths[piece[:, None] != piece] = 0.0
-    return float(minimum_spanning_tree(lengths).sum())
+    return float(minimum_spanning_tree(lengths).sum()) if len(lengths) else 0.0
 
 
 def _summary(name: str, data: xr.Dataset, first: float) -> Summary:
-    models, length = _best(data), _length(data)
-    e = models["error"].values
-    best, reference = _optimally_weighted(data), _reference(data)
+    models, length, reference = _best(data), _length(data), _reference(data)
+    weighted = data["error"].values[data["kind"].values == Kind.OPTIMAL.value]
+    from_origin = np.linalg.norm(models["error"].values, axis=1)
+    quantities = [("", "parameter", "theta"), ("frequency ", "mode", "frequency")]
+    quantities.append(("mac ", "mode", "mac"))
+    for kind in kinds_in(models):
+        names = [x.name for x in kind.ranged if x.name in models]
+        quantities += [(f"{each} ", kind.dimension, each) for each in names]
+    spreads = [tuple(_spreads(*each, models, reference)) for each in quantities]
     return Summary(
         name,
         str(data.attrs.get("study", "")),
@@ -251,59 +255,30 @@ def _summary(name: str, data: xr.Dataset, first: float) -> Summary:
         int(data.attrs["model_evaluations"]),
         length,
         length / first if first > 0 else float("nan"),
-        tuple(np.ptp(e, axis=0).tolist()),
-        float(np.linalg.norm(e, axis=1).min()),
-        float(np.linalg.norm(best["error"].values)) if best is not None else float("nan"),
-        str(data.attrs["reference"]),
+        tuple(np.ptp(models["error"].values, axis=0).tolist()),
+        float(from_origin.min()),
+        float(np.linalg.norm(weighted[0])) if len(weighted) else float("nan"),
+        preferred(data),
         float(np.linalg.norm(reference["error"].values)),
-        tuple(_spreads("", "parameter", "theta", models, reference)),
-        tuple(_predictions(models, reference)),
+        spreads[0],
+        tuple(chain.from_iterable(spreads[1:])),
     )
-
-
-def _predictions(models: xr.Dataset, reference: xr.Dataset) -> list[Spread]:
-    """Return the ranges of frequencies and MAC, then of the predictions of every kind."""
-    out = []
-    for name in PREDICTED:
-        out += _spreads(f"{name} ", "mode", name, models, reference)
-    for kind in kinds_in(models):
-        for variable in kind.ranged:
-            if variable.name in models:
-                dimension = kind.dimension
-                out += _spreads(f"{variable.name} ", dimension, variable.name, models, reference)
-    return out
 
 
 def _spreads(
     prefix: str, dimension: str, variable: str, models: xr.Dataset, reference: xr.Dataset
-) -> list[Spread]:
-    out = []
+) -> Iterator[Spread]:
     names, values = models[dimension].values, models[variable].values
     for name, column, value in zip(names, values.T, reference[variable].values, strict=True):
         known = column[np.isfinite(column)]
         least, greatest = (known.min(), known.max()) if known.size else (np.nan, np.nan)
-        text = f"{prefix}{name}".strip()
-        out.append(Spread(text, float(least), float(greatest), float(value)))
-    return out
-
-
-def _reference(data: xr.Dataset) -> xr.Dataset:
-    """Return the model that the data prefer; the first one of results that do not name it."""
-    labels = [str(x) for x in data["label"].values]
-    name = str(data.attrs["reference"])
-    return data.isel(point=labels.index(name) if name in labels else 0)
-
-
-def _optimally_weighted(data: xr.Dataset) -> xr.Dataset | None:
-    best = np.flatnonzero(data["kind"].values == "optimal-weights")
-    return data.isel(point=int(best[0])) if best.size else None
+        yield Spread(f"{prefix}{name}", float(least), float(greatest), float(value))
 
 
 def _apart(first_results: tuple[str, xr.Dataset], second_results: tuple[str, xr.Dataset]) -> Apart:
     (first, a), (second, b) = first_results, second_results
-    known = b["parameter"].values.tolist()
+    known, nan = b["parameter"].values.tolist(), float("nan")
     common = [name for name in a["parameter"].values.tolist() if name in known]
-    nan = float("nan")
     if not common:
         return Apart(first, second, (), nan, nan, nan, nan)
     span = np.diff(a["bounds"].sel(parameter=common).values, axis=1)[:, 0]
@@ -313,18 +288,13 @@ def _apart(first_results: tuple[str, xr.Dataset], second_results: tuple[str, xr.
         return theta
 
     away = cdist(scaled(_best(a)), scaled(_best(b)))
-    best = [_optimally_weighted(a), _optimally_weighted(b)]
-    between = [scaled(data) for data in best if data is not None]
-    nearest, farthest = nan, nan
-    if away.size:  # no model is Pareto optimal where none has converged
-        nearest = float(away.min())
-        farthest = float(max(away.min(axis=0).max(), away.min(axis=1).max()))
+    weighted = [scaled(x)[x["kind"].values == Kind.OPTIMAL.value] for x in (a, b)]
     return Apart(
         first,
         second,
         tuple(common),
-        nearest,
-        farthest,
-        float(np.linalg.norm(between[0] - between[1])) if len(between) == 2 else nan,
+        float(away.min()),
+        float(max(away.min(axis=0).max(), away.min(axis=1).max())),
+        float(np.linalg.norm(weighted[0][0] - weighted[1][0])) if all(map(len, weighted)) else nan,
         float(np.linalg.norm(scaled(_reference(a)) - scaled(_reference(b)))),
     )

@@ -1,7 +1,14 @@
-"""Results in a netCDF file: written whole or not at all, and checked when they are read."""
+"""Results in a netCDF file: written whole or not at all, and checked when they are read.
+
+The checksum is over names, dimensions, types, values and attributes of all variables. It does not
+depend on how a file lays these out: truth values and whole numbers count as integers of 64 bits,
+other numbers as floats of 64 bits, and texts in UTF-8.
+"""
 
 from __future__ import annotations
 
+import hashlib
+import json
 from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
@@ -13,11 +20,9 @@ from modefront.errors import Fault, InputError, reason
 from modefront.inputs import available_memory, file_size
 from modefront.isolated import isolated
 from modefront.outputs import output
-from modefront.results.checksum import NAME as CHECKSUM
-from modefront.results.checksum import checksum
 from modefront.results.remarks import CHANGED
-from modefront.results.schema import FORMAT, faults, missing, variables_in
-from modefront.results.soundness import unsound
+from modefront.results.schema import FORMAT, variables_in
+from modefront.results.soundness import faults
 from modefront.text import NAME, clean
 
 FILE = "results.nc"
@@ -26,6 +31,9 @@ READER = "modefront.results.netcdf:contents"
 
 SECONDS = 120.0
 """Time that reading may take."""
+
+CHECKSUM = "checksum"
+"""Attribute that holds the checksum, which it leaves out."""
 
 
 def write(data: xr.Dataset, path: Path) -> None:
@@ -54,8 +62,7 @@ def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:
             f"format {clean(version, NAME)}, of another version of modefront: run the study again"
         )
         raise InputError(Fault(str(path), "attribute 'format'", expected, text))
-    found = list(faults(data)) or list(missing(data) if whole else ()) or list(unsound(data))
-    wrong = [Fault(str(path), *parts) for parts in found]
+    wrong = [Fault(str(path), *parts) for parts in faults(data, whole=whole)]
     if wrong:
         raise InputError(wrong)
     kept = data.attrs.pop(CHECKSUM, "")
@@ -72,6 +79,40 @@ def written_for(path: Path) -> str | None:
     except Exception:  # what is raised for a damaged file is not documented
         return None
     return inputs if isinstance(inputs, str) else None
+
+
+def checksum(data: xr.Dataset) -> str:
+    """Return the checksum of a dataset, BLAKE2b in hexadecimal digits."""
+    digest = hashlib.blake2b(digest_size=16)
+    for name in sorted(data.variables, key=str):
+        variable = data.variables[name]
+        digest.update(_text("variable", name, *variable.dims))
+        digest.update(_values(variable.values))
+        digest.update(_attributes(variable.attrs))
+    digest.update(_attributes(data.attrs))
+    return digest.hexdigest()
+
+
+def _attributes(attributes: Mapping[Any, Any]) -> bytes:
+    """Return attributes in the order of their names; files do not tell one value from a list."""
+    return b"".join(
+        _text("attribute", name) + _values(np.atleast_1d(attributes[name]))
+        for name in sorted(attributes, key=str)
+        if name != CHECKSUM
+    )
+
+
+def _values(values: np.ndarray[Any, Any]) -> bytes:
+    kind = {"b": "<i8", "i": "<i8", "u": "<i8", "f": "<f8"}.get(values.dtype.kind, "text")
+    head = _text(kind, *values.shape)
+    if kind == "text":
+        return head + _text(*values.ravel().tolist())
+    numbers = values.astype(kind)
+    return head + np.where(np.isnan(numbers), np.nan, numbers).astype(kind).tobytes()
+
+
+def _text(*parts: object) -> bytes:
+    return json.dumps(list(map(str, parts))).encode()
 
 
 def _read(path: Path) -> xr.Dataset:
@@ -101,19 +142,16 @@ def _plain(data: xr.Dataset) -> xr.Dataset:
     variables = variables_in(data)
     for name, variable in data.variables.items():
         known = variables.get(str(name))
-        if known is not None and known.values == "truth" and variable.dtype != bool:
+        if known is not None and known.values == "truth":
             changed[str(name)] = variable.astype(bool)
         if variable.dtype.kind in "UOT":
-            texts = [clean(text) for text in variable.values.ravel().tolist()]
-            if texts != variable.values.ravel().tolist():
-                values = np.array(texts, dtype=object).reshape(variable.shape)
+            texts = np.array(list(map(clean, variable.values.ravel().tolist())), dtype=object)
+            if (texts != variable.values.ravel()).any():
+                values = texts.reshape(variable.shape)
                 changed[str(name)] = xr.Variable(variable.dims, values, variable.attrs)
     out = data.assign(changed)
-    attributes = data.attrs.items()
-    out.attrs = {k: _lines(value) if isinstance(value, str) else value for k, value in attributes}
+    out.attrs = {
+        key: "\n".join(map(clean, value.split("\n"))) if isinstance(value, str) else value
+        for key, value in data.attrs.items()
+    }
     return out
-
-
-def _lines(text: str) -> str:
-    """Return a text of one or more lines without orders to a terminal."""
-    return "\n".join(map(clean, text.split("\n")))

@@ -12,7 +12,7 @@ from modefront.findings.catalogue import Severity
 from modefront.findings.record import Finding, found, from_text, in_order
 from modefront.front.point import Kind
 from modefront.optim.problem import AT_BOUND
-from modefront.results.selection import front_points, not_converged, uncertified
+from modefront.results.selection import front_points, not_converged, preferred, uncertified
 from modefront.rounding import ACCUMULATED
 
 CHANGED = "changed"
@@ -56,23 +56,19 @@ def findings_of(data: xr.Dataset, *, full: bool = False) -> list[Finding]:
 
     ``full`` has details of branches, numerics and coverage too, and names all models and modes.
     """
+    most = None if full else FEW
     out = [
         *_failures(data),
         *_front(data),
         *_misfit(data),
-        *_branches(data),
-        *_spacing(data),
-        *_not_optimal(data),
-        *_poor_pairs(data, None if full else FEW),
-        *_pairs(data, None if full else FEW),
-        *_at_bounds(data, None if full else FEW),
+        *_poor_pairs(data, most),
+        *_pairs(data, most),
+        *_at_bounds(data, most),
         *_analysed(data),
     ]
     if full:
-        out += [*_exact(data), *_iteration(data), *_certificates(data), *_coverage(data)]
-    else:
-        out = [finding for finding in out if finding.severity is not Severity.DETAIL]
-    return in_order(out)
+        out += [*_weights(data), *_numerics(data)]
+    return in_order(x for x in out if full or x.severity is not Severity.DETAIL)
 
 
 def remarks(data: xr.Dataset) -> list[str]:
@@ -97,26 +93,45 @@ def _failures(data: xr.Dataset) -> Iterator[Finding]:
     """Yield that results were changed; which models did not converge, or are not accurate."""
     if CHANGED in data.attrs:
         yield found("changed", str(data.attrs[CHANGED]))
-    failed = np.isin(data["label"].values, not_converged(data))
-    if failed.any():
-        yield found("not-converged", places(data, failed))
-    above = np.isin(data["label"].values, uncertified(data))
-    if above.any():
-        yield found("inaccurate", places(data, above))
+    labels = data["label"].values
+    for kind, names in (("not-converged", not_converged(data)), ("inaccurate", uncertified(data))):
+        if len(names):
+            yield found(kind, places(data, np.isin(labels, names)))
     if (data["status"].values == "sampled").any():
         spent = int(data.attrs["front_evaluations"])
         yield found("no-test", str(data.attrs["method"]), evaluations=spent)
 
 
 def _front(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield how many points the front has, or that it is one."""
-    front = front_points(data)
+    """Yield how many points and branches the front has, and which points are no local optima."""
+    front, pareto = front_points(data), data["pareto"].values
+    optimal = int(pareto[front].sum())
     if data.attrs["front_is_a_point"]:
         yield found("one-model")
     elif front.size:
-        optimal = int(data["pareto"].values[front].sum())
         said = "all" if optimal == front.size else optimal
         yield found("front", points=int(front.size), optimal=said)
+    gaps = data.sizes.get("end", 0) // 2
+    if gaps:
+        yield found("branches", branches=gaps + 1)
+    for k in range(gaps):
+        end, start = data["end_objective"].values[2 * k : 2 * k + 2]
+        if np.isfinite([end, start]).all():
+            said = {"end": _vector(end), "start": _vector(start)}
+            yield found("branch-ends", str(k + 1), other=k + 2, **said)
+    if "piece" in data:
+        inside = ~pareto & ~data["dominated_among_front"].values
+        inside &= data["kind"].values == Kind.FRONT.value
+        if inside.any():
+            yield found("between-branches", places(data, inside))
+    gap, requested = data.attrs.get("largest_gap", 0.0), data.attrs.get("refined", np.inf)
+    if gap > requested:
+        yield found("spacing", gap=float(gap), requested=float(requested))
+    if "stationary_weight" in data:
+        weight = data["stationary_weight"].values
+        negative = (weight < -NEGATIVE).any(axis=1) & ~np.isnan(weight).any(axis=1)
+        if negative.any():
+            yield found("not-optimal", places(data, negative))
 
 
 def places(data: xr.Dataset, chosen: Bools) -> str:
@@ -125,21 +140,18 @@ def places(data: xr.Dataset, chosen: Bools) -> str:
     Neighbours on a front of two objectives are named by the first and the last one.
     """
     labels = [str(x) for x in data["label"].values]
-    front = front_points(data).tolist()
-    along = {i: k for k, i in enumerate(front)} if data.sizes["group"] == 2 else {}
+    front = front_points(data).tolist() if data.sizes["group"] == 2 else []
+    along = {i: k for k, i in enumerate(front)}
     runs: list[list[int]] = []
     for i in np.flatnonzero(chosen).tolist():
-        last = runs[-1][-1] if runs else None
-        if last is not None and i in along and last in along and along[i] == along[last] + 1:
+        if runs and i in along and along.get(runs[-1][-1]) == along[i] - 1:
             runs[-1].append(i)
         else:
             runs.append([i])
     parts: list[str] = []
     for run in runs:
-        if len(run) > 2:
-            parts.append(f"{labels[run[0]]} to {labels[run[-1]]}")
-        else:
-            parts += [labels[i] for i in run]
+        named = [labels[i] for i in run]
+        parts += [f"{named[0]} to {named[-1]}"] if len(run) > 2 else named
     if len(parts) > NAMED:
         return f"{int(chosen.sum())} of {len(labels)} models"
     return ", ".join(parts)
@@ -150,36 +162,30 @@ def _misfit(data: xr.Dataset) -> Iterator[Finding]:
 
     Pareto-optimal are edges and weighted models too: the best models are never left out.
     """
-    chosen, labels = data["pareto"].values, data["label"].values
+    chosen, best = data["pareto"].values, preferred(data)
     if not chosen.any():
         return
-    best = str(data.attrs["reference"])
     nominal, beside = data["kind"].values == Kind.NOMINAL.value, ""
     if nominal.any() and np.isfinite(data["frequency"].values[nominal]).any():
         beside = f"; the nominal model has {_fit(data, nominal)}"
-    yield found(
-        "misfit",
-        best,
-        models=int(chosen.sum()),
-        whole=_fit(data, chosen, whole=True),
-        reference=_fit(data, labels == best),
-        nominal=beside,
-    )
+    said = {
+        "whole": _fit(data, chosen, whole=True),
+        "reference": _fit(data, data["label"].values == best),
+    }
+    yield found("misfit", best, models=int(chosen.sum()), nominal=beside, **said)
 
 
 def _fit(data: xr.Dataset, chosen: Bools, *, whole: bool = False) -> str:
     """Return the worst error of a frequency and the least MAC of models, in a whole sentence."""
-    f, measured = data["frequency"].values[chosen], data["measured_frequency"].values
-    error = 100 * np.abs(
-        np.divide(f, measured, out=np.full(f.shape, np.nan), where=measured > 0) - 1
-    )
-    mac = data["mac"].values[chosen]
-    parts = []
-    if np.isfinite(error).any():
-        within = f"frequencies within {_percent(_most(error))} % of the measured ones"
-        parts.append(within if whole else f"{_percent(_most(error))} %")
-    if np.isfinite(mac).any():
-        least = _mac(_least(mac))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        f = data["frequency"].values[chosen] / data["measured_frequency"].values
+    error, mac = 100 * np.abs(f[np.isfinite(f)] - 1), data["mac"].values[chosen]
+    mac, parts = mac[np.isfinite(mac)], []
+    if error.size:
+        within = f"frequencies within {_percent(error.max())} % of the measured ones"
+        parts.append(within if whole else f"{_percent(error.max())} %")
+    if mac.size:
+        least = _mac(mac.min())
         parts.append(f"MAC values of {least} or more" if whole else least)
     return " and ".join(parts) or "nothing that is measured"
 
@@ -190,8 +196,8 @@ def _percent(value: float) -> str:
     >>> _percent(1.04), _percent(0.78), _percent(123.4)
     ('1.1', '0.78', '124')
     """
-    if not np.isfinite(value) or value < 0.01:
-        return "0.01" if value < 0.01 else f"{value}"
+    if value < 0.01:
+        return "0.01"
     decimals = max(1 - int(np.floor(np.log10(value))), 0)
     up = np.ceil(10**decimals * value * (1 - ACCUMULATED)) / 10**decimals
     return f"{up:.2g}" if up < 10 else f"{up:.0f}"
@@ -206,93 +212,32 @@ def _mac(value: float) -> str:
     return f"{np.floor(1e3 * value + 1e-9) / 1e3:.3f}"
 
 
-def _most(values: Floats) -> float:
-    known = values[np.isfinite(values)]
-    return float(known.max()) if known.size else float("nan")
-
-
-def _least(values: Floats) -> float:
-    known = values[np.isfinite(values)]
-    return float(known.min()) if known.size else float("nan")
-
-
-def _exact(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield that optimal weights have no minimum where a group can be fitted exactly."""
-    exact = data["group"].values[data["exact"].values.astype(bool)].tolist()
-    if exact and _has_optimal(data):
-        yield found("exact-fit", ", ".join(exact))
-
-
-def _has_optimal(data: xr.Dataset) -> bool:
-    return bool((data["kind"].values == Kind.OPTIMAL.value).any())
-
-
-def _iteration(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield where the iteration of the weights arrives."""
-    if not _has_optimal(data):
+def _weights(data: xr.Dataset) -> Iterator[Finding]:
+    """Yield what is known of the optimal weights: exact fits, and where their iteration arrives."""
+    optimal = data["kind"].values == Kind.OPTIMAL.value
+    if not optimal.any():
         return
-    of = data["minimum_of"].values
-    theta = data["minimum_theta"].values
-    optimal = data["theta"].values[data["kind"].values == Kind.OPTIMAL.value][0]
-    span = np.diff(data["bounds"].values, axis=1)[:, 0]
-    if "iterated-weights" not in of:
+    exact = data["group"].values[data["exact"].values.astype(bool)].tolist()
+    if exact:
+        yield found("exact-fit", ", ".join(exact))
+    iterated = data["minimum_theta"].values[data["minimum_of"].values == "iterated-weights"]
+    if not len(iterated):
         yield found("iteration-ends")
         return
-    away = np.abs((theta[of == "iterated-weights"][0] - optimal) / span).max(initial=0.0)
+    span = np.diff(data["bounds"].values, axis=1)[:, 0]
+    away = np.abs((iterated[0] - data["theta"].values[optimal][0]) / span).max(initial=0.0)
     yield found("iteration-agrees" if away < ARRIVED else "iteration-differs")
-
-
-def _branches(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield how many branches the front has, where they end, and which points lie between them."""
-    gaps = data.sizes.get("end", 0) // 2
-    if gaps:
-        yield found("branches", branches=gaps + 1)
-    for i in range(0, 2 * gaps, 2):
-        end, start = data["end_objective"].values[i : i + 2]
-        if np.isfinite([end, start]).all():
-            branch = i // 2 + 1
-            yield found(
-                "branch-ends",
-                str(branch),
-                other=branch + 1,
-                end=_vector(end),
-                start=_vector(start),
-            )
-    if "piece" in data:
-        on_front = np.isin(np.arange(data.sizes["point"]), front_points(data))
-        inside = on_front & ~data["pareto"].values & ~data["dominated_among_front"].values
-        if inside.any():
-            yield found("between-branches", places(data, inside))
-
-
-def _spacing(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield whether neighbours on the front are farther apart than requested."""
-    gap, requested = data.attrs.get("largest_gap", 0.0), data.attrs.get("refined", np.inf)
-    if gap > requested:
-        yield found("spacing", gap=float(gap), requested=float(requested))
-
-
-def _not_optimal(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield which points are no local Pareto optima."""
-    if "stationary_weight" not in data:
-        return
-    negative = (data["stationary_weight"].values < -NEGATIVE).any(axis=1)
-    negative &= ~np.isnan(data["stationary_weight"].values).any(axis=1)
-    if negative.any():
-        yield found("not-optimal", places(data, negative))
 
 
 def _poor_pairs(data: xr.Dataset, most: int | None) -> Iterator[Finding]:
     """Yield which measured modes resemble their model modes poorly; of many, without the places."""
     poor = data["mac"].values < POOR
-    modes = data["mode"].values
-    if most is not None and poor.any(axis=0).sum() > most:
-        some = ", ".join(str(r) for r in modes[poor.any(axis=0)])
-        yield found("poor-pair", some, many=True, poor=POOR, places="")
+    modes = data["mode"].values[poor.any(axis=0)]
+    if most is not None and modes.size > most:
+        yield found("poor-pair", ", ".join(map(str, modes)), many=True, poor=POOR, places="")
         return
-    for r, column in zip(modes, poor.T, strict=True):
-        if column.any():
-            yield found("poor-pair", str(r), poor=POOR, places=f" at {places(data, column)}")
+    for r, column in zip(modes, poor.T[poor.any(axis=0)], strict=True):
+        yield found("poor-pair", str(r), poor=POOR, places=f" at {places(data, column)}")
 
 
 def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
@@ -301,11 +246,10 @@ def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
     Where they change places is said of a front of two objectives, on which points have neighbours.
     """
     front = front_points(data)
-    labels, paired = data["label"].values, data["paired_mode"].values[front]
+    labels, paired = data["label"].values[front], data["paired_mode"].values[front]
     out, changed = [], []
     for r, column in zip(data["mode"].values, paired.T, strict=True):
-        known = column[np.isfinite(column)]
-        numbers, counts = np.unique(known, return_counts=True)
+        numbers, counts = np.unique(column[np.isfinite(column)], return_counts=True)
         changes = np.flatnonzero(np.diff(column)).tolist()
         if numbers.size < 2:
             continue
@@ -313,11 +257,11 @@ def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
         if data.sizes["group"] == 2 and len(changes) <= 2:
             for i in changes:
                 before, after = (f"{column[k]:.0f}" for k in (i, i + 1))
-                ends = {"first": labels[front[i]], "second": labels[front[i + 1]]}
+                ends = {"first": labels[i], "second": labels[i + 1]}
                 out.append(found("changed-pair", str(r), before=before, after=after, **ends))
             continue
-        order = np.argsort(-counts, kind="stable")
-        each = [f"{numbers[k]:.0f} at {counts[k]}" for k in order.tolist()]
+        order = np.argsort(-counts, kind="stable").tolist()
+        each = [f"{numbers[k]:.0f} at {counts[k]}" for k in order]
         said = f": {', '.join(each)} of {front.size} points"
         out.append(found("changed-pairs", str(r), counts=said))
     if most is not None and len(out) > most:
@@ -328,53 +272,43 @@ def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
 def _at_bounds(data: xr.Dataset, most: int | None) -> Iterator[Finding]:
     """Yield which parameters are at a bound and where, of more than ``most`` only how many."""
     theta, bounds = data["theta"].values, data["bounds"].values
-    span = bounds[:, 1] - bounds[:, 0]
-    at_bound = (np.abs(theta[:, :, None] - bounds) <= AT_BOUND * span[:, None]).any(axis=2)
-    names = data["parameter"].values[at_bound.any(axis=0)].tolist()
-    if most is not None and len(names) > most:
-        yield found("many-at-bounds", ", ".join(names[:most]), parameters=len(names))
-        return
-    named = [
-        f"{name} ({places(data, column)})"
-        for name, column in zip(data["parameter"].values, at_bound.T, strict=True)
-        if column.any()
-    ]
-    if named:
-        yield found("at-bounds", "; ".join(named))
+    margin = AT_BOUND * np.diff(bounds, axis=1)
+    at_bound = (np.abs(theta[:, :, None] - bounds) <= margin).any(axis=2)
+    names = [str(x) for x in data["parameter"].values]
+    held = np.flatnonzero(at_bound.any(axis=0)).tolist()
+    if most is not None and len(held) > most:
+        named = ", ".join(names[j] for j in held[:most])
+        yield found("many-at-bounds", named, parameters=len(held))
+    elif held:
+        named = "; ".join(f"{names[j]} ({places(data, at_bound[:, j])})" for j in held)
+        yield found("at-bounds", named)
 
 
-def _certificates(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield how exact the modes of a reduced basis are, and which models miss the tolerance."""
+def _numerics(data: xr.Dataset) -> Iterator[Finding]:
+    """Yield how exact the modes of a reduced basis are, how well the front is covered, the cost."""
     attrs = data.attrs
     if attrs.get("remark"):
         yield found("remark", str(attrs["remark"]))
-    if "certified" not in data:
-        return
-    predicted = int(attrs.get("prediction_eigensolutions", 0))
-    yield found(
-        "reduced",
-        full=int(attrs["full_eigensolutions"]) - predicted,
-        corrected=int(attrs.get("corrected_eigensolutions", 0)),
-        eigenvalue=float(data["eigenvalue_error"].max()),
-        tolerance=float(attrs["eigenvalue_tolerance"]),
-        shape=float(data["shape_error"].max()),
-    )
-    if predicted:
-        yield found("not-reduced", full=predicted)
-    failed = uncertified(data)
-    if failed.size:
-        yield found("above-tolerance", ", ".join(failed))
-        held = data["label"].values[data["certified"].values]
-        yield found("within-tolerance", ", ".join(held) if held.size else "none")
-
-
-def _coverage(data: xr.Dataset) -> Iterator[Finding]:
-    """Yield how well the front is covered, and what that took."""
-    attrs = data.attrs
-    gap, volume = float(attrs["largest_gap"]), float(attrs["hypervolume"])
+    if "certified" in data:
+        predicted = int(attrs.get("prediction_eigensolutions", 0))
+        yield found(
+            "reduced",
+            full=int(attrs["full_eigensolutions"]) - predicted,
+            corrected=int(attrs.get("corrected_eigensolutions", 0)),
+            eigenvalue=float(data["eigenvalue_error"].max()),
+            tolerance=float(attrs["eigenvalue_tolerance"]),
+            shape=float(data["shape_error"].max()),
+        )
+        if predicted:
+            yield found("not-reduced", full=predicted)
+        failed = uncertified(data)
+        if failed.size:
+            yield found("above-tolerance", ", ".join(failed))
+            held = data["label"].values[data["certified"].values]
+            yield found("within-tolerance", ", ".join(held) if held.size else "none")
+    gap, volume, igd = (float(attrs[x]) for x in ("largest_gap", "hypervolume", "igd_plus"))
     if not (np.isnan(gap) and np.isnan(volume)):
         missing = "; for the hypervolume: pip install modefront[metrics]" * bool(np.isnan(volume))
-        igd = float(attrs["igd_plus"])
         yield found("coverage", hypervolume=volume, igd=igd, gap=gap, missing=missing)
     spent, front = (int(attrs[f"{of}_evaluations"]) for of in ("model", "front"))
     yield found("effort", spent=spent, front=front)

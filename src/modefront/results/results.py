@@ -22,8 +22,8 @@ from modefront.models.matrices import MatrixModel
 from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
-from modefront.results.remarks import CHANGED
-from modefront.results.selection import front_points
+from modefront.results.remarks import CHANGED, headlines
+from modefront.results.selection import front_points, preferred
 from modefront.results.shapes import PairedShapes, paired_shapes
 from modefront.results.vtu import write_vtu
 
@@ -183,7 +183,7 @@ class Results:
     @property
     def reference(self) -> ReportedModel:
         """The model that the data prefer: most probable, else of optimal, else equal weights."""
-        return self.model(str(self.attrs["reference"]))
+        return self.model(preferred(self.dataset))
 
     @property
     def verdict(self) -> list[str]:
@@ -241,17 +241,16 @@ class Results:
         """
         import pandas as pd
 
-        data = self.dataset
-        measured = data["measured_frequency"].values
+        data, modes = self.dataset, self["mode"].values
+        error = 100 * (data["frequency"].values / data["measured_frequency"].values - 1)
         columns: dict[str, Any] = {"kind": data["kind"].values, "pareto": data["pareto"].values}
-        for i, group in enumerate(data["group"].values):
-            columns[f"J {group}"] = data["objective"].values[:, i]
-        for j, name in enumerate(data["parameter"].values):
-            columns[str(name)] = data["theta"].values[:, j]
-        for r, mode in enumerate(data["mode"].values):
-            columns[f"error f{mode} %"] = 100 * (data["frequency"].values[:, r] / measured[r] - 1)
-        for r, mode in enumerate(data["mode"].values):
-            columns[f"MAC {mode}"] = data["mac"].values[:, r]
+        for names, values in (
+            ([f"J {group}" for group in data["group"].values], data["objective"].values),
+            (map(str, data["parameter"].values), data["theta"].values),
+            ([f"error f{mode} %" for mode in modes], error),
+            ([f"MAC {mode}" for mode in modes], data["mac"].values),
+        ):
+            columns |= dict(zip(names, values.T, strict=True))
         frame = pd.DataFrame(columns, index=pd.Index(data["label"].values, name="model"))
         return frame.loc[list(points)] if points else frame
 
@@ -272,19 +271,18 @@ class Results:
         front = self.front["pareto"].values
         name = str(self.attrs.get("study", "")) or "results"
         optimal = f"{int(front.sum())} of {front.size} points of the front are Pareto optimal"
-        said = self.verdict or [str(x) for x in self["finding"].values]
-        return [f"{name}: {optimal}", *said[:SENTENCES]]
+        return [f"{name}: {optimal}", *(self.verdict or headlines(self.dataset))[:SENTENCES]]
 
     @property
     def _short(self) -> pd.DataFrame:
         """Errors of the groups of the first models."""
-        labels = [str(x) for kind in SHOWN for x in self._of(kind)["label"].values]
-        rows = [self._position(label) for label in labels[:ROWS]]
-        error, groups = self["error"].values[rows], self["group"].values
         import pandas as pd
 
-        columns = {f"error {group}": error[:, g] for g, group in enumerate(groups[:COLUMNS])}
-        return pd.DataFrame(columns, index=pd.Index(labels[:ROWS], name="model"))
+        kinds = self["kind"].values.tolist()
+        order = [i for kind in SHOWN for i, each in enumerate(kinds) if each == kind.value][:ROWS]
+        index = pd.Index(self["label"].values[order], name="model")
+        groups = [f"error {group}" for group in self["group"].values[:COLUMNS]]
+        return pd.DataFrame(self["error"].values[order, :COLUMNS], index=index, columns=groups)
 
     def __repr__(self) -> str:
         """Return the verdict, and the errors of the first models."""

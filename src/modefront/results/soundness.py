@@ -1,19 +1,27 @@
-"""Conditions on the values of results, without which these have no meaning.
+"""Conditions on results: variables of the schema that belong together, values with a meaning.
 
-`modefront.results.schema` says which variables there are, of which types and dimensions; this is
-about values of files that were damaged or made by another program.
+Files may be damaged, or made by other programs.
 """
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 
 import numpy as np
 import xarray as xr
 
 from modefront.front.point import REFERENCES, Kind
-from modefront.results.schema import ATTRIBUTES, DIMENSIONS, variables_in
+from modefront.predictions.registry import ATTRIBUTE, kinds_from, kinds_in
+from modefront.results.schema import ATTRIBUTES, DIMENSIONS, variables_in, variables_of
+from modefront.results.selection import preferred
 from modefront.text import NAME, clean
+from modefront.variables import Values
+
+DTYPES: Mapping[Values, str] = {"number": "fiu", "count": "iuf", "truth": "biu", "text": "UOST"}
+"""Kinds of NumPy types that each of these may have in a file."""
+
+COORDINATES: Mapping[str, str] = {"parameter": "UOST", "group": "UOST", "mode": "fiu"}
+"""Coordinates that all results have, with their types."""
 
 FINITE = (
     *("theta", "objective", "error", "frequency", "bounds", "properties"),
@@ -26,87 +34,146 @@ FINITE = (
 UNIQUE = ("label", "parameter", "group", "mode")
 """Variables and coordinates whose values do not repeat."""
 
-SIZES = {
-    "bound": 2,
-    "range": 3,
-    "statistic": 5,
-    "quantile": 3,
-    "line_end": 2,
-    "corner": 4,
-    "axis": 3,
+SIZES: Mapping[str, int] = {
+    **{"bound": 2, "range": 3, "statistic": 5, "quantile": 3},
+    **{"line_end": 2, "corner": 4, "axis": 3},
 }
 """Sizes of dimensions that are always the same."""
+
+COUNTS = (
+    *("seed", "front_is_a_point", "model_evaluations", "front_evaluations", "nbi_evaluations"),
+    *("full_eigensolutions", "reduced_solutions", "prediction_eigensolutions"),
+    *("corrected_eigensolutions", "factorisations", "shape_eigensolutions", "format"),
+)
+"""Attributes that count something."""
 
 LARGEST = 1e9
 """Greatest count."""
 
-Fault = tuple[str, str, str]
+Wrong = tuple[str, str, str]
+"""Place, expected, found."""
 
 
-def unsound(data: xr.Dataset) -> Iterator[Fault]:
-    """Yield place, expected and found of all values that cannot be those of results.
+def faults(data: xr.Dataset, *, whole: bool = True) -> list[Wrong]:
+    """Return place, expected and found of what is wrong with a dataset.
 
-    Variables, coordinates and attributes have to have the types and dimensions of the schema.
+    Values are looked at where all variables are there, of their types and dimensions. A ``whole``
+    dataset has all variables that belong together.
     """
-    yield from _sizes(data)
-    yield from _texts(data)
-    yield from _numbers(data)
-    yield from _geometry(data)
-    yield from _attributes(data)
+    out = list(_structure(data)) or list(_together(data) if whole else ())
+    return out or [*_sizes(data), *_texts(data), *_numbers(data), *_geometry(data), *_of_file(data)]
 
 
-def _sizes(data: xr.Dataset) -> Iterator[Fault]:
+def _structure(data: xr.Dataset) -> Iterator[Wrong]:
+    """Yield what is missing, or of another type or other dimensions."""
+    for name, attribute in ATTRIBUTES.items():
+        if name not in data.attrs:
+            if attribute.required:
+                yield f"attribute '{name}'", attribute.meaning, "nothing"
+        elif isinstance(data.attrs[name], str) != (attribute.values == "text"):
+            yield f"attribute '{name}'", f"a {attribute.values}", f"{data.attrs[name]!r}"
+    for name, kinds in COORDINATES.items():
+        if name not in data.coords:
+            yield f"coordinate '{name}'", DIMENSIONS[name], "nothing"
+        elif data[name].dims != (name,) or data[name].dtype.kind not in kinds:
+            found = f"{data[name].dtype} of the dimensions {', '.join(map(str, data[name].dims))}"
+            yield f"coordinate '{name}'", DIMENSIONS[name], found
+    try:
+        variables = variables_of(kinds_from(str(data.attrs.get(ATTRIBUTE, ""))))
+    except ValueError as error:
+        yield f"attribute '{ATTRIBUTE}'", "kinds of predictions in JSON", str(error)
+        return
+    for name, variable in variables.items():
+        if name not in data:
+            if variable.required:
+                yield f"variable '{name}'", variable.meaning, "nothing"
+        elif data[name].dims != variable.dimensions:
+            dimensions = ", ".join(variable.dimensions) or "none"
+            found = ", ".join(map(str, data[name].dims)) or "none"
+            yield f"variable '{name}'", f"dimensions {dimensions}", found
+        elif data[name].dtype.kind not in DTYPES[variable.values]:
+            yield f"variable '{name}'", f"values of type {variable.values}", str(data[name].dtype)
+    if not data.sizes.get("point") or not data.sizes.get("mode"):
+        yield "dimensions 'point' and 'mode'", "at least one each", "none"
+
+
+def _together(data: xr.Dataset) -> Iterator[Wrong]:
+    """Yield variables and coordinates without which others cannot be shown."""
+    sets: dict[str, list[str]] = {}
+    for name, variable in variables_in(data).items():
+        if variable.together:
+            sets.setdefault(variable.together, []).append(name)
+    for names in sets.values():
+        present = [name for name in names if name in data]
+        missing = [name for name in names if name not in data]
+        if present and missing:
+            yield f"variable '{missing[0]}'", f"it, as there is '{present[0]}'", "nothing"
+    kinds = [kind.dimension for kind in kinds_in(data)]
+    for name in kinds:
+        if name not in data.dims:
+            yield f"dimension '{name}'", f"it, as '{ATTRIBUTE}' has it", "nothing"
+    for name in ("range", "statistic", "quantile", "set", "sensor", *kinds):
+        if name in data.dims and name not in data.coords:
+            yield f"coordinate '{name}'", DIMENSIONS.get(name, "names of its places"), "nothing"
+    for name in ("range", "frequency_range"):
+        if name not in data and any(kind in data.dims for kind in kinds):
+            yield f"variable '{name}'", "it, as there are predictions", "nothing"
+
+
+def _sizes(data: xr.Dataset) -> Iterator[Wrong]:
     for name in ("point", "parameter", "group", "mode"):
         if not data.sizes.get(name):
             yield f"dimension '{name}'", f"at least one: {DIMENSIONS[name]}", "none"
     for name, size in SIZES.items():
-        if name in data.sizes and data.sizes[name] != size:
+        if data.sizes.get(name, size) != size:
             yield f"dimension '{name}'", f"{size}: {DIMENSIONS[name]}", str(data.sizes[name])
     if data.sizes.get("end", 0) % 2:
         yield "dimension 'end'", "an end and a start for each gap", str(data.sizes["end"])
     for name in ("parameter", "group"):
-        other = f"{name}_other"
-        if other in data.sizes and data.sizes[other] != data.sizes[name]:
-            yield f"dimension '{other}'", f"{data.sizes[name]}, as '{name}'", str(data.sizes[other])
+        size = data.sizes[name]
+        if data.sizes.get(f"{name}_other", size) != size:
+            found = str(data.sizes[f"{name}_other"])
+            yield f"dimension '{name}_other'", f"{size}, as '{name}'", found
 
 
-def _texts(data: xr.Dataset) -> Iterator[Fault]:
+def _texts(data: xr.Dataset) -> Iterator[Wrong]:
     for name, variable in data.variables.items():
         if variable.dtype.kind in "OST":
             wrong = [value for value in variable.values.ravel() if not isinstance(value, str)]
             if wrong:
-                yield _variable(data, name), "texts", repr(wrong[0])
+                yield _place(data, name), "texts", repr(wrong[0])
                 return
     for name in UNIQUE:
         values = data[name].values.tolist()
         if len(set(values)) < len(values):
             repeated = next(value for value in values if values.count(value) > 1)
-            yield _variable(data, name), "each value once", f"{clean(repeated, NAME)!r} again"
-    known = [kind.value for kind in Kind]
-    unknown = [str(kind) for kind in data["kind"].values if kind not in known]
+            yield _place(data, name), "each value once", f"{clean(repeated, NAME)!r} again"
+    kinds, known = data["kind"].values.tolist(), [kind.value for kind in Kind]
+    unknown = [str(kind) for kind in kinds if kind not in known]
     if unknown:
         yield "variable 'kind'", f"any of {', '.join(known)}", clean(repr(unknown[0]), NAME)
-    best = [kind.value for kind in REFERENCES]
-    for kind in best:
-        if (data["kind"].values == kind).sum() > 1:
-            yield "variable 'kind'", f"'{kind}' once", "more"
+    for kind in REFERENCES:
+        if kinds.count(kind.value) > 1:
+            yield "variable 'kind'", f"'{kind.value}' once", "more"
 
 
-def _numbers(data: xr.Dataset) -> Iterator[Fault]:
+def _numbers(data: xr.Dataset) -> Iterator[Wrong]:
     variables = variables_in(data)
     for name in ("mode", *variables):
         if name not in data or data[name].dtype.kind not in "fiub":
             continue
-        place, values = _variable(data, name), data[name].values
+        values = data[name].values
         kind = variables[name].values if name in variables else "count"
-        if kind == "truth" and not np.isin(values, (0, 1)).all():
-            yield place, "truth values, 0 or 1", _first(values, ~np.isin(values, (0, 1)))
+        expected, wrong = "", np.zeros(values.shape, dtype=bool)
+        if kind == "truth":
+            expected, wrong = "truth values, 0 or 1", ~np.isin(values, (0, 1))
         elif kind == "count":
             wrong = ~((np.abs(values) <= LARGEST) & (values == np.round(values)))
-            if wrong.any():
-                yield place, "whole numbers", _first(values, wrong)
-        elif name in FINITE and not np.isfinite(values).all():
-            yield place, "finite numbers", _first(values, ~np.isfinite(values))
+            expected = "whole numbers"
+        elif name in FINITE:
+            expected, wrong = "finite numbers", ~np.isfinite(values)
+        if wrong.any():
+            yield _place(data, name), expected, _first(values, wrong)
     for name in ("objective", "error", "minimum_objective"):
         values = data[name].values
         if (values < 0).any():
@@ -119,7 +186,7 @@ def _numbers(data: xr.Dataset) -> Iterator[Fault]:
         yield "variable 'measured_frequency'", "frequencies above 0", str(measured.min())
 
 
-def _geometry(data: xr.Dataset) -> Iterator[Fault]:
+def _geometry(data: xr.Dataset) -> Iterator[Wrong]:
     """Yield what lines, faces and sensors name that is no node."""
     count = data.sizes.get("drawn_node", 0)
     for name, least in (("line_nodes", 0), ("face_nodes", -1), ("sensor_node", 0)):
@@ -133,7 +200,7 @@ def _geometry(data: xr.Dataset) -> Iterator[Fault]:
         yield "variable 'face_nodes'", "three corners at least", "-1 among the first three"
 
 
-def _attributes(data: xr.Dataset) -> Iterator[Fault]:
+def _of_file(data: xr.Dataset) -> Iterator[Wrong]:
     for name, attribute in ATTRIBUTES.items():
         if name not in data.attrs or attribute.values == "text":
             continue
@@ -144,23 +211,12 @@ def _attributes(data: xr.Dataset) -> Iterator[Fault]:
             yield f"attribute '{name}'", "a whole number of 0 or more", str(value)
     if "certified" in data and "eigenvalue_tolerance" not in data.attrs:
         yield "attribute 'eigenvalue_tolerance'", "it, as there is 'certified'", "nothing"
-    reference = str(data.attrs["reference"])
-    if reference not in data["label"].values:
-        expected = "the label of a point"
-        yield "attribute 'reference'", expected, clean(repr(reference), NAME)
+    if preferred(data) not in data["label"].values:
+        found = clean(repr(str(data.attrs["reference"])), NAME)
+        yield "attribute 'reference'", "the label of a point", found
 
 
-COUNTS = frozenset(
-    (
-        *("seed", "front_is_a_point", "model_evaluations", "front_evaluations", "nbi_evaluations"),
-        *("full_eigensolutions", "reduced_solutions", "prediction_eigensolutions"),
-        *("corrected_eigensolutions", "factorisations", "shape_eigensolutions", "format"),
-    )
-)
-"""Attributes that count something."""
-
-
-def _variable(data: xr.Dataset, name: object) -> str:
+def _place(data: xr.Dataset, name: object) -> str:
     return f"{'coordinate' if name in data.coords else 'variable'} '{name}'"
 
 

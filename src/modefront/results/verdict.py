@@ -121,11 +121,22 @@ def _parameters(data: xr.Dataset) -> Iterator[str]:
     for trust in TRUST:
         own = np.flatnonzero(data["trust"].values == trust).tolist()
         parts = [
-            f"{data['parameter'].values[j]} {theta[j]:.4g} ({low[j]:.3g} to {high[j]:.3g})"
+            f"{data['parameter'].values[j]} {_interval(theta[j], low[j], high[j])}"
             for j in own[:NAMED]
         ]
         if own:
             yield f"{trust.capitalize()} (90 %): {_some(parts, len(own))}."
+
+
+def _interval(value: float, low: float, high: float) -> str:
+    """Return a value with the ends of its interval, in digits that tell these apart.
+
+    >>> _interval(1.1, 1.09992, 1.10011), _interval(1.16, 0.9, 1.5)
+    ('1.1 (1.0999 to 1.1001)', '1.16 (0.9 to 1.5)')
+    """
+    size, width = max(abs(low), abs(high)), high - low
+    digits = max(3, min(int(np.ceil(np.log10(size / width))) + 1, 9)) if width > 0 else 3
+    return f"{value:.{digits + 1}g} ({low:.{digits}g} to {high:.{digits}g})"
 
 
 def _some(parts: Sequence[str], count: int) -> str:

@@ -13,6 +13,7 @@ import numpy as np
 import scipy.sparse.linalg
 
 from modefront._typing import Floats
+from modefront.brief import as_html, brief_model
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine
 from modefront.linalg.factorisation import Factorisation
@@ -126,7 +127,7 @@ class _Projected:
 
 # 13 fields: eight describe the basis, five are its state.
 @shared
-@dataclass(eq=False)
+@dataclass(eq=False, repr=False)
 class ReducedModel:
     """A sparse model in the basis of its modes and their derivatives at some parameters.
 
@@ -157,6 +158,9 @@ class ReducedModel:
     _basis: Basis | None = None
     _factor: Factorisation | None = None
     _small: _Projected | None = None
+
+    __repr__ = brief_model
+    _repr_html_ = as_html
 
     def __getstate__(self) -> dict[str, Any]:
         """Return the state with the projected matrices, and without basis and factor.
