@@ -11,7 +11,7 @@ from modefront._typing import Bools, Floats
 from modefront.findings.catalogue import Severity
 from modefront.findings.record import Finding, found, from_text, in_order
 from modefront.front.point import Kind
-from modefront.optim.problem import AT_BOUND
+from modefront.optim.problem import at_bounds
 from modefront.results.selection import front_points, not_converged, uncertified
 from modefront.rounding import ACCUMULATED
 
@@ -327,9 +327,7 @@ def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
 
 def _at_bounds(data: xr.Dataset, most: int | None) -> Iterator[Finding]:
     """Yield which parameters are at a bound and where, of more than ``most`` only how many."""
-    theta, bounds = data["theta"].values, data["bounds"].values
-    span = bounds[:, 1] - bounds[:, 0]
-    at_bound = (np.abs(theta[:, :, None] - bounds) <= AT_BOUND * span[:, None]).any(axis=2)
+    at_bound = at_bounds(data["theta"].values, *data["bounds"].values.T) != 0
     names = data["parameter"].values[at_bound.any(axis=0)].tolist()
     if most is not None and len(names) > most:
         yield found("many-at-bounds", ", ".join(names[:most]), parameters=len(names))

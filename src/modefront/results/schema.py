@@ -16,7 +16,7 @@ import numpy as np
 
 from modefront._typing import Ints
 from modefront.errors import Fault, InputError
-from modefront.optim.problem import AT_BOUND
+from modefront.optim.problem import at_bounds
 from modefront.predictions.base import PredictionKind
 from modefront.predictions.registry import ATTRIBUTE, kinds_from, kinds_in
 from modefront.variables import Values, Variable
@@ -88,10 +88,7 @@ DIMENSIONS: Mapping[str, str] = {
 
 
 def _at_bound(values: Mapping[str, Any]) -> Ints:
-    lower, upper = np.asarray(values["bounds"]).T
-    margin = AT_BOUND * (upper - lower)
-    side = np.where(values["theta"] >= upper - margin, 1, 0)
-    return np.where(values["theta"] <= lower + margin, -1, side)
+    return at_bounds(values["theta"], *np.asarray(values["bounds"]).T)
 
 
 # 87 lines: a table, one entry a variable.

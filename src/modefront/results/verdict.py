@@ -7,6 +7,7 @@ from collections.abc import Iterator, Sequence
 import numpy as np
 import xarray as xr
 
+from modefront._typing import Floats
 from modefront.findings.knowledge import enumeration
 from modefront.front.point import Kind
 from modefront.results.intervals import TRUST
@@ -47,11 +48,20 @@ def verdict(data: xr.Dataset) -> list[str]:
 
 def _refused(data: xr.Dataset) -> list[str]:
     """Return why no model can be used; nothing where the reference can be."""
-    groups, misfit = data["group"].values, data["misfit"].values
     best, nominal = (
         _row(data, kind)["error"].values for kind in (Kind.MOST_PROBABLE, Kind.NOMINAL)
     )
-    far, worse = misfit > FAR, (best > WORSE * nominal) & (misfit > LARGE)
+    groups = list(map(str, data["group"].values))
+    return refusals(groups, data["misfit"].values, best / nominal)
+
+
+def refusals(groups: Sequence[str], misfit: Floats, to_nominal: Floats) -> list[str]:
+    """Return why the most probable model cannot be used; nothing where it can be.
+
+    ``misfit`` and ``to_nominal`` (n,) are the errors of its groups over those expected and over
+    those of the nominal model.
+    """
+    far, worse = misfit > FAR, (to_nominal > WORSE) & (misfit > LARGE)
     return [
         *(
             f"errors of {groups[i]} are {misfit[i]:.2g} times those expected"

@@ -94,7 +94,8 @@ class NoisePrior:
         sizes = {"frequency": f"frequencies known to {100 * self.frequency:g} %"}
         sizes["shape"] = f"shapes to {100 * self.shape:g} %"
         words = ", ".join(sizes[kind] for kind in assumed)
-        return NoiseModel(scaled, a, S, level, self.weight, words)
+        logs = LogSum(a + self.weight, self.weight * level - S)
+        return NoiseModel(replace(scaled, likelihood=logs), a, S, level, self.weight, words)
 
 
 @dataclass(frozen=True)

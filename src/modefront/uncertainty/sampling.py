@@ -9,9 +9,19 @@ Each draw is the model that fits data with other errors, and is nearest to a mod
 with :math:`\delta` so small that it decides only where the data say nothing (Kitanidis 1995,
 doi:10.1029/94WR02740; Oliver, He & Reynolds 1996). Where residuals are linear and bounds far these
 are independent draws from the posterior. It is an approximation elsewhere, which follows curved
-sets of equivalent models and reaches all minima; draws that would be beyond a bound lie at it, so
-that intervals are rather too wide there. ``benchmarks/calibration.py`` measures them. Markov chains
-take a hundred times as many models where the data leave much open.
+sets of equivalent models and reaches all minima. ``benchmarks/calibration.py`` measures it. Markov
+chains take a hundred times as many models where the data leave much open.
+
+Draws that would be beyond a bound lie at it, while the posterior has no such atom. Each parameter j
+at a bound is drawn again along the line :math:`\theta + t v`, :math:`v_j` one range inwards, on
+which those within their bounds follow, :math:`v_F = -A_{FF}^{-1} A_{Fj} v_j`, with :math:`A =
+\partial r^T \partial r` of the residuals over their standard deviations. To first order t is
+Gaussian,
+
+.. math:: q(t) \propto e^{-a t^2 / 2 - g t}, \qquad a = v^T A v, \quad g = v^T \partial r^T r,
+
+truncated where the line ends; it is taken with the probability of Metropolis, the ratio of the
+posterior over q to that at the bound. Of one parameter and a linear residual the draws are exact.
 
 The variances are drawn from their marginal distribution with the parameters linearised about the
 most probable model, at which :math:`q_i` counts the directions that group i determines,
@@ -30,11 +40,20 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from typing import Self
 
 import numpy as np
+from scipy.special import log_ndtr, ndtri_exp
 
 from modefront._typing import Floats
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual, Wrapped
+from modefront.optim.problem import (
+    Evaluation,
+    ObjectiveDerivatives,
+    Problem,
+    Residual,
+    Wrapped,
+    at_bounds,
+)
 from modefront.optim.scalarisation import weighted
 from modefront.optim.sqp import Options, begin, solve
 from modefront.uncertainty.prior import Distance, NoiseModel, drawn_prior
@@ -108,8 +127,64 @@ def _drawn(noise: NoiseModel, theta: Floats, count: int, *, rng: np.random.Gener
         target = Wrapped(problem, disturbed.evaluate, ("misfit", "distance from the prior"))
         starts = [target.evaluate(prior), disturbed.of(best)]
         found = [solve(target, weighted(w), begin(x), _LOOSE) for x in starts if x.feasible]
-        out.append(min(found, key=lambda x: float(w @ x.J)).theta)
+        theta = min(found, key=lambda x: float(w @ x.J)).theta
+        out.append(_within_bounds(noise, s, theta, rng))
     return np.array(out)
+
+
+def _within_bounds(noise: NoiseModel, s: Floats, theta: Floats, rng: np.random.Generator) -> Floats:
+    """Return a draw (p,) of which parameters that are at bounds are drawn again."""
+    lower, upper = noise.problem.lower, noise.problem.upper
+    span, sides = upper - lower, at_bounds(theta, lower, upper)
+    here = _Local.at(noise, s, theta) if sides.any() else None
+    for j in rng.permutation(np.flatnonzero(sides)):
+        A = here.dr.T @ here.dr + PRIOR * np.eye(span.size)
+        free, v = at_bounds(here.theta, lower, upper) == 0, np.zeros(span.size)
+        v[j] = -sides[j]
+        v[free] = -np.linalg.solve(A[np.ix_(free, free)], A[free, j] * v[j])
+        ends = np.where(v > 0, upper, lower) - here.theta
+        reach = float((ends[v != 0] / (v * span)[v != 0]).min())
+        a, g = float(v @ A @ v), float(v @ here.dr.T @ here.r)
+        t = truncated(-g / a, a**-0.5, reach, rng)
+        end = np.clip(here.theta + t * v * span, lower, upper)
+        there = _Local.at(noise, s, end)
+        excess = there.r @ there.r - here.r @ here.r - a * t**2 - 2 * g * t
+        if rng.random() < np.exp(-max(excess, 0.0) / 2):
+            here = there
+    return theta if here is None else here.theta
+
+
+def truncated(mean: float, std: float, reach: float, rng: np.random.Generator) -> float:
+    """Return a draw of a Gaussian between 0 and ``reach``, by inversion in its left tail."""
+    inner, outer = log_ndtr(np.array([mean, mean - reach]) / std)
+    u = rng.random()
+    t = mean - std * ndtri_exp(inner + np.log1p(u * np.expm1(outer - inner)))
+    return float(np.clip(t, 0.0, reach))
+
+
+@dataclass(frozen=True)
+class _Local:
+    """Residuals r over their standard deviations with normal priors, and dr over the ranges."""
+
+    theta: Floats
+    r: Floats
+    dr: Floats
+
+    @classmethod
+    def at(cls, noise: NoiseModel, s: Floats, theta: Floats) -> Self:
+        """Return those of a model; infinite ones where it is not defined."""
+        problem = noise.problem
+        found = problem.evaluate(theta)
+        r, dr, _ = Distance(problem, problem.start, 0.0).residuals(theta)
+        if not found.feasible:
+            return cls(theta, np.full(1, np.inf), np.zeros((1, theta.size)))
+        parts = zip(found.residuals, np.sqrt(s), strict=True)
+        rows = [(x.r / root, x.dr / root) for x, root in parts]
+        return cls(
+            theta,
+            np.concatenate([*(x for x, _ in rows), r]),
+            np.vstack([*(x for _, x in rows), np.diag(dr)]) * (problem.upper - problem.lower),
+        )
 
 
 @dataclass(frozen=True)
