@@ -167,10 +167,13 @@ def judge(seed: int, draws: int, wrong: bool, few: bool) -> list[Verdict]:
     rng = np.random.default_rng([seed, 1])
     known = list(rng.uniform(0.6, 1.6, (STARTS, truth.size)))
     best = most_probable(problem, noise, known, IMMEDIATE)[0]
-    misfit, nominal = noise.misfit(best.theta), noise.misfit(problem.start)
-    if refusals(problem.objectives, misfit, misfit / nominal):
+    misfit, nominal = (
+        noise.over_expected(noise.problem.evaluate(theta).J)
+        for theta in (best.theta, problem.start)
+    )
+    if refusals(problem.objectives, misfit, nominal):
         return []
-    samples = draw_models(noise, best.theta, draws, seed, IMMEDIATE)
+    samples = draw_models(noise, best.theta, draws, seed, IMMEDIATE).theta
     low, middle, high = np.quantile(samples, (0.05, 0.5, 0.95), axis=0, method="weibull")
     std = np.maximum((high - low) / (2 * 1.645), 1e-12)
     determined = high - low < DETERMINED * 0.9 * (BOUNDS[1] - BOUNDS[0])

@@ -10,6 +10,7 @@ import xarray as xr
 from modefront.cli.layout import Screen
 from modefront.cli.overview import print_models
 from modefront.cli.predictions import print_predictions
+from modefront.front.point import preferred
 from modefront.results.remarks import remarks
 
 
@@ -114,10 +115,7 @@ def print_uncertainty(screen: Screen, data: xr.Dataset) -> None:
         modes = data["mode"].values
         titles = [*names, *(f"f{r} Hz" for r in modes), *(f"MAC {r}" for r in modes)]
         values = [data[f"posterior_{name}std"].values for name in ("", "frequency_", "mac_")]
-        title = (
-            f"posterior around {data.attrs['reference']}: standard deviations, variances of "
-            "errors unknown"
-        )
+        title = f"posterior around {preferred(data.attrs)}: standard deviations"
         cells = [_number(x, ".3g", "") for x in np.concatenate(values)]
         screen.table(title, ["of", "std"], list(zip(titles, cells, strict=True)))
     if not known:

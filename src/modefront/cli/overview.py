@@ -15,7 +15,7 @@ import xarray as xr
 
 from modefront._typing import Floats, Ints
 from modefront.cli.layout import BLANK, KEY, Line, Screen
-from modefront.front.point import Kind
+from modefront.front.point import Kind, preferred
 
 FEWEST = 3
 """Parameters and modes that a table keeps, however long it is."""
@@ -64,7 +64,7 @@ def first_models(data: xr.Dataset, *, edges: bool = True) -> list[int]:
     kinds, labels = data["kind"].values, data["label"].values
     chosen = [
         *np.flatnonzero(kinds == Kind.NOMINAL.value).tolist(),
-        *np.flatnonzero(labels == data.attrs["reference"]).tolist(),
+        *np.flatnonzero(labels == preferred(data.attrs)).tolist(),
         *(np.flatnonzero(kinds == Kind.EDGE.value).tolist() if edges else []),
     ]
     return list(dict.fromkeys(chosen))
@@ -118,7 +118,7 @@ class _Table:
         self.std, self.explained = standard_deviations(data)
         self.bound = _bounds(data)
         labels = data["label"].values
-        self.reference = int(np.flatnonzero(labels == data.attrs["reference"])[0])
+        self.reference = int(np.flatnonzero(labels == preferred(data.attrs))[0])
 
     @property
     def columns(self) -> list[str]:
@@ -226,7 +226,7 @@ def _by_change(data: xr.Dataset) -> Ints:
     """Return the positions of the parameters, those that the reference changes most first."""
     first, best = (
         first_models(data, edges=False)[0],
-        data["label"].values == data.attrs["reference"],
+        data["label"].values == preferred(data.attrs),
     )
     bounds, theta = data["bounds"].values, data["theta"].values
     change = np.abs(theta[best][0] - theta[first]) / np.ptp(bounds, axis=1)
@@ -236,7 +236,7 @@ def _by_change(data: xr.Dataset) -> Ints:
 
 def _by_error(data: xr.Dataset) -> Ints:
     """Return the positions of the modes, those whose frequency the reference misses most first."""
-    best = data["label"].values == data.attrs["reference"]
+    best = data["label"].values == preferred(data.attrs)
     error = np.abs(data["frequency"].values[best][0] / data["measured_frequency"].values - 1)
     order: Ints = np.argsort(-np.nan_to_num(error), kind="stable")
     return order
@@ -249,17 +249,10 @@ def standard_deviations(data: xr.Dataset) -> tuple[Floats, list[str]]:
     if "theta_std" in data:
         std = np.array(data["theta_std"].values)
         explained.append("±: one standard deviation by the errors of the data")
-    elif "posterior_std" in data:
-        (best,) = np.flatnonzero(data["label"].values == data.attrs["reference"])
-        std[best] = data["posterior_std"].values
-        explained.append(
-            f"±: one standard deviation of the posterior around {data.attrs['reference']}"
-        )
-    if "sample_theta" in data:
-        (best,) = np.flatnonzero(data["label"].values == data.attrs["reference"])
-        std[best] = data["sample_theta"].values.std(axis=0, ddof=1)
-        explained = explained if "theta_std" in data else []
-        explained.append(f"± of {data.attrs['reference']}: standard deviation of the posterior")
+    if "posterior_std" in data and ("sample_theta" in data or not explained):
+        label = preferred(data.attrs)
+        std[data["label"].values == label] = data["posterior_std"].values
+        explained.append(f"± of {label}: standard deviation of the posterior")
     if np.isinf(std).any():
         explained.append("± inf: the data do not determine the parameter")
     if not explained:

@@ -9,7 +9,7 @@ import numpy as np
 import xarray as xr
 
 from modefront.cli.layout import Screen
-from modefront.front.point import INTERNAL
+from modefront.front.point import INTERNAL, preferred
 from modefront.predictions.registry import RecordedPrediction, predictions_in
 
 DRAWN = ("mean", "5 %", "95 %")
@@ -66,7 +66,7 @@ def print_predictions(screen: Screen, data: xr.Dataset) -> None:
 def first_predictions(data: xr.Dataset) -> tuple[list[str], list[list[str]]]:
     """Return columns and rows of a short table: the main quantity of each prediction."""
     posterior = Posterior(data)
-    best = _position(data, str(data.attrs["reference"]))
+    best = _position(data, preferred(data.attrs))
     rows = []
     for each in predictions_in(data):
         main = next((variable.name for variable in each.kind.ranged), "")
@@ -81,7 +81,7 @@ def first_predictions(data: xr.Dataset) -> tuple[list[str], list[list[str]]]:
                         f"{_number(least, '.3g')} to {_number(greatest, '.3g')}",
                     ]
                 )
-    columns = [str(data.attrs["reference"]), *posterior.columns[: posterior.known]]
+    columns = [preferred(data.attrs), *posterior.columns[: posterior.known]]
     return ["", *columns, "least to greatest"], rows
 
 
@@ -105,7 +105,7 @@ class Posterior:
         out = []
         if self.known:
             out.append(
-                f"posterior: standard deviation around {self.data.attrs['reference']}; of P as a "
+                f"posterior: standard deviation around {preferred(self.data.attrs)}; of P as a "
                 "factor, e to that of ln P"
             )
         if self.drawn:

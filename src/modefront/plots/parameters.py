@@ -6,6 +6,7 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Floats
+from modefront.front.point import preferred
 from modefront.plots.along import Along, Bar, across, titled
 from modefront.plots.canvas import Picture, panels
 from modefront.plots.models import is_path
@@ -43,7 +44,7 @@ def parameter_std(data: xr.Dataset) -> Floats:
         return np.where(np.isfinite(data["theta_std"].values), data["theta_std"].values, np.nan)
     out = np.full(data["theta"].shape, np.nan)
     if "posterior_std" in data:
-        best = data["label"].values == data.attrs["reference"]
+        best = data["label"].values == preferred(data.attrs)
         std = data["posterior_std"].values
         out[best] = np.where(np.isfinite(std), std, np.nan)
     return out

@@ -174,7 +174,7 @@ class UpdatingProblem:
         outside = np.zeros(distance.shape)
         if self.pairing.window is not None:
             outside = np.where(distance > np.log(self.pairing.window), OUTSIDE, 0.0)
-        silent = ~squares.any(axis=(0, 2))[:, None]
+        silent = np.asarray(~squares.any(axis=(0, 2)))[:, None]
         rest = np.where(silent, np.where(np.isnan(values), distance, 1 - values), 0.0)
         found = []
         for index in (by_mac.index, assigned(distance + outside)):

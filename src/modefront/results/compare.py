@@ -24,6 +24,7 @@ from scipy.spatial.distance import cdist, pdist, squareform
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError
+from modefront.front.point import preferred
 from modefront.predictions.registry import kinds_in
 from modefront.results.files import read_dataset
 from modefront.results.selection import front_points
@@ -254,7 +255,7 @@ def _summary(name: str, data: xr.Dataset, first: float) -> Summary:
         tuple(np.ptp(e, axis=0).tolist()),
         float(np.linalg.norm(e, axis=1).min()),
         float(np.linalg.norm(best["error"].values)) if best is not None else float("nan"),
-        str(data.attrs["reference"]),
+        preferred(data.attrs),
         float(np.linalg.norm(reference["error"].values)),
         tuple(_spreads("", "parameter", "theta", models, reference)),
         tuple(_predictions(models, reference)),
@@ -290,7 +291,7 @@ def _spreads(
 def _reference(data: xr.Dataset) -> xr.Dataset:
     """Return the model that the data prefer; the first one of results that do not name it."""
     labels = [str(x) for x in data["label"].values]
-    name = str(data.attrs["reference"])
+    name = preferred(data.attrs)
     return data.isel(point=labels.index(name) if name in labels else 0)
 
 

@@ -10,7 +10,7 @@ import xarray as xr
 from modefront._typing import Bools, Floats
 from modefront.findings.catalogue import Severity
 from modefront.findings.record import Finding, found, from_text, in_order
-from modefront.front.point import Kind
+from modefront.front.point import Kind, preferred
 from modefront.optim.problem import at_bounds
 from modefront.results.selection import front_points, not_converged, uncertified
 from modefront.rounding import ACCUMULATED
@@ -153,7 +153,7 @@ def _misfit(data: xr.Dataset) -> Iterator[Finding]:
     chosen, labels = data["pareto"].values, data["label"].values
     if not chosen.any():
         return
-    best = str(data.attrs["reference"])
+    best = preferred(data.attrs)
     nominal, beside = data["kind"].values == Kind.NOMINAL.value, ""
     if nominal.any() and np.isfinite(data["frequency"].values[nominal]).any():
         beside = f"; the nominal model has {_fit(data, nominal)}"

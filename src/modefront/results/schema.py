@@ -71,6 +71,7 @@ DIMENSIONS: Mapping[str, str] = {
     "ratio of greatest to least",
     "draw": "models drawn from the posterior, for predictions",
     "sample": "models drawn from the posterior",
+    "candidate": "further measurements that could be made",
     "quantile": "0.05, 0.5, 0.95",
     "set": "data sets, by name",
     "sensor": "sensors, by name",
@@ -414,6 +415,33 @@ def _errors() -> Iterator[Variable]:
         "text",
     )
     yield Variable("sample_theta", ("sample", "parameter"), "models drawn from the posterior")
+    yield Variable("nominal_misfit", ("group",), "that of the nominal model likewise", unit="1")
+    yield Variable("prior_width", ("parameter",), "width of the 90 % interval of the prior")
+    yield Variable(
+        "likely_mode",
+        ("mode",),
+        "number of the model mode that is most likely to be the measured one, by frequencies and "
+        "shapes together, at the most probable model; by the MAC alone it is `paired_mode`",
+        "count",
+    )
+    yield Variable(
+        "candidate_frequency",
+        ("candidate",),
+        "of a further model mode, measured at all sensors; 0 for a further sensor",
+        unit="Hz",
+    )
+    yield Variable(
+        "candidate_sensor",
+        ("candidate",),
+        "further sensor, at which all measured modes are; empty for a further mode",
+        "text",
+    )
+    yield Variable(
+        "candidate_gain",
+        ("candidate", "parameter"),
+        "share by which that measurement makes the standard deviation of a parameter less, "
+        "linearised",
+    )
     yield Variable(
         "misfit",
         ("group",),
@@ -557,7 +585,16 @@ TOGETHER: Mapping[str, tuple[str, ...]] = {
         "posterior_frequency_std",
         "posterior_mac_std",
     ),
-    "samples": ("interval", "trust", "sample_theta", "misfit"),
+    "samples": (
+        "interval",
+        "trust",
+        "sample_theta",
+        "prior_width",
+        "misfit",
+        "nominal_misfit",
+        "likely_mode",
+    ),
+    "further measurements": ("candidate_frequency", "candidate_sensor", "candidate_gain"),
     "wider bounds": ("freed_theta", "freed_misfit"),
     "modes of points": (
         "set_frequency",
@@ -632,7 +669,7 @@ ATTRIBUTES: Mapping[str, Attribute] = {
         Attribute("method", "method by which the front was found", "text", required=True),
         Attribute(
             "reference",
-            "label of the model that the data prefer, around which the posterior lies",
+            "label of the model to use, around which the posterior lies; empty where none is",
             "text",
             required=True,
         ),

@@ -11,7 +11,7 @@ from collections.abc import Iterator
 import numpy as np
 import xarray as xr
 
-from modefront.front.point import REFERENCES, Kind
+from modefront.front.point import REFERENCES, Kind, preferred
 from modefront.results.schema import ATTRIBUTES, DIMENSIONS, variables_in
 from modefront.text import NAME, clean
 
@@ -144,10 +144,9 @@ def _attributes(data: xr.Dataset) -> Iterator[Fault]:
             yield f"attribute '{name}'", "a whole number of 0 or more", str(value)
     if "certified" in data and "eigenvalue_tolerance" not in data.attrs:
         yield "attribute 'eigenvalue_tolerance'", "it, as there is 'certified'", "nothing"
-    reference = str(data.attrs["reference"])
-    if reference not in data["label"].values:
+    if preferred(data.attrs) not in data["label"].values:
         expected = "the label of a point"
-        yield "attribute 'reference'", expected, clean(repr(reference), NAME)
+        yield "attribute 'reference'", expected, clean(repr(str(data.attrs["reference"])), NAME)
 
 
 COUNTS = frozenset(

@@ -11,6 +11,7 @@ from pathlib import Path
 from modefront.brief import as_html, brief
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError, reason, suggestion
 from modefront.exports.model import Origin, matrix_size, write_model
+from modefront.front.point import preferred
 from modefront.models.dofs import read_dofs
 from modefront.programs.changes import read_changes
 from modefront.programs.mesh import read_mesh
@@ -72,7 +73,7 @@ def export(
     folder = Path(folder)
     data = read_dataset(folder)
     labels = [str(label) for label in data["label"].values]
-    point = point or str(data.attrs["reference"])
+    point = point or preferred(data.attrs)
     if point not in labels:
         nearest = suggestion(point, labels)
         raise InputError(Fault(str(folder / FILE), "--point", "the label of a model", nearest))

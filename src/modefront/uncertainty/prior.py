@@ -131,10 +131,6 @@ class NoiseModel:
         distance = Distance(self.problem, self.problem.start, PULL)
         return Wrapped(self.problem, distance.evaluation, names)
 
-    def misfit(self, theta: Floats) -> Floats:
-        """Return the root mean square errors (n,) of a model over those expected."""
-        return self.over_expected(self.problem.evaluate(theta, derivatives=False).J)
-
     def over_expected(self, J: Floats) -> Floats:
         """Return the root mean square errors (n,) of J' (n,) over those expected."""
         return np.sqrt(np.maximum(J - self.S, 0.0) / (np.maximum(self.a, 1.0) * self.level))

@@ -40,7 +40,6 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from typing import Self
 
 import numpy as np
 from scipy.special import log_ndtr, ndtri_exp
@@ -57,6 +56,7 @@ from modefront.optim.problem import (
 from modefront.optim.scalarisation import weighted
 from modefront.optim.sqp import Options, begin, solve
 from modefront.uncertainty.prior import Distance, NoiseModel, drawn_prior
+from modefront.work.codec import record
 from modefront.work.task import Executor, Task, seed_sequence
 
 PRIOR = 2.5e-3
@@ -67,6 +67,9 @@ BATCH = 10
 
 DRAWS = 100
 """Draws for intervals: the 5 % quantile has an error of a sixth of a standard deviation."""
+
+NAMES = ("misfit", "distance from the prior")
+"""Objectives of a draw."""
 
 _LOOSE = Options(step=1e-4, reduction=1e-8, iterations=40)
 """Draws need a hundredth of their scatter, and no more."""
@@ -97,8 +100,24 @@ def variances(noise: NoiseModel, evaluation: Evaluation) -> Variances:
     return Variances(evaluation.J + logs.floor, np.maximum(logs.a - q, noise.weight))
 
 
-def draw_models(noise: NoiseModel, theta: Floats, count: int, seed: int, work: Executor) -> Floats:
-    """Return models (count, p) drawn from the posterior, with its maximum at theta (p,)."""
+@record
+@dataclass(frozen=True)
+class Draws:
+    """Models drawn from the posterior, with what they predict.
+
+    Attributes
+    ----------
+    theta : (draws, p) parameters
+    frequency, mac : (draws, modes) of the pairs of measured modes that are most likely
+    """
+
+    theta: Floats
+    frequency: Floats
+    mac: Floats
+
+
+def draw_models(noise: NoiseModel, theta: Floats, count: int, seed: int, work: Executor) -> Draws:
+    """Return models drawn from the posterior, with its maximum at theta (p,)."""
     tasks = [
         Task(
             ("sample-posterior", k + 1),
@@ -108,11 +127,17 @@ def draw_models(noise: NoiseModel, theta: Floats, count: int, seed: int, work: E
         )
         for k in range(-(-count // BATCH))
     ]
-    return np.concatenate(work.run(tasks))[:count]
+    parts = work.run(tasks)
+    return Draws(
+        *(
+            np.concatenate([getattr(part, name) for part in parts])[:count]
+            for name in ("theta", "frequency", "mac")
+        )
+    )
 
 
-def _drawn(noise: NoiseModel, theta: Floats, count: int, *, rng: np.random.Generator) -> Floats:
-    """Return draws (count, p)."""
+def _drawn(noise: NoiseModel, theta: Floats, count: int, *, rng: np.random.Generator) -> Draws:
+    """Return draws."""
     problem = noise.problem
     best = problem.evaluate(theta)
     of, w = variances(noise, best), np.ones(2)
@@ -123,35 +148,47 @@ def _drawn(noise: NoiseModel, theta: Floats, count: int, *, rng: np.random.Gener
         errors = [
             np.sqrt(v) * rng.normal(size=x.r.size) for v, x in zip(s, best.residuals, strict=True)
         ]
-        disturbed = _Disturbed(s, errors, Distance(problem, prior, PRIOR))
-        target = Wrapped(problem, disturbed.evaluate, ("misfit", "distance from the prior"))
+        disturbed = _Scaled(s, Distance(problem, prior, PRIOR), errors)
+        target = Wrapped(problem, disturbed.evaluate, NAMES)
         starts = [target.evaluate(prior), disturbed.of(best)]
         found = [solve(target, weighted(w), begin(x), _LOOSE) for x in starts if x.feasible]
-        theta = min(found, key=lambda x: float(w @ x.J)).theta
-        out.append(_within_bounds(noise, s, theta, rng))
-    return np.array(out)
+        model = min(found, key=lambda x: float(w @ x.J)).evaluation
+        out.append(_within_bounds(noise, s, model, rng))
+    none = np.empty(0)
+    return Draws(
+        np.array([x.theta for x in out]),
+        *(np.array([x.quantities.get(name, none) for x in out]) for name in ("frequency", "mac")),
+    )
 
 
-def _within_bounds(noise: NoiseModel, s: Floats, theta: Floats, rng: np.random.Generator) -> Floats:
-    """Return a draw (p,) of which parameters that are at bounds are drawn again."""
+def _within_bounds(
+    noise: NoiseModel, s: Floats, model: Evaluation, rng: np.random.Generator
+) -> Evaluation:
+    """Return a draw of which parameters that are at bounds are drawn again."""
     lower, upper = noise.problem.lower, noise.problem.upper
-    span, sides = upper - lower, at_bounds(theta, lower, upper)
-    here = _Local.at(noise, s, theta) if sides.any() else None
+    span, sides = upper - lower, at_bounds(model.theta, lower, upper)
+    if not sides.any():
+        return model
+    scaled = _Scaled(s, Distance(noise.problem, noise.problem.start, 0.0))
+    target = Wrapped(noise.problem, scaled.evaluate, NAMES)
+    here = target.evaluate(model.theta)
     for j in rng.permutation(np.flatnonzero(sides)):
-        A = here.dr.T @ here.dr + PRIOR * np.eye(span.size)
-        free, v = at_bounds(here.theta, lower, upper) == 0, np.zeros(span.size)
+        theta = here.theta
+        r = np.concatenate([x.r for x in here.residuals])
+        dr = np.vstack([x.dr for x in here.residuals]) * span
+        A = dr.T @ dr + PRIOR * np.eye(span.size)
+        free, v = at_bounds(theta, lower, upper) == 0, np.zeros(span.size)
         v[j] = -sides[j]
         v[free] = -np.linalg.solve(A[np.ix_(free, free)], A[free, j] * v[j])
-        ends = np.where(v > 0, upper, lower) - here.theta
+        ends = np.where(v > 0, upper, lower) - theta
         reach = float((ends[v != 0] / (v * span)[v != 0]).min())
-        a, g = float(v @ A @ v), float(v @ here.dr.T @ here.r)
+        a, g = float(v @ A @ v), float(v @ dr.T @ r)
         t = truncated(-g / a, a**-0.5, reach, rng)
-        end = np.clip(here.theta + t * v * span, lower, upper)
-        there = _Local.at(noise, s, end)
-        excess = there.r @ there.r - here.r @ here.r - a * t**2 - 2 * g * t
+        there = target.evaluate(np.clip(theta + t * v * span, lower, upper))
+        excess = float((there.J - here.J).sum()) - a * t**2 - 2 * g * t
         if rng.random() < np.exp(-max(excess, 0.0) / 2):
             here = there
-    return theta if here is None else here.theta
+    return here
 
 
 def truncated(mean: float, std: float, reach: float, rng: np.random.Generator) -> float:
@@ -163,37 +200,12 @@ def truncated(mean: float, std: float, reach: float, rng: np.random.Generator) -
 
 
 @dataclass(frozen=True)
-class _Local:
-    """Residuals r over their standard deviations with normal priors, and dr over the ranges."""
-
-    theta: Floats
-    r: Floats
-    dr: Floats
-
-    @classmethod
-    def at(cls, noise: NoiseModel, s: Floats, theta: Floats) -> Self:
-        """Return those of a model; infinite ones where it is not defined."""
-        problem = noise.problem
-        found = problem.evaluate(theta)
-        r, dr, _ = Distance(problem, problem.start, 0.0).residuals(theta)
-        if not found.feasible:
-            return cls(theta, np.full(1, np.inf), np.zeros((1, theta.size)))
-        parts = zip(found.residuals, np.sqrt(s), strict=True)
-        rows = [(x.r / root, x.dr / root) for x, root in parts]
-        return cls(
-            theta,
-            np.concatenate([*(x for x, _ in rows), r]),
-            np.vstack([*(x for _, x in rows), np.diag(dr)]) * (problem.upper - problem.lower),
-        )
-
-
-@dataclass(frozen=True)
-class _Disturbed:
-    """Residuals with other errors, over their standard deviations, and a model of the prior."""
+class _Scaled:
+    """Residuals over their standard deviations and a distance; with other errors where given."""
 
     s: Floats
-    errors: Sequence[Floats]
     prior: Distance
+    errors: Sequence[Floats] = ()
 
     def evaluate(
         self, problem: Problem, theta: Floats, derivatives: bool, second: bool
@@ -206,20 +218,16 @@ class _Disturbed:
         """Return them from an evaluation."""
         if not found.feasible:
             return replace(found, J=np.full(2, np.inf))
+        errors = self.errors or [np.zeros(x.r.size) for x in found.residuals]
         parts = [
             Residual((x.r + e) / np.sqrt(v), x.dr / np.sqrt(v))
-            for x, e, v in zip(found.residuals, self.errors, self.s, strict=True)
+            for x, e, v in zip(found.residuals, errors, self.s, strict=True)
         ]
         misfit = Residual(np.concatenate([x.r for x in parts]), np.vstack([x.dr for x in parts]))
         r, dr, _ = self.prior.residuals(found.theta)
-        distance = Residual(r, np.diag(dr))
-        both = (misfit, distance)
+        both = (misfit, Residual(r, np.diag(dr)))
         slopes = ObjectiveDerivatives(
             np.array([2 * x.r @ x.dr for x in both]), np.array([2 * x.dr.T @ x.dr for x in both])
         )
-        return Evaluation(
-            found.theta,
-            np.array([x.r @ x.r for x in both]),
-            slopes,
-            residuals=both,
-        )
+        J = np.array([x.r @ x.r for x in both])
+        return Evaluation(found.theta, J, slopes, found.quantities, both)
