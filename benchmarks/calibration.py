@@ -1,6 +1,6 @@
 """How often 90 % intervals of parameters hold the truth, in random simulated tests.
 
-    python benchmarks/calibration.py --seeds 1000:1100 [--draws 100] [--wrong] [--quiet]
+    python benchmarks/calibration.py --seeds 1000:1100 [--draws 100] [--wrong] [--few] [--quiet]
 
 Seeds 1000 to 1999 are for development. Seeds from 9000 on are for judgement: nobody tunes
 anything on them, and ``--quiet`` prints their rates only.
@@ -9,11 +9,13 @@ Each seed is a chain with springs to the ground, a sway frame or a lattice, of 2
 parameters, with 2 to 8 modes at 2 to 12 sensors in 1 to 4 data sets; frequencies have errors of 0.2
 to 3 %, shapes of 1 to 5 % of their greatest component. The errors that are expected are the true
 ones, twice or half of these, in columns ``_std`` or in ``[noise]``. With ``--wrong`` the members of
-a parameter vary by 5 to 10 % about its true value, or springs are missing in the model.
+a parameter vary by 5 to 10 % about its true value, or springs are missing in the model. With
+``--few`` there are two or three sensors, which hardly tell modes apart.
 
 ``held`` is the share of parameters of which the interval holds the truth, ``old`` that of Laplace's
 approximation about optimal weights, where these exist. ``far`` are the parameters that are called
-determined and are off by more than 5 standard deviations, ``worst`` is the farthest of these.
+determined and are off by more than 5 standard deviations, ``worst`` is the farthest of these. Tests
+of which the verdict says that no model is to be used are counted, and are in no rate.
 """
 
 from __future__ import annotations
@@ -31,6 +33,7 @@ from modefront.analysis.curvature import with_second_order
 from modefront.front.weights import accepted, optimal_minimum
 from modefront.optim.sqp import begin
 from modefront.results.intervals import DETERMINED
+from modefront.results.verdict import refusals
 from modefront.uncertainty.laplace import laplace
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.prior import NoisePrior
@@ -94,7 +97,9 @@ def members(kind: str, rng: np.random.Generator) -> tuple[int, list[Floats]]:
 
 
 # 62 lines: one choice after the other.
-def case(seed: int, wrong: bool) -> tuple[mf.UpdatingProblem, NoisePrior, Floats, tuple[str, ...]]:
+def case(
+    seed: int, wrong: bool, few: bool = False
+) -> tuple[mf.UpdatingProblem, NoisePrior, Floats, tuple[str, ...]]:
     """Return a simulated test, what is expected of its errors, the truth and its classes."""
     rng = np.random.default_rng(seed)
     kind = str(rng.choice(["chain", "frame", "lattice"]))
@@ -118,7 +123,8 @@ def case(seed: int, wrong: bool) -> tuple[mf.UpdatingProblem, NoisePrior, Floats
         name: scale * sum(part for part, o in zip(parts, owner, strict=True) if o == j)
         for j, name in enumerate(names)
     }
-    sensors = rng.choice(N, min(int(rng.integers(2, 13)), N), replace=False)
+    count = int(rng.integers(2, 13))
+    sensors = rng.choice(N, 2 + count % 2 if few else min(count, N), replace=False)
     places = {f"s{i}": int(i) for i in np.sort(sensors)}
     model = mf.matrices(names, stiffness, {"base": np.diag(mass)}, places)
     modes = min(int(rng.integers(2, 9)), N - 1)
@@ -147,20 +153,27 @@ def case(seed: int, wrong: bool) -> tuple[mf.UpdatingProblem, NoisePrior, Floats
     classes = (
         *("all", kind, size, f"{sets} set{'s' * (sets > 1)}", "std" if std else "no std"),
         f"expected x {factor:g}",
+        "2, 3 sensors" if len(places) < 4 else "4+ sensors",
     )
     return problem, prior, truth, classes
 
 
-def judge(seed: int, draws: int, wrong: bool) -> list[Verdict]:
-    """Return the verdicts of a simulated test."""
-    problem, prior, truth, classes = case(seed, wrong)
+def judge(seed: int, draws: int, wrong: bool, few: bool) -> list[Verdict]:
+    """Return the verdicts of a simulated test; none where no model is to be used."""
+    problem, prior, truth, classes = case(seed, wrong, few)
     source = mf.Uncertainty().of(problem.data)
     noise = prior.of(problem, source)
     assert noise is not None
     rng = np.random.default_rng([seed, 1])
     known = list(rng.uniform(0.6, 1.6, (STARTS, truth.size)))
     best = most_probable(problem, noise, known, IMMEDIATE)[0]
-    samples = draw_models(noise, best.theta, draws, seed, IMMEDIATE)
+    misfit, nominal = (
+        noise.over_expected(noise.problem.evaluate(theta).J)
+        for theta in (best.theta, problem.start)
+    )
+    if refusals(problem.objectives, misfit, nominal):
+        return []
+    samples = draw_models(noise, best.theta, draws, seed, IMMEDIATE).theta
     low, middle, high = np.quantile(samples, (0.05, 0.5, 0.95), axis=0, method="weibull")
     std = np.maximum((high - low) / (2 * 1.645), 1e-12)
     determined = high - low < DETERMINED * 0.9 * (BOUNDS[1] - BOUNDS[0])
@@ -219,19 +232,24 @@ def main() -> None:
     parser.add_argument("--draws", type=int, default=100)
     parser.add_argument("--wrong", action="store_true")
     parser.add_argument("--quiet", action="store_true")
+    parser.add_argument("--few", action="store_true")
     options = parser.parse_args()
-    verdicts = []
+    verdicts, refused = [], 0
     for seed in range(*map(int, options.seeds.split(":"))):
         began = time.process_time()
-        found = judge(seed, options.draws, options.wrong)
+        found = judge(seed, options.draws, options.wrong, options.few)
         verdicts += found
-        if not options.quiet:
+        refused += not found
+        if not options.quiet and not found:
+            print(f"{seed}: no model is to be used")
+        elif not options.quiet:
             held = sum(x.held for x in found)
             away = max(x.away for x in found)
             spent = time.process_time() - began
             text = ", ".join(found[0].classes[1:])
             print(f"{seed}: {held} of {len(found)}, worst {away:.1f}, {spent:.1f} s: {text}")
     print(table(verdicts))
+    print(f"tests in which no model is to be used: {refused}")
 
 
 if __name__ == "__main__":

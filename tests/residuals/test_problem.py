@@ -1,6 +1,7 @@
 """Equation (1), its derivatives, its counts and its invariances."""
 
 from dataclasses import replace
+from itertools import permutations
 
 import mpmath as mp
 import numpy as np
@@ -13,6 +14,8 @@ from modefront.data.modal import ModalData, modal_data
 from modefront.models.chain import chain
 from modefront.models.function import function_model
 from modefront.models.parameters import Parameter
+from modefront.optim.scalarisation import LogSum
+from modefront.pairing.match import Pairs
 from modefront.residuals.groups import Group
 from modefront.residuals.problem import UpdatingProblem, updating_problem
 from modefront.work.costs import Costs
@@ -256,3 +259,27 @@ def test_a_model_without_modes_is_infeasible_not_an_error() -> None:
 def test_wrong_groups_are_refused(group: Group, message: str) -> None:
     with pytest.raises(ValueError, match=message):
         problem_of(modal_data(FREQUENCY, SHAPE, FLOORS), (group,))
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.integers(0, 2**31))
+def test_likely_pairs_are_those_of_all_permutations(seed: int) -> None:
+    """Two sensors hardly tell three modes apart: no pairs have a lower sum of logarithms."""
+    rng = np.random.default_rng(seed)
+    shape = np.where([True, False, True], SHAPE + 0.3 * rng.normal(size=(2, 3, 3)), np.nan)
+    frequency = FREQUENCY * (1 + 0.02 * rng.normal(size=(2, 3)))
+    plain = problem_of(modal_data(frequency, shape, FLOORS))
+    likelihood = LogSum(np.array([3.0, 3.0]), np.array([1e-3, 1e-2]))
+    problem = replace(plain, likelihood=likelihood)
+    theta = rng.uniform(0.6, 1.6, 4)
+    modes, pairs = problem.modes(theta)
+
+    def value(index: tuple[int, ...]) -> float:
+        r = plain.vectors(modes, Pairs(np.array(index), pairs.mac))
+        return likelihood.value(np.array([x @ x for x in r]))
+
+    least = min(map(value, permutations(range(3))))
+    assert value(tuple(pairs.index.tolist())) == pytest.approx(least, rel=1e-12)
+    assert (problem.evaluate(theta).J == plain.evaluate(theta).J).all() or (
+        likelihood.value(problem.evaluate(theta).J) < likelihood.value(plain.evaluate(theta).J)
+    )

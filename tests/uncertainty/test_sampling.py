@@ -1,6 +1,7 @@
 """Models drawn from the posterior against closed forms and numerical integration."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import cast
 
 import numpy as np
@@ -39,7 +40,7 @@ def test_one_group_of_linear_residuals_has_students_distribution() -> None:
     of = variances(noise, noise.problem.evaluate(best.theta))
     assert of.dof == pytest.approx([6 + NU - 2], rel=1e-4)
     assert of.scale == pytest.approx([J + NU])
-    draws = draw_models(noise, best.theta, 800, 1, IMMEDIATE)
+    draws = draw_models(noise, best.theta, 800, 1, IMMEDIATE).theta
     size = np.sqrt(np.diag(np.linalg.inv(A.T @ A)) * (J + NU) / 8)
     for x, middle, scale in zip(draws.T, exact, size, strict=True):
         p = scipy.stats.kstest((x - middle) / scale, scipy.stats.t(8).cdf).pvalue
@@ -86,17 +87,48 @@ def test_intervals_are_those_of_integration(
     """A curved valley, two basins and a parameter without effect: to a tenth of the interval."""
     noise = noise_of(function, [-2, -2], [2, 3], [a])
     best = maximum(noise, np.array([0.9, 0.3]))
-    draws = draw_models(noise, best.theta, 400, 2, IMMEDIATE)
+    draws = draw_models(noise, best.theta, 400, 2, IMMEDIATE).theta
     expected = grid_quantiles(noise, 201, [0.05, 0.95])
     found = np.quantile(draws, [0.05, 0.95], axis=0).T
     width = np.ptp(expected, axis=1)[:, None]
     assert (np.abs(found - expected) < 0.12 * width).all()
 
 
+@pytest.mark.parametrize("mean", [-1.5, 0.1, 1.02])
+def test_draws_at_bounds_are_those_of_the_truncated_gaussian(mean: float) -> None:
+    """One linear residual of known variance whose minimum is beyond, near or between the bounds."""
+    std = 0.3
+
+    def line(theta: Floats) -> Residuals:
+        x, _ = theta
+        return [(np.array([(x - mean) / std]), np.array([[1 / std + 0 * x, 0 * x]]))]
+
+    noise = replace(noise_of(line, [0, 0], [1, 1], [1.0]), weight=1e8)
+    draws = draw_models(noise, maximum(noise, np.full(2, 0.5)).theta, 600, 5, IMMEDIATE).theta
+    ends = (np.array([0, 1]) - mean) / std
+    exact = scipy.stats.truncnorm(*ends, loc=mean, scale=std)
+    assert scipy.stats.kstest(draws[:, 0], exact.cdf).pvalue > 0.01
+    assert scipy.stats.kstest(draws[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01
+
+
+def test_twins_beyond_a_bound_fill_the_triangle() -> None:
+    """Only the sum of two parameters is known, and is greater than bounds allow on average."""
+
+    def total(theta: Floats) -> Residuals:
+        x, y = theta
+        return [(np.array([(x + y - 1.5) / 0.05]), np.array([[20 + 0 * x, 20 + 0 * x]]))]
+
+    noise = replace(noise_of(total, [0, 0], [1, 1], [1.0]), weight=1e8)
+    draws = draw_models(noise, np.array([0.75, 0.75]), 400, 6, IMMEDIATE).theta
+    assert draws.sum(axis=1).std() == pytest.approx(0.05, rel=0.15)
+    for x in draws.T:  # uniform from 0.5 to 1 but for the noise
+        assert scipy.stats.kstest(x, scipy.stats.uniform(0.5, 0.5).cdf).statistic < 0.12
+
+
 def test_draws_are_those_of_the_seed_and_more_add_to_them() -> None:
     noise = noise_of(banana, [-2, -2], [2, 3], [2.0])
     theta = maximum(noise, np.array([0.3, 0.1])).theta
-    few, more = (draw_models(noise, theta, n, 3, IMMEDIATE) for n in (15, 30))
+    few, more = (draw_models(noise, theta, n, 3, IMMEDIATE).theta for n in (15, 30))
     assert few.shape == (15, 2)
     assert few.tolist() == more[:15].tolist()
-    assert few.tolist() != draw_models(noise, theta, 15, 4, IMMEDIATE).tolist()
+    assert few.tolist() != draw_models(noise, theta, 15, 4, IMMEDIATE).theta.tolist()

@@ -30,7 +30,6 @@ from modefront.uncertainty.linear import Local, front_scatter, with_neighbours
 from modefront.uncertainty.noise import Noise, Source, noise
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.points import Role, SolvedPoint, edge_weights, solve_again
-from modefront.uncertainty.prior import NoiseModel
 from modefront.uncertainty.scatter import Scatter
 from modefront.work.task import Executor, Task, seed_sequence
 
@@ -49,7 +48,8 @@ class FrontAnalysis:
     source : where the uncertainty of the data is taken from; None where it is not known
     scatter : of the points by that uncertainty, by label
     slopes : derivatives of predicted quantities at points, by label and quantity
-    posterior : of the parameters around the reference model; None where there is none
+    posterior : of the parameters around the optimally weighted model, where it is the reference and
+        there is one
     replicates : the points solved again with data drawn again, by label
     """
 
@@ -73,15 +73,12 @@ class AnalysisOptions:
     pareto : options with which the front was found
     identifiability, uncertainty : of the study
     seed : of the run
-    noise : model of the errors, of which the reference is the most probable model; None without
-        expectations of them
     """
 
     pareto: Pareto
     identifiability: Identifiability
     uncertainty: Uncertainty
     seed: int
-    noise: NoiseModel | None = None
 
 
 def analyse_front(
@@ -100,8 +97,8 @@ def analyse_front(
         solved = _solved_points(problem, front, points, part, options)
     known = _locals(problem, solved, sizes, source, work)
     posterior = None
-    if reference.label in known:
-        posterior = _posterior(problem, reference, known[reference.label], options.noise, work)
+    if reference.kind is Kind.OPTIMAL and reference.label in known:
+        posterior = laplace(problem, known[reference.label].evaluation, a)
     scatter: Mapping[str, Scatter] = {}
     replicates: list[Mapping[str, Solution]] = []
     if source is not None and sizes is not None:
@@ -323,29 +320,6 @@ def _local(
     if source is not None:
         errors = noise(problem, modes, pairs, source)
     return Local(point, errors, problem.slopes_at(modes, pairs))
-
-
-def _posterior(
-    problem: UpdatingProblem,
-    reference: Point,
-    local: Local,
-    noise: NoiseModel | None,
-    work: Executor,
-) -> Posterior | None:
-    """Return the posterior around the reference; None where it has no maximum there."""
-    if noise is not None:
-        arguments = (noise.problem, reference.solution.evaluation)
-        (point,) = work.run([Task(("posterior",), _second_order, arguments)])
-        logs = noise.programme.logs
-        return None if point is None else laplace(noise.problem, point, logs.a, logs.floor)
-    if reference.kind is not Kind.OPTIMAL:
-        return None
-    return laplace(problem, local.evaluation, problem.properties)
-
-
-def _second_order(problem: UpdatingProblem, evaluation: Evaluation) -> Evaluation | None:
-    """Return an evaluation with second derivatives, of a problem with other units."""
-    return with_second_order(problem, problem.evaluate(evaluation.theta, second=True))
 
 
 def _replicates(

@@ -14,8 +14,7 @@ import xarray as xr
 
 from modefront._typing import Floats, Ints
 from modefront.cli.layout import BLANK, Line, Screen, number, plural
-from modefront.front.point import Kind
-from modefront.results.selection import preferred
+from modefront.front.point import Kind, preferred
 
 FEWEST = 3
 """Parameters and modes that a table keeps, however long it is."""
@@ -36,7 +35,7 @@ def first_models(data: xr.Dataset) -> list[int]:
 
 def reference(data: xr.Dataset) -> int:
     """Return the position of the model that the data prefer."""
-    return [str(x) for x in data["label"].values].index(preferred(data))
+    return [str(x) for x in data["label"].values].index(preferred(data.attrs))
 
 
 def print_models(screen: Screen, data: xr.Dataset) -> None:

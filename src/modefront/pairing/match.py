@@ -86,17 +86,28 @@ def match(pairing: Pairing, data: ModalData, frequency: Floats, phi: Floats) -> 
         raise ValueError(f"{m} measured modes cannot be paired with {q} model modes")
     cost = 1 - values
     if pairing.window is not None or not data.measured_shapes.complete:
-        with np.errstate(divide="ignore"):
-            distance = np.abs(np.log(np.maximum(frequency, TINY) / data.mean_frequency[:, None]))
+        distance = log_ratio(data, frequency)
         cost = np.where(np.isnan(values), distance, cost)
         if pairing.window is not None:
             cost = cost + OUTSIDE * (distance > np.log(pairing.window))
+    index = assigned(cost)
+    return Pairs(index, values[np.arange(m), index])
+
+
+def log_ratio(data: ModalData, frequency: Floats) -> Floats:
+    """Return |ln f / f^| of measured and model modes, (measured modes, modes)."""
+    with np.errstate(divide="ignore"):
+        return np.abs(np.log(np.maximum(frequency, TINY) / data.mean_frequency[:, None]))
+
+
+def assigned(cost: Floats) -> Ints:
+    """Return the column of each row, one to one, with the least sum of costs (rows, columns)."""
     index = cost.argmin(axis=1)
-    if len(set(index.tolist())) < m:
+    if len(set(index.tolist())) < len(cost):
         from scipy.optimize import linear_sum_assignment
 
         index = np.asarray(linear_sum_assignment(cost)[1])
-    return Pairs(index, values[np.arange(m), index])
+    return index
 
 
 def mean_mac(data: ModalData, phi: Floats) -> Floats:

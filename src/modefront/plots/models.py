@@ -10,7 +10,7 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Ints
-from modefront.front.point import REFERENCES, WEIGHTED, Kind
+from modefront.front.point import REFERENCES, WEIGHTED, Kind, preferred
 from modefront.plots.canvas import COLOURS
 
 
@@ -33,7 +33,7 @@ class Series:
 def series(data: xr.Dataset) -> Iterator[Series]:
     """Yield all models by their kinds, those that are drawn last at the end."""
     kind, pareto = data["kind"].values, data["pareto"].values.astype(bool)
-    reference = data["label"].values == data.attrs["reference"]
+    reference = data["label"].values == preferred(data.attrs)
     front = kind == Kind.FRONT.value
     weighted = np.isin(kind, [each.value for each in WEIGHTED]) & ~reference
     best = next(
@@ -88,7 +88,7 @@ def position(data: xr.Dataset, point: str | int) -> int:
 
 def reference_of(data: xr.Dataset) -> int:
     """Return the position of the model that the data prefer."""
-    return position(data, str(data.attrs["reference"]))
+    return position(data, preferred(data.attrs))
 
 
 def branches(data: xr.Dataset) -> Iterator[Ints]:

@@ -7,6 +7,7 @@ import xarray as xr
 from matplotlib.axes import Axes
 
 from modefront._typing import Floats
+from modefront.front.point import preferred
 from modefront.plots.along import across, at_reference, panels_along
 from modefront.plots.canvas import Picture
 from modefront.plots.models import is_path
@@ -68,7 +69,7 @@ def parameter_std(data: xr.Dataset) -> Floats:
     if "theta_std" in data:
         out = data["theta_std"].values
     elif "posterior_std" in data:
-        out[data["label"].values == data.attrs["reference"]] = data["posterior_std"].values
+        out[data["label"].values == preferred(data.attrs)] = data["posterior_std"].values
     return np.where(np.isfinite(out), out, np.nan)
 
 

@@ -8,6 +8,7 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Ellipse
 
 from modefront._typing import Floats
+from modefront.front.point import preferred
 from modefront.plots.canvas import COLOURS, Picture, legend, picture, plain, short
 from modefront.plots.models import front_of, reference_of, series
 from modefront.plots.quantities import parameter_std, unit_of
@@ -81,7 +82,7 @@ def _correlation(axes: Axes, data: xr.Dataset, covariance: Floats) -> None:
         for (i, j), value in np.ndenumerate(r):
             shade = "w" if abs(value) > 0.6 else "k"
             axes.text(j, i, f"{value:.2f}", ha="center", va="center", fontsize=6.5, color=shade)
-    axes.set_title(f"correlation at {plain(data.attrs['reference'])}", loc="left")
+    axes.set_title(f"correlation at {plain(preferred(data.attrs))}", loc="left")
 
 
 def _ellipses(axes: Axes, data: xr.Dataset) -> None:

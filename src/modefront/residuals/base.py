@@ -118,6 +118,12 @@ class Member(Protocol):
 class Stack(Protocol):
     """The residuals of members of one kind, those of one member after those of the other."""
 
+    def squares(self, modes: Modes, count: int) -> Floats:
+        """Return the sums of squares of each of ``count`` measured modes with each model mode.
+
+        They have the shape (measured modes, modes), and are 0 of modes without a residual.
+        """
+
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals at the modes of a model, shape (rows,)."""
 

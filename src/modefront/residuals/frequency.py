@@ -112,6 +112,13 @@ class FrequencyStack:
     measured: Floats
     weight: Floats
 
+    def squares(self, modes: Modes, count: int) -> Floats:
+        """Return the sums of squares with each model mode, (measured modes, modes)."""
+        out = np.zeros((count, modes.frequency.size))
+        r = (modes.frequency - self.measured[:, None]) * self.weight[:, None]
+        np.add.at(out, self.mode, r**2)
+        return out
+
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals, shape (rows,)."""
         return (modes.frequency[pairs.index[self.mode]] - self.measured) * self.weight

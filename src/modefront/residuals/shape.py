@@ -204,6 +204,13 @@ class ShapeStack:
 
     blocks: tuple[ShapeBlock, ...]
 
+    def squares(self, modes: Modes, count: int) -> Floats:
+        """Return the sums of squares with each model mode, (measured modes, modes)."""
+        out = np.zeros((count, modes.frequency.size))
+        for block in self.blocks:
+            np.add.at(out, block.mode[:, 0], block.squares(modes))
+        return out
+
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals, shape (rows,)."""
         return joined([block.r(modes, pairs) for block in self.blocks])
@@ -233,6 +240,13 @@ class ShapeBlock:
     sensors: Ints
     weight: Floats
     psi: Floats
+
+    def squares(self, modes: Modes) -> Floats:
+        """Return the sums of squares of each shape with each model mode, (shapes, modes)."""
+        c = np.einsum("rs,rsq->rq", self.psi * self.weight, modes.phi[self.sensors])
+        b = np.einsum("rs,rsq->rq", self.weight**2, modes.phi[self.sensors] ** 2)
+        seen = np.divide(c**2, b, out=np.zeros(b.shape), where=b > 0)
+        return np.asarray(np.vecdot(self.psi, self.psi)[:, None] - seen)
 
     def r(self, modes: Modes, pairs: Pairs) -> Floats:
         """Return the residuals, shape (rows,)."""

@@ -7,7 +7,7 @@ import xarray as xr
 
 from modefront._typing import Floats
 from modefront.results.schema import described
-from modefront.uncertainty.freed import Freed
+from modefront.uncertainty.inference import Inference
 
 QUANTILES = (0.05, 0.5, 0.95)
 """Quantiles of the parameters: a 90 % interval and the median."""
@@ -21,30 +21,43 @@ TRUST = ("determined", "partly", "not determined")
 """What the data say of a parameter."""
 
 
-def with_intervals(
-    data: xr.Dataset, samples: Floats, misfit: Floats, assumed: str, widths: Floats
-) -> xr.Dataset:
-    """Return results with quantiles of models (samples, p) that were drawn from the posterior.
+def with_intervals(data: xr.Dataset, inference: Inference) -> xr.Dataset:
+    """Return results with what the posterior says.
 
-    A quantile is such that the next draw is below it with its probability. ``misfit`` (n,) are the
-    errors of the groups over those expected, ``assumed`` says which of these are assumed, and
-    ``widths`` (p,) are those of the 90 % intervals of the priors.
+    A quantile is such that the next draw is below it with its probability.
     """
-    interval = np.quantile(samples, QUANTILES, axis=0, method="weibull").T
-    share = (interval[:, 2] - interval[:, 0]) / widths
+    draws, fit, freed = inference.draws, inference.fit, inference.freed
+    interval = np.quantile(draws.theta, QUANTILES, axis=0, method="weibull").T
+    share = (interval[:, 2] - interval[:, 0]) / inference.widths
     place = np.where(share < DETERMINED, 0, np.where(share > OPEN, 2, 1))
+    p = inference.widths.size
     values = {
-        "sample_theta": samples,
+        "sample_theta": draws.theta,
         "interval": interval,
         "trust": np.array(TRUST)[place],
-        "misfit": misfit,
+        "prior_width": inference.widths,
+        "misfit": fit.misfit,
+        "nominal_misfit": fit.nominal,
+        "likely_mode": fit.pairs,
+        "posterior_std": draws.theta.std(axis=0, ddof=1),
+        "posterior_covariance": np.cov(draws.theta, rowvar=False).reshape(p, p),
+        "posterior_frequency_std": _std(draws.frequency),
+        "posterior_mac_std": _std(draws.mac),
+        "candidate_frequency": fit.candidates.frequency,
+        "candidate_sensor": list(fit.candidates.sensor),
+        "candidate_gain": fit.candidates.gain,
     }
+    if freed is not None:
+        values |= {"freed_theta": freed.theta, "freed_misfit": freed.misfit}
     out = data.assign(described(values)).assign_coords(quantile=list(QUANTILES))
-    return out.assign_attrs(assumed=assumed)
+    return out.assign_attrs(assumed=inference.assumed)
 
 
-def with_freed(data: xr.Dataset, found: Freed | None) -> xr.Dataset:
-    """Return results with the model to which wider bounds lead; as they are without one."""
-    if found is None:
-        return data
-    return data.assign(described({"freed_theta": found.theta, "freed_misfit": found.misfit}))
+def _std(values: Floats) -> Floats:
+    """Return standard deviations (modes,) over draws (draws, modes), NaN where there are none."""
+    out = np.full(values.shape[1], np.nan)
+    for r, column in enumerate(values.T):
+        known = column[np.isfinite(column)]
+        if known.size > 1:
+            out[r] = known.std(ddof=1)
+    return out

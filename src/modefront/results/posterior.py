@@ -14,6 +14,7 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront.findings.knowledge import enumeration
 from modefront.findings.record import Finding, found, from_text
+from modefront.front.point import preferred
 from modefront.predictions import Prediction, PredictionKind, ResultVariable
 from modefront.predictions.registry import kinds_in
 from modefront.predictions.runner import Predicted, PredictionRunner
@@ -71,7 +72,7 @@ def posterior_models(
     if posterior is None:
         return PosteriorModels(None, none, [found("no-posterior")] if draws else [])
     limits = []
-    theta, reference = data["theta"].values[_reference(data)], data.attrs["reference"]
+    theta, reference = data["theta"].values[_reference(data)], preferred(data.attrs)
     parted = zip(problem.model.parameters, left_open(posterior.free), strict=True)
     names = [name for name, is_open in parted if is_open]
     if names:
@@ -117,7 +118,7 @@ def with_posterior(
 
 def _reference(data: xr.Dataset) -> int:
     """Return the position of the model around which the posterior lies."""
-    return [str(x) for x in data["label"].values].index(data.attrs["reference"])
+    return [str(x) for x in data["label"].values].index(preferred(data.attrs))
 
 
 def _stacked(
@@ -154,7 +155,7 @@ def _to_first_order(
         C = _covariance(differences, middle, beside, logarithmic=variable.logarithmic)
         unknown |= np.isfinite(middle) & np.isnan(np.diag(C))
         out |= _scatter(kind, variable, middle, C)
-    reference = str(data.attrs["reference"])
+    reference = preferred(data.attrs)
     return out, [
         found("no-deviation", str(name), reference=reference, undefined=kind.undefined)
         for name in data[kind.dimension].values[unknown]

@@ -9,6 +9,7 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Bools, Floats
+from modefront.front.point import preferred
 from modefront.predictions import Prediction, PredictionKind
 from modefront.predictions.registry import ATTRIBUTE, as_text
 from modefront.predictions.runner import PredictionRunner
@@ -43,7 +44,7 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
     values: Values = {"frequency_range": _range(data["frequency"].values, optimal)}
     coordinates = {"range": list(RANGE)}
     points = list(zip(map(str, data["label"].values), data["theta"].values, strict=True))
-    reference = next(point for point in points if point[0] == data.attrs["reference"])
+    reference = next(point for point in points if point[0] == preferred(data.attrs))
     for kind, predictions in by_kind(runner.predictions):
         values |= _of_points(
             kind, [runner.at_points(each, points) for each in predictions], optimal

@@ -50,6 +50,7 @@ range | `minimum`, `maximum`, `spread` over the Pareto-optimal models; the sprea
     greatest to least
 draw | models drawn from the posterior, for predictions
 sample | models drawn from the posterior
+candidate | further measurements that could be made
 quantile | 0.05, 0.5, 0.95
 set | data sets, by name
 sensor | sensors, by name
@@ -179,7 +180,19 @@ interval | parameter quantile | | quantiles of theta by the posterior, of models
 trust | parameter | text | determined, partly or not determined: width of the 90 % interval of the
     posterior beside that of the prior, below a third, between, above 0.8
 sample_theta | sample parameter | | models drawn from the posterior
-misfit | group | 1 | root mean square error of the reference over the one that is expected
+prior_width | parameter | | width of the 90 % interval of the prior
+misfit | group | 1 | root mean square error of the most probable model over the one that is expected
+nominal_misfit | group | 1 | that of the nominal model likewise
+likely_mode | mode | count | number of the model mode that is most likely to be the measured one, by
+    frequencies and shapes together, at the most probable model; by the MAC alone it is
+    `paired_mode`
+# Errors of the data / further measurements
+candidate_frequency | candidate | Hz | of a further model mode, measured at all sensors; 0 for a
+    further sensor
+candidate_sensor | candidate | text | further sensor, at which all measured modes are; empty for a
+    further mode
+candidate_gain | candidate parameter | | share by which that measurement makes the standard
+    deviation of a parameter less, linearised
 # Errors of the data / wider bounds
 freed_theta | parameter | | theta of the most probable model where the bounds that hold it are
     widened
@@ -231,7 +244,7 @@ verdict | text | sentences of the first screen, one a line
 remark | text | why a requested option is not in use
 seed* | number | seed of all random numbers
 method* | text | method by which the front was found
-reference* | text | label of the model that the data prefer, around which the posterior lies
+reference* | text | label of the model to use, around which the posterior lies; empty where none is
 prediction_kinds@3 | text | kinds of the predictions, in JSON
 front_is_a_point* | number | 1 where one model is the best in every group
 model_evaluations* | number | eigenproblems solved

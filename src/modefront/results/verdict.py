@@ -3,12 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
+from itertools import chain
 
 import numpy as np
 import xarray as xr
 
+from modefront._typing import Floats
 from modefront.findings.knowledge import enumeration
 from modefront.front.point import Kind
+from modefront.predictions.registry import predictions_in
 from modefront.results.intervals import TRUST
 from modefront.results.selection import front_points
 
@@ -30,36 +33,48 @@ GAIN = 0.1
 NAMED = 3
 """Parameters of a kind that are named."""
 
+FORETOLD = 2
+"""Predictions that are named."""
 
-def verdict(data: xr.Dataset) -> list[str]:
-    """Return the sentences, at most eight; none of results without expectations of the errors.
+TWINS = 0.9
+"""Negative correlation of draws from which two parameters can be told only together."""
 
-    Where no model can be used, nothing is said of parameters and of the front.
+
+def with_verdict(data: xr.Dataset) -> xr.Dataset:
+    """Return results with the first answer, and without a reference where no model is to be used.
+
+    It has twelve sentences at most, and none where nothing is expected of the errors. Where no
+    model is to be used, nothing is said of parameters, the front and predictions.
     """
     if "misfit" not in data:
-        return []
-    refused = _refused(data)
-    context = [*_at_bounds(data), *_assumed(data)]
+        return data.assign_attrs(verdict="")
+    groups = list(map(str, data["group"].values))
+    refused = refusals(groups, data["misfit"].values, data["nominal_misfit"].values)
+    said = [*_at_bounds(data), *_assumed(data), *_pairs(data)]
     if refused:
-        return [f"Do not use any of these models: {enumeration(refused)}.", *context]
-    return [_use(data), *context, *_parameters(data), *_front(data)]
+        said.insert(0, f"Do not use any of these models: {enumeration(refused)}.")
+        data = data.assign_attrs(reference="")
+    else:
+        more = (_parameters(data), _front(data), _predictions(data), _next(data))
+        said = [_use(data), *said, *chain.from_iterable(more)]
+    return data.assign_attrs(verdict="\n".join(said))
 
 
-def _refused(data: xr.Dataset) -> list[str]:
-    """Return why no model can be used; nothing where the reference can be."""
-    groups, misfit = data["group"].values, data["misfit"].values
-    best, nominal = (
-        _row(data, kind)["error"].values for kind in (Kind.MOST_PROBABLE, Kind.NOMINAL)
-    )
-    far, worse = misfit > FAR, (best > WORSE * nominal) & (misfit > LARGE)
+def refusals(groups: Sequence[str], misfit: Floats, nominal: Floats) -> list[str]:
+    """Return why the most probable model cannot be used; nothing where it can be.
+
+    ``misfit`` and ``nominal`` (n,) are the errors of its groups, and those of the nominal model,
+    over those expected.
+    """
+    far, worse = misfit > FAR, (misfit > WORSE * nominal) & (misfit > LARGE)
     return [
         *(
             f"errors of {groups[i]} are {misfit[i]:.2g} times those expected"
-            for i in np.flatnonzero(far)
+            for i in np.flatnonzero(far).tolist()
         ),
         *(
             f"{groups[i]} fits worse than at the nominal model"
-            for i in np.flatnonzero(worse & ~far)
+            for i in np.flatnonzero(worse & ~far).tolist()
         ),
     ]
 
@@ -114,6 +129,17 @@ def _assumed(data: xr.Dataset) -> Iterator[str]:
         yield f"Assumed: {data.attrs['assumed']}; say yours in [noise]."
 
 
+def _pairs(data: xr.Dataset) -> Iterator[str]:
+    """Yield which modes the sensors do not tell apart."""
+    unlike = data["likely_mode"].values != _row(data, Kind.MOST_PROBABLE)["paired_mode"].values
+    if unlike.any():
+        modes = enumeration([str(r) for r in data["mode"].values[unlike]])
+        yield (
+            f"Shapes at these sensors do not tell which modes of the model are those measured as "
+            f"{modes}: frequencies decide here. The front pairs them by the MAC, and may be wrong."
+        )
+
+
 def _parameters(data: xr.Dataset) -> Iterator[str]:
     """Yield values and 90 % intervals of the parameters, of which the data determine most first."""
     theta = _row(data, Kind.MOST_PROBABLE)["theta"].values
@@ -139,14 +165,14 @@ def _interval(value: float, low: float, high: float) -> str:
     return f"{value:.{digits + 1}g} ({low:.{digits}g} to {high:.{digits}g})"
 
 
-def _some(parts: Sequence[str], count: int) -> str:
-    return ", ".join(parts) + f" and {count - len(parts)} more" * (count > len(parts))
+def _some(parts: Sequence[str], count: int, mark: str = ", ") -> str:
+    return mark.join(parts) + f" and {count - len(parts)} more" * (count > len(parts))
 
 
 def _front(data: xr.Dataset) -> Iterator[str]:
     """Yield whether the front is a compromise, or its errors change less than noise."""
     along = front_points(data)
-    if along.size < 2:
+    if along.size < 2 or any(True for _ in _pairs(data)):
         return
     best, misfit = _row(data, Kind.MOST_PROBABLE), data["misfit"].values
     error = data["error"].values[along]
@@ -167,6 +193,52 @@ def _front(data: xr.Dataset) -> Iterator[str]:
             f"The front is a compromise: along it errors of {name} change by {change[i]:.2g} times "
             "those expected."
         )
+
+
+def _predictions(data: xr.Dataset) -> Iterator[str]:
+    """Yield the posterior and the range of the first quantity of the first predictions."""
+    for each in list(predictions_in(data))[:FORETOLD]:
+        variable, place = each.kind.ranged[0], each.positions[0]
+        least, greatest, _ = data[f"{variable.name}_range"].values[:, place]
+        interval = data.get(f"posterior_{variable.name}")
+        if interval is None or not np.isfinite([least, greatest]).all():
+            continue
+        low, high = interval.sel(statistic=["5 %", "95 %"]).values[:, place]
+        yield (
+            f"{each.name}, {each.places[0]}: {variable.key} {low:.3g} to {high:.3g} (90 %), "
+            f"{least:.3g} to {greatest:.3g} over the front."
+        )
+
+
+def _next(data: xr.Dataset) -> Iterator[str]:
+    """Yield what to measure for the least determined parameter, and what the study could fix."""
+    low, _, high = data["interval"].values.T
+    share, trust = (high - low) / data["prior_width"].values, data["trust"].values
+    j = int(np.argmax(share))
+    if trust[j] == TRUST[0]:
+        return
+    name, gain = data["parameter"].values[j], data["candidate_gain"].values[:, j]
+    c = int(np.argmax(gain)) if gain.size else -1
+    if c >= 0 and gain[c] >= GAIN:
+        sensor, frequency = (
+            data["candidate_sensor"].values[c],
+            data["candidate_frequency"].values[c],
+        )
+        what = f"at sensor {sensor}" if sensor else f"the mode near {frequency:.3g} Hz"
+        yield f"Measure {what}: the interval of {name} becomes {100 * gain[c]:.0f} % narrower."
+    names, lines = data["parameter"].values, []
+    joint = np.corrcoef(data["sample_theta"].values, rowvar=False).reshape(share.size, -1)
+    fixed: set[int] = set()
+    for j in np.flatnonzero(trust == TRUST[2]).tolist():
+        others = [k for k in range(share.size) if k != j and k not in fixed]
+        twin = min(others, key=lambda k: joint[j, k], default=j)
+        if twin != j and joint[j, twin] < -TWINS:
+            lines.append(f'{names[j]}: tie = "{names[twin]}"')
+        else:
+            lines.append(f"{names[j]}: fixed = true")
+        fixed.add(j)
+    if lines:
+        yield f"Or leave open less, in [[parameter]] of {_some(lines[:NAMED], len(lines), '; ')}."
 
 
 def _row(data: xr.Dataset, kind: Kind) -> xr.Dataset:

@@ -19,6 +19,7 @@ from modefront._typing import Floats, Ints
 from modefront.brief import as_html, brief
 from modefront.data.uff import dataset_55
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError, reason, suggestion
+from modefront.front.point import preferred
 from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs, write_dofs
 from modefront.models.geometry import Cells
 from modefront.outputs import output as written
@@ -87,7 +88,7 @@ def export(
     folder = Path(folder)
     data = read_dataset(folder)
     labels = [str(label) for label in data["label"].values]
-    point = point or str(data.attrs["reference"])
+    point = point or preferred(data.attrs)
     if point not in labels:
         nearest = suggestion(point, labels)
         raise InputError(Fault(str(folder / FILE), "--point", "the label of a model", nearest))

@@ -10,7 +10,6 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Unpack
 
-import numpy as np
 from threadpoolctl import threadpool_limits
 
 from modefront._version import __version__
@@ -40,11 +39,11 @@ from modefront.study.definition import Study
 from modefront.study.estimate import expected_tasks
 from modefront.study.processes import processes
 from modefront.study.whereabouts import note_study
-from modefront.uncertainty.freed import freed
+from modefront.uncertainty.inference import infer
 from modefront.uncertainty.most_probable import most_probable
 from modefront.uncertainty.options import Uncertainty
-from modefront.uncertainty.prior import NoisePrior, prior_widths
-from modefront.uncertainty.sampling import DRAWS, draw_models
+from modefront.uncertainty.prior import NoisePrior
+from modefront.uncertainty.sampling import DRAWS
 from modefront.work.progress import Progress
 from modefront.work.run import Run
 from modefront.work.store import FOLDER, Store, locked
@@ -255,10 +254,10 @@ class _Session:
 
     def _results(self) -> xr.Dataset:
         from modefront.results.assemble import dataset
-        from modefront.results.intervals import with_freed, with_intervals
+        from modefront.results.intervals import with_intervals
         from modefront.results.posterior import posterior_models, with_posterior
         from modefront.results.predictions import extent, with_predictions
-        from modefront.results.verdict import verdict
+        from modefront.results.verdict import with_verdict
 
         study, work = self.study, self.work
         problem = study.problem
@@ -273,7 +272,7 @@ class _Session:
         )
         front = certified_front(problem, search, work)
         noise = study.noise.of(problem, study.uncertainty.of(problem.data))
-        samples, misfit, unbound = None, np.empty(0), None
+        inference = None
         if noise is not None:
             minima = [x for edge in front.edges for x in edge.minima]
             known = [x.theta for x in (*(point.solution for point in front.points), *minima)]
@@ -283,26 +282,24 @@ class _Session:
             )
             front = replace(front, points=[*front.points, *points])
             count = max(DRAWS, study.uncertainty.draws)
-            samples = draw_models(noise, best.theta, count, study.seed, work)
-            (misfit,) = work.run([Task(("most-probable", "misfit"), noise.misfit, (best.theta,))])
-            unbound = freed(noise, best.theta, work)
+            inference = infer(noise, best.theta, count, study.seed, work)
         options = AnalysisOptions(
-            study.pareto, study.identifiability, study.uncertainty, study.seed, noise
+            study.pareto, study.identifiability, study.uncertainty, study.seed
         )
         analysis = analyse_front(problem, front, options, work)
         (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
         extra = [*analysis.points, Point(Kind.NOMINAL, given(nominal))]
         analysis = replace(analysis, points=certified_points(problem, extra, work))
         data = self._with_shapes(dataset(problem, front, analysis))
-        if noise is not None and samples is not None:
-            data = with_intervals(data, samples, misfit, noise.assumed, prior_widths(problem))
-            data = with_freed(data, unbound)
-            data = data.assign_attrs(verdict="\n".join(verdict(data)))
+        gaussian, drawn = analysis.posterior, None
+        if inference is not None:
+            data = with_intervals(data, inference)
+            gaussian, drawn = inference.gaussian, inference.draws.theta
         runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file)
-        draws = study.uncertainty.draws
-        models = posterior_models(data, runner, analysis.posterior, draws, samples)
+        models = posterior_models(data, runner, gaussian, study.uncertainty.draws, drawn)
         work.expect(extent(study.predictions, data.sizes["point"] + models.count))
         data = with_posterior(with_predictions(data, runner), runner, models)
+        data = with_verdict(data)
         data.attrs |= self._attributes(front)
         return data
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.optim.problem import AT_BOUND
+from modefront.optim.problem import at_bounds
 from modefront.uncertainty.most_probable import maximum
 from modefront.uncertainty.prior import NoiseModel
 from modefront.work.codec import record
@@ -39,15 +39,14 @@ def freed(noise: NoiseModel, theta: Floats, work: Executor) -> Freed | None:
     None where no bound holds it, and where the search without them does not converge.
     """
     lower, upper = noise.problem.lower, noise.problem.upper
-    margin = AT_BOUND * (upper - lower)
-    low, high = theta <= lower + margin, theta >= upper - margin
-    if not (low | high).any():
+    sides = at_bounds(theta, lower, upper)
+    if not sides.any():
         return None
     wider_lower, wider_upper = wider(lower, upper)
     problem = replace(
         noise.problem,
-        lower=np.where(low, wider_lower, lower),
-        upper=np.where(high, wider_upper, upper),
+        lower=np.where(sides < 0, wider_lower, lower),
+        upper=np.where(sides > 0, wider_upper, upper),
     )
     (found,) = work.run(
         [Task(("most-probable", "freed"), _freed, (replace(noise, problem=problem), theta))]

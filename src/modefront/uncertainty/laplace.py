@@ -57,16 +57,13 @@ class Posterior:
         return self.axes @ self.axes.T
 
 
-def laplace(
-    problem: Problem, evaluation: Evaluation, a: Floats, floor: Floats | float = 0.0
-) -> Posterior | None:
+def laplace(problem: Problem, evaluation: Evaluation, a: Floats) -> Posterior | None:
     """Return the posterior around a minimum of sum a ln J; ``a`` (n,) counts the properties.
 
-    The evaluation has second derivatives. With a ``floor`` b (n,), J + b stands for J, as in
-    bounded weights. None where the point is no regular minimum: an objective vanishes, or the
-    curvature is not positive in all directions that residuals determine.
+    The evaluation has second derivatives. None where the point is no regular minimum: an objective
+    vanishes, or the curvature is not positive in all directions that residuals determine.
     """
-    J = evaluation.J + floor
+    J = evaluation.J
     if not (J > 0).all():
         return None
     w = a / J

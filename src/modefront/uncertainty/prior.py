@@ -94,7 +94,8 @@ class NoisePrior:
         sizes = {"frequency": f"frequencies known to {100 * self.frequency:g} %"}
         sizes["shape"] = f"shapes to {100 * self.shape:g} %"
         words = ", ".join(sizes[kind] for kind in assumed)
-        return NoiseModel(scaled, a, S, level, self.weight, words)
+        logs = LogSum(a + self.weight, self.weight * level - S)
+        return NoiseModel(replace(scaled, likelihood=logs), a, S, level, self.weight, words)
 
 
 @dataclass(frozen=True)
@@ -129,10 +130,6 @@ class NoiseModel:
         names = (*self.problem.objectives, "distance from the nominal model")
         distance = Distance(self.problem, self.problem.start, PULL)
         return Wrapped(self.problem, distance.evaluation, names)
-
-    def misfit(self, theta: Floats) -> Floats:
-        """Return the root mean square errors (n,) of a model over those expected."""
-        return self.over_expected(self.problem.evaluate(theta, derivatives=False).J)
 
     def over_expected(self, J: Floats) -> Floats:
         """Return the root mean square errors (n,) of J' (n,) over those expected."""

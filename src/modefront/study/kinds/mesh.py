@@ -15,6 +15,7 @@ from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Group, Quantity
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
+from modefront.options import is_number
 from modefront.study.kinds.sensors import (
     ModelKind,
     is_dof,
@@ -22,7 +23,7 @@ from modefront.study.kinds.sensors import (
     read_direction,
     read_directions,
 )
-from modefront.toml import Table, is_number
+from modefront.toml import Table
 
 _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
     "rectangle": (fem.rectangle, ("b_y", "b_z")),
