@@ -11,7 +11,7 @@ from scipy.sparse.linalg import eigsh
 from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.fem.elements.beam import beam
-from modefront.fem.elements.common import ElementMatrices
+from modefront.fem.elements.common import ElementMatrices, elasticity
 from modefront.fem.elements.shapes import CUBE_EDGES, TETRAHEDRON_EDGES, WEDGE_EDGES, Edges
 from modefront.fem.elements.shell import directors, shell
 from modefront.fem.elements.solid import solid
@@ -112,7 +112,7 @@ ELEMENTS: dict[str, tuple[Floats, int, Callable[[Floats], ElementMatrices]]] = {
         lambda X: _shell(X, 0.1, -0.2),
     ),
     **{
-        name: (X, 3, lambda X: solid(X, STEEL))
+        name: (X, 3, lambda X: solid(X, STEEL.rho, elasticity(STEEL, np.eye(3))))
         for name, X in {
             "brick": LEANING,
             "tetrahedron": _quadratic(TETRAHEDRON, TETRAHEDRON_EDGES),

@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy import linalg
-from structures import STEEL, frequencies, rotation
+from scipy.sparse.linalg import eigsh
+from structures import STEEL, frequencies, rate, rotation
 
 from modefront import fem
 from modefront._typing import Floats, Ints
@@ -188,9 +189,9 @@ def column(
 
 def critical(model: fem.StructureMatrices) -> float:
     """The least factor on the load at which K is singular."""
-    K = stiffness(model, np.array([0.0]))
-    K_G = stiffness(model, np.array([1.0])) - K
-    return float(1 / np.max(linalg.eigh(-K_G, K, eigvals_only=True)))
+    K, with_load = (model.stiffness.at(np.array([theta])).tocsc() for theta in (0.0, 1.0))
+    (least,) = eigsh(K - with_load, 1, K, which="LA", return_eigenvectors=False)
+    return float(1 / least)
 
 
 EULER = np.pi**2 * STEEL.E * SLENDER.I_z / 9.0
@@ -235,6 +236,102 @@ def test_heated_column_between_walls() -> None:
     free = fem.assemble(structure)
     change = stiffness(free, np.array([1.0])) - stiffness(free, np.array([0.0]))
     assert abs(change).max() < 1e-9 * abs(stiffness(free, np.array([0.0]))).max()
+
+
+def hinged_plate(load: fem.Load, n: int = 12, held: tuple[fem.Support, ...] = ()) -> fem.Structure:
+    """A square plate of side 2 with hinged edges, of offset shells, that may move in its plane."""
+    X, cells = fem.grids.plate(2.0, 2.0, n, n)
+    on = np.isclose(X[:, :2], 0) | np.isclose(X[:, :2], 2.0)
+    supports = [
+        fem.Support(np.flatnonzero(on.any(1)), ("z",)),
+        fem.Support(np.flatnonzero(X[:, 0] == 0), ("x",)),
+        fem.Support(np.flatnonzero(X[:, 1] == 0), ("y",)),
+        *held,
+    ]
+    group = fem.Shells("plate", cells, STEEL, 0.01)
+    parameters = (fem.Parameter("N", "prestress", (load.name,)),)
+    return fem.Structure(X, (group,), supports, loads=(load,), parameters=parameters)
+
+
+D = STEEL.E * 0.01**3 / 12 / (1 - STEEL.nu**2)
+
+
+def edge_forces(n: int, total: float) -> list[fem.Load]:
+    """Forces along x at the edge x = 2 of the plate, uniform."""
+    edge = np.arange(n * (n + 1), (n + 1) ** 2)
+    inner, ends = total / n, total / n / 2
+    return [
+        fem.Load("N", edge[1:-1], (inner, 0, 0)),
+        fem.Load("ends", edge[[0, -1]], (ends, 0, 0)),
+    ]
+
+
+def test_plate_in_tension_and_compression() -> None:
+    # omega^2 = (D pi^4 (m^2 + n^2)^2 / a^4 + N pi^2 m^2 / a^2) / (rho h), a = 2.
+    n, N = 16, 0.5 * 4 * np.pi**2 * D / 4
+    loads = edge_forces(n, -2.0 * N)
+    structure = replace(
+        hinged_plate(loads[0], n),
+        loads=loads,
+        parameters=(fem.Parameter("N", "prestress", ("N", "ends")),),
+    )
+    model = fem.assemble(structure)
+    M = model.mass.at(np.ones(1)).tocsc()
+    for theta in (-2.0, 0.0, 1.0):
+        K = model.stiffness.at(np.array([theta])).tocsc()
+        w2 = np.sort(eigsh(K, 2, M, sigma=0.0, return_eigenvectors=False))
+        expected = [
+            (D * np.pi**4 * (m**2 + 1) ** 2 / 16 - theta * N * np.pi**2 * m**2 / 4) / 78.5
+            for m in (1, 2)
+        ]
+        expected.append((D * np.pi**4 * 25 / 16 - theta * N * np.pi**2 / 4) / 78.5)
+        assert w2 == pytest.approx(np.sort(expected)[:2], rel=0.02)
+    assert critical(model) == pytest.approx(2.0, rel=0.01)
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.02])
+def test_heated_plate_between_walls(offset: float) -> None:
+    # G. H. Bryan, 1891: N = 2 pi^2 D / a^2 in both directions; N = E h strain / (1 - nu).
+    strain = 0.4 * 2 * np.pi**2 * D / 4 * (1 - STEEL.nu) / STEEL.E / 0.01
+    factors = []
+    for n in (8, 16):
+        plate = hinged_plate(fem.Load("heat", strains={"plate": strain}), n)
+        X, cells = fem.grids.plate(2.0, 2.0, n, n)
+        walls = [fem.Support(np.flatnonzero(X[:, d] == 2.0), ("xy"[d],)) for d in range(2)]
+        # The mid-surface is at the first nodes, those of the elements are rigid arms below them.
+        structure = replace(
+            plate,
+            nodes=np.concatenate([X, X - [0, 0, offset]]),
+            groups=(fem.Shells("plate", cells + len(X), STEEL, 0.01, offset),),
+            links=[fem.Link(k, [k + len(X)]) for k in range(len(X))],
+            supports=(*plate.supports, *walls),
+        )
+        factors.append(critical(fem.assemble(structure)) / 2.5 - 1)
+    assert 0 < factors[1] < 0.01
+    assert rate(factors)[0] == pytest.approx(2.0, abs=0.2)
+
+
+def test_column_of_bricks_buckles_at_the_load_of_euler() -> None:
+    X, bricks = fem.grids.box((4.0, 0.2, 0.1), (8, 1, 1))
+    X, bricks = fem.grids.quadratic_bricks(X, bricks)
+    top = np.flatnonzero(X[:, 0] == 4.0)
+    weight = np.where(np.isclose(X[top, 1:], [0.1, 0.05]).any(1), 1 / 3, -1 / 12)  # of a face
+    loads = [
+        fem.Load(f"P{k}", top[weight == w], (-w, 0, 0)) for k, w in enumerate(np.unique(weight))
+    ]
+    held = (fem.Support(np.flatnonzero(X[:, 0] == 0)),)
+    names = tuple(load.name for load in loads)
+    model = fem.assemble(
+        fem.Structure(
+            X,
+            (fem.Solids("column", bricks, replace(STEEL, nu=0.0)),),
+            held,
+            loads=loads,
+            parameters=(fem.Parameter("P", "prestress", names),),
+        )
+    )
+    euler = np.pi**2 * STEEL.E * 0.2 * 0.1**3 / 12 / 4 / 4.0**2
+    assert critical(model) == pytest.approx(euler, rel=0.01)
 
 
 def test_a_given_force_is_that_of_a_load() -> None:
@@ -350,7 +447,7 @@ def test_a_coupling_stiffens_nothing() -> None:
     structure = coupled(np.ones(6))
     mass = (fem.Mass("m", [len(RIM)], 3.0, (0.01, 0.02, 0.03)),)
     plain = fem.assemble(fem.Structure(RIM, (PLATE,), (FOOT,)))
-    assert stiffness(fem.assemble(structure)) == pytest.approx(stiffness(plain), abs=1e-3)
+    assert abs(stiffness(fem.assemble(structure)) - stiffness(plain)).max() < 1e-3
     found = fem.assemble(replace(structure, masses=mass))
     linked = replace(structure, couplings=(), links=(fem.Link(len(RIM), [*EDGE, 12]),), masses=mass)
     assert (frequencies(found, 3) < frequencies(fem.assemble(linked), 3)).all()
@@ -399,6 +496,39 @@ def test_oblique_supports_of_one_node_hold_what_both_hold() -> None:
     # One roller along (1, 1, 0): u = (a, -a, z).
     one = fem.assemble(fem.Structure(X, (), rollers[:1], springs, masses))
     assert frequencies(one, 2) == pytest.approx(np.sqrt([4.0, 7.0]))
+
+
+# --- orthotropic materials --------------------------------------------------------------------
+
+SPRUCE = fem.Orthotropic(E=(11e9, 0.9e9, 0.5e9), nu=(0.37, 0.42, 0.47), G=(0.7e9, 0.6e9, 0.05e9),
+                         rho=450.0)  # fmt: skip
+
+
+def test_oblique_stiffness_of_orthotropic_material() -> None:
+    # S. W. Tsai: 1 / E_x = c^4 / E_1 + s^4 / E_2 + (1 / G_12 - 2 nu_12 / E_1) s^2 c^2.
+    angle = np.radians(25.0)
+    c, s = np.cos(angle), np.sin(angle)
+    R = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+    E, nu, G = SPRUCE.E, SPRUCE.nu, SPRUCE.G
+    expected = c**4 / E[0] + s**4 / E[1] + (1 / G[0] - 2 * nu[0] / E[0]) * s**2 * c**2
+    X, bricks = fem.grids.box((1.0, 0.3, 0.2), (3, 2, 2))
+    axes = (R[0].tolist(), R[1].tolist())
+    held = (
+        fem.Support(np.flatnonzero(X[:, 0] == 0), ("x",)),
+        fem.Support(0, ("y", "z")),
+        fem.Support(2, ("y",)),
+    )
+    end = np.flatnonzero(X[:, 0] == 1.0)
+    model = fem.assemble(fem.Structure(X, (fem.Solids("w", bricks, SPRUCE, axes),), held))
+    area = np.ones(len(end)) / 4  # of bricks at each node, over one brick
+    for d, size in ((1, 0.3), (2, 0.2)):
+        area[np.isclose(X[end, d], 0) | np.isclose(X[end, d], size)] /= 2
+    f = np.zeros((len(X), 6))
+    f[end, 0] = 1e3 * area
+    # Free to shear and contract: a state of uniform stress.
+    q = linalg.solve(stiffness(model), model.dofs.T.T @ f.ravel())
+    u = (model.dofs.T @ q).reshape(-1, 6)[end, 0]
+    assert u == pytest.approx(1e3 / 0.06 * expected, rel=1e-9)
 
 
 # --- what is refused --------------------------------------------------------------------------

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -22,7 +23,8 @@ from modefront.fem.check import (
 )
 from modefront.fem.dofs import direction_indices
 from modefront.fem.elements.beam import beam, truss
-from modefront.fem.elements.common import attachment
+from modefront.fem.elements.common import attachment, elasticity, plane_elasticity
+from modefront.fem.elements.internal import shell_stresses, solid_stresses
 from modefront.fem.elements.point import lumped_mass, spring
 from modefront.fem.elements.shell import directors, shell
 from modefront.fem.elements.solid import SOLIDS, solid
@@ -96,7 +98,7 @@ def _beams(X: Floats, group: Beams) -> Block:
     except FemError as error:
         raise FemError(f"{place}: {error}") from None
     given = group.force * axial.unit if group.force else None
-    return Block(group.name, cells, SIX, made, not released, given, axial)
+    return Block(group.name, cells, SIX, made, not released, given, lambda: axial)
 
 
 def _trusses(X: Floats, group: Trusses) -> Block:
@@ -105,7 +107,7 @@ def _trusses(X: Floats, group: Trusses) -> Block:
     cells, _ = _lines(X, group.cells, np.zeros((2, 3)), place)
     made, axial = truss(X[cells], group.material, group.area)
     given = group.force * axial.unit if group.force else None
-    return Block(group.name, cells, TRANSLATIONS, made, False, given, axial)
+    return Block(group.name, cells, TRANSLATIONS, made, False, given, lambda: axial)
 
 
 def _lines(X: Floats, given: npt.ArrayLike, r: Floats, place: str) -> tuple[Ints, Floats]:
@@ -128,7 +130,10 @@ def _shell_cells(X: Floats, group: Shells) -> Ints:
 
 def _shells(X: Floats, group: Shells, cells: Ints, d: Floats) -> Block:
     matrices = shell(X[cells], d, group.material, group.thickness, group.offset)
-    return Block(group.name, cells, SIX, matrices, rigid=True)
+    x, r = X[cells], group.offset * d
+    D = group.thickness * plane_elasticity(group.material, np.eye(2)[:1])
+    internal = partial(shell_stresses, x, r, D)
+    return Block(group.name, cells, SIX, matrices, rigid=True, internal=internal)
 
 
 def _solids(X: Floats, group: Solids) -> Block:
@@ -140,7 +145,9 @@ def _solids(X: Floats, group: Solids) -> Block:
         )
     cells = cell_array(group.cells, tuple(SOLIDS), len(X), place)
     check_sizes(solid_sizes(X[cells]), cells, "volume", place)
-    return Block(group.name, cells, TRANSLATIONS, solid(X[cells], group.material), rigid=True)
+    C = elasticity(group.material, axes_of(group.axes, place))
+    made, internal = solid(X[cells], group.material.rho, C), partial(solid_stresses, X[cells], C)
+    return Block(group.name, cells, TRANSLATIONS, made, rigid=True, internal=internal)
 
 
 def spring_blocks(X: Floats, springs: Sequence[Spring], checks: Checks) -> list[Block]:

@@ -24,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.fem.section import Material, Orthotropic
 
 
 @dataclass(frozen=True)
@@ -96,30 +97,50 @@ def congruence(A: Floats, K: Floats) -> Floats:
     return symmetric(np.swapaxes(A, -1, -2) @ (K @ A))
 
 
-def solid_stiffness(g: Floats, weight: Floats, E: float, nu: float) -> Floats:
-    """Stiffness (elements, 3 nodes, 3 nodes) of an isotropic solid.
+VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
+"""Numbers of the components ij of stress and strain in the order 11, 22, 33, 23, 13, 12."""
 
-    With eps = sym grad u and Lame's constants, sigma : eps = lam (div u)^2 + 2 G eps : eps, so
 
-        K_(ai)(bj) = int lam g_ai g_bj + G g_aj g_bi + G delta_ij g_ak g_bk dV,
+def elasticity(material: Material | Orthotropic, R: Floats) -> Floats:
+    """Return C (3, 3, 3, 3), stresses ij of gradients kl; R has the material's axes in rows."""
+    C = np.linalg.inv(material.compliance())[VOIGT[:, :, None, None], VOIGT]
+    return np.asarray(np.einsum("abcd,ai,bj,ck,dl->ijkl", C, R, R, R, R, optimize=True))
 
-    three rearrangements of one product of the gradients g.
+
+def plane_elasticity(material: Material | Orthotropic, along: Floats) -> Floats:
+    """Return D (elements or 1, 2, 2, 2, 2) of plane stress in axes of the elements.
+
+    Parameters
+    ----------
+    along : unit vectors (elements or 1, 2) of the axis 1 of the material in these axes
+    """
+    used = [0, 1, 5]
+    D = np.linalg.inv(material.compliance()[np.ix_(used, used)])
+    plane = np.array([[0, 2], [2, 1]])
+    across = np.stack([-along[:, 1], along[:, 0]], 1)
+    Q = np.stack([along, across], 1)
+    D = D[plane[:, :, None, None], plane]
+    return np.asarray(np.einsum("abcd,eai,ebj,eck,edl->eijkl", D, Q, Q, Q, Q, optimize=True))
+
+
+def solid_stiffness(g: Floats, weight: Floats, C: Floats) -> Floats:
+    """Stiffness (elements, 3 nodes, 3 nodes) of a solid.
+
+    From the energy C_ijkl u_i,j u_k,l / 2 with gradients g of the shape functions,
+
+        K_(ai)(bk) = C_ijkl int g_aj g_bl dV.
 
     Parameters
     ----------
     g, weight : gradients of the shape functions (elements, points, 3, nodes); w det J
-    E, nu : Young's modulus and Poisson's ratio
+    C : `elasticity`
     """
     count, points, _, nodes = g.shape
-    lam, G = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
     flat = np.swapaxes(g, 2, 3).reshape(count, points, 3 * nodes)
     P = np.swapaxes(flat, 1, 2) @ (flat * weight[..., None])
-    P = P.reshape(count, nodes, 3, nodes, 3)
-    K = lam * P + G * np.swapaxes(P, 2, 4)
-    trace = G * np.einsum("eakbk->eab", P)
-    for d in range(3):
-        K[:, :, d, :, d] += trace
-    return symmetric(K.reshape(count, 3 * nodes, 3 * nodes))
+    P = P.reshape(count, nodes, 3, nodes, 3).transpose(0, 1, 3, 2, 4).reshape(-1, 9)
+    K = (P @ C.transpose(1, 3, 0, 2).reshape(9, 9)).reshape(count, nodes, nodes, 3, 3)
+    return symmetric(K.transpose(0, 1, 3, 2, 4).reshape(count, 3 * nodes, 3 * nodes))
 
 
 def solid_mass(N: Floats, weight: Floats) -> Floats:
