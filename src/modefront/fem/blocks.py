@@ -26,7 +26,7 @@ from modefront.fem.elements.beam import beam, truss
 from modefront.fem.elements.common import attachment, elasticity, plane_elasticity
 from modefront.fem.elements.internal import shell_stresses, solid_stresses
 from modefront.fem.elements.point import lumped_mass, spring
-from modefront.fem.elements.shell import directors, shell
+from modefront.fem.elements.shell import breadths, directors, shell
 from modefront.fem.elements.solid import SOLIDS, solid
 from modefront.fem.scatter import Block
 from modefront.fem.section import Checks, FemError
@@ -46,9 +46,9 @@ def element_blocks(X: Floats, groups: Sequence[Group], checks: Checks) -> list[B
     shells = [each for each in groups if isinstance(each, Shells)]
     cells = [checks.attempt(_shell_cells, X, each) for each in shells]
     sound = [each for each in cells if each is not None]
-    d = iter(directors(X, sound) if sound else ())
+    shared = iter(zip(directors(X, sound), breadths(X, sound), strict=True) if sound else ())
     blocks: list[Block | None] = [
-        _shells(X, group, each, next(d))
+        _shells(X, group, each, *next(shared))
         for group, each in zip(shells, cells, strict=True)
         if each is not None
     ]
@@ -128,12 +128,12 @@ def _shell_cells(X: Floats, group: Shells) -> Ints:
     return cells
 
 
-def _shells(X: Floats, group: Shells, cells: Ints, d: Floats) -> Block:
-    matrices = shell(X[cells], d, group.material, group.thickness, group.offset)
+def _shells(X: Floats, group: Shells, cells: Ints, d: Floats, breadth: Floats) -> Block:
     x, r = X[cells], group.offset * d
+    made = shell(x, d, breadth, group.material, group.thickness, group.offset)
     D = group.thickness * plane_elasticity(group.material, np.eye(2)[:1])
     internal = partial(shell_stresses, x, r, D)
-    return Block(group.name, cells, SIX, matrices, rigid=True, internal=internal)
+    return Block(group.name, cells, SIX, made, rigid=True, internal=internal)
 
 
 def _solids(X: Floats, group: Solids) -> Block:
