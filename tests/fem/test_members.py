@@ -531,6 +531,84 @@ def test_oblique_stiffness_of_orthotropic_material() -> None:
     assert u == pytest.approx(1e3 / 0.06 * expected, rel=1e-9)
 
 
+def spruce_plate(h: float, n: int, axis: Floats, Q: Floats | None = None) -> fem.Structure:
+    """A rectangular plate 1.0 by 0.8 with hinged edges, turned by Q; axis 1 along `axis`."""
+    X, cells = fem.grids.plate(1.0, 0.8, n, n)
+    Q = np.eye(3) if Q is None else Q
+    axes = (Q[0].tolist(), Q[1].tolist())
+    ends = [
+        np.flatnonzero(np.isclose(X[:, d], 0) | np.isclose(X[:, d], s))
+        for d, s in ((0, 1.0), (1, 0.8))
+    ]
+    held = [
+        fem.Support(np.arange(len(X)), ("x", "y", "rz"), axes),
+        fem.Support(ends[0], ("z", "rx"), axes),
+        fem.Support(ends[1], ("z", "ry"), axes),
+    ]
+    shells = fem.Shells("plate", cells, SPRUCE, h, direction=(axis @ Q).tolist())
+    return fem.Structure(X @ Q, (shells,), held)
+
+
+def navier(h: float, across: bool = False) -> Floats:
+    """Closed form of `spruce_plate` with shear (J. N. Reddy, "Mechanics of Laminated Plates")."""
+    S = SPRUCE.compliance()[np.ix_([0, 1, 5], [0, 1, 5])]
+    D = np.linalg.inv(S) * h**3 / 12
+    G_x, G_y = (5 / 6 * h * G for G in SPRUCE.G[1:])
+    if across:
+        D, (G_x, G_y) = D[np.ix_([1, 0, 2], [1, 0, 2])], (G_y, G_x)
+    found = []
+    for m in range(1, 5):
+        for n in range(1, 5):
+            a, b = m * np.pi, n * np.pi / 0.8
+            K = np.array([
+                [G_x * a**2 + G_y * b**2, G_x * a, G_y * b],
+                [G_x * a, D[0, 0] * a**2 + D[2, 2] * b**2 + G_x, (D[0, 1] + D[2, 2]) * a * b],
+                [G_y * b, (D[0, 1] + D[2, 2]) * a * b, D[2, 2] * a**2 + D[1, 1] * b**2 + G_y],
+            ])  # fmt: skip
+            M = SPRUCE.rho * np.diag([h, h**3 / 12, h**3 / 12])
+            found.append(linalg.eigh(K, M, eigvals_only=True)[0])
+    return np.sqrt(np.sort(found))
+
+
+@pytest.mark.parametrize(("h", "within"), [(0.002, 0.025), (0.08, 0.02)])
+@pytest.mark.parametrize("across", [False, True])
+def test_orthotropic_plates(h: float, within: float, across: bool) -> None:
+    axis = np.eye(3)[int(across)]
+    theory = navier(h, across)[:4]
+    w = frequencies(fem.assemble(spruce_plate(h, 16, axis)), 4)
+    assert w == pytest.approx(theory, rel=within)
+
+
+def test_turning_an_orthotropic_plate_changes_no_frequency() -> None:
+    axis = np.array([np.cos(0.4), np.sin(0.4), 0.0])
+    rest = frequencies(fem.assemble(spruce_plate(0.05, 6, axis)), 4)
+    Q = rotation(np.random.default_rng(9))
+    turned = frequencies(fem.assemble(spruce_plate(0.05, 6, axis, Q)), 4)
+    assert turned == pytest.approx(rest, rel=1e-7)
+
+
+def test_isotropic_constants_of_an_orthotropic_material_are_the_material() -> None:
+    E, nu, G = STEEL.E, STEEL.nu, STEEL.G
+    same = fem.Orthotropic((E, E, E), (nu, nu, nu), (G, G, G), STEEL.rho)
+    X, cells = fem.grids.plate(1.0, 0.5, 3, 2)
+    X[:, 2] = 0.3 * X[:, 0] ** 2 - 0.2 * X[:, 0] * X[:, 1]
+    B, bricks = fem.grids.box((1.0, 0.5, 0.5), (2, 1, 1))
+    for nodes, group in (
+        (X, fem.Shells("g", cells, STEEL, 0.05)),
+        (X, fem.Shells("g", fem.grids.triangles(cells), STEEL, 0.05)),
+        (B, fem.Solids("g", bricks, STEEL)),
+    ):
+        where: dict[str, Any] = (
+            {"direction": (1.0, 0.4, 0.2)} if isinstance(group, fem.Shells) else {}
+        )
+        other = replace(group, material=same, **where)
+        K = [
+            stiffness(fem.assemble(fem.Structure(nodes, (each,), (fem.Support([0, 1, 2]),))))
+            for each in (group, other)
+        ]
+        assert abs(K[1] - K[0]).max() < 1e-12 * abs(K[0]).max()
+
+
 # --- what is refused --------------------------------------------------------------------------
 
 
@@ -592,12 +670,39 @@ def test_wrong_members() -> None:
             {"parameters": (fem.Parameter("p", "prestress", ("beam",)),)},
             "nothing named 'beam' has a prestress",
         ),
+        (
+            {"groups": (fem.Beams("b", cells, SPRUCE, fem.circle(0.1)),)},  # type: ignore[arg-type]
+            "expected an isotropic material",
+        ),
     )
     for change, message in changes:
         assert message in refused(replace(sound, **change))
     loaded = replace(sound, supports=(), loads=(fem.Load("P", [8], (1.0, 0, 0)),))
     with pytest.raises(fem.FemError, match="found a floating one"):
         fem.assemble(loaded, floating=True)
+
+
+def test_orthotropic_shells_need_a_direction() -> None:
+    structure = spruce_plate(0.01, 2, np.eye(3)[0])
+    (shells,) = structure.groups
+    assert isinstance(shells, fem.Shells)
+    for direction, message in ((None, "a direction is needed"), (Z, "not be normal to the shell")):
+        wrong = replace(shells, direction=direction)
+        assert message in refused(replace(structure, groups=(wrong,)))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"E": (1.0, 0.0, 1.0)}, "E must be three values > 0"),
+        ({"G": (1.0, 1.0)}, "G must be three values > 0"),
+        ({"nu": (0.3, 0.3)}, "three Poisson's ratios"),
+        ({"nu": (4.0, 0.0, 0.0)}, "must leave the elasticity positive definite"),
+    ],
+)
+def test_orthotropic_constants_out_of_range(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(fem.FemError, match=message):
+        replace(SPRUCE, **change)
 
 
 def test_a_moment_on_a_bar_is_refused() -> None:

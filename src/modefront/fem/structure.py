@@ -79,13 +79,15 @@ class Shells:
     cells : nodes (elements, 3) or (elements, 4), counter-clockwise about the normal
     material, thickness : of all elements
     offset : distance of the mid-surface from the nodes along the normal
+    direction : of axis 1 of an orthotropic material, a vector that is projected on the shells
     """
 
     name: str
     cells: npt.ArrayLike
-    material: Material
+    material: Material | Orthotropic
     thickness: float
     offset: float = 0.0
+    direction: Sequence[float] | None = None
 
 
 @dataclass(frozen=True)

@@ -130,4 +130,5 @@ def factorise(A: scipy.sparse.sparray) -> Factorisation:
     keys = lower.col.astype(np.int64) * A.shape[0] + lower.row
     pattern = lower_pattern(keys, A.shape[0])
     places = np.searchsorted(pattern.keys, keys)
-    return analyse(pattern).factor(np.bincount(places, lower.data, pattern.indices.size))
+    values = np.bincount(places, lower.data, pattern.indices.size).astype(float)
+    return analyse(pattern).factor(values)

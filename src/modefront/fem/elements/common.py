@@ -13,7 +13,7 @@ symbol      meaning
 ==========  =================================================================
 R           local axes, rows, (elements, 3, 3)
 r           offset of an element's point from its node, global, (..., 3)
-D           plane stress: strains (xx, yy, engineering xy) to stresses
+D           plane stress: strains (11, 22, engineering 12) to stresses
 ==========  =================================================================
 """
 
@@ -54,9 +54,46 @@ def symmetric(K: Floats) -> Floats:
     return np.asarray((K + np.swapaxes(K, -1, -2)) / 2)
 
 
-def plane_stress(E: float, nu: float) -> Floats:
-    """D (3, 3) of plane stress."""
-    return E / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
+@dataclass(frozen=True)
+class Ply:
+    """Plane stress and transverse shear of a material along its axes 1 and 2.
+
+    Attributes
+    ----------
+    D : (3, 3), stresses of strains (11, 22, engineering 12)
+    G : G_13 and G_23
+    """
+
+    D: Floats
+    G: tuple[float, float]
+
+    def turned(self, m: Floats) -> Floats:
+        """Return D (elements, 3, 3) in axes in which axis 1 is along m (elements, 2)."""
+        c, s = (m / np.linalg.norm(m, axis=1, keepdims=True)).T
+        rows = [[c**2, s**2, c * s], [s**2, c**2, -c * s], [-2 * c * s, 2 * c * s, c**2 - s**2]]
+        T = np.stack([np.stack(row, -1) for row in rows], -2)
+        return np.asarray(np.swapaxes(T, 1, 2) @ self.D @ T)
+
+    def along(self, c2: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return the moduli of bending and twist, and of transverse shear, along a line.
+
+        Parameters
+        ----------
+        c2 : squared cosine of the line and axis 1
+        """
+        D, s2 = self.D, 1 - c2
+        mixed = D[0, 1] + 2 * D[2, 2]
+        bend = D[0, 0] * c2**2 + 2 * mixed * c2 * s2 + D[1, 1] * s2**2
+        twist = D[2, 2] + (D[0, 0] + D[1, 1] - 2 * mixed) * c2 * s2
+        return bend, twist, self.G[0] * c2 + self.G[1] * s2
+
+
+def ply(material: Material | Orthotropic) -> Ply:
+    """Return the plane stress and transverse shear of a material."""
+    S = material.compliance()
+    used = [0, 1, 5]
+    D = np.asarray(np.linalg.inv(S[np.ix_(used, used)]), dtype=float)
+    return Ply(D, (1 / S[4, 4], 1 / S[3, 3]))
 
 
 def condense(K: Floats, kept: int) -> Floats:
@@ -105,22 +142,6 @@ def elasticity(material: Material | Orthotropic, R: Floats) -> Floats:
     """Return C (3, 3, 3, 3), stresses ij of gradients kl; R has the material's axes in rows."""
     C = np.linalg.inv(material.compliance())[VOIGT[:, :, None, None], VOIGT]
     return np.asarray(np.einsum("abcd,ai,bj,ck,dl->ijkl", C, R, R, R, R, optimize=True))
-
-
-def plane_elasticity(material: Material | Orthotropic, along: Floats) -> Floats:
-    """Return D (elements or 1, 2, 2, 2, 2) of plane stress in axes of the elements.
-
-    Parameters
-    ----------
-    along : unit vectors (elements or 1, 2) of the axis 1 of the material in these axes
-    """
-    used = [0, 1, 5]
-    D = np.linalg.inv(material.compliance()[np.ix_(used, used)])
-    plane = np.array([[0, 2], [2, 1]])
-    across = np.stack([-along[:, 1], along[:, 0]], 1)
-    Q = np.stack([along, across], 1)
-    D = D[plane[:, :, None, None], plane]
-    return np.asarray(np.einsum("abcd,eai,ebj,eck,edl->eijkl", D, Q, Q, Q, Q, optimize=True))
 
 
 def solid_stiffness(g: Floats, weight: Floats, C: Floats) -> Floats:

@@ -25,7 +25,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.fem.elements.common import attachment, symmetric
+from modefront.fem.elements.common import Ply, attachment, symmetric
 from modefront.fem.elements.shapes import SQUARE_4, TRIANGLE_3, Cell, gauss_box, gradients
 from modefront.fem.elements.solid import SOLIDS
 
@@ -88,19 +88,22 @@ class Stresses:
         return symmetric(np.swapaxes(P.reshape(count, 3 * nodes, -1), 1, 2) @ right)
 
 
-def shell_stresses(X: Floats, r: Floats, D: Floats) -> Stresses:
+def shell_stresses(X: Floats, r: Floats, m: Floats, material: Ply, t: float) -> Stresses:
     """Return the stresses of shells.
 
     Parameters
     ----------
     X, r : nodes, and offsets of the mid-surface from them (elements, nodes, 3)
-    D : elasticity times thickness, for the axes that `centre_axes` returns
+    m : vectors (elements, 3) in the shell along axis 1 of the material
+    material, t : of all elements; thickness
     """
     cell, rule = SURFACES[X.shape[1]]
     R = centre_axes(X + r)
     identity = np.broadcast_to(np.eye(3), (len(X), 3, 3))
     P = attachment(identity, r).reshape(*X.shape[:2], 6, -1)[:, :, :3]
     x = (X + r) @ np.swapaxes(R, 1, 2)
+    plane = np.array([[0, 2], [2, 1]])
+    D = t * material.turned((R @ m[:, :, None])[..., 0])[:, plane[:, :, None, None], plane]
     return Stresses(x, R, D, P, cell, rule)
 
 

@@ -26,7 +26,7 @@ symbol    meaning
 ========  ===================================================
 x         corners in the plane (elements, 3, 2)
 d, v      directors in local axes, and their increments
-D         plane stress (3, 3)
+D         plane stress (elements, 3, 3)
 A         area
 ========  ===================================================
 """
@@ -36,25 +36,25 @@ from __future__ import annotations
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.fem.elements.common import plane_stress
+from modefront.fem.elements.common import Ply
 from modefront.fem.elements.plate import Elements, Rows
-from modefront.fem.section import Material
 
 DISTORTIONS = [np.roll([[1.0, 2, 1], [0, 1, -1], [-1, -1, -2]], (n, n), (0, 1)) for n in range(3)]
 """Natural strains at the corners by hierarchical rotations, with Felippa's optimal parameters."""
 
 
-def membrane(each: Elements, t: float, material: Material) -> Rows:
+def membrane(each: Elements, t: float, material: Ply) -> Rows:
     """Return rows of strains and of drilling rotations, per thickness."""
-    D, nu = plane_stress(material.E, material.nu), material.nu
+    D = material.turned(each.m[:, :2])
     rise = [abs(e @ (each.d[:, j] - each.d[:, i])[..., None]) for i, j, e in each.sides()]
     share = 1 / (1 + (np.max(rise, axis=0) / t) ** 2)[:, 0, 0]
     in_plane = np.stack([each.U[:, :, 0], each.U[:, :, 1], each.theta], 2)
     in_plane = in_plane.reshape(len(share), 9, -1)
     B = basic_strain(each.x[..., :2], 1.5 * share) @ in_plane + curved_sides(each)
     T, K_theta = higher_stiffness(each.x[..., :2], D)
-    beta = 0.75 * max((1 - 4 * nu**2) / 2, 0.01)
-    weights = np.stack([np.broadcast_to(D, K_theta.shape), beta * K_theta], 1)
+    nu2 = material.D[0, 1] ** 2 / material.D[0, 0] / material.D[1, 1]
+    beta = 0.75 * max((1 - 4 * nu2) / 2, 0.01)
+    weights = np.stack([D, beta * K_theta], 1)
     rotations = share[:, None, None] * (T @ in_plane)
     return each.integrand(np.stack([B, rotations], 1), 2 * weights)
 

@@ -35,6 +35,7 @@ U, V      rows of u and v at each corner, by the DOFs
 g         gradients of N (elements, 2, 3)
 H         gradient of v and grad d . grad u
 a         tangents along the coordinates of the cell
+m         axis 1 of the material, projected on the shell
 ========  ============================================================
 """
 
@@ -49,7 +50,7 @@ import numpy as np
 from scipy.linalg import block_diag
 
 from modefront._typing import Floats
-from modefront.fem.elements.common import plane_stress
+from modefront.fem.elements.common import Ply
 from modefront.fem.elements.shapes import (
     SQUARE_4,
     TRIANGLE_3,
@@ -57,7 +58,6 @@ from modefront.fem.elements.shapes import (
     gauss_box,
     gauss_simplex,
 )
-from modefront.fem.section import Material
 
 KAPPA = 5 / 6
 """Shear factor of a plate."""
@@ -106,6 +106,7 @@ class Elements:
     U, V : displacements, and increments of the directors (elements, corners, 3, n)
     theta : rotations about the local third axis (elements, corners, n)
     breadth : across each side, from a corner to the next one (elements, corners)
+    m : axis 1 of the material (elements, 3), not across the shell
     share : factor on all integrals
     """
 
@@ -115,6 +116,7 @@ class Elements:
     V: Floats
     theta: Floats
     breadth: Floats
+    m: Floats
     share: float
 
     @cached_property
@@ -137,17 +139,21 @@ class Elements:
             j = (i + 1) % corners
             yield i, j, (self.x[:, j] - self.x[:, i])[:, None]
 
-    def sheared(self, t: float, nu: float) -> Iterator[Side]:
+    def sheared(self, t: float, material: Ply) -> Iterator[Side]:
         """Shear of each side."""
         for i, j, e in self.sides():
             L2 = (e**2).sum(2)
+            d = self.d[:, i] + self.d[:, j]
+            m = self.m - ((self.m * d).sum(1) / (d * d).sum(1))[:, None] * d
+            c2 = (e[:, 0] * m).sum(1, keepdims=True) ** 2 / L2 / (m * m).sum(1, keepdims=True)
+            bend, twist, across = material.along(c2)
             rise = (self.d[:, i] + self.d[:, j])[:, None] / 2 @ (self.U[:, j] - self.U[:, i])
             gamma = (rise + e @ (self.V[:, i] + self.V[:, j]) / 2)[:, 0]
-            phi = t**2 / KAPPA * (2 / (1 - nu) / L2 + 1 / self.breadth[:, i, None] ** 2)
+            phi = t**2 / KAPPA / across * (bend / L2 + twist / self.breadth[:, i, None] ** 2)
             yield Side(i, j, e, gamma, phi)
 
 
-def bending(each: Elements, t: float, material: Material) -> Rows:
+def bending(each: Elements, t: float, material: Ply) -> Rows:
     """Return rows of the bending of triangles, per thickness cubed."""
     count = len(each.x)
     inverse = np.linalg.inv(each.J)
@@ -159,29 +165,35 @@ def bending(each: Elements, t: float, material: Material) -> Rows:
     kappa = np.stack([H[:, 0, 0], H[:, 1, 1], H[:, 0, 1] + H[:, 1, 0]], 1)[:, None]
     g_mid = inverse @ np.swapaxes(TRIANGLE_6.shape(MIDDLES)[1][:, 3:], 1, 2)
     bulges, strains = [], []
-    for k, side in enumerate(each.sheared(t, material.nu)):
+    for k, side in enumerate(each.sheared(t, material)):
         bulges.append(-1.5 / (1 + side.phi) / (side.e**2).sum(2) * side.gamma)
         (gx, gy), (ex, ey, _) = np.moveaxis(g_mid[..., k], 2, 0), np.moveaxis(side.e, 2, 0)
         strains.append(np.stack([gx * ex, gy * ey, gx * ey + gy * ex], -1))
     kappa = kappa + np.stack(strains, -1) @ np.stack(bulges, 1)[:, None]
-    return each.integrand(kappa, plane_stress(material.E, material.nu) / 12)
+    return each.integrand(kappa, material.turned(each.m[:, :2])[:, None] / 12)
 
 
-def shear(each: Elements, t: float, material: Material) -> Rows:
+def shear(each: Elements, t: float, material: Ply) -> Rows:
     """Return rows of the covariant shear of triangles or quadrilaterals, per thickness."""
     cell, (xi, w) = SHEARED[each.x.shape[1]]
     N, dN = cell.shape(xi)
     fields, shears = [], []
-    for i, j, _, gamma, phi in each.sheared(t, material.nu):
+    for i, j, _, gamma, phi in each.sheared(t, material):
         both, slope = N[:, [i, j]].sum(1)[:, None], dN[:, [i, j]].sum(1)
         field = both * dN[:, j] - N[:, j, None] * slope
         fields.append(field if cell is TRIANGLE_3 else field / both)
         shears.append(phi / (1 + phi) * gamma)
     a = np.swapaxes(dN, 1, 2) @ each.x[:, None]
     metric = a @ np.swapaxes(a, 2, 3)
-    weight = KAPPA * material.G * w * np.sqrt(np.linalg.det(metric))
+    weight = each.share * KAPPA * w * np.sqrt(np.linalg.det(metric))
+    inverse = np.linalg.inv(metric)
+    # G_23 in all directions of the tangent plane, and G_13 - G_23 along the material's axis 1.
+    covariant = a @ each.m[:, None, :, None]
+    axis = inverse @ covariant
+    axis_2 = axis @ np.swapaxes(axis, 2, 3) / (np.swapaxes(axis, 2, 3) @ covariant)
+    G = material.G[1] * inverse + (material.G[0] - material.G[1]) * axis_2
     B = np.stack(fields, -1) @ np.stack(shears, 1)[:, None]
-    return B, each.share * weight[..., None, None] * np.linalg.inv(metric)
+    return B, weight[..., None, None] * G
 
 
 def mass(each: Elements) -> tuple[Rows, Rows]:

@@ -30,13 +30,15 @@ from modefront._typing import Floats, Ints
 from modefront.fem.elements.common import (
     ElementMatrices,
     Part,
+    Ply,
     attachment,
     cross_matrix,
+    ply,
     symmetric,
 )
 from modefront.fem.elements.membrane import membrane
 from modefront.fem.elements.plate import Elements, Rows, bending, mass, shear
-from modefront.fem.section import Material
+from modefront.fem.section import Material, Orthotropic
 
 FOLD = 20.0
 """Angle in degrees between elements from which on they meet in a fold."""
@@ -121,9 +123,15 @@ def axes(X: Floats) -> Floats:
     return np.asarray(R / np.linalg.norm(R, axis=2, keepdims=True))
 
 
-# 6 arguments: what elements have, and what they share with others.
+# 7 arguments: what elements have, and what they share with others.
 def shell(
-    X: Floats, d: Floats, breadth: Floats, material: Material, thickness: float, offset: float
+    X: Floats,
+    d: Floats,
+    breadth: Floats,
+    m: Floats,
+    material: Material | Orthotropic,
+    thickness: float,
+    offset: float,
 ) -> ElementMatrices:
     """Matrices of shells, DOFs (u, r) node by node in global axes.
 
@@ -132,12 +140,13 @@ def shell(
     X : nodes (elements, 3 or 4, 3), counter-clockwise about the normal
     d : `directors` (elements, 3 or 4, 3)
     breadth : `breadths` (elements, 3 or 4)
-    material, thickness : isotropic; thickness in units of length
+    m : vectors (elements, 3) in the shell along axis 1 of the material
+    material, thickness : of all elements; thickness in units of length
     offset : distance of the mid-surface from the nodes along the directors
     """
     t, rho = thickness, material.rho
     pieces = [
-        _matrices(X[some], d[some], breadth[some], material, t, offset)
+        _matrices(X[some], d[some], breadth[some], m[some], ply(material), t, offset)
         for some in (slice(first, first + AT_ONCE) for first in range(0, len(X), AT_ONCE))
     ]
     K1, K3, M1, M3 = (np.concatenate(each) for each in zip(*pieces, strict=True))
@@ -147,14 +156,15 @@ def shell(
     )
 
 
+# 7 arguments: those of `shell`.
 def _matrices(
-    X: Floats, d: Floats, breadth: Floats, material: Material, t: float, offset: float
+    X: Floats, d: Floats, breadth: Floats, m: Floats, material: Ply, t: float, offset: float
 ) -> list[Floats]:
     """Return stiffness and mass by t and t^3, (elements, n, n) each."""
     r = offset * d
     A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)
     U, omega = A[:, :, :3], A[:, :, 3:]
-    whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], breadth, 1.0)
+    whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], breadth, m, 1.0)
     area = areas(whole.x)
     parts: list[list[Rows]] = [[], [], [], []]
     for share, chosen in DIVISIONS[X.shape[1]]:
@@ -177,6 +187,7 @@ def _matrices(
                 ],
                 1,
             ),
+            m=(R @ m[:, :, None])[..., 0],
             share=share,
         )
         found = membrane(each, t, material), bending(each, t, material), *mass(each)

@@ -32,6 +32,8 @@ _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
     "constants": (fem.Section, ("A", "I_y", "I_z", "J")),
 }
 
+AnyMaterial = fem.Material | fem.Orthotropic
+
 NODES = {
     "support": ("nodes",),
     "spring": ("nodes", "to"),
@@ -126,8 +128,8 @@ def _listed(value: object) -> list[Any]:
     return value if isinstance(value, list) else [value]
 
 
-def _materials(model: Table) -> dict[str, fem.Material]:
-    out: dict[str, fem.Material] = {}
+def _materials(model: Table) -> dict[str, AnyMaterial]:
+    out: dict[str, AnyMaterial] = {}
     table = model.table("material", "a table of materials")
     if table is not None and not table.values:
         table.fault("", "at least one material", "none")
@@ -135,20 +137,34 @@ def _materials(model: Table) -> dict[str, fem.Material]:
         entry = table.table(name, "a table E, nu, rho") if table else None
         if entry is None:
             continue
-        E = entry.number("E", "Young's modulus above 0", lambda x: x > 0)
-        nu = entry.number("nu", "Poisson's ratio between -1 and 0.5", lambda x: -1 < x < 0.5)
+        before = len(entry.faults)
+        if isinstance(entry.values.get("E"), list):
+            values = [_three(entry, key) for key in ("E", "nu", "G")]
+            make: Callable[..., AnyMaterial] = fem.Orthotropic
+        else:
+            E = entry.number("E", "Young's modulus above 0", lambda x: x > 0)
+            nu = entry.number("nu", "Poisson's ratio between -1 and 0.5", lambda x: -1 < x < 0.5)
+            values, make = [E, nu], fem.Material
         rho = entry.number("rho", "a density of 0 or more", lambda x: x >= 0)
         entry.close()
-        if None not in (E, nu, rho):
-            out[name] = fem.Material(E, nu, rho)
+        try:
+            if len(entry.faults) == before:
+                out[name] = make(*values, rho)
+        except fem.FemError as error:
+            entry.fault("", "a material that is possible", str(error))
     return out
+
+
+def _three(table: Table, key: str) -> Any:
+    """Return the constants of an orthotropic material in its planes or along its axes."""
+    return table.numbers(key, f"three values of {key}", lambda x: len(x) == 3)
 
 
 def _vector(table: Table, key: str, default: Any = (0.0, 0.0, 0.0)) -> Any:
     return table.numbers(key, "a vector of 3 numbers", lambda x: len(x) == 3, default)
 
 
-def _groups(model: Table, mesh: Mesh, materials: dict[str, fem.Material]) -> list[Group]:
+def _groups(model: Table, mesh: Mesh, materials: dict[str, AnyMaterial]) -> list[Group]:
     """Return the blocks of all groups; one group may have cells of several types."""
     out: list[Group] = []
     for group in model.tables("group", required=True):
@@ -172,14 +188,20 @@ def _groups(model: Table, mesh: Mesh, materials: dict[str, fem.Material]) -> lis
     return out
 
 
-Maker = Callable[[str, Ints, fem.Material], Group]
+Maker = Callable[[str, Ints, Any], Group]
 """A member of a group: from its name, cells and material."""
 
 
 def _shells(group: Table) -> Maker:
     thickness = group.number("thickness", "a thickness above 0", lambda x: x > 0)
     offset = group.number("offset", "a distance", math.isfinite, default=0.0)
-    return lambda name, cells, material: fem.Shells(name, cells, material, thickness, offset)
+    options = thickness, offset, _vector(group, "direction", None)
+    return lambda name, cells, material: fem.Shells(name, cells, material, *options)
+
+
+def _solids(group: Table) -> Maker:
+    axes = _axes(group)
+    return lambda name, cells, material: fem.Solids(name, cells, material, axes)
 
 
 def _beams(group: Table) -> Maker:
@@ -210,7 +232,7 @@ _MEMBERS: Mapping[Kind, Callable[[Table], Maker]] = {
     "beam": _beams,
     "truss": _trusses,
     "shell": _shells,
-    "solid": lambda _: fem.Solids,
+    "solid": _solids,
 }
 
 
