@@ -35,7 +35,7 @@ from modefront.fem.elements.common import (
     symmetric,
 )
 from modefront.fem.elements.membrane import membrane
-from modefront.fem.elements.plate import Rows, Triangles, bending_and_shear, mass
+from modefront.fem.elements.plate import Elements, Rows, bending, mass, shear
 from modefront.fem.section import Material
 
 FOLD = 20.0
@@ -79,9 +79,37 @@ def directors(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
         near = (abs(cosine) > np.cos(np.radians(FOLD))) & (k < count)
         d += (near * np.sign(cosine) * angle[other])[:, None] * normal[other]
     d /= np.linalg.norm(d, axis=1, keepdims=True)
-    ends = np.cumsum([each.size for each in cells])[:-1]
+    return _by_block(d, cells)
+
+
+def areas(X: Floats) -> Floats:
+    """Areas (elements,) of X (elements, corners, 3), of warped ones in their mean plane."""
+    return np.asarray(np.linalg.norm(np.cross(X, np.roll(X, -1, axis=1)).sum(1), axis=1) / 2)
+
+
+def breadths(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
+    """Mean breadth of the elements across each of their sides (elements, corners), by block.
+
+    That is the area of a quadrilateral, and twice that of a triangle, over the length of the side.
+    """
+    ends, own = [], []
+    for each in cells:
+        following = np.roll(each, -1, axis=1)
+        length = np.linalg.norm(X[following] - X[each], axis=2)
+        ends.append(np.stack([each, following], 2).reshape(-1, 2))
+        own.append((areas(X[each])[:, None] * (2 if each.shape[1] == 3 else 1) / length).ravel())
+    pairs = np.sort(np.concatenate(ends), axis=1)
+    _, side = np.unique(pairs @ [len(X), 1], return_inverse=True)
+    mean = np.bincount(side, np.concatenate(own)) / np.bincount(side)
+    return _by_block(mean[side], cells)
+
+
+def _by_block(values: Floats, cells: Sequence[Ints]) -> list[Floats]:
+    """Return values (corners of all blocks, ...) as arrays (elements, corners, ...)."""
+    parts = np.split(values, np.cumsum([each.size for each in cells])[:-1])
     return [
-        part.reshape(*each.shape, 3) for part, each in zip(np.split(d, ends), cells, strict=True)
+        part.reshape(*each.shape, *values.shape[1:])
+        for part, each in zip(parts, cells, strict=True)
     ]
 
 
@@ -93,8 +121,9 @@ def axes(X: Floats) -> Floats:
     return np.asarray(R / np.linalg.norm(R, axis=2, keepdims=True))
 
 
+# 6 arguments: what elements have, and what they share with others.
 def shell(
-    X: Floats, d: Floats, material: Material, thickness: float, offset: float
+    X: Floats, d: Floats, breadth: Floats, material: Material, thickness: float, offset: float
 ) -> ElementMatrices:
     """Matrices of shells, DOFs (u, r) node by node in global axes.
 
@@ -102,13 +131,14 @@ def shell(
     ----------
     X : nodes (elements, 3 or 4, 3), counter-clockwise about the normal
     d : `directors` (elements, 3 or 4, 3)
+    breadth : `breadths` (elements, 3 or 4)
     material, thickness : isotropic; thickness in units of length
     offset : distance of the mid-surface from the nodes along the directors
     """
     t, rho = thickness, material.rho
     pieces = [
-        _matrices(X[first : first + AT_ONCE], d[first : first + AT_ONCE], material, t, offset)
-        for first in range(0, len(X), AT_ONCE)
+        _matrices(X[some], d[some], breadth[some], material, t, offset)
+        for some in (slice(first, first + AT_ONCE) for first in range(0, len(X), AT_ONCE))
     ]
     K1, K3, M1, M3 = (np.concatenate(each) for each in zip(*pieces, strict=True))
     return ElementMatrices(
@@ -117,32 +147,45 @@ def shell(
     )
 
 
-def _matrices(X: Floats, d: Floats, material: Material, t: float, offset: float) -> list[Floats]:
+def _matrices(
+    X: Floats, d: Floats, breadth: Floats, material: Material, t: float, offset: float
+) -> list[Floats]:
     """Return stiffness and mass by t and t^3, (elements, n, n) each."""
     r = offset * d
-    parts: list[list[Rows]] = [[], [], [], [], []]
+    A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)
+    U, omega = A[:, :, :3], A[:, :, 3:]
+    whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], breadth, 1.0)
+    area = areas(whole.x)
+    parts: list[list[Rows]] = [[], [], [], []]
     for share, chosen in DIVISIONS[X.shape[1]]:
         corners = list(chosen)
-        x = (X + r)[:, corners]
+        x = whole.x[:, corners]
         R = axes(x)
-        A = attachment(R, r).reshape(*X.shape[:2], 6, -1)[:, corners]
         across = np.swapaxes(R, 1, 2)
-        local = d[:, corners] @ across
-        each = Triangles(
-            x=((x - x[:, :1]) @ across)[..., :2],
-            d=local,
-            U=A[:, :, :3],
-            V=-cross_matrix(local) @ A[:, :, 3:],
-            theta=A[:, :, 5],
+        each = Elements(
+            x=(x - x[:, :1]) @ across,
+            d=d[:, corners] @ across,
+            U=R[:, None] @ U[:, corners],
+            V=R[:, None] @ whole.V[:, corners],
+            theta=(R[:, None] @ omega[:, corners])[:, :, 2],
+            breadth=np.stack(
+                [
+                    breadth[:, i]
+                    if (j - i) % X.shape[1] == 1
+                    else area / np.linalg.norm(whole.x[:, j] - whole.x[:, i], axis=1)
+                    for i, j in zip(corners, np.roll(corners, -1), strict=True)
+                ],
+                1,
+            ),
             share=share,
         )
-        found = membrane(each, t, material), *bending_and_shear(each, t, material), *mass(each)
+        found = membrane(each, t, material), bending(each, t, material), *mass(each)
         for part, rows in zip(parts, found, strict=True):
             part.append(rows)
-    stretch, bending, shear, translation, rotary = (
+    stretched, bent, moved, turned = (
         products(*(np.concatenate(each, 1) for each in zip(*part, strict=True))) for part in parts
     )
-    return [stretch + shear, bending, translation, rotary]
+    return [stretched + products(*shear(whole, t, material)), bent, moved, turned]
 
 
 def products(B: Floats, D: Floats) -> Floats:
