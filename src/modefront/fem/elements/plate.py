@@ -107,6 +107,7 @@ class Elements:
     theta : rotations about the local third axis (elements, corners, n)
     breadth : across each side, from a corner to the next one (elements, corners)
     share : factor on all integrals
+    bow : bilinear part of d and v, at the third side of a triangle (elements, 3, 1 + n)
     """
 
     x: Floats
@@ -116,6 +117,7 @@ class Elements:
     theta: Floats
     breadth: Floats
     share: float
+    bow: Floats | None = None
 
     @cached_property
     def J(self) -> Floats:
@@ -158,12 +160,17 @@ def bending(each: Elements, t: float, material: Material) -> Rows:
     H = grad_v[:, :, :2] + (g @ each.d)[:, None] @ grad_u
     kappa = np.stack([H[:, 0, 0], H[:, 1, 1], H[:, 0, 1] + H[:, 1, 0]], 1)[:, None]
     g_mid = inverse @ np.swapaxes(TRIANGLE_6.shape(MIDDLES)[1][:, 3:], 1, 2)
-    bulges, strains = [], []
     for k, side in enumerate(each.sheared(t, material.nu)):
-        bulges.append(-1.5 / (1 + side.phi) / (side.e**2).sum(2) * side.gamma)
-        (gx, gy), (ex, ey, _) = np.moveaxis(g_mid[..., k], 2, 0), np.moveaxis(side.e, 2, 0)
-        strains.append(np.stack([gx * ex, gy * ey, gx * ey + gy * ex], -1))
-    kappa = kappa + np.stack(strains, -1) @ np.stack(bulges, 1)[:, None]
+        scale = -1.5 / (1 + side.phi) / (side.e**2).sum(2)
+        bulge = np.swapaxes(side.e, 1, 2)[:, :2] * (scale * side.gamma)[:, None]
+        if each.bow is not None and k == 2:
+            turned = (each.bow[:, None, None, :, 0] @ grad_u)[:, :, 0]
+            bow = each.bow[:, :2, 1:] + turned
+            bulge = bulge + (side.phi / (1 + side.phi))[:, None] * bow
+        slope = g_mid[:, :, :, k, None]
+        x, y = slope[:, :, 0] * bulge[:, None, 0], slope[:, :, 1] * bulge[:, None, 1]
+        xy = slope[:, :, 0] * bulge[:, None, 1] + slope[:, :, 1] * bulge[:, None, 0]
+        kappa = kappa + np.stack([x, y, xy], 2)
     return each.integrand(kappa, plane_stress(material.E, material.nu) / 12)
 
 

@@ -43,9 +43,9 @@ FOLD = 20.0
 
 DIVISIONS = {
     3: ((1.0, (0, 1, 2)),),
-    4: tuple((0.5, corners) for corners in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))),
+    4: tuple((0.5, corners) for corners in ((1, 2, 3), (2, 3, 0), (3, 0, 1), (0, 1, 2))),
 }
-"""Share and corners of the triangles that make an element."""
+"""Share and corners of the triangles that make an element, a diagonal of it as their third side."""
 
 
 AT_ONCE = 1000
@@ -156,6 +156,7 @@ def _matrices(
     U, omega = A[:, :, :3], A[:, :, 3:]
     whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], breadth, 1.0)
     area = areas(whole.x)
+    bow = hourglass(whole, area) if X.shape[1] == 4 else None
     parts: list[list[Rows]] = [[], [], [], []]
     for share, chosen in DIVISIONS[X.shape[1]]:
         corners = list(chosen)
@@ -178,6 +179,7 @@ def _matrices(
                 1,
             ),
             share=share,
+            bow=None if bow is None else (-1) ** corners[1] * (R @ bow),
         )
         found = membrane(each, t, material), bending(each, t, material), *mass(each)
         for part, rows in zip(parts, found, strict=True):
@@ -186,6 +188,17 @@ def _matrices(
         products(*(np.concatenate(each, 1) for each in zip(*part, strict=True))) for part in parts
     )
     return [stretched + products(*shear(whole, t, material)), bent, moved, turned]
+
+
+def hourglass(each: Elements, area: Floats) -> Floats:
+    """Return what is not linear in d and v, half the bow of a diagonal (elements, 3, 1 + n).
+
+    That is zero for linear fields, and the coefficient of xi eta in a parallelogram.
+    """
+    opposite = [areas(each.x[:, np.arange(4) != corner]) for corner in range(4)]
+    weights = np.stack(opposite, 1) * [1, -1, 1, -1] / (2 * area[:, None])
+    fields = np.concatenate([each.d[..., None], each.V], 3)
+    return np.asarray((weights[..., None, None] * fields).sum(1))
 
 
 def products(B: Floats, D: Floats) -> Floats:
