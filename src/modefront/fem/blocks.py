@@ -20,7 +20,7 @@ from modefront.fem.check import (
 )
 from modefront.fem.elements.beam import beam
 from modefront.fem.elements.point import lumped_mass, spring
-from modefront.fem.elements.shell import breadths, directors, shell
+from modefront.fem.elements.shell import directors, narrowness, shell
 from modefront.fem.elements.solid import SOLIDS, solid
 from modefront.fem.scatter import Block
 from modefront.fem.section import Checks, FemError
@@ -42,7 +42,7 @@ def element_blocks(
     shells = [each for each in groups if isinstance(each, Shells)]
     cells = [checks.attempt(_shell_cells, X, each) for each in shells]
     sound = [each for each in cells if each is not None]
-    shared = iter(zip(directors(X, sound), breadths(X, sound), strict=True) if sound else ())
+    shared = iter(zip(directors(X, sound), narrowness(X, sound), strict=True) if sound else ())
     blocks: list[Block | None] = [
         _shells(X, group, each, *next(shared))
         for group, each in zip(shells, cells, strict=True)
@@ -97,8 +97,8 @@ def _shell_cells(X: Floats, group: Shells) -> Ints:
     return cells
 
 
-def _shells(X: Floats, group: Shells, cells: Ints, d: Floats, breadth: Floats) -> Block:
-    matrices = shell(X[cells], d, breadth, group.material, group.thickness, group.offset)
+def _shells(X: Floats, group: Shells, cells: Ints, d: Floats, narrow: Floats) -> Block:
+    matrices = shell(X[cells], d, narrow, group.material, group.thickness, group.offset)
     return Block(group.name, cells, SIX, matrices)
 
 

@@ -14,8 +14,9 @@ bends and twists rather than shears,
     c = -3/2 gamma_0 / (1 + phi),   phi = 12 (D / |e|^2 + G t^3 / 12 / b^2) / (kappa_s G t),
 
 with the bending stiffness D over the length of the side, the twisting stiffness over the breadth b
-of the elements across it, and kappa_s = 5/6: without the second, that is the exact beam. Elements
-with a side in common have the same c there, which the patch test needs.
+of quadrilaterals across it, and kappa_s = 5/6: without the second, that is the exact beam, and of
+triangles, in which shear cannot change along a side. Elements with a side in common have the same c
+there, which the patch test needs.
 gamma_k = gamma_0 phi / (1 + phi) then vanishes in thin shells, where triangles are those of
 discrete Kirchhoff constraints, and nothing can lock. Between the sides, gamma has constant
 components along those of a triangle, linear ones in a quadrilateral. phi is that of the nominal
@@ -105,7 +106,7 @@ class Elements:
     d : directors (elements, corners, 3)
     U, V : displacements, and increments of the directors (elements, corners, 3, n)
     theta : rotations about the local third axis (elements, corners, n)
-    breadth : across each side, from a corner to the next one (elements, corners)
+    narrow : 1 / b^2 of each side, from a corner to the next one (elements, corners)
     share : factor on all integrals
     bow : bilinear part of d and v, at the third side of a triangle (elements, 3, 1 + n)
     """
@@ -115,7 +116,7 @@ class Elements:
     U: Floats
     V: Floats
     theta: Floats
-    breadth: Floats
+    narrow: Floats
     share: float
     bow: Floats | None = None
 
@@ -145,7 +146,7 @@ class Elements:
             L2 = (e**2).sum(2)
             rise = (self.d[:, i] + self.d[:, j])[:, None] / 2 @ (self.U[:, j] - self.U[:, i])
             gamma = (rise + e @ (self.V[:, i] + self.V[:, j]) / 2)[:, 0]
-            phi = t**2 / KAPPA * (2 / (1 - nu) / L2 + 1 / self.breadth[:, i, None] ** 2)
+            phi = t**2 / KAPPA * (2 / (1 - nu) / L2 + self.narrow[:, i, None])
             yield Side(i, j, e, gamma, phi)
 
 

@@ -87,17 +87,17 @@ def areas(X: Floats) -> Floats:
     return np.asarray(np.linalg.norm(np.cross(X, np.roll(X, -1, axis=1)).sum(1), axis=1) / 2)
 
 
-def breadths(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
-    """Mean breadth of the elements across each of their sides (elements, corners), by block.
+def narrowness(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
+    """1 / b^2 of each side (elements, corners), by block: the mean over the elements there.
 
-    That is the area of a quadrilateral, and twice that of a triangle, over the length of the side.
+    The breadth b of a quadrilateral is its area over the length of the side.
     """
     ends, own = [], []
     for each in cells:
         following = np.roll(each, -1, axis=1)
         length = np.linalg.norm(X[following] - X[each], axis=2)
         ends.append(np.stack([each, following], 2).reshape(-1, 2))
-        own.append((areas(X[each])[:, None] * (2 if each.shape[1] == 3 else 1) / length).ravel())
+        own.append(((each.shape[1] == 4) * (length / areas(X[each])[:, None]) ** 2).ravel())
     pairs = np.sort(np.concatenate(ends), axis=1)
     _, side = np.unique(pairs @ [len(X), 1], return_inverse=True)
     mean = np.bincount(side, np.concatenate(own)) / np.bincount(side)
@@ -123,7 +123,7 @@ def axes(X: Floats) -> Floats:
 
 # 6 arguments: what elements have, and what they share with others.
 def shell(
-    X: Floats, d: Floats, breadth: Floats, material: Material, thickness: float, offset: float
+    X: Floats, d: Floats, narrow: Floats, material: Material, thickness: float, offset: float
 ) -> ElementMatrices:
     """Matrices of shells, DOFs (u, r) node by node in global axes.
 
@@ -131,13 +131,13 @@ def shell(
     ----------
     X : nodes (elements, 3 or 4, 3), counter-clockwise about the normal
     d : `directors` (elements, 3 or 4, 3)
-    breadth : `breadths` (elements, 3 or 4)
+    narrow : `narrowness` (elements, 3 or 4)
     material, thickness : isotropic; thickness in units of length
     offset : distance of the mid-surface from the nodes along the directors
     """
     t, rho = thickness, material.rho
     pieces = [
-        _matrices(X[some], d[some], breadth[some], material, t, offset)
+        _matrices(X[some], d[some], narrow[some], material, t, offset)
         for some in (slice(first, first + AT_ONCE) for first in range(0, len(X), AT_ONCE))
     ]
     K1, K3, M1, M3 = (np.concatenate(each) for each in zip(*pieces, strict=True))
@@ -148,13 +148,13 @@ def shell(
 
 
 def _matrices(
-    X: Floats, d: Floats, breadth: Floats, material: Material, t: float, offset: float
+    X: Floats, d: Floats, narrow: Floats, material: Material, t: float, offset: float
 ) -> list[Floats]:
     """Return stiffness and mass by t and t^3, (elements, n, n) each."""
     r = offset * d
     A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)
     U, omega = A[:, :, :3], A[:, :, 3:]
-    whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], breadth, 1.0)
+    whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], narrow, 1.0)
     area = areas(whole.x)
     bow = hourglass(whole, area) if X.shape[1] == 4 else None
     parts: list[list[Rows]] = [[], [], [], []]
@@ -169,11 +169,11 @@ def _matrices(
             U=R[:, None] @ U[:, corners],
             V=R[:, None] @ whole.V[:, corners],
             theta=(R[:, None] @ omega[:, corners])[:, :, 2],
-            breadth=np.stack(
+            narrow=np.stack(
                 [
-                    breadth[:, i]
+                    narrow[:, i]
                     if (j - i) % X.shape[1] == 1
-                    else area / np.linalg.norm(whole.x[:, j] - whole.x[:, i], axis=1)
+                    else ((whole.x[:, j] - whole.x[:, i]) ** 2).sum(1) / area**2
                     for i, j in zip(corners, np.roll(corners, -1), strict=True)
                 ],
                 1,
