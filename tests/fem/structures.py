@@ -13,7 +13,7 @@ from modefront._typing import Floats, Ints
 from modefront.fem.elements.beam import beam
 from modefront.fem.elements.common import ElementMatrices, elasticity
 from modefront.fem.elements.shapes import CUBE_EDGES, TETRAHEDRON_EDGES, WEDGE_EDGES, Edges
-from modefront.fem.elements.shell import breadths, directors, shell
+from modefront.fem.elements.shell import directors, narrowness, shell
 from modefront.fem.elements.solid import solid
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
@@ -80,8 +80,8 @@ def _beam(X: Floats, r: Floats) -> ElementMatrices:
 
 def _shell(X: Floats, thickness: float, offset: float) -> ElementMatrices:
     nodes, cells = X.reshape(-1, 3), [np.arange(len(X) * len(X[0])).reshape(len(X), -1)]
-    (d,), (breadth,) = directors(nodes, cells), breadths(nodes, cells)
-    return shell(X, d, breadth, X[:, 1] - X[:, 0], STEEL, thickness, offset)
+    (d,), (narrow,) = directors(nodes, cells), narrowness(nodes, cells)
+    return shell(X, d, narrow, X[:, 1] - X[:, 0], STEEL, thickness, offset)
 
 
 # name: (nodes, directions of each node, element)

@@ -26,7 +26,7 @@ from modefront.fem.elements.beam import beam, truss
 from modefront.fem.elements.common import attachment, elasticity, ply
 from modefront.fem.elements.internal import centre_axes, shell_stresses, solid_stresses
 from modefront.fem.elements.point import lumped_mass, spring
-from modefront.fem.elements.shell import breadths, directors, shell
+from modefront.fem.elements.shell import directors, narrowness, shell
 from modefront.fem.elements.solid import SOLIDS, solid
 from modefront.fem.scatter import Block
 from modefront.fem.section import Checks, FemError, Material
@@ -46,7 +46,7 @@ def element_blocks(X: Floats, groups: Sequence[Group], checks: Checks) -> list[B
     shells = [each for each in groups if isinstance(each, Shells)]
     cells = [checks.attempt(_shell_cells, X, each) for each in shells]
     sound = [each for each in cells if each is not None]
-    shared = iter(zip(directors(X, sound), breadths(X, sound), strict=True) if sound else ())
+    shared = iter(zip(directors(X, sound), narrowness(X, sound), strict=True) if sound else ())
     blocks: list[Block | None] = [
         checks.attempt(_shells, X, group, each, *next(shared))
         for group, each in zip(shells, cells, strict=True)
@@ -132,10 +132,10 @@ def _shell_cells(X: Floats, group: Shells) -> Ints:
     return cells
 
 
-def _shells(X: Floats, group: Shells, cells: Ints, d: Floats, breadth: Floats) -> Block:
+def _shells(X: Floats, group: Shells, cells: Ints, d: Floats, narrow: Floats) -> Block:
     x, r, t = X[cells], group.offset * d, group.thickness
     m = _grain(x, group)
-    made = shell(x, d, breadth, m, group.material, t, group.offset)
+    made = shell(x, d, narrow, m, group.material, t, group.offset)
     internal = partial(shell_stresses, x, r, m, ply(group.material), t)
     return Block(group.name, cells, SIX, made, rigid=True, internal=internal)
 

@@ -14,8 +14,9 @@ bends and twists rather than shears,
     c = -3/2 gamma_0 / (1 + phi),   phi = 12 (D / |e|^2 + G t^3 / 12 / b^2) / (kappa_s G t),
 
 with the bending stiffness D over the length of the side, the twisting stiffness over the breadth b
-of the elements across it, and kappa_s = 5/6: without the second, that is the exact beam. Elements
-with a side in common have the same c there, which the patch test needs.
+of quadrilaterals across it, and kappa_s = 5/6: without the second, that is the exact beam, and of
+triangles, in which shear cannot change along a side. Elements with a side in common have the same c
+there, which the patch test needs.
 gamma_k = gamma_0 phi / (1 + phi) then vanishes in thin shells, where triangles are those of
 discrete Kirchhoff constraints, and nothing can lock. Between the sides, gamma has constant
 components along those of a triangle, linear ones in a quadrilateral. phi is that of the nominal
@@ -105,9 +106,10 @@ class Elements:
     d : directors (elements, corners, 3)
     U, V : displacements, and increments of the directors (elements, corners, 3, n)
     theta : rotations about the local third axis (elements, corners, n)
-    breadth : across each side, from a corner to the next one (elements, corners)
+    narrow : 1 / b^2 of each side, from a corner to the next one (elements, corners)
     m : axis 1 of the material (elements, 3), not across the shell
     share : factor on all integrals
+    bow : bilinear part of d and v, at the third side of a triangle (elements, 3, 1 + n)
     """
 
     x: Floats
@@ -115,9 +117,10 @@ class Elements:
     U: Floats
     V: Floats
     theta: Floats
-    breadth: Floats
+    narrow: Floats
     m: Floats
     share: float
+    bow: Floats | None = None
 
     @cached_property
     def J(self) -> Floats:
@@ -149,7 +152,7 @@ class Elements:
             bend, twist, across = material.along(c2)
             rise = (self.d[:, i] + self.d[:, j])[:, None] / 2 @ (self.U[:, j] - self.U[:, i])
             gamma = (rise + e @ (self.V[:, i] + self.V[:, j]) / 2)[:, 0]
-            phi = t**2 / KAPPA / across * (bend / L2 + twist / self.breadth[:, i, None] ** 2)
+            phi = t**2 / KAPPA / across * (bend / L2 + twist * self.narrow[:, i, None])
             yield Side(i, j, e, gamma, phi)
 
 
@@ -164,12 +167,17 @@ def bending(each: Elements, t: float, material: Ply) -> Rows:
     H = grad_v[:, :, :2] + (g @ each.d)[:, None] @ grad_u
     kappa = np.stack([H[:, 0, 0], H[:, 1, 1], H[:, 0, 1] + H[:, 1, 0]], 1)[:, None]
     g_mid = inverse @ np.swapaxes(TRIANGLE_6.shape(MIDDLES)[1][:, 3:], 1, 2)
-    bulges, strains = [], []
     for k, side in enumerate(each.sheared(t, material)):
-        bulges.append(-1.5 / (1 + side.phi) / (side.e**2).sum(2) * side.gamma)
-        (gx, gy), (ex, ey, _) = np.moveaxis(g_mid[..., k], 2, 0), np.moveaxis(side.e, 2, 0)
-        strains.append(np.stack([gx * ex, gy * ey, gx * ey + gy * ex], -1))
-    kappa = kappa + np.stack(strains, -1) @ np.stack(bulges, 1)[:, None]
+        scale = -1.5 / (1 + side.phi) / (side.e**2).sum(2)
+        bulge = np.swapaxes(side.e, 1, 2)[:, :2] * (scale * side.gamma)[:, None]
+        if each.bow is not None and k == 2:
+            turned = (each.bow[:, None, None, :, 0] @ grad_u)[:, :, 0]
+            bow = each.bow[:, :2, 1:] + turned
+            bulge = bulge + (side.phi / (1 + side.phi))[:, None] * bow
+        slope = g_mid[:, :, :, k, None]
+        x, y = slope[:, :, 0] * bulge[:, None, 0], slope[:, :, 1] * bulge[:, None, 1]
+        xy = slope[:, :, 0] * bulge[:, None, 1] + slope[:, :, 1] * bulge[:, None, 0]
+        kappa = kappa + np.stack([x, y, xy], 2)
     return each.integrand(kappa, material.turned(each.m[:, :2])[:, None] / 12)
 
 

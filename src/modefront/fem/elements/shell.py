@@ -45,9 +45,9 @@ FOLD = 20.0
 
 DIVISIONS = {
     3: ((1.0, (0, 1, 2)),),
-    4: tuple((0.5, corners) for corners in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))),
+    4: tuple((0.5, corners) for corners in ((1, 2, 3), (2, 3, 0), (3, 0, 1), (0, 1, 2))),
 }
-"""Share and corners of the triangles that make an element."""
+"""Share and corners of the triangles that make an element, a diagonal of it as their third side."""
 
 
 AT_ONCE = 1000
@@ -89,17 +89,17 @@ def areas(X: Floats) -> Floats:
     return np.asarray(np.linalg.norm(np.cross(X, np.roll(X, -1, axis=1)).sum(1), axis=1) / 2)
 
 
-def breadths(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
-    """Mean breadth of the elements across each of their sides (elements, corners), by block.
+def narrowness(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
+    """1 / b^2 of each side (elements, corners), by block: the mean over the elements there.
 
-    That is the area of a quadrilateral, and twice that of a triangle, over the length of the side.
+    The breadth b of a quadrilateral is its area over the length of the side.
     """
     ends, own = [], []
     for each in cells:
         following = np.roll(each, -1, axis=1)
         length = np.linalg.norm(X[following] - X[each], axis=2)
         ends.append(np.stack([each, following], 2).reshape(-1, 2))
-        own.append((areas(X[each])[:, None] * (2 if each.shape[1] == 3 else 1) / length).ravel())
+        own.append(((each.shape[1] == 4) * (length / areas(X[each])[:, None]) ** 2).ravel())
     pairs = np.sort(np.concatenate(ends), axis=1)
     _, side = np.unique(pairs @ [len(X), 1], return_inverse=True)
     mean = np.bincount(side, np.concatenate(own)) / np.bincount(side)
@@ -127,7 +127,7 @@ def axes(X: Floats) -> Floats:
 def shell(
     X: Floats,
     d: Floats,
-    breadth: Floats,
+    narrow: Floats,
     m: Floats,
     material: Material | Orthotropic,
     thickness: float,
@@ -139,14 +139,14 @@ def shell(
     ----------
     X : nodes (elements, 3 or 4, 3), counter-clockwise about the normal
     d : `directors` (elements, 3 or 4, 3)
-    breadth : `breadths` (elements, 3 or 4)
+    narrow : `narrowness` (elements, 3 or 4)
     m : vectors (elements, 3) in the shell along axis 1 of the material
     material, thickness : of all elements; thickness in units of length
     offset : distance of the mid-surface from the nodes along the directors
     """
     t, rho = thickness, material.rho
     pieces = [
-        _matrices(X[some], d[some], breadth[some], m[some], ply(material), t, offset)
+        _matrices(X[some], d[some], narrow[some], m[some], ply(material), t, offset)
         for some in (slice(first, first + AT_ONCE) for first in range(0, len(X), AT_ONCE))
     ]
     K1, K3, M1, M3 = (np.concatenate(each) for each in zip(*pieces, strict=True))
@@ -158,14 +158,15 @@ def shell(
 
 # 7 arguments: those of `shell`.
 def _matrices(
-    X: Floats, d: Floats, breadth: Floats, m: Floats, material: Ply, t: float, offset: float
+    X: Floats, d: Floats, narrow: Floats, m: Floats, material: Ply, t: float, offset: float
 ) -> list[Floats]:
     """Return stiffness and mass by t and t^3, (elements, n, n) each."""
     r = offset * d
     A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)
     U, omega = A[:, :, :3], A[:, :, 3:]
-    whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], breadth, m, 1.0)
+    whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], narrow, m, 1.0)
     area = areas(whole.x)
+    bow = hourglass(whole, area) if X.shape[1] == 4 else None
     parts: list[list[Rows]] = [[], [], [], []]
     for share, chosen in DIVISIONS[X.shape[1]]:
         corners = list(chosen)
@@ -178,17 +179,18 @@ def _matrices(
             U=R[:, None] @ U[:, corners],
             V=R[:, None] @ whole.V[:, corners],
             theta=(R[:, None] @ omega[:, corners])[:, :, 2],
-            breadth=np.stack(
+            narrow=np.stack(
                 [
-                    breadth[:, i]
+                    narrow[:, i]
                     if (j - i) % X.shape[1] == 1
-                    else area / np.linalg.norm(whole.x[:, j] - whole.x[:, i], axis=1)
+                    else ((whole.x[:, j] - whole.x[:, i]) ** 2).sum(1) / area**2
                     for i, j in zip(corners, np.roll(corners, -1), strict=True)
                 ],
                 1,
             ),
             m=(R @ m[:, :, None])[..., 0],
             share=share,
+            bow=None if bow is None else (-1) ** corners[1] * (R @ bow),
         )
         found = membrane(each, t, material), bending(each, t, material), *mass(each)
         for part, rows in zip(parts, found, strict=True):
@@ -197,6 +199,17 @@ def _matrices(
         products(*(np.concatenate(each, 1) for each in zip(*part, strict=True))) for part in parts
     )
     return [stretched + products(*shear(whole, t, material)), bent, moved, turned]
+
+
+def hourglass(each: Elements, area: Floats) -> Floats:
+    """Return what is not linear in d and v, half the bow of a diagonal (elements, 3, 1 + n).
+
+    That is zero for linear fields, and the coefficient of xi eta in a parallelogram.
+    """
+    opposite = [areas(each.x[:, np.arange(4) != corner]) for corner in range(4)]
+    weights = np.stack(opposite, 1) * [1, -1, 1, -1] / (2 * area[:, None])
+    fields = np.concatenate([each.d[..., None], each.V], 3)
+    return np.asarray((weights[..., None, None] * fields).sum(1))
 
 
 def products(B: Floats, D: Floats) -> Floats:
