@@ -210,12 +210,12 @@ WRONG = [
     (
         "[[model.link]]\nmaster = 22\nslaves = [21, 23]",
         "[[model.coupling]]\nnode = 22\nof = [21, 23]\nweights = [1]",
-        "weights: expected one for each of 2 nodes, found 1",
+        "coupling 0: expected other nodes than 22, with a weight above 0 for each",
     ),
     (
         "[[model.link]]",
         '[[model.load]]\nname = "P"\nnodes = 20\n[[model.link]]',
-        "('P'): expected nodes and force together, found nodes",
+        "load 'P': expected nodes and a force on them, found one without the other",
     ),
     (
         "[[model.link]]",

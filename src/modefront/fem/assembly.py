@@ -170,6 +170,7 @@ def _following(X: Floats, structure: Structure, checks: Checks) -> list[Follower
 def _link(X: Floats, link: Link, place: str) -> Followers:
     master = node_list(link.master, len(X), place)
     slaves = node_list(link.slaves, len(X), place)
+    slaves = slaves[slaves != master[0]]
     return rigid_link(X, master[0], slaves, direction_indices(link.directions, place))
 
 

@@ -54,7 +54,9 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools, place: str) -> F
             f" and {load.acceleration!r}"
         )
     f = np.zeros(exists.shape)
-    if np.size(load.nodes):
+    if (np.size(load.nodes) > 0) != force.any():
+        raise FemError(f"{place}: expected nodes and a force on them, found one without the other")
+    if force.any():
         f[node_list(load.nodes, len(f), place), : len(force)] = force
     nowhere = np.argwhere((f != 0) & ~exists)
     if len(nowhere):

@@ -181,7 +181,7 @@ class Link:
     Attributes
     ----------
     master : node, counted from 0
-    slaves : a node, or (nodes,)
+    slaves : a node, or (nodes,); the master itself is left out
     directions : of x, y, z, rx, ry, rz; all of them unless given
     """
 
