@@ -197,7 +197,7 @@ def membrane(n: int, within: float) -> Case:
 CASES = {
     "FV2": Case("double cross, 32 beams", CROSS, double_cross, 1.0),
     "FV4": Case("masses off the end of a cantilever, 5 beams", MASSES, point_masses, 1.0),
-    "FV5": Case("deep beam, 5 beams", DEEP, deep_beam, 6.5),
+    "FV5": Case("deep beam, 5 beams", DEEP, deep_beam, 3.0),
     "FV12": plate(FREE, 1.0, 0.05, 8, "free"),
     "FV15": plate(THIN, 4.5, 0.05, 12, "all"),
     "FV15, finer": plate(THIN, 2.0, 0.05, 24, "all"),

@@ -127,6 +127,25 @@ def test_bending_and_twist_are_coupled_by_the_shear_centre() -> None:
         assert np.abs(found / each - 1).min() < 1e-3
 
 
+@pytest.mark.parametrize("kind", ["bar", "beam", "twist"])
+def test_axial_motion_and_twist_converge_with_the_fourth_power(kind: str) -> None:
+    # The third mode of a clamped and free bar: omega = 5 pi / 2 c / L.
+    errors = []
+    for count in (4, 8, 16):
+        X, cells, group = span(2.0, count)
+        free = "rx" if kind == "twist" else "x"
+        held = [fem.Support(0, (free,))]
+        held += [fem.Support(np.arange(count + 1), tuple(d for d in fem.ALL if d != free))]
+        bars = fem.Trusses("bar", cells, STEEL, SLENDER.A)
+        model = fem.assemble(fem.Structure(X, (bars if kind == "bar" else group,), held))
+        speed = STEEL.E / STEEL.rho
+        if kind == "twist":
+            speed = STEEL.G * SLENDER.J / STEEL.rho / (SLENDER.I_y + SLENDER.I_z)
+        theory = 2.5 * np.pi * np.sqrt(speed) / 2.0
+        errors.append(frequencies(model, 3)[2] / theory - 1)
+    assert rate(errors) == pytest.approx([4.0, 4.0], abs=0.4)
+
+
 # --- bars -------------------------------------------------------------------------------------
 
 
@@ -141,6 +160,7 @@ def test_bars_carry_axial_forces_only() -> None:
     assert len(model.dofs.free) == 3
     assert stiffness(model) == pytest.approx(K, rel=1e-12)
     M = np.eye(3) * STEEL.rho * 1e-3 * L.sum() / 3
+    M += (along / L).T @ (STEEL.rho * 1e-3 * L / 12 * along / L)
     assert model.mass.at(NONE).toarray() == pytest.approx(M, rel=1e-12)
 
 
