@@ -5,13 +5,14 @@
 prints the least and the greatest error of the first five frequencies in per cent, of quadrilaterals
 and of triangles, at 8, 16 and 32 elements a side: of hinged square plates against Mindlin's closed
 form, of all others against solids of high order, which are made here; and deflections of published
-problems. NAME is a part of what is printed: without any, all are, which takes half an hour.
+problems. NAME is a part of what is printed: without any, all are, which takes half an hour; the
+others are bricks and thickness.
 """
 
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from itertools import product
 from typing import NamedTuple
@@ -33,10 +34,10 @@ Surface = Callable[[Floats, Floats, Floats], Floats]
 """Points (nodes, 3) at the height z over the point (x, y) of the unit square."""
 
 
-def frequencies(structure: fem.Structure, count: int = 5) -> Floats:
+def frequencies(structure: fem.Structure, count: int = 5, theta: Sequence[float] = ()) -> Floats:
     """Return the first circular frequencies of a structure."""
-    model = fem.assemble(structure)
-    K, M = model.stiffness.at(np.zeros(0)).tocsc(), model.mass.at(np.zeros(0)).tocsc()
+    model, at = fem.assemble(structure), np.array(theta, dtype=float)
+    K, M = model.stiffness.at(at).tocsc(), model.mass.at(at).tocsc()
     return np.sqrt(np.sort(eigsh(K, count, M, sigma=0.0, return_eigenvectors=False)))
 
 
@@ -162,8 +163,10 @@ def shell(surface: Surface, clamped: str, h: float, n: int, triangles: bool) -> 
 
 
 LINES = np.array([0.0, 0.04, 0.16, 0.33, 0.5, 0.67, 0.84, 0.96, 1.0])
+FINER = np.array([0.0, 0.004, 0.02, 0.07, 0.18, 0.34, 0.5, 0.66, 0.82, 0.93, 0.98, 0.996, 1.0])
 DEGREE = 5
-"""Elements of the solids of high order in each direction of the surface, and their degree."""
+"""Elements of the solids of high order in each direction of the surface, and their degree; those
+that resolve the corners of hinged skew plates."""
 
 
 def lobatto(degree: int) -> Floats:
@@ -172,13 +175,15 @@ def lobatto(degree: int) -> Floats:
     return np.concatenate([[-1.0], np.sort(inner), [1.0]])
 
 
-def solid_of_high_order(surface: Surface, h: float, held: Callable[[Floats], Bools]) -> Floats:
+def solid_of_high_order(
+    surface: Surface, h: float, held: Callable[[Floats], Bools], lines: Floats = LINES
+) -> Floats:
     """Return the frequencies of a solid about a surface, as accurate as four digits.
 
     Over the thickness, degree 2 has the stretch and the bending of thin ones, 4 the shear of thick
     ones. ``held`` says which displacements (nodes, 3) are held at points (nodes, 3) of the square.
     """
-    through, lines = (4, LINES[[0, 1, 3, 4, 5, 7, 8]]) if h >= 0.1 else (2, LINES)
+    through, lines = (4, LINES[[0, 1, 3, 4, 5, 7, 8]]) if h >= 0.1 else (2, lines)
     degrees = (DEGREE, DEGREE, through)
     cell = Cell(
         np.array(list(product(*map(lobatto, degrees)))),
@@ -239,7 +244,7 @@ def cases() -> Iterator[Case]:
             held = partial(held_at, "all", hinged=not clamped)
             yield Case(
                 f"{kind}, {angle:g}°, h = {h:g}",
-                partial(solid_of_high_order, skew(angle), h, held),
+                partial(solid_of_high_order, skew(angle), h, held, LINES if clamped else FINER),
                 partial(plate, h, angle, clamped),
             )
     for name, surface, clamped_at, thicknesses in SHELLS:
@@ -372,6 +377,25 @@ def bricks() -> None:
         print(f"{count} bricks, {distortion:g}: {text}", flush=True)
 
 
+def thickness() -> None:
+    """Print how far frequencies at other thicknesses than the nominal one are from a new model's."""
+    for angle, size in product((0.0, 45.0), (6.0, 4.0, 1.0)):
+        X, cells = fem.grids.plate(1.0, 1.0, 12, 12)
+        held = (fem.Support(at_edges(X, "all")),)
+        parameter = (fem.Parameter("t", "thickness", ("plate",)),)
+        h, errors = 1 / 12 / size, []
+        for factor, kind in product((0.5, 0.9, 1.1, 2.0), (False, True)):
+            own, new = (
+                fem.Shells("plate", divided(cells, kind, angle > 0), STEEL, t)
+                for t in (h, h * factor)
+            )
+            structure = fem.Structure(skew(angle)(*X.T), (own,), held, parameters=parameter)
+            w = frequencies(fem.Structure(skew(angle)(*X.T), (new,), held))
+            errors.append(np.abs(frequencies(structure, theta=[factor]) / w - 1).max())
+        text = "  ".join(f"{100 * error:.2f}" for error in errors)
+        print(f"{angle:g}°, size {size:g} t, at 0.5, 0.9, 1.1, 2 of t: {text} %", flush=True)
+
+
 def main(names: list[str]) -> None:
     """Print all errors, or those whose names have one of the given parts."""
     print(f"target {TARGET:g} % at 16: quadrilaterals at 8, 16, 32 elements a side   triangles")
@@ -391,6 +415,8 @@ def main(names: list[str]) -> None:
     print(f"{sum(held)} of {len(held)} hold, of quadrilaterals and triangles")
     if not names or "bricks" in names:
         bricks()
+    if not names or "thickness" in names:
+        thickness()
 
 
 if __name__ == "__main__":

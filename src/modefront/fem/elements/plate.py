@@ -107,7 +107,7 @@ class Elements:
     U, V : displacements, and increments of the directors (elements, corners, 3, n)
     theta : rotations about the local third axis (elements, corners, n)
     narrow : 1 / b^2 of each side, from a corner to the next one (elements, corners)
-    share : factor on all integrals
+    share : factor on all integrals, one or (elements, 1)
     bow : bilinear part of d and v, at the third side of a triangle (elements, 3, 1 + n)
     """
 
@@ -117,7 +117,7 @@ class Elements:
     V: Floats
     theta: Floats
     narrow: Floats
-    share: float
+    share: float | Floats
     bow: Floats | None = None
 
     @cached_property
@@ -189,7 +189,7 @@ def shear(each: Elements, t: float, material: Material) -> Rows:
     metric = a @ np.swapaxes(a, 2, 3)
     weight = KAPPA * material.G * w * np.sqrt(np.linalg.det(metric))
     B = np.stack(fields, -1) @ np.stack(shears, 1)[:, None]
-    return B, each.share * weight[..., None, None] * np.linalg.inv(metric)
+    return B, weight[..., None, None] * np.linalg.inv(metric)
 
 
 def mass(each: Elements) -> tuple[Rows, Rows]:
