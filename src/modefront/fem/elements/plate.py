@@ -108,7 +108,7 @@ class Elements:
     theta : rotations about the local third axis (elements, corners, n)
     narrow : 1 / b^2 of each side, from a corner to the next one (elements, corners)
     m : axis 1 of the material (elements, 3), not across the shell
-    share : factor on all integrals
+    share : factor on all integrals, one or (elements, 1)
     bow : bilinear part of d and v, at the third side of a triangle (elements, 3, 1 + n)
     """
 
@@ -119,7 +119,7 @@ class Elements:
     theta: Floats
     narrow: Floats
     m: Floats
-    share: float
+    share: float | Floats
     bow: Floats | None = None
 
     @cached_property
@@ -193,7 +193,7 @@ def shear(each: Elements, t: float, material: Ply) -> Rows:
         shears.append(phi / (1 + phi) * gamma)
     a = np.swapaxes(dN, 1, 2) @ each.x[:, None]
     metric = a @ np.swapaxes(a, 2, 3)
-    weight = each.share * KAPPA * w * np.sqrt(np.linalg.det(metric))
+    weight = KAPPA * w * np.sqrt(np.linalg.det(metric))
     inverse = np.linalg.inv(metric)
     # G_23 in all directions of the tangent plane, and G_13 - G_23 along the material's axis 1.
     covariant = a @ each.m[:, None, :, None]

@@ -4,7 +4,8 @@ Matrices are exact sums of monomials of the thickness t,
 
     K = t (K_membrane + K_shear) + t^3 K_bending,     M = t M_translation + t^3 M_rotary.
 
-A quadrilateral is the mean of its two divisions into triangles; it may be warped and skew.
+A quadrilateral is the mean of its two divisions into triangles, with weights in inverse proportion
+to the squares of their diagonals; it may be warped and skew.
 The director of a node is the mean, by angle, of the normals of the elements there that differ by no
 more than `FOLD` from that of the element itself: across folds, elements have directors of their
 own, and the drilling rotation of one is the bending rotation of the next. Drilling rotations are
@@ -43,11 +44,8 @@ from modefront.fem.section import Material, Orthotropic
 FOLD = 20.0
 """Angle in degrees between elements from which on they meet in a fold."""
 
-DIVISIONS = {
-    3: ((1.0, (0, 1, 2)),),
-    4: tuple((0.5, corners) for corners in ((1, 2, 3), (2, 3, 0), (3, 0, 1), (0, 1, 2))),
-}
-"""Share and corners of the triangles that make an element, a diagonal of it as their third side."""
+DIVISIONS = {3: ((0, 1, 2),), 4: ((1, 2, 3), (2, 3, 0), (3, 0, 1), (0, 1, 2))}
+"""Corners of the triangles that make an element; in quadrilaterals, their third side is inside."""
 
 
 AT_ONCE = 1000
@@ -165,32 +163,26 @@ def _matrices(
     A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)
     U, omega = A[:, :, :3], A[:, :, 3:]
     whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], narrow, m, 1.0)
+    quadrilateral = X.shape[1] == 4
     area = areas(whole.x)
-    bow = hourglass(whole, area) if X.shape[1] == 4 else None
+    squares = ((whole.x[:, 2:] - whole.x[:, :-2]) ** 2).sum(2)
     parts: list[list[Rows]] = [[], [], [], []]
-    for share, chosen in DIVISIONS[X.shape[1]]:
-        corners = list(chosen)
+    for chosen in DIVISIONS[X.shape[1]]:
+        corners, odd = list(chosen), chosen[1] % 2
         x = whole.x[:, corners]
         R = axes(x)
         across = np.swapaxes(R, 1, 2)
+        third = squares[:, 1 - odd] / area**2 if quadrilateral else narrow[:, 2]
         each = Elements(
             x=(x - x[:, :1]) @ across,
             d=d[:, corners] @ across,
             U=R[:, None] @ U[:, corners],
             V=R[:, None] @ whole.V[:, corners],
             theta=(R[:, None] @ omega[:, corners])[:, :, 2],
-            narrow=np.stack(
-                [
-                    narrow[:, i]
-                    if (j - i) % X.shape[1] == 1
-                    else ((whole.x[:, j] - whole.x[:, i]) ** 2).sum(1) / area**2
-                    for i, j in zip(corners, np.roll(corners, -1), strict=True)
-                ],
-                1,
-            ),
+            narrow=np.stack([narrow[:, corners[0]], narrow[:, corners[1]], third], 1),
             m=(R @ m[:, :, None])[..., 0],
-            share=share,
-            bow=None if bow is None else (-1) ** corners[1] * (R @ bow),
+            share=squares[:, [odd]] / squares.sum(1, keepdims=True) if quadrilateral else 1.0,
+            bow=(1 - 2 * odd) * (R @ hourglass(whole, area)) if quadrilateral else None,
         )
         found = membrane(each, t, material), bending(each, t, material), *mass(each)
         for part, rows in zip(parts, found, strict=True):
