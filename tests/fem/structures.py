@@ -11,9 +11,9 @@ from scipy.sparse.linalg import eigsh
 from modefront import fem
 from modefront._typing import Floats, Ints
 from modefront.fem.elements.beam import beam
-from modefront.fem.elements.common import ElementMatrices
+from modefront.fem.elements.common import ElementMatrices, elasticity
 from modefront.fem.elements.shapes import CUBE_EDGES, TETRAHEDRON_EDGES, WEDGE_EDGES, Edges
-from modefront.fem.elements.shell import directors, shell
+from modefront.fem.elements.shell import directors, narrowness, shell
 from modefront.fem.elements.solid import solid
 
 STEEL = fem.Material(E=210e9, nu=0.3, rho=7850.0)
@@ -79,8 +79,9 @@ def _beam(X: Floats, r: Floats) -> ElementMatrices:
 
 
 def _shell(X: Floats, thickness: float, offset: float) -> ElementMatrices:
-    (d,) = directors(X.reshape(-1, 3), [np.arange(len(X) * len(X[0])).reshape(len(X), -1)])
-    return shell(X, d, STEEL, thickness, offset)
+    nodes, cells = X.reshape(-1, 3), [np.arange(len(X) * len(X[0])).reshape(len(X), -1)]
+    (d,), (narrow,) = directors(nodes, cells), narrowness(nodes, cells)
+    return shell(X, d, narrow, X[:, 1] - X[:, 0], STEEL, thickness, offset)
 
 
 # name: (nodes, directions of each node, element)
@@ -112,7 +113,7 @@ ELEMENTS: dict[str, tuple[Floats, int, Callable[[Floats], ElementMatrices]]] = {
         lambda X: _shell(X, 0.1, -0.2),
     ),
     **{
-        name: (X, 3, lambda X: solid(X, STEEL))
+        name: (X, 3, lambda X: solid(X, STEEL.rho, elasticity(STEEL, np.eye(3))))
         for name, X in {
             "brick": LEANING,
             "tetrahedron": _quadratic(TETRAHEDRON, TETRAHEDRON_EDGES),

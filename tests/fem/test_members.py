@@ -8,7 +8,8 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy import linalg
-from structures import STEEL, frequencies, rotation
+from scipy.sparse.linalg import eigsh
+from structures import STEEL, frequencies, rate, rotation
 
 from modefront import fem
 from modefront._typing import Floats, Ints
@@ -126,6 +127,25 @@ def test_bending_and_twist_are_coupled_by_the_shear_centre() -> None:
         assert np.abs(found / each - 1).min() < 1e-3
 
 
+@pytest.mark.parametrize("kind", ["bar", "beam", "twist"])
+def test_axial_motion_and_twist_converge_with_the_fourth_power(kind: str) -> None:
+    # The third mode of a clamped and free bar: omega = 5 pi / 2 c / L.
+    errors = []
+    for count in (4, 8, 16):
+        X, cells, group = span(2.0, count)
+        free = "rx" if kind == "twist" else "x"
+        held = [fem.Support(0, (free,))]
+        held += [fem.Support(np.arange(count + 1), tuple(d for d in fem.ALL if d != free))]
+        bars = fem.Trusses("bar", cells, STEEL, SLENDER.A)
+        model = fem.assemble(fem.Structure(X, (bars if kind == "bar" else group,), held))
+        speed = STEEL.E / STEEL.rho
+        if kind == "twist":
+            speed = STEEL.G * SLENDER.J / STEEL.rho / (SLENDER.I_y + SLENDER.I_z)
+        theory = 2.5 * np.pi * np.sqrt(speed) / 2.0
+        errors.append(frequencies(model, 3)[2] / theory - 1)
+    assert rate(errors) == pytest.approx([4.0, 4.0], abs=0.4)
+
+
 # --- bars -------------------------------------------------------------------------------------
 
 
@@ -140,6 +160,7 @@ def test_bars_carry_axial_forces_only() -> None:
     assert len(model.dofs.free) == 3
     assert stiffness(model) == pytest.approx(K, rel=1e-12)
     M = np.eye(3) * STEEL.rho * 1e-3 * L.sum() / 3
+    M += (along / L).T @ (STEEL.rho * 1e-3 * L / 12 * along / L)
     assert model.mass.at(NONE).toarray() == pytest.approx(M, rel=1e-12)
 
 
@@ -188,9 +209,9 @@ def column(
 
 def critical(model: fem.StructureMatrices) -> float:
     """The least factor on the load at which K is singular."""
-    K = stiffness(model, np.array([0.0]))
-    K_G = stiffness(model, np.array([1.0])) - K
-    return float(1 / np.max(linalg.eigh(-K_G, K, eigvals_only=True)))
+    K, with_load = (model.stiffness.at(np.array([theta])).tocsc() for theta in (0.0, 1.0))
+    (least,) = eigsh(K - with_load, 1, K, which="LA", return_eigenvectors=False)
+    return float(1 / least)
 
 
 EULER = np.pi**2 * STEEL.E * SLENDER.I_z / 9.0
@@ -235,6 +256,102 @@ def test_heated_column_between_walls() -> None:
     free = fem.assemble(structure)
     change = stiffness(free, np.array([1.0])) - stiffness(free, np.array([0.0]))
     assert abs(change).max() < 1e-9 * abs(stiffness(free, np.array([0.0]))).max()
+
+
+def hinged_plate(load: fem.Load, n: int = 12, held: tuple[fem.Support, ...] = ()) -> fem.Structure:
+    """A square plate of side 2 with hinged edges, of offset shells, that may move in its plane."""
+    X, cells = fem.grids.plate(2.0, 2.0, n, n)
+    on = np.isclose(X[:, :2], 0) | np.isclose(X[:, :2], 2.0)
+    supports = [
+        fem.Support(np.flatnonzero(on.any(1)), ("z",)),
+        fem.Support(np.flatnonzero(X[:, 0] == 0), ("x",)),
+        fem.Support(np.flatnonzero(X[:, 1] == 0), ("y",)),
+        *held,
+    ]
+    group = fem.Shells("plate", cells, STEEL, 0.01)
+    parameters = (fem.Parameter("N", "prestress", (load.name,)),)
+    return fem.Structure(X, (group,), supports, loads=(load,), parameters=parameters)
+
+
+D = STEEL.E * 0.01**3 / 12 / (1 - STEEL.nu**2)
+
+
+def edge_forces(n: int, total: float) -> list[fem.Load]:
+    """Forces along x at the edge x = 2 of the plate, uniform."""
+    edge = np.arange(n * (n + 1), (n + 1) ** 2)
+    inner, ends = total / n, total / n / 2
+    return [
+        fem.Load("N", edge[1:-1], (inner, 0, 0)),
+        fem.Load("ends", edge[[0, -1]], (ends, 0, 0)),
+    ]
+
+
+def test_plate_in_tension_and_compression() -> None:
+    # omega^2 = (D pi^4 (m^2 + n^2)^2 / a^4 + N pi^2 m^2 / a^2) / (rho h), a = 2.
+    n, N = 16, 0.5 * 4 * np.pi**2 * D / 4
+    loads = edge_forces(n, -2.0 * N)
+    structure = replace(
+        hinged_plate(loads[0], n),
+        loads=loads,
+        parameters=(fem.Parameter("N", "prestress", ("N", "ends")),),
+    )
+    model = fem.assemble(structure)
+    M = model.mass.at(np.ones(1)).tocsc()
+    for theta in (-2.0, 0.0, 1.0):
+        K = model.stiffness.at(np.array([theta])).tocsc()
+        w2 = np.sort(eigsh(K, 2, M, sigma=0.0, return_eigenvectors=False))
+        expected = [
+            (D * np.pi**4 * (m**2 + 1) ** 2 / 16 - theta * N * np.pi**2 * m**2 / 4) / 78.5
+            for m in (1, 2)
+        ]
+        expected.append((D * np.pi**4 * 25 / 16 - theta * N * np.pi**2 / 4) / 78.5)
+        assert w2 == pytest.approx(np.sort(expected)[:2], rel=0.02)
+    assert critical(model) == pytest.approx(2.0, rel=0.01)
+
+
+@pytest.mark.parametrize("offset", [0.0, 0.02])
+def test_heated_plate_between_walls(offset: float) -> None:
+    # G. H. Bryan, 1891: N = 2 pi^2 D / a^2 in both directions; N = E h strain / (1 - nu).
+    strain = 0.4 * 2 * np.pi**2 * D / 4 * (1 - STEEL.nu) / STEEL.E / 0.01
+    factors = []
+    for n in (8, 16):
+        plate = hinged_plate(fem.Load("heat", strains={"plate": strain}), n)
+        X, cells = fem.grids.plate(2.0, 2.0, n, n)
+        walls = [fem.Support(np.flatnonzero(X[:, d] == 2.0), ("xy"[d],)) for d in range(2)]
+        # The mid-surface is at the first nodes, those of the elements are rigid arms below them.
+        structure = replace(
+            plate,
+            nodes=np.concatenate([X, X - [0, 0, offset]]),
+            groups=(fem.Shells("plate", cells + len(X), STEEL, 0.01, offset),),
+            links=[fem.Link(k, [k + len(X)]) for k in range(len(X))],
+            supports=(*plate.supports, *walls),
+        )
+        factors.append(critical(fem.assemble(structure)) / 2.5 - 1)
+    assert 0 < factors[1] < 0.01
+    assert rate(factors)[0] == pytest.approx(2.0, abs=0.2)
+
+
+def test_column_of_bricks_buckles_at_the_load_of_euler() -> None:
+    X, bricks = fem.grids.box((4.0, 0.2, 0.1), (8, 1, 1))
+    X, bricks = fem.grids.quadratic_bricks(X, bricks)
+    top = np.flatnonzero(X[:, 0] == 4.0)
+    weight = np.where(np.isclose(X[top, 1:], [0.1, 0.05]).any(1), 1 / 3, -1 / 12)  # of a face
+    loads = [
+        fem.Load(f"P{k}", top[weight == w], (-w, 0, 0)) for k, w in enumerate(np.unique(weight))
+    ]
+    held = (fem.Support(np.flatnonzero(X[:, 0] == 0)),)
+    names = tuple(load.name for load in loads)
+    model = fem.assemble(
+        fem.Structure(
+            X,
+            (fem.Solids("column", bricks, replace(STEEL, nu=0.0)),),
+            held,
+            loads=loads,
+            parameters=(fem.Parameter("P", "prestress", names),),
+        )
+    )
+    euler = np.pi**2 * STEEL.E * 0.2 * 0.1**3 / 12 / 4 / 4.0**2
+    assert critical(model) == pytest.approx(euler, rel=0.01)
 
 
 def test_a_given_force_is_that_of_a_load() -> None:
@@ -350,7 +467,7 @@ def test_a_coupling_stiffens_nothing() -> None:
     structure = coupled(np.ones(6))
     mass = (fem.Mass("m", [len(RIM)], 3.0, (0.01, 0.02, 0.03)),)
     plain = fem.assemble(fem.Structure(RIM, (PLATE,), (FOOT,)))
-    assert stiffness(fem.assemble(structure)) == pytest.approx(stiffness(plain), abs=1e-3)
+    assert abs(stiffness(fem.assemble(structure)) - stiffness(plain)).max() < 1e-3
     found = fem.assemble(replace(structure, masses=mass))
     linked = replace(structure, couplings=(), links=(fem.Link(len(RIM), [*EDGE, 12]),), masses=mass)
     assert (frequencies(found, 3) < frequencies(fem.assemble(linked), 3)).all()
@@ -399,6 +516,117 @@ def test_oblique_supports_of_one_node_hold_what_both_hold() -> None:
     # One roller along (1, 1, 0): u = (a, -a, z).
     one = fem.assemble(fem.Structure(X, (), rollers[:1], springs, masses))
     assert frequencies(one, 2) == pytest.approx(np.sqrt([4.0, 7.0]))
+
+
+# --- orthotropic materials --------------------------------------------------------------------
+
+SPRUCE = fem.Orthotropic(E=(11e9, 0.9e9, 0.5e9), nu=(0.37, 0.42, 0.47), G=(0.7e9, 0.6e9, 0.05e9),
+                         rho=450.0)  # fmt: skip
+
+
+def test_oblique_stiffness_of_orthotropic_material() -> None:
+    # S. W. Tsai: 1 / E_x = c^4 / E_1 + s^4 / E_2 + (1 / G_12 - 2 nu_12 / E_1) s^2 c^2.
+    angle = np.radians(25.0)
+    c, s = np.cos(angle), np.sin(angle)
+    R = np.array([[c, s, 0], [-s, c, 0], [0, 0, 1]])
+    E, nu, G = SPRUCE.E, SPRUCE.nu, SPRUCE.G
+    expected = c**4 / E[0] + s**4 / E[1] + (1 / G[0] - 2 * nu[0] / E[0]) * s**2 * c**2
+    X, bricks = fem.grids.box((1.0, 0.3, 0.2), (3, 2, 2))
+    axes = (R[0].tolist(), R[1].tolist())
+    held = (
+        fem.Support(np.flatnonzero(X[:, 0] == 0), ("x",)),
+        fem.Support(0, ("y", "z")),
+        fem.Support(2, ("y",)),
+    )
+    end = np.flatnonzero(X[:, 0] == 1.0)
+    model = fem.assemble(fem.Structure(X, (fem.Solids("w", bricks, SPRUCE, axes),), held))
+    area = np.ones(len(end)) / 4  # of bricks at each node, over one brick
+    for d, size in ((1, 0.3), (2, 0.2)):
+        area[np.isclose(X[end, d], 0) | np.isclose(X[end, d], size)] /= 2
+    f = np.zeros((len(X), 6))
+    f[end, 0] = 1e3 * area
+    # Free to shear and contract: a state of uniform stress.
+    q = linalg.solve(stiffness(model), model.dofs.T.T @ f.ravel())
+    u = (model.dofs.T @ q).reshape(-1, 6)[end, 0]
+    assert u == pytest.approx(1e3 / 0.06 * expected, rel=1e-9)
+
+
+def spruce_plate(h: float, n: int, axis: Floats, Q: Floats | None = None) -> fem.Structure:
+    """A rectangular plate 1.0 by 0.8 with hinged edges, turned by Q; axis 1 along `axis`."""
+    X, cells = fem.grids.plate(1.0, 0.8, n, n)
+    Q = np.eye(3) if Q is None else Q
+    axes = (Q[0].tolist(), Q[1].tolist())
+    ends = [
+        np.flatnonzero(np.isclose(X[:, d], 0) | np.isclose(X[:, d], s))
+        for d, s in ((0, 1.0), (1, 0.8))
+    ]
+    held = [
+        fem.Support(np.arange(len(X)), ("x", "y", "rz"), axes),
+        fem.Support(ends[0], ("z", "rx"), axes),
+        fem.Support(ends[1], ("z", "ry"), axes),
+    ]
+    shells = fem.Shells("plate", cells, SPRUCE, h, direction=(axis @ Q).tolist())
+    return fem.Structure(X @ Q, (shells,), held)
+
+
+def navier(h: float, across: bool = False) -> Floats:
+    """Closed form of `spruce_plate` with shear (J. N. Reddy, "Mechanics of Laminated Plates")."""
+    S = SPRUCE.compliance()[np.ix_([0, 1, 5], [0, 1, 5])]
+    D = np.linalg.inv(S) * h**3 / 12
+    G_x, G_y = (5 / 6 * h * G for G in SPRUCE.G[1:])
+    if across:
+        D, (G_x, G_y) = D[np.ix_([1, 0, 2], [1, 0, 2])], (G_y, G_x)
+    found = []
+    for m in range(1, 5):
+        for n in range(1, 5):
+            a, b = m * np.pi, n * np.pi / 0.8
+            K = np.array([
+                [G_x * a**2 + G_y * b**2, G_x * a, G_y * b],
+                [G_x * a, D[0, 0] * a**2 + D[2, 2] * b**2 + G_x, (D[0, 1] + D[2, 2]) * a * b],
+                [G_y * b, (D[0, 1] + D[2, 2]) * a * b, D[2, 2] * a**2 + D[1, 1] * b**2 + G_y],
+            ])  # fmt: skip
+            M = SPRUCE.rho * np.diag([h, h**3 / 12, h**3 / 12])
+            found.append(linalg.eigh(K, M, eigvals_only=True)[0])
+    return np.sqrt(np.sort(found))
+
+
+@pytest.mark.parametrize(("h", "within"), [(0.002, 0.025), (0.08, 0.02)])
+@pytest.mark.parametrize("across", [False, True])
+def test_orthotropic_plates(h: float, within: float, across: bool) -> None:
+    axis = np.eye(3)[int(across)]
+    theory = navier(h, across)[:4]
+    w = frequencies(fem.assemble(spruce_plate(h, 16, axis)), 4)
+    assert w == pytest.approx(theory, rel=within)
+
+
+def test_turning_an_orthotropic_plate_changes_no_frequency() -> None:
+    axis = np.array([np.cos(0.4), np.sin(0.4), 0.0])
+    rest = frequencies(fem.assemble(spruce_plate(0.05, 6, axis)), 4)
+    Q = rotation(np.random.default_rng(9))
+    turned = frequencies(fem.assemble(spruce_plate(0.05, 6, axis, Q)), 4)
+    assert turned == pytest.approx(rest, rel=1e-7)
+
+
+def test_isotropic_constants_of_an_orthotropic_material_are_the_material() -> None:
+    E, nu, G = STEEL.E, STEEL.nu, STEEL.G
+    same = fem.Orthotropic((E, E, E), (nu, nu, nu), (G, G, G), STEEL.rho)
+    X, cells = fem.grids.plate(1.0, 0.5, 3, 2)
+    X[:, 2] = 0.3 * X[:, 0] ** 2 - 0.2 * X[:, 0] * X[:, 1]
+    B, bricks = fem.grids.box((1.0, 0.5, 0.5), (2, 1, 1))
+    for nodes, group in (
+        (X, fem.Shells("g", cells, STEEL, 0.05)),
+        (X, fem.Shells("g", fem.grids.triangles(cells), STEEL, 0.05)),
+        (B, fem.Solids("g", bricks, STEEL)),
+    ):
+        where: dict[str, Any] = (
+            {"direction": (1.0, 0.4, 0.2)} if isinstance(group, fem.Shells) else {}
+        )
+        other = replace(group, material=same, **where)
+        K = [
+            stiffness(fem.assemble(fem.Structure(nodes, (each,), (fem.Support([0, 1, 2]),))))
+            for each in (group, other)
+        ]
+        assert abs(K[1] - K[0]).max() < 1e-12 * abs(K[0]).max()
 
 
 # --- what is refused --------------------------------------------------------------------------
@@ -462,12 +690,39 @@ def test_wrong_members() -> None:
             {"parameters": (fem.Parameter("p", "prestress", ("beam",)),)},
             "nothing named 'beam' has a prestress",
         ),
+        (
+            {"groups": (fem.Beams("b", cells, SPRUCE, fem.circle(0.1)),)},  # type: ignore[arg-type]
+            "expected an isotropic material",
+        ),
     )
     for change, message in changes:
         assert message in refused(replace(sound, **change))
     loaded = replace(sound, supports=(), loads=(fem.Load("P", [8], (1.0, 0, 0)),))
     with pytest.raises(fem.FemError, match="found a floating one"):
         fem.assemble(loaded, floating=True)
+
+
+def test_orthotropic_shells_need_a_direction() -> None:
+    structure = spruce_plate(0.01, 2, np.eye(3)[0])
+    (shells,) = structure.groups
+    assert isinstance(shells, fem.Shells)
+    for direction, message in ((None, "a direction is needed"), (Z, "not be normal to the shell")):
+        wrong = replace(shells, direction=direction)
+        assert message in refused(replace(structure, groups=(wrong,)))
+
+
+@pytest.mark.parametrize(
+    ("change", "message"),
+    [
+        ({"E": (1.0, 0.0, 1.0)}, "E must be three values > 0"),
+        ({"G": (1.0, 1.0)}, "G must be three values > 0"),
+        ({"nu": (0.3, 0.3)}, "three Poisson's ratios"),
+        ({"nu": (4.0, 0.0, 0.0)}, "must leave the elasticity positive definite"),
+    ],
+)
+def test_orthotropic_constants_out_of_range(change: dict[str, Any], message: str) -> None:
+    with pytest.raises(fem.FemError, match=message):
+        replace(SPRUCE, **change)
 
 
 def test_a_moment_on_a_bar_is_refused() -> None:

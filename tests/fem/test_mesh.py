@@ -11,7 +11,7 @@ import pytest
 from structures import STEEL, frequencies
 
 from modefront import fem
-from modefront.fem.mesh import read_mesh
+from modefront.fem.mesh import CellBlock, Mesh, read_mesh
 from modefront.isolated import IsolatedError, isolated
 
 meshio = pytest.importorskip("meshio")
@@ -109,6 +109,35 @@ def test_second_order_tetrahedra_keep_their_node_order(tmp_path: Path) -> None:
         mesh = read_mesh(path)
         (result,) = mesh.cells_of("all", "solid")
         assert np.array_equal(result, cells)
+
+
+@pytest.mark.parametrize(("kind", "error"), [("triangle6", 5e-3), ("quad8", 5e-3), ("quad9", 3e-3)])
+def test_shells_of_nodes_between_corners_are_divided(kind: str, error: float) -> None:
+    # A hinged plate of 8 x 8 cells is as good as one of 16 x 16 elements.
+    nodes, _ = fem.grids.plate(1.0, 1.0, 16, 16)
+    at = np.arange(17 * 17).reshape(17, 17)[:-2:2, :-2:2].reshape(-1, 1)
+    square = at + np.array([0, 34, 36, 2, 17, 35, 19, 1, 18])
+    cells = {
+        "triangle6": np.concatenate([square[:, [0, 1, 2, 4, 5, 8]], square[:, [0, 2, 3, 8, 6, 7]]]),
+        "quad8": square[:, :8],
+        "quad9": square,
+    }[kind]
+    mesh = Mesh(nodes, (CellBlock("plate", kind, cells),), {})
+    blocks = mesh.cells_of("plate", "shell")
+    assert (
+        sum(len(block) for block in blocks) == {"triangle6": 512, "quad8": 320, "quad9": 256}[kind]
+    )
+    groups = tuple(fem.Shells("plate", block, STEEL, 0.01) for block in blocks)
+    used = np.unique(np.concatenate([block.ravel() for block in blocks]))
+    edges = [(np.isclose(nodes[used, d], 0) | np.isclose(nodes[used, d], 1)) for d in (0, 1)]
+    supports = (
+        fem.Support(used, ("x", "y", "rz")),
+        fem.Support(used[edges[0]], ("z", "rx")),
+        fem.Support(used[edges[1]], ("z", "ry")),
+    )
+    found = frequencies(fem.assemble(fem.Structure(nodes, groups, supports)), 1)
+    D = STEEL.E * 0.01**3 / (12 * (1 - STEEL.nu**2))
+    assert found == pytest.approx(2 * np.pi**2 * np.sqrt(D / (STEEL.rho * 0.01)), rel=error)
 
 
 INCLUDING = [

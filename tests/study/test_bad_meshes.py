@@ -132,6 +132,17 @@ WRONG = [
     (STEEL, "steel = 1", "steel: expected a table E, nu, rho, found 1"),
     ("E = 210e9", "E = 0", "steel E: expected Young's modulus above 0, found 0"),
     ("nu = 0.3", "nu = 0.5", "steel nu: expected Poisson's ratio between -1 and 0.5, found 0.5"),
+    ("E = 210e9, nu = 0.3", "E = [1, 1, 1], nu = [0, 0, 0]", "steel G: expected three values of G"),
+    (
+        "E = 210e9, nu = 0.3",
+        "E = [1, 1, 1], nu = [2, 0, 0], G = [1, 1, 1]",
+        "steel: expected a material that is possible, found ... positive definite",
+    ),
+    (
+        "E = 210e9, nu = 0.3",
+        "E = [1, 1, 1], nu = [0, 0, 0], G = [1, 1, 1]",
+        "group 'plate': a direction is needed",
+    ),
     ("rho = 7850.0", "rho = -1", "steel rho: expected a density of 0 or more, found -1"),
     ("rho = 7850.0", "roh = 7850", "steel: expected a known key, found 'roh' (did you mean 'rho'?"),
     ('name = "plate"', 'name = "plat"', "name: expected a group of the mesh, found ... plate"),
@@ -199,12 +210,12 @@ WRONG = [
     (
         "[[model.link]]\nmaster = 22\nslaves = [21, 23]",
         "[[model.coupling]]\nnode = 22\nof = [21, 23]\nweights = [1]",
-        "weights: expected one for each of 2 nodes, found 1",
+        "coupling 0: expected other nodes than 22, with a weight above 0 for each",
     ),
     (
         "[[model.link]]",
         '[[model.load]]\nname = "P"\nnodes = 20\n[[model.link]]',
-        "('P'): expected nodes and force together, found nodes",
+        "load 'P': expected nodes and a force on them, found one without the other",
     ),
     (
         "[[model.link]]",

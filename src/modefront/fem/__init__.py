@@ -34,6 +34,7 @@ if TYPE_CHECKING:
     from modefront.fem.mesh import read_mesh as read_mesh
     from modefront.fem.section import FemError as FemError
     from modefront.fem.section import Material as Material
+    from modefront.fem.section import Orthotropic as Orthotropic
     from modefront.fem.section import Section as Section
     from modefront.fem.section import circle as circle
     from modefront.fem.section import hollow_rectangle as hollow_rectangle

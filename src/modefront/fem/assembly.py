@@ -119,11 +119,13 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
             K.add(block.name, slot, (Part(0, block.prestress),), ("prestress",))
     if forces:
         at = static_state(pattern, K.total(), dofs, forces, floating)
-        for load, q in zip(structure.loads, at, strict=True):
-            for block, slot in each:
-                if block.internal is not None:
-                    made = block.internal.stiffness(q[block.dofs()], strain(load, block.name))
-                    K.add(load.name, slot, (Part(0, made),), ("prestress",))
+        for block, slot in each:
+            if block.internal is None:
+                continue
+            internal = block.internal()
+            for load, u in zip(structure.loads, at, strict=True):
+                made = internal.stiffness(u[block.dofs()], strain(load, block.name))
+                K.add(load.name, slot, (Part(0, made),), ("prestress",))
         check_stability(pattern, K.total(), dofs)
     M = _Terms(pattern, structure.parameters)
     for block, slot in each:
@@ -168,6 +170,7 @@ def _following(X: Floats, structure: Structure, checks: Checks) -> list[Follower
 def _link(X: Floats, link: Link, place: str) -> Followers:
     master = node_list(link.master, len(X), place)
     slaves = node_list(link.slaves, len(X), place)
+    slaves = slaves[slaves != master[0]]
     return rigid_link(X, master[0], slaves, direction_indices(link.directions, place))
 
 

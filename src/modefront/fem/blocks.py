@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from functools import partial
 
 import numpy as np
 import numpy.typing as npt
@@ -22,12 +23,13 @@ from modefront.fem.check import (
 )
 from modefront.fem.dofs import direction_indices
 from modefront.fem.elements.beam import beam, truss
-from modefront.fem.elements.common import attachment
+from modefront.fem.elements.common import attachment, elasticity, ply
+from modefront.fem.elements.internal import centre_axes, shell_stresses, solid_stresses
 from modefront.fem.elements.point import lumped_mass, spring
-from modefront.fem.elements.shell import directors, shell
+from modefront.fem.elements.shell import directors, narrowness, shell
 from modefront.fem.elements.solid import SOLIDS, solid
 from modefront.fem.scatter import Block
-from modefront.fem.section import Checks, FemError
+from modefront.fem.section import Checks, FemError, Material
 from modefront.fem.structure import Beams, Group, Mass, Shells, Solids, Spring, Trusses
 from modefront.rounding import TINY
 
@@ -44,9 +46,9 @@ def element_blocks(X: Floats, groups: Sequence[Group], checks: Checks) -> list[B
     shells = [each for each in groups if isinstance(each, Shells)]
     cells = [checks.attempt(_shell_cells, X, each) for each in shells]
     sound = [each for each in cells if each is not None]
-    d = iter(directors(X, sound) if sound else ())
+    shared = iter(zip(directors(X, sound), narrowness(X, sound), strict=True) if sound else ())
     blocks: list[Block | None] = [
-        _shells(X, group, each, next(d))
+        checks.attempt(_shells, X, group, each, *next(shared))
         for group, each in zip(shells, cells, strict=True)
         if each is not None
     ]
@@ -85,6 +87,8 @@ def _beams(X: Floats, group: Beams) -> Block:
                 f" axis, but it is at element {parallel[0]}"
                 f" (nodes {', '.join(map(str, cells[parallel[0]].tolist()))})"
             )
+    if not isinstance(group.material, Material):
+        raise FemError(f"{place}: expected an isotropic material, found {group.material!r}")
     released = [
         6 * end + d
         for end, names in enumerate(group.releases)
@@ -96,16 +100,18 @@ def _beams(X: Floats, group: Beams) -> Block:
     except FemError as error:
         raise FemError(f"{place}: {error}") from None
     given = group.force * axial.unit if group.force else None
-    return Block(group.name, cells, SIX, made, not released, given, axial)
+    return Block(group.name, cells, SIX, made, not released, given, lambda: axial)
 
 
 def _trusses(X: Floats, group: Trusses) -> Block:
     place = f"group {group.name!r}"
     check_positive(group.area, "area", place)
+    if not isinstance(group.material, Material):
+        raise FemError(f"{place}: expected an isotropic material, found {group.material!r}")
     cells, _ = _lines(X, group.cells, np.zeros((2, 3)), place)
     made, axial = truss(X[cells], group.material, group.area)
     given = group.force * axial.unit if group.force else None
-    return Block(group.name, cells, TRANSLATIONS, made, False, given, axial)
+    return Block(group.name, cells, TRANSLATIONS, made, False, given, lambda: axial)
 
 
 def _lines(X: Floats, given: npt.ArrayLike, r: Floats, place: str) -> tuple[Ints, Floats]:
@@ -126,9 +132,31 @@ def _shell_cells(X: Floats, group: Shells) -> Ints:
     return cells
 
 
-def _shells(X: Floats, group: Shells, cells: Ints, d: Floats) -> Block:
-    matrices = shell(X[cells], d, group.material, group.thickness, group.offset)
-    return Block(group.name, cells, SIX, matrices, rigid=True)
+def _shells(X: Floats, group: Shells, cells: Ints, d: Floats, narrow: Floats) -> Block:
+    x, r, t = X[cells], group.offset * d, group.thickness
+    m = _grain(x, group)
+    made = shell(x, d, narrow, m, group.material, t, group.offset)
+    internal = partial(shell_stresses, x, r, m, ply(group.material), t)
+    return Block(group.name, cells, SIX, made, rigid=True, internal=internal)
+
+
+def _grain(x: Floats, group: Shells) -> Floats:
+    """Return vectors (elements, 3) in the planes of shells along axis 1 of the material."""
+    if isinstance(group.material, Material):
+        return x[:, 1] - x[:, 0]
+    place = f"group {group.name!r}"
+    if group.direction is None:
+        raise FemError(f"{place}: a direction is needed, along which axis 1 of the material is")
+    v = unit_vector(tuple(group.direction), f"{place}, direction")[:3]
+    R = centre_axes(x)
+    m = (R @ v)[:, None] @ R
+    across = np.flatnonzero(np.linalg.norm(m[:, 0], axis=1) < ALONG)
+    if len(across):
+        raise FemError(
+            f"{place}: direction {tuple(group.direction)} must not be normal to the shell, but it"
+            f" is at element {across[0]}"
+        )
+    return np.asarray(m[:, 0])
 
 
 def _solids(X: Floats, group: Solids) -> Block:
@@ -140,7 +168,9 @@ def _solids(X: Floats, group: Solids) -> Block:
         )
     cells = cell_array(group.cells, tuple(SOLIDS), len(X), place)
     check_sizes(solid_sizes(X[cells]), cells, "volume", place)
-    return Block(group.name, cells, TRANSLATIONS, solid(X[cells], group.material), rigid=True)
+    C = elasticity(group.material, axes_of(group.axes, place))
+    made, internal = solid(X[cells], group.material.rho, C), partial(solid_stresses, X[cells], C)
+    return Block(group.name, cells, TRANSLATIONS, made, rigid=True, internal=internal)
 
 
 def spring_blocks(X: Floats, springs: Sequence[Spring], checks: Checks) -> list[Block]:

@@ -251,6 +251,8 @@ def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> D
     A, B = weight[:, slave], weight[:, q]
     total, step = B, A
     for _ in following:
+        if step.nnz == 0:
+            break
         total, step = total + step @ B, sparse.csr_array(step @ A)
         step.eliminate_zeros()
     refuse(slave[abs(step).sum(1) > 0], "its own master, by way of others")

@@ -37,10 +37,11 @@ from modefront.fem.dofs import DIRECTIONS, Followers, rigid_motion
 from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.scatter import Block
 from modefront.fem.section import FemError
+from modefront.linalg.factorisation import factorise
 from modefront.rounding import ACCUMULATED
 
-LARGEST_PART = 3000
-"""Motions of a part beyond which it is not examined: its null space takes their cube."""
+STEPS = 4
+"""Steps of inverse iteration: each leaves of other motions the ratio of shift and eigenvalue."""
 
 INVOLVED = 1e-6
 """Share of a body in the squares of free motions of length one that is more than rounding."""
@@ -194,11 +195,21 @@ def _resisted(block: Block, size: int) -> sparse.csr_array:
 
 
 def null_space(C: sparse.csr_array, columns: Ints) -> Floats:
-    """Orthonormal null space (columns, k) of C at the given columns."""
+    """Orthonormal null space (columns, k) of C at the given columns.
+
+    The negative pivots of C^T C less a small shift say how many motions are free (Sylvester), and
+    inverse iteration finds them.
+    """
     part = C[:, columns]
-    gram = (part.T @ part).toarray()
-    values, vectors = np.linalg.eigh(gram)
-    return np.asarray(vectors[:, values <= ACCUMULATED * max(values[-1], 1.0)])
+    gram, one = part.T @ part, sparse.eye_array(len(columns))
+    shift = ACCUMULATED * max(float(abs(gram).sum(0).max()), 1.0)
+    count = factorise(gram - shift * one).negative or 0
+    N = np.random.default_rng(0).normal(size=(len(columns), count))
+    if count:
+        factor = factorise(gram + shift * one)
+        for _ in range(STEPS):
+            N = np.linalg.qr(factor.solve(N))[0]
+    return N
 
 
 def check_mechanisms(
@@ -221,8 +232,7 @@ def check_mechanisms(
     Raises
     ------
     FemError
-        Names the nodes of the part that moves, and how. Parts of more than `LARGEST_PART` / 6
-        hinged bodies are not examined.
+        Names the nodes of the part that moves, and how.
     """
     bodies = rigid_bodies(X, [block for block in blocks if block.rigid], exists)
     soft = [block for block in blocks if block.matrices.stiffness and not block.rigid]
@@ -237,8 +247,6 @@ def check_mechanisms(
     for part in range(parts):
         inside = np.flatnonzero(part_of == part)
         columns = (6 * inside[:, None] + np.arange(6))[bodies.moves[inside]]
-        if len(columns) > LARGEST_PART:
-            continue
         N = null_space(C, columns)
         if floating:
             whole = _common_motions(bodies, inside)[np.isin(np.arange(6 * count), columns)]

@@ -3,6 +3,9 @@
 meshio (an optional extra) reads the file. Groups are Gmsh's physical groups (one without a name
 goes by its number), the groups of MED (Salome, Code_Aster), of which a cell or node may have
 several, and the cell sets of other formats; a file without any is one group, `all`.
+
+Shells of 6, 8 and 9 nodes are made of those of 3 and 4 that divide them at all of their nodes,
+so that their curvature and their nodes are used as they are.
 """
 
 from __future__ import annotations
@@ -27,9 +30,16 @@ Kind = Literal["beam", "truss", "shell", "solid"]
 CELL_TYPES: Mapping[Kind, tuple[str, ...]] = {
     "beam": ("line",),
     "truss": ("line",),
-    "shell": ("triangle", "quad"),
+    "shell": ("triangle", "quad", "triangle6", "quad8", "quad9"),
     "solid": ("hexahedron", "tetra10", "wedge15", "hexahedron20"),
 }
+
+DIVISIONS = {
+    "triangle6": [[(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]],
+    "quad8": [[(4, 5, 6, 7)], [(0, 4, 7), (4, 1, 5), (5, 2, 6), (7, 6, 3)]],
+    "quad9": [[(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]],
+}
+"""Quadrilaterals and triangles that shells of more nodes are made of."""
 
 READER = "modefront.fem.mesh_reader:read_with_meshio"
 
@@ -83,6 +93,8 @@ class Mesh:
     def cells_of(self, group: str, kind: Kind) -> tuple[Ints, ...]:
         """Cells of a group, an array for each type, for elements of the given kind.
 
+        Shells of more than 4 nodes are divided into triangles and quadrilaterals.
+
         Raises
         ------
         FemError
@@ -98,7 +110,18 @@ class Mesh:
                     f"mesh: group {group!r} has cells of the type {block.type}; a {kind} can be"
                     f" made of: {', '.join(CELL_TYPES[kind])}"
                 )
-        return tuple(b.cells for b in blocks)
+        return tuple(
+            cells
+            for b in blocks
+            for cells in (
+                [
+                    np.concatenate([b.cells[:, part] for part in parts])
+                    for parts in DIVISIONS[b.type]
+                ]
+                if b.type in DIVISIONS
+                else [b.cells]
+            )
+        )
 
     def nodes_of(self, name: str) -> Ints:
         """Nodes of a set, or of the cells of a group, ascending.

@@ -30,12 +30,7 @@ from modefront.fem.dofs import DIRECTIONS, Dofs
 from modefront.fem.scatter import Block, Pattern
 from modefront.fem.section import Checks, FemError
 from modefront.fem.structure import Load
-from modefront.linalg.factorisation import (
-    Factorisation,
-    LowerPattern,
-    SingularMatrixError,
-    analyse,
-)
+from modefront.linalg.factorisation import Factorisation, SingularMatrixError, factorise
 
 
 def strain(load: Load, name: str) -> float:
@@ -59,7 +54,9 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools, place: str) -> F
             f" and {load.acceleration!r}"
         )
     f = np.zeros(exists.shape)
-    if np.size(load.nodes):
+    if (np.size(load.nodes) > 0) != force.any():
+        raise FemError(f"{place}: expected nodes and a force on them, found one without the other")
+    if force.any():
         f[node_list(load.nodes, len(f), place), : len(force)] = force
     nowhere = np.argwhere((f != 0) & ~exists)
     if len(nowhere):
@@ -76,7 +73,7 @@ def _forces(load: Load, blocks: Sequence[Block], exists: Bools, place: str) -> F
         pull = np.tile(np.append(a, np.zeros(3))[list(block.directions)], block.cells.shape[1])
         parts = [part.matrices @ pull for part in block.matrices.mass]
         if block.internal is not None and strain(load, block.name):
-            parts.append(block.internal.free_forces(strain(load, block.name)))
+            parts.append(block.internal().free_forces(strain(load, block.name)))
         for each in parts:
             np.add.at(out, block.dofs(), each)
     if not out.any():
@@ -116,10 +113,7 @@ def _factor(pattern: Pattern, data: Floats, dofs: Dofs) -> Factorisation | None:
     """Return the factor of T^T K T; None where it is singular."""
     T = dofs.T[np.flatnonzero(dofs.kept.ravel() >= 0)]
     K = sparse.csr_array((data, pattern.indices, pattern.indptr), shape=(len(T.indptr) - 1,) * 2)
-    lower = sparse.csc_array(sparse.tril(T.T @ K @ T))
-    lower.sort_indices()
     try:
-        places = LowerPattern(lower.indptr.astype(np.intp), lower.indices.astype(np.intp))
-        return analyse(places).factor(lower.data)
+        return factorise(T.T @ K @ T)
     except SingularMatrixError:
         return None

@@ -20,7 +20,7 @@ slot      place of each element entry in the data; `nnz` where it is dropped
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Protocol
 
@@ -53,7 +53,7 @@ class Block:
     matrices : of size k d
     rigid : whether an element that nothing deforms is one rigid body with its nodes
     prestress : geometric stiffness (elements, k d, k d) of given forces; None without any
-    internal : internal forces of displacements; None for elements that make no geometric stiffness
+    internal : returns internal forces; None for elements that make no geometric stiffness
     """
 
     name: str
@@ -62,7 +62,7 @@ class Block:
     matrices: ElementMatrices
     rigid: bool = False
     prestress: Floats | None = None
-    internal: InternalForces | None = None
+    internal: Callable[[], InternalForces] | None = None
 
     def dofs(self) -> Ints:
         """Return 6 node + direction of each row of the matrices (elements, k d)."""

@@ -14,11 +14,13 @@ kappa      shear correction factors; `inf` leaves out shear deformation
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from typing import ParamSpec, TypeVar
 
 import numpy as np
+
+from modefront._typing import Floats
 
 P = ParamSpec("P")
 T = TypeVar("T")
@@ -96,6 +98,59 @@ class Material:
     def G(self) -> float:
         """Shear modulus E / (2 (1 + nu))."""
         return self.E / (2 * (1 + self.nu))
+
+    def compliance(self) -> Floats:
+        """Return S (6, 6), strains of stresses 11, 22, 33, 23, 13, 12 (engineering shear)."""
+        return _compliance((self.E,) * 3, (self.nu,) * 3, (self.G,) * 3)
+
+
+@dataclass(frozen=True)
+class Orthotropic:
+    """Orthotropic material, such as wood or a laminate, by its axes 1, 2 and 3.
+
+    Attributes
+    ----------
+    E : Young's moduli E_1, E_2, E_3, > 0
+    nu : Poisson's ratios nu_12, nu_13, nu_23: a stress along 1 strains 2 by -nu_12 / E_1
+    G : shear moduli G_12, G_13, G_23, > 0
+    rho : density, >= 0
+
+    Raises
+    ------
+    FemError
+        If a value is outside its range, or the elasticity matrix is not positive definite.
+    """
+
+    E: tuple[float, float, float]
+    nu: tuple[float, float, float]
+    G: tuple[float, float, float]
+    rho: float
+
+    def __post_init__(self) -> None:
+        """Refuse values for which the elasticity matrix is not positive definite."""
+        for name, value in (("E", self.E), ("G", self.G)):
+            if len(value) != 3 or not min(value) > 0:
+                raise FemError(f"material: {name} must be three values > 0, found {value!r}")
+        if len(self.nu) != 3 or not self.rho >= 0:
+            raise FemError(
+                f"material: expected three Poisson's ratios and rho >= 0, found {self.nu!r} and"
+                f" {self.rho!r}"
+            )
+        if not np.linalg.eigvalsh(self.compliance()[:3, :3] * max(self.E))[0] > 0:
+            raise FemError(
+                f"material: nu must leave the elasticity positive definite, found {self.nu!r}"
+            )
+
+    def compliance(self) -> Floats:
+        """Return S (6, 6), strains of stresses 11, 22, 33, 23, 13, 12 (engineering shear)."""
+        return _compliance(self.E, self.nu, self.G)
+
+
+def _compliance(E: Sequence[float], nu: Sequence[float], G: Sequence[float]) -> Floats:
+    S = np.diag([*(1 / np.array(E)), 1 / G[2], 1 / G[1], 1 / G[0]])
+    for (i, j), each in zip(((0, 1), (0, 2), (1, 2)), nu, strict=True):
+        S[i, j] = S[j, i] = -each / E[i]
+    return S
 
 
 @dataclass(frozen=True)

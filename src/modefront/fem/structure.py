@@ -13,7 +13,7 @@ from typing import Literal
 import numpy.typing as npt
 
 from modefront.fem.dofs import DIRECTIONS
-from modefront.fem.section import Material, Section
+from modefront.fem.section import Material, Orthotropic, Section
 
 Direction = str | Sequence[float]
 Axes = tuple[Sequence[float], Sequence[float]]
@@ -79,13 +79,15 @@ class Shells:
     cells : nodes (elements, 3) or (elements, 4), counter-clockwise about the normal
     material, thickness : of all elements
     offset : distance of the mid-surface from the nodes along the normal
+    direction : of axis 1 of an orthotropic material, a vector that is projected on the shells
     """
 
     name: str
     cells: npt.ArrayLike
-    material: Material
+    material: Material | Orthotropic
     thickness: float
     offset: float = 0.0
+    direction: Sequence[float] | None = None
 
 
 @dataclass(frozen=True)
@@ -98,11 +100,13 @@ class Solids:
     cells : nodes of bricks (elements, 8 or 20), wedges (elements, 15) or tetrahedra (elements, 10),
         in the order of VTK
     material : of all elements
+    axes : of an orthotropic material; None is the global axes
     """
 
     name: str
     cells: npt.ArrayLike
-    material: Material
+    material: Material | Orthotropic
+    axes: Axes | None = None
 
 
 Group = Beams | Trusses | Shells | Solids
@@ -177,7 +181,7 @@ class Link:
     Attributes
     ----------
     master : node, counted from 0
-    slaves : a node, or (nodes,)
+    slaves : a node, or (nodes,); the master itself is left out
     directions : of x, y, z, rx, ry, rz; all of them unless given
     """
 
@@ -212,14 +216,15 @@ class Load:
     """Static load, of which the internal forces add to the stiffness (prestress).
 
     Forces in the structure as given are found by a linear solution, and held; the axial forces of
-    beams and trusses and the membrane forces of shells make its geometric stiffness.
+    beams and trusses, the membrane forces of shells and the stresses of solids make its geometric
+    stiffness.
 
     Attributes
     ----------
     name : of the load, for parameters
     nodes, force : (3,) or (6,) with moments, global axes, at each of the nodes
     acceleration : (3,) of gravity, which acts on all masses
-    strains : free strain, such as that of heat, of beams and trusses by name of the group
+    strains : free strain, such as that of heat, by name of the group
     """
 
     name: str

@@ -119,3 +119,16 @@ def analyse(pattern: LowerPattern) -> Symbolic:
     shape = pattern.size, pattern.size
     lower = scipy.sparse.csc_array((values, pattern.indices, pattern.indptr), shape=shape)
     return _Analysis(rslab.analyze(lower, path="ldlt"))
+
+
+def factorise(A: scipy.sparse.sparray) -> Factorisation:
+    """Return the factors of one symmetric matrix, N x N, by itself.
+
+    Raises SingularMatrixError where it is singular to working precision.
+    """
+    lower = scipy.sparse.tril(A, format="coo")
+    keys = lower.col.astype(np.int64) * A.shape[0] + lower.row
+    pattern = lower_pattern(keys, A.shape[0])
+    places = np.searchsorted(pattern.keys, keys)
+    values = np.bincount(places, lower.data, pattern.indices.size).astype(float)
+    return analyse(pattern).factor(values)

@@ -16,9 +16,10 @@ Bending and twist are about the shear centre (y_s, z_s), axial force and mass at
 
     v_c = v + z_s theta,   w_c = w - y_s theta.
 
-Slender beams converge with h^4 in the frequency; where shear dominates (h below the depth) the
-linear part of v leaves rho (w h)^2 / (24 kappa G). Released DOFs r of an end have no force: with
-G = [1; -K_rr^-1 K_rk] all matrices are G^T A G, the static condensation of K and the mass and
+To M comes rho h^2 / 12 int A u'^2 + (I_y + I_z) theta'^2 + A sum_planes (v' - psi)^2 of what is
+linear in elements of length h, the mean of consistent and lumped mass: axial motion and twist then
+converge with h^4 in the frequency, as slender beams do. Released DOFs r of an end have no force:
+with G = [1; -K_rr^-1 K_rk] all matrices are G^T A G, the static condensation of K and the mass and
 geometric stiffness of the same shapes. Sources: J. S. Przemieniecki, "Theory of Matrix Structural
 Analysis", 1968; Z. Friedman, J. B. Kosmatka, doi:10.1016/0045-7949(93)90243-7.
 
@@ -173,13 +174,13 @@ def beam(
         f[:, :, direction, [direction, 6 + direction]] = np.stack([1 - s, s], -1)
         df[:, :, direction, [direction, 6 + direction]] = np.array([-1.0, 1]) / L[:, None, None]
     gamma = np.zeros((len(L), len(s), 2, 12))
-    shear = np.zeros((len(L), 1, 2))
+    shear, sheared = np.zeros((2, len(L), 1, 2))
     # Local y deflection turns with +r_z, local z deflection with -r_y.
     for n, (v, psi, sign, inertia, kappa) in enumerate(
         ((V, PSI_Z, 1, section.I_z, section.kappa_y), (W, PSI_Y, -1, section.I_y, section.kappa_z))
     ):
         Phi = 12 * E * inertia / (kappa * G * A * L**2)
-        shear[:, 0, n] = 12 * E * inertia * Phi / L**2
+        shear[:, 0, n], sheared[:, 0, n] = 12 * E * inertia * Phi / L**2, A * Phi**2
         dof, flip = [v, psi, 6 + v, 6 + psi], np.array([1, sign, 1, sign])
         (f_v, f_psi), (df_v, df_psi), g = plane(Phi, L, s)
         f[:, :, v, dof], f[:, :, psi, dof] = f_v * flip, f_psi * flip
@@ -193,6 +194,8 @@ def beam(
     EI_y, EI_z = E * section.I_y, E * section.I_z
     K = integral(df, w * [E * A, 0, 0, G * section.J, EI_y, EI_z]) + integral(gamma, w * shear)
     M = integral(f, material.rho * w * [A, A, A, polar, section.I_y, section.I_z])
+    bows = material.rho * w * L[:, None, None] ** 2 / 12
+    M += integral(df, bows * [A, 0, 0, polar, 0, 0]) + integral(gamma, bows * sheared)
     K_G = integral(df, w * [0, 1, 1, polar / A, 0, 0])
     a = centre @ attachment(R, np.broadcast_to(r, (len(L), 2, 3)))
     if released:
@@ -210,6 +213,7 @@ def truss(X: Floats, material: Material, area: float) -> tuple[ElementMatrices, 
     EA, mass = material.E * area, material.rho * area
     K = (EA / L)[:, None] * row[:, :, None] * row[:, None, :]
     M = (mass * L)[:, None] * np.kron(np.array([[2.0, 1], [1, 2]]) / 6, np.eye(3))
+    M += (mass * L / 12)[:, None] * row[:, :, None] * row[:, None, :]
     across = np.kron(np.array([[1.0, -1], [-1, 1]]), np.eye(3)) - row[:, :, None] * row[:, None, :]
     matrices = ElementMatrices((Part(0, symmetric(K)),), (Part(0, M),))
     return matrices, Axial(row, L[:, 0], EA, symmetric(across / L[:, None]))

@@ -13,7 +13,7 @@ symbol      meaning
 ==========  =================================================================
 R           local axes, rows, (elements, 3, 3)
 r           offset of an element's point from its node, global, (..., 3)
-D           plane stress: strains (xx, yy, engineering xy) to stresses
+D           plane stress: strains (11, 22, engineering 12) to stresses
 ==========  =================================================================
 """
 
@@ -24,6 +24,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from modefront._typing import Floats
+from modefront.fem.section import Material, Orthotropic
 
 
 @dataclass(frozen=True)
@@ -53,9 +54,46 @@ def symmetric(K: Floats) -> Floats:
     return np.asarray((K + np.swapaxes(K, -1, -2)) / 2)
 
 
-def plane_stress(E: float, nu: float) -> Floats:
-    """D (3, 3) of plane stress."""
-    return E / (1 - nu**2) * np.array([[1, nu, 0], [nu, 1, 0], [0, 0, (1 - nu) / 2]])
+@dataclass(frozen=True)
+class Ply:
+    """Plane stress and transverse shear of a material along its axes 1 and 2.
+
+    Attributes
+    ----------
+    D : (3, 3), stresses of strains (11, 22, engineering 12)
+    G : G_13 and G_23
+    """
+
+    D: Floats
+    G: tuple[float, float]
+
+    def turned(self, m: Floats) -> Floats:
+        """Return D (elements, 3, 3) in axes in which axis 1 is along m (elements, 2)."""
+        c, s = (m / np.linalg.norm(m, axis=1, keepdims=True)).T
+        rows = [[c**2, s**2, c * s], [s**2, c**2, -c * s], [-2 * c * s, 2 * c * s, c**2 - s**2]]
+        T = np.stack([np.stack(row, -1) for row in rows], -2)
+        return np.asarray(np.swapaxes(T, 1, 2) @ self.D @ T)
+
+    def along(self, c2: Floats) -> tuple[Floats, Floats, Floats]:
+        """Return the moduli of bending and twist, and of transverse shear, along a line.
+
+        Parameters
+        ----------
+        c2 : squared cosine of the line and axis 1
+        """
+        D, s2 = self.D, 1 - c2
+        mixed = D[0, 1] + 2 * D[2, 2]
+        bend = D[0, 0] * c2**2 + 2 * mixed * c2 * s2 + D[1, 1] * s2**2
+        twist = D[2, 2] + (D[0, 0] + D[1, 1] - 2 * mixed) * c2 * s2
+        return bend, twist, self.G[0] * c2 + self.G[1] * s2
+
+
+def ply(material: Material | Orthotropic) -> Ply:
+    """Return the plane stress and transverse shear of a material."""
+    S = material.compliance()
+    used = [0, 1, 5]
+    D = np.asarray(np.linalg.inv(S[np.ix_(used, used)]), dtype=float)
+    return Ply(D, (1 / S[4, 4], 1 / S[3, 3]))
 
 
 def condense(K: Floats, kept: int) -> Floats:
@@ -96,30 +134,34 @@ def congruence(A: Floats, K: Floats) -> Floats:
     return symmetric(np.swapaxes(A, -1, -2) @ (K @ A))
 
 
-def solid_stiffness(g: Floats, weight: Floats, E: float, nu: float) -> Floats:
-    """Stiffness (elements, 3 nodes, 3 nodes) of an isotropic solid.
+VOIGT = np.array([[0, 5, 4], [5, 1, 3], [4, 3, 2]])
+"""Numbers of the components ij of stress and strain in the order 11, 22, 33, 23, 13, 12."""
 
-    With eps = sym grad u and Lame's constants, sigma : eps = lam (div u)^2 + 2 G eps : eps, so
 
-        K_(ai)(bj) = int lam g_ai g_bj + G g_aj g_bi + G delta_ij g_ak g_bk dV,
+def elasticity(material: Material | Orthotropic, R: Floats) -> Floats:
+    """Return C (3, 3, 3, 3), stresses ij of gradients kl; R has the material's axes in rows."""
+    C = np.linalg.inv(material.compliance())[VOIGT[:, :, None, None], VOIGT]
+    return np.asarray(np.einsum("abcd,ai,bj,ck,dl->ijkl", C, R, R, R, R, optimize=True))
 
-    three rearrangements of one product of the gradients g.
+
+def solid_stiffness(g: Floats, weight: Floats, C: Floats) -> Floats:
+    """Stiffness (elements, 3 nodes, 3 nodes) of a solid.
+
+    From the energy C_ijkl u_i,j u_k,l / 2 with gradients g of the shape functions,
+
+        K_(ai)(bk) = C_ijkl int g_aj g_bl dV.
 
     Parameters
     ----------
     g, weight : gradients of the shape functions (elements, points, 3, nodes); w det J
-    E, nu : Young's modulus and Poisson's ratio
+    C : `elasticity`
     """
     count, points, _, nodes = g.shape
-    lam, G = E * nu / ((1 + nu) * (1 - 2 * nu)), E / (2 * (1 + nu))
     flat = np.swapaxes(g, 2, 3).reshape(count, points, 3 * nodes)
     P = np.swapaxes(flat, 1, 2) @ (flat * weight[..., None])
-    P = P.reshape(count, nodes, 3, nodes, 3)
-    K = lam * P + G * np.swapaxes(P, 2, 4)
-    trace = G * np.einsum("eakbk->eab", P)
-    for d in range(3):
-        K[:, :, d, :, d] += trace
-    return symmetric(K.reshape(count, 3 * nodes, 3 * nodes))
+    P = P.reshape(count, nodes, 3, nodes, 3).transpose(0, 1, 3, 2, 4).reshape(-1, 9)
+    K = (P @ C.transpose(1, 3, 0, 2).reshape(9, 9)).reshape(count, nodes, nodes, 3, 3)
+    return symmetric(K.transpose(0, 1, 3, 2, 4).reshape(count, 3 * nodes, 3 * nodes))
 
 
 def solid_mass(N: Floats, weight: Floats) -> Floats:

@@ -7,11 +7,11 @@ its plane for any aspect ratio, with two free parameters,
 
 L with alpha. Any alpha and beta > 0 pass the patch test; alpha = 3/2, beta = (1 - 4 nu^2) / 2 are
 optimal in a plane. On curved shells the terms of the drilling rotations resist bending without
-stretch, the more the coarser the elements; both parameters are multiplied by
+stretch, the more the coarser the elements; alpha and T are multiplied by
 
     f = 1 / (1 + (c / t)^2),   c = max |(d_j - d_i) . e|,   e = x_j - x_i,
 
-which leaves of that a share of the bending stiffness that no element size increases.
+which leaves of that a share of the bending stiffness that is small for small and great c / t.
 
 A side that is a chord of the shell stretches where the shell only bends: the side between two
 directors is taken as the shallow cubic with the slopes a = -d . s at its ends, s = e / |e|,
@@ -26,7 +26,7 @@ symbol    meaning
 ========  ===================================================
 x         corners in the plane (elements, 3, 2)
 d, v      directors in local axes, and their increments
-D         plane stress (3, 3)
+D         plane stress (elements, 3, 3)
 A         area
 ========  ===================================================
 """
@@ -36,29 +36,30 @@ from __future__ import annotations
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.fem.elements.common import plane_stress
-from modefront.fem.elements.plate import Rows, Triangles
-from modefront.fem.section import Material
+from modefront.fem.elements.common import Ply
+from modefront.fem.elements.plate import Elements, Rows
 
 DISTORTIONS = [np.roll([[1.0, 2, 1], [0, 1, -1], [-1, -1, -2]], (n, n), (0, 1)) for n in range(3)]
 """Natural strains at the corners by hierarchical rotations, with Felippa's optimal parameters."""
 
 
-def membrane(each: Triangles, t: float, material: Material) -> Rows:
+def membrane(each: Elements, t: float, material: Ply) -> Rows:
     """Return rows of strains and of drilling rotations, per thickness."""
-    D, nu = plane_stress(material.E, material.nu), material.nu
+    D = material.turned(each.m[:, :2])
     rise = [abs(e @ (each.d[:, j] - each.d[:, i])[..., None]) for i, j, e in each.sides()]
     share = 1 / (1 + (np.max(rise, axis=0) / t) ** 2)[:, 0, 0]
     in_plane = np.stack([each.U[:, :, 0], each.U[:, :, 1], each.theta], 2)
     in_plane = in_plane.reshape(len(share), 9, -1)
-    B = basic_strain(each.x, 1.5 * share) @ in_plane + curved_sides(each)
-    T, K_theta = higher_stiffness(each.x, D)
-    beta = 0.75 * max((1 - 4 * nu**2) / 2, 0.01) * share[:, None, None]
-    weights = np.stack([np.broadcast_to(D, K_theta.shape), beta * K_theta], 1)
-    return each.integrand(np.stack([B, T @ in_plane], 1), 2 * weights)
+    B = basic_strain(each.x[..., :2], 1.5 * share) @ in_plane + curved_sides(each)
+    T, K_theta = higher_stiffness(each.x[..., :2], D)
+    nu2 = material.D[0, 1] ** 2 / material.D[0, 0] / material.D[1, 1]
+    beta = 0.75 * max((1 - 4 * nu2) / 2, 0.01)
+    weights = np.stack([D, beta * K_theta], 1)
+    rotations = share[:, None, None] * (T @ in_plane)
+    return each.integrand(np.stack([B, rotations], 1), 2 * weights)
 
 
-def curved_sides(each: Triangles) -> Floats:
+def curved_sides(each: Elements) -> Floats:
     """Return the strains (elements, 3, n) of curved sides beyond those of their chords."""
     strains, natural = [], []
     for i, j, e in each.sides():

@@ -1,6 +1,6 @@
-r"""Bending, shear and mass of shells: triangles with directors at their corners.
+r"""Bending, shear and mass of shells, from displacements and directors at their corners.
 
-A point at z along the director d moves by u + z v, v = omega x d. In the plane of the triangle,
+A point at z along the director d moves by u + z v, v = omega x d. In the plane of a triangle,
 
     kappa = sym(grad v + grad d . grad u),   gamma = v + d . grad u,
 
@@ -8,15 +8,21 @@ do not see rigid motions, and v bends more than linearly along the sides e, s = 
 
     v = sum N_a v_a + sum_sides 4 N_i N_j c s,   gamma_k = d . (u_j - u_i) / |e| + s . v + 2/3 c
 
-with means of the ends for d and v. Equilibrium of moment and shear force along the side gives c,
+with means of the ends for d and v. Of gamma_0, which is gamma_k without c, c takes the share that
+bends and twists rather than shears,
 
-    c = -3/2 gamma_0 / (1 + phi),   phi = 2 (t / |e|)^2 / (kappa_s (1 - nu)),   kappa_s = 5/6,
+    c = -3/2 gamma_0 / (1 + phi),   phi = 12 (D / |e|^2 + G t^3 / 12 / b^2) / (kappa_s G t),
 
-gamma_0 being gamma_k without c; gamma_k = gamma_0 phi / (1 + phi) then vanishes in thin shells,
-where the triangle is that of discrete Kirchhoff constraints, and nothing can lock. Inside, gamma is
-the field with constant components gamma_k along the sides. phi is that of the nominal thickness: at
-others, K(t) = t K_shear + t^3 K_bending is the same element with this share of c. Sources: J. L.
-Batoz, K. J. Bathe, L. W. Ho, doi:10.1002/nme.1620151205; I. Katili, doi:10.1002/nme.1620361107.
+with the bending stiffness D over the length of the side, the twisting stiffness over the breadth b
+of quadrilaterals across it, and kappa_s = 5/6: without the second, that is the exact beam, and of
+triangles, in which shear cannot change along a side. Elements with a side in common have the same c
+there, which the patch test needs.
+gamma_k = gamma_0 phi / (1 + phi) then vanishes in thin shells, where triangles are those of
+discrete Kirchhoff constraints, and nothing can lock. Between the sides, gamma has constant
+components along those of a triangle, linear ones in a quadrilateral. phi is that of the nominal
+thickness: at others, K(t) = t K_shear + t^3 K_bending is the same element with this share of c.
+Sources: J. L. Batoz, K. J. Bathe, L. W. Ho, doi:10.1002/nme.1620151205; I. Katili,
+doi:10.1002/nme.1620361107; E. N. Dvorkin, K. J. Bathe, doi:10.1108/eb023562.
 
 The mass has the bows 4 N_i N_j e . (v_j - v_i) / 8 of the sides beside linear deflections. The
 error of a frequency then is that of the stiffness; with linear deflections alone it is (k h)^2 / 12
@@ -25,10 +31,12 @@ more. Rotary inertia has linear v.
 ========  ============================================================
 symbol    meaning
 ========  ============================================================
-x         corners in the plane (elements, 3, 2)
+x         corners (elements, corners, 3)
 U, V      rows of u and v at each corner, by the DOFs
 g         gradients of N (elements, 2, 3)
 H         gradient of v and grad d . grad u
+a         tangents along the coordinates of the cell
+m         axis 1 of the material, projected on the shell
 ========  ============================================================
 """
 
@@ -37,20 +45,29 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
+from typing import NamedTuple
 
 import numpy as np
 from scipy.linalg import block_diag
 
 from modefront._typing import Floats
-from modefront.fem.elements.common import plane_stress
-from modefront.fem.elements.shapes import TRIANGLE_3, TRIANGLE_6, TRIANGLE_EDGES, gauss_simplex
-from modefront.fem.section import Material
+from modefront.fem.elements.common import Ply
+from modefront.fem.elements.shapes import (
+    SQUARE_4,
+    TRIANGLE_3,
+    TRIANGLE_6,
+    gauss_box,
+    gauss_simplex,
+)
 
 KAPPA = 5 / 6
 """Shear factor of a plate."""
 
 MIDDLES = TRIANGLE_6.nodes[3:]
 """Midpoints of the sides: with equal weights, a quadrature rule of degree 2."""
+
+SHEARED = {3: (TRIANGLE_3, (MIDDLES, np.full(3, 1 / 6))), 4: (SQUARE_4, gauss_box(2, 2))}
+"""Cells and quadrature of shear, by the number of corners."""
 
 
 def _means() -> tuple[Floats, Floats]:
@@ -69,17 +86,30 @@ Rows = tuple[Floats, Floats]
 """Rows B (elements, points, rows, n) and weights D (elements, points, rows, rows) of B^T D B."""
 
 
+class Side(NamedTuple):
+    """Side of shells: its ends, e, gamma_0 times its length, and phi, (elements, 1 or n) each."""
+
+    i: int
+    j: int
+    e: Floats
+    gamma: Floats
+    phi: Floats
+
+
 @dataclass(frozen=True)
-class Triangles:
-    """Triangles in local axes with rows of what happens at their corners, by n DOFs.
+class Elements:
+    """Shells, with rows of what happens at their corners, by n DOFs.
 
     Attributes
     ----------
-    x : corners in their plane (elements, 3, 2), counter-clockwise
-    d : directors (elements, 3, 3)
-    U, V : displacements, and increments of the directors (elements, 3 corners, 3, n)
-    theta : drilling rotations (elements, 3 corners, n)
-    share : factor on all integrals
+    x : corners (elements, corners, 3), counter-clockwise
+    d : directors (elements, corners, 3)
+    U, V : displacements, and increments of the directors (elements, corners, 3, n)
+    theta : rotations about the local third axis (elements, corners, n)
+    narrow : 1 / b^2 of each side, from a corner to the next one (elements, corners)
+    m : axis 1 of the material (elements, 3), not across the shell
+    share : factor on all integrals, one or (elements, 1)
+    bow : bilinear part of d and v, at the third side of a triangle (elements, 3, 1 + n)
     """
 
     x: Floats
@@ -87,12 +117,15 @@ class Triangles:
     U: Floats
     V: Floats
     theta: Floats
-    share: float
+    narrow: Floats
+    m: Floats
+    share: float | Floats
+    bow: Floats | None = None
 
     @cached_property
     def J(self) -> Floats:
-        """Jacobian (elements, 1, 2, 2)."""
-        return (self.x[:, 1:] - self.x[:, :1])[:, None]
+        """Jacobian (elements, 1, 2, 2) of triangles in the plane of the first two axes."""
+        return (self.x[:, 1:, :2] - self.x[:, :1, :2])[:, None]
 
     def integrand(self, B: Floats, D: Floats) -> Rows:
         """Return B (elements, points, rows, n) and D (elements, points, rows, rows) times weight.
@@ -104,41 +137,75 @@ class Triangles:
 
     def sides(self) -> Iterator[tuple[int, int, Floats]]:
         """Ends i and j, and e (elements, 1, 3), of each side."""
-        for i, j in TRIANGLE_EDGES:
-            yield i, j, np.pad(self.x[:, j] - self.x[:, i], ((0, 0), (0, 1)))[:, None]
+        corners = self.x.shape[1]
+        for i in range(corners):
+            j = (i + 1) % corners
+            yield i, j, (self.x[:, j] - self.x[:, i])[:, None]
+
+    def sheared(self, t: float, material: Ply) -> Iterator[Side]:
+        """Shear of each side."""
+        for i, j, e in self.sides():
+            L2 = (e**2).sum(2)
+            d = self.d[:, i] + self.d[:, j]
+            m = self.m - ((self.m * d).sum(1) / (d * d).sum(1))[:, None] * d
+            c2 = (e[:, 0] * m).sum(1, keepdims=True) ** 2 / L2 / (m * m).sum(1, keepdims=True)
+            bend, twist, across = material.along(c2)
+            rise = (self.d[:, i] + self.d[:, j])[:, None] / 2 @ (self.U[:, j] - self.U[:, i])
+            gamma = (rise + e @ (self.V[:, i] + self.V[:, j]) / 2)[:, 0]
+            phi = t**2 / KAPPA / across * (bend / L2 + twist * self.narrow[:, i, None])
+            yield Side(i, j, e, gamma, phi)
 
 
-def bending_and_shear(each: Triangles, t: float, material: Material) -> tuple[Rows, Rows]:
-    """Return rows of bending, per thickness cubed, and of shear, per thickness."""
-    count, nu = len(each.x), material.nu
-    D = plane_stress(material.E, nu)
-    N, dN = TRIANGLE_3.shape(MIDDLES)
+def bending(each: Elements, t: float, material: Ply) -> Rows:
+    """Return rows of the bending of triangles, per thickness cubed."""
+    count = len(each.x)
     inverse = np.linalg.inv(each.J)
-    g = inverse[:, 0] @ dN[0].T
+    g = inverse[:, 0] @ TRIANGLE_3.shape(MIDDLES)[1][0].T
     grad_u, grad_v = (
         (g @ rows.reshape(count, 3, -1)).reshape(count, 2, 3, -1) for rows in (each.U, each.V)
     )
     H = grad_v[:, :, :2] + (g @ each.d)[:, None] @ grad_u
     kappa = np.stack([H[:, 0, 0], H[:, 1, 1], H[:, 0, 1] + H[:, 1, 0]], 1)[:, None]
     g_mid = inverse @ np.swapaxes(TRIANGLE_6.shape(MIDDLES)[1][:, 3:], 1, 2)
-    bulges, shears, bulge_strains, edges = [], [], [], []
-    for k, (i, j, e) in enumerate(each.sides()):
-        L2 = (e**2).sum(2)
-        rise = (each.d[:, i] + each.d[:, j])[:, None] / 2 @ (each.U[:, j] - each.U[:, i])
-        gamma = (rise + e @ (each.V[:, i] + each.V[:, j]) / 2)[:, 0]
-        phi = 2 / (KAPPA * (1 - nu)) * t**2 / L2
-        bulges.append(-1.5 / (1 + phi) / L2 * gamma)
+    for k, side in enumerate(each.sheared(t, material)):
+        scale = -1.5 / (1 + side.phi) / (side.e**2).sum(2)
+        bulge = np.swapaxes(side.e, 1, 2)[:, :2] * (scale * side.gamma)[:, None]
+        if each.bow is not None and k == 2:
+            turned = (each.bow[:, None, None, :, 0] @ grad_u)[:, :, 0]
+            bow = each.bow[:, :2, 1:] + turned
+            bulge = bulge + (side.phi / (1 + side.phi))[:, None] * bow
+        slope = g_mid[:, :, :, k, None]
+        x, y = slope[:, :, 0] * bulge[:, None, 0], slope[:, :, 1] * bulge[:, None, 1]
+        xy = slope[:, :, 0] * bulge[:, None, 1] + slope[:, :, 1] * bulge[:, None, 0]
+        kappa = kappa + np.stack([x, y, xy], 2)
+    return each.integrand(kappa, material.turned(each.m[:, :2])[:, None] / 12)
+
+
+def shear(each: Elements, t: float, material: Ply) -> Rows:
+    """Return rows of the covariant shear of triangles or quadrilaterals, per thickness."""
+    cell, (xi, w) = SHEARED[each.x.shape[1]]
+    N, dN = cell.shape(xi)
+    fields, shears = [], []
+    for i, j, _, gamma, phi in each.sheared(t, material):
+        both, slope = N[:, [i, j]].sum(1)[:, None], dN[:, [i, j]].sum(1)
+        field = both * dN[:, j] - N[:, j, None] * slope
+        fields.append(field if cell is TRIANGLE_3 else field / both)
         shears.append(phi / (1 + phi) * gamma)
-        (gx, gy), (ex, ey) = np.moveaxis(g_mid[..., k], 2, 0), np.moveaxis(e[..., :2], 2, 0)
-        bulge_strains.append(np.stack([gx * ex, gy * ey, gx * ey + gy * ex], -1))
-        edges.append(N[:, i, None] * dN[:, j] - N[:, j, None] * dN[:, i])
-    kappa = kappa + np.stack(bulge_strains, -1) @ np.stack(bulges, 1)[:, None]
-    gamma = inverse @ np.stack(edges, -1) @ np.stack(shears, 1)[:, None]
-    return each.integrand(kappa, D / 12), each.integrand(gamma, KAPPA * D[2, 2] * np.eye(2))
+    a = np.swapaxes(dN, 1, 2) @ each.x[:, None]
+    metric = a @ np.swapaxes(a, 2, 3)
+    weight = KAPPA * w * np.sqrt(np.linalg.det(metric))
+    inverse = np.linalg.inv(metric)
+    # G_23 in all directions of the tangent plane, and G_13 - G_23 along the material's axis 1.
+    covariant = a @ each.m[:, None, :, None]
+    axis = inverse @ covariant
+    axis_2 = axis @ np.swapaxes(axis, 2, 3) / (np.swapaxes(axis, 2, 3) @ covariant)
+    G = material.G[1] * inverse + (material.G[0] - material.G[1]) * axis_2
+    B = np.stack(fields, -1) @ np.stack(shears, 1)[:, None]
+    return B, weight[..., None, None] * G
 
 
-def mass(each: Triangles) -> tuple[Rows, Rows]:
-    """Return rows of u, per density and thickness, and of v, per density and thickness cubed."""
+def mass(each: Elements) -> tuple[Rows, Rows]:
+    """Return rows of triangles: u per density and thickness, v per density and thickness cubed."""
     bows = [(e @ (each.V[:, j] - each.V[:, i]) / 8)[:, 0] for i, j, e in each.sides()]
     u = np.concatenate([each.U[:, :, 0], each.U[:, :, 1], each.U[:, :, 2], np.stack(bows, 1)], 1)
     v = np.concatenate([each.V[:, :, 0], each.V[:, :, 1], each.V[:, :, 2]], 1)

@@ -4,7 +4,8 @@ Matrices are exact sums of monomials of the thickness t,
 
     K = t (K_membrane + K_shear) + t^3 K_bending,     M = t M_translation + t^3 M_rotary.
 
-A quadrilateral is the mean of its two divisions into triangles; it may be warped and skew.
+A quadrilateral is the mean of its two divisions into triangles, with weights in inverse proportion
+to the squares of their diagonals; it may be warped and skew.
 The director of a node is the mean, by angle, of the normals of the elements there that differ by no
 more than `FOLD` from that of the element itself: across folds, elements have directors of their
 own, and the drilling rotation of one is the bending rotation of the next. Drilling rotations are
@@ -30,22 +31,21 @@ from modefront._typing import Floats, Ints
 from modefront.fem.elements.common import (
     ElementMatrices,
     Part,
+    Ply,
     attachment,
     cross_matrix,
+    ply,
     symmetric,
 )
 from modefront.fem.elements.membrane import membrane
-from modefront.fem.elements.plate import Rows, Triangles, bending_and_shear, mass
-from modefront.fem.section import Material
+from modefront.fem.elements.plate import Elements, Rows, bending, mass, shear
+from modefront.fem.section import Material, Orthotropic
 
 FOLD = 20.0
 """Angle in degrees between elements from which on they meet in a fold."""
 
-DIVISIONS = {
-    3: ((1.0, (0, 1, 2)),),
-    4: tuple((0.5, corners) for corners in ((0, 1, 2), (0, 2, 3), (0, 1, 3), (1, 2, 3))),
-}
-"""Share and corners of the triangles that make an element."""
+DIVISIONS = {3: ((0, 1, 2),), 4: ((1, 2, 3), (2, 3, 0), (3, 0, 1), (0, 1, 2))}
+"""Corners of the triangles that make an element; in quadrilaterals, their third side is inside."""
 
 
 AT_ONCE = 1000
@@ -79,9 +79,37 @@ def directors(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
         near = (abs(cosine) > np.cos(np.radians(FOLD))) & (k < count)
         d += (near * np.sign(cosine) * angle[other])[:, None] * normal[other]
     d /= np.linalg.norm(d, axis=1, keepdims=True)
-    ends = np.cumsum([each.size for each in cells])[:-1]
+    return _by_block(d, cells)
+
+
+def areas(X: Floats) -> Floats:
+    """Areas (elements,) of X (elements, corners, 3), of warped ones in their mean plane."""
+    return np.asarray(np.linalg.norm(np.cross(X, np.roll(X, -1, axis=1)).sum(1), axis=1) / 2)
+
+
+def narrowness(X: Floats, cells: Sequence[Ints]) -> list[Floats]:
+    """1 / b^2 of each side (elements, corners), by block: the mean over the elements there.
+
+    The breadth b of a quadrilateral is its area over the length of the side.
+    """
+    ends, own = [], []
+    for each in cells:
+        following = np.roll(each, -1, axis=1)
+        length = np.linalg.norm(X[following] - X[each], axis=2)
+        ends.append(np.stack([each, following], 2).reshape(-1, 2))
+        own.append(((each.shape[1] == 4) * (length / areas(X[each])[:, None]) ** 2).ravel())
+    pairs = np.sort(np.concatenate(ends), axis=1)
+    _, side = np.unique(pairs @ [len(X), 1], return_inverse=True)
+    mean = np.bincount(side, np.concatenate(own)) / np.bincount(side)
+    return _by_block(mean[side], cells)
+
+
+def _by_block(values: Floats, cells: Sequence[Ints]) -> list[Floats]:
+    """Return values (corners of all blocks, ...) as arrays (elements, corners, ...)."""
+    parts = np.split(values, np.cumsum([each.size for each in cells])[:-1])
     return [
-        part.reshape(*each.shape, 3) for part, each in zip(np.split(d, ends), cells, strict=True)
+        part.reshape(*each.shape, *values.shape[1:])
+        for part, each in zip(parts, cells, strict=True)
     ]
 
 
@@ -93,8 +121,15 @@ def axes(X: Floats) -> Floats:
     return np.asarray(R / np.linalg.norm(R, axis=2, keepdims=True))
 
 
+# 7 arguments: what elements have, and what they share with others.
 def shell(
-    X: Floats, d: Floats, material: Material, thickness: float, offset: float
+    X: Floats,
+    d: Floats,
+    narrow: Floats,
+    m: Floats,
+    material: Material | Orthotropic,
+    thickness: float,
+    offset: float,
 ) -> ElementMatrices:
     """Matrices of shells, DOFs (u, r) node by node in global axes.
 
@@ -102,13 +137,15 @@ def shell(
     ----------
     X : nodes (elements, 3 or 4, 3), counter-clockwise about the normal
     d : `directors` (elements, 3 or 4, 3)
-    material, thickness : isotropic; thickness in units of length
+    narrow : `narrowness` (elements, 3 or 4)
+    m : vectors (elements, 3) in the shell along axis 1 of the material
+    material, thickness : of all elements; thickness in units of length
     offset : distance of the mid-surface from the nodes along the directors
     """
     t, rho = thickness, material.rho
     pieces = [
-        _matrices(X[first : first + AT_ONCE], d[first : first + AT_ONCE], material, t, offset)
-        for first in range(0, len(X), AT_ONCE)
+        _matrices(X[some], d[some], narrow[some], m[some], ply(material), t, offset)
+        for some in (slice(first, first + AT_ONCE) for first in range(0, len(X), AT_ONCE))
     ]
     K1, K3, M1, M3 = (np.concatenate(each) for each in zip(*pieces, strict=True))
     return ElementMatrices(
@@ -117,32 +154,54 @@ def shell(
     )
 
 
-def _matrices(X: Floats, d: Floats, material: Material, t: float, offset: float) -> list[Floats]:
+# 7 arguments: those of `shell`.
+def _matrices(
+    X: Floats, d: Floats, narrow: Floats, m: Floats, material: Ply, t: float, offset: float
+) -> list[Floats]:
     """Return stiffness and mass by t and t^3, (elements, n, n) each."""
     r = offset * d
-    parts: list[list[Rows]] = [[], [], [], [], []]
-    for share, chosen in DIVISIONS[X.shape[1]]:
-        corners = list(chosen)
-        x = (X + r)[:, corners]
+    A = attachment(np.broadcast_to(np.eye(3), (len(X), 3, 3)), r).reshape(*X.shape[:2], 6, -1)
+    U, omega = A[:, :, :3], A[:, :, 3:]
+    whole = Elements(X + r, d, U, -cross_matrix(d) @ omega, omega[:, :, 2], narrow, m, 1.0)
+    quadrilateral = X.shape[1] == 4
+    area = areas(whole.x)
+    squares = ((whole.x[:, 2:] - whole.x[:, :-2]) ** 2).sum(2)
+    parts: list[list[Rows]] = [[], [], [], []]
+    for chosen in DIVISIONS[X.shape[1]]:
+        corners, odd = list(chosen), chosen[1] % 2
+        x = whole.x[:, corners]
         R = axes(x)
-        A = attachment(R, r).reshape(*X.shape[:2], 6, -1)[:, corners]
         across = np.swapaxes(R, 1, 2)
-        local = d[:, corners] @ across
-        each = Triangles(
-            x=((x - x[:, :1]) @ across)[..., :2],
-            d=local,
-            U=A[:, :, :3],
-            V=-cross_matrix(local) @ A[:, :, 3:],
-            theta=A[:, :, 5],
-            share=share,
+        third = squares[:, 1 - odd] / area**2 if quadrilateral else narrow[:, 2]
+        each = Elements(
+            x=(x - x[:, :1]) @ across,
+            d=d[:, corners] @ across,
+            U=R[:, None] @ U[:, corners],
+            V=R[:, None] @ whole.V[:, corners],
+            theta=(R[:, None] @ omega[:, corners])[:, :, 2],
+            narrow=np.stack([narrow[:, corners[0]], narrow[:, corners[1]], third], 1),
+            m=(R @ m[:, :, None])[..., 0],
+            share=squares[:, [odd]] / squares.sum(1, keepdims=True) if quadrilateral else 1.0,
+            bow=(1 - 2 * odd) * (R @ hourglass(whole, area)) if quadrilateral else None,
         )
-        found = membrane(each, t, material), *bending_and_shear(each, t, material), *mass(each)
+        found = membrane(each, t, material), bending(each, t, material), *mass(each)
         for part, rows in zip(parts, found, strict=True):
             part.append(rows)
-    stretch, bending, shear, translation, rotary = (
+    stretched, bent, moved, turned = (
         products(*(np.concatenate(each, 1) for each in zip(*part, strict=True))) for part in parts
     )
-    return [stretch + shear, bending, translation, rotary]
+    return [stretched + products(*shear(whole, t, material)), bent, moved, turned]
+
+
+def hourglass(each: Elements, area: Floats) -> Floats:
+    """Return what is not linear in d and v, half the bow of a diagonal (elements, 3, 1 + n).
+
+    That is zero for linear fields, and the coefficient of xi eta in a parallelogram.
+    """
+    opposite = [areas(each.x[:, np.arange(4) != corner]) for corner in range(4)]
+    weights = np.stack(opposite, 1) * [1, -1, 1, -1] / (2 * area[:, None])
+    fields = np.concatenate([each.d[..., None], each.V], 3)
+    return np.asarray((weights[..., None, None] * fields).sum(1))
 
 
 def products(B: Floats, D: Floats) -> Floats:

@@ -50,7 +50,6 @@ from modefront.fem.elements.shapes import (
     gradients,
     jacobian,
 )
-from modefront.fem.section import Material
 
 Rule = tuple[Floats, Floats]
 QUADS = ((0, 1, 2, 3), (4, 5, 6, 7), (0, 1, 5, 4), (1, 2, 6, 5), (2, 3, 7, 6), (3, 0, 4, 7))
@@ -94,8 +93,13 @@ SOLIDS = {
 """Kinds of solids by their number of nodes."""
 
 
-def solid(X: Floats, material: Material) -> ElementMatrices:
-    """Matrices of solids X (elements, nodes, 3), DOFs u node by node in global axes."""
+def solid(X: Floats, rho: float, C: Floats) -> ElementMatrices:
+    """Matrices of solids X (elements, nodes, 3), DOFs u node by node in global axes.
+
+    Parameters
+    ----------
+    rho, C : density and `modefront.fem.elements.common.elasticity`
+    """
     kind, size = SOLIDS[X.shape[1]], 3 * X.shape[1]
     xi, w = kind.stiffness
     g, det = gradients(X, kind.cell.shape(xi)[1])
@@ -103,8 +107,8 @@ def solid(X: Floats, material: Material) -> ElementMatrices:
         J0 = jacobian(X, CUBE_8.shape(np.zeros((1, 3)))[1])
         g_modes = np.linalg.inv(J0) @ (-2 * xi[:, :, None] * np.eye(3))
         g = np.concatenate([g, g_modes * (np.linalg.det(J0) / det)[..., None, None]], -1)
-    K = solid_stiffness(g, det * w, material.E, material.nu)
+    K = solid_stiffness(g, det * w, C)
     xi, w = kind.mass
     N, dN = kind.cell.shape(xi)
-    M = material.rho * solid_mass(N, np.linalg.det(jacobian(X, dN)) * w)
+    M = rho * solid_mass(N, np.linalg.det(jacobian(X, dN)) * w)
     return ElementMatrices((Part(0, condense(K, size) if len(K[0]) > size else K),), (Part(0, M),))
