@@ -245,8 +245,13 @@ def _positive_definite(
         factor, start = _regular(pencil, K, M, s, right)
         A = K + s * M
         if factor is None:
-            dof = int(np.argmax(np.abs(start).max(axis=1))) if start.size else None
-            raise ModelError(_why_not(dof))
+            if not start.size:
+                raise ModelError("the stiffness matrix is indefinite")
+            dof = int(np.argmax(np.abs(start).max(axis=1)))
+            raise ModelError(
+                "the stiffness and the mass matrix are singular together: "
+                f"degree of freedom {dof} (from 0) moves with neither stiffness nor mass"
+            )
         ritz = greatest(factor.solve, A, M, start, needed, steps=6)
         finite = ritz.mu > SINGULAR * ritz.mu[0]
         mu, X = ritz.mu[finite], ritz.X[:, finite]
@@ -256,15 +261,6 @@ def _positive_definite(
         if target > 0.1 * s:
             return Shifted(-s, factor), A, start
         s = target
-
-
-def _why_not(dof: int | None) -> str:
-    if dof is None:
-        return "the stiffness matrix is indefinite"
-    return (
-        "the stiffness and the mass matrix are singular together: "
-        f"degree of freedom {dof} (from 0) moves with neither stiffness nor mass"
-    )
 
 
 def _regular(

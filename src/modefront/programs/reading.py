@@ -95,8 +95,13 @@ def read_job(path: Path, module: str, stiffness: str, mass: str, dofs: str, deck
         for file, entries in zip(listed.files, listed.entries, strict=True)
     )
     table, notes = listed.dofs, list(listed.notes)
-    if not listed.counted:
-        _refuse_mass_alone(listed.files[0], K, M, table)
+    if not listed.counted:  # a text whose stiffness ends before the mass does is cut off at a line
+        stiff = abs(K).sum(axis=0) + abs(K).sum(axis=1) > 0
+        alone = np.flatnonzero(~stiff & (M.diagonal() != 0))
+        if alone.size:
+            found = f"none at {alone.size} of them, the first {table.label(int(alone[0]))}"
+            expected = "stiffness at all degrees of freedom that have mass (is the file cut off?)"
+            raise wrong(listed.files[0], expected, found)
     unheld = listed.free(K, M) if callable(listed.free) else listed.free
     free = np.arange(table.size) if unheld is None else np.flatnonzero(unheld)
     if free.size < table.size:
@@ -172,15 +177,6 @@ def _symmetric(path: Path, entries: Entries, below: Bools, dofs: DofTable) -> Ma
     half = Matrix(A - difference / 2)
     half.sort_indices()
     return half
-
-
-def _refuse_mass_alone(path: Path, K: Matrix, M: Matrix, dofs: DofTable) -> None:
-    """Refuse a text file whose stiffness ends before the mass does: it is cut off at a line."""
-    alone = np.flatnonzero((abs(K).sum(axis=0) + abs(K).sum(axis=1) == 0) & (M.diagonal() != 0))
-    if alone.size:
-        found = f"none at {alone.size} of them, the first {dofs.label(int(alone[0]))}"
-        expected = "stiffness at all degrees of freedom that have mass (is the file cut off?)"
-        raise wrong(path, expected, found)
 
 
 def existing(path: Path, expected: str, advice: str) -> Path:

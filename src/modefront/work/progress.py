@@ -44,10 +44,6 @@ class State:
     surpassed: bool = False
 
 
-def ignore(_: State) -> None:
-    """Ignore progress reports."""
-
-
 # 12 fields: five are given, the others are its state.
 @dataclass
 class Progress:
@@ -62,7 +58,7 @@ class Progress:
     planned : seconds that a task of each stage will probably take
     """
 
-    report: Callable[[State], None] = ignore
+    report: Callable[[State], object] = lambda _: None
     clock: Callable[[], float] = time.monotonic
     spent: Costs = field(default_factory=Costs)
     workers: int = 1
@@ -138,14 +134,9 @@ class Progress:
 ITERATION = "iteration "
 """What a note begins with that is a detail of the one before it."""
 
-Listener = Callable[[str], None]
+Listener = Callable[[str], object]
 
-
-def _ignore(_: str) -> None:
-    """Ignore a note."""
-
-
-_LISTENER: ContextVar[Listener] = ContextVar("listener", default=_ignore)
+_LISTENER: ContextVar[Listener] = ContextVar("listener", default=lambda _: None)
 
 
 def note(text: str) -> None:
