@@ -37,11 +37,15 @@ class Entries:
     ----------
     row, column : (entries,) from 0
     value : (entries,)
+    shape : numbers of rows and columns, where the file tells them
+    precision : relative error of the values
     """
 
     row: Ints
     column: Ints
     value: Floats = field(repr=False)
+    shape: tuple[int, int] | None = None
+    precision: float = DOUBLE
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +60,7 @@ class Listed:
     free : which rows are not held, (N,), or what returns it, given both triangles; None for all
     counted : whether files say how many entries they have; else those that are cut off at a line
         show by mass without stiffness, which is refused
-    precision, mesh, notes : as in `Job`
+    mesh, notes : as in `Job`
     """
 
     files: tuple[Path, Path]
@@ -64,7 +68,6 @@ class Listed:
     dofs: DofTable
     free: Bools | Callable[[Matrix, Matrix], Bools] | None = None
     counted: bool = True
-    precision: float = DOUBLE
     mesh: ProgramMesh | None = None
     notes: Sequence[str] = ()
 
@@ -115,7 +118,7 @@ def read_job(path: Path, module: str, stiffness: str, mass: str, dofs: str, deck
         arrays |= {f"{letter}{k}": x for k, x in enumerate((A.data, A.indices, A.indptr))}
     if listed.mesh is not None:
         arrays |= arrays_of(listed.mesh)
-    return arrays, [str(listed.files[0]), listed.precision, notes]
+    return arrays, [str(listed.files[0]), max(x.precision for x in listed.entries), notes]
 
 
 def upper(path: Path, entries: Entries, dofs: DofTable) -> Matrix:
