@@ -3,9 +3,13 @@
 The processes of a run import this module as well, and are spared the command line.
 """
 
+import sys
+
 
 def main() -> None:
     """Run the command line."""
+    if "--scheduler" not in " ".join(sys.argv):
+        sys.modules.setdefault("dask", None)  # type: ignore[arg-type]  # xarray would import it
     from modefront.cli.main import main as command
 
     command()

@@ -94,7 +94,9 @@ def isolated(
         folder = Path(name)
         called = [str(path), *arguments]
         status = _SERVER.status([function, called, name, seconds, memory, str(Path.cwd())], seconds)
-        printed = _beginning(folder / OUTPUT)
+        printed = ""
+        with suppress(OSError), (folder / OUTPUT).open("rb") as stream:
+            printed = stream.read(MOST_OUTPUT).decode("utf-8", "replace")
         if status is None or status == -getattr(signal, "SIGALRM", 0):
             text = f"nothing within {seconds:.0f} s, after which reading was given up"
             raise IsolatedError(text)
@@ -215,14 +217,6 @@ def _line(process: subprocess.Popen[str], seconds: float) -> str | None:
         return lines.get(timeout=seconds)
     except queue.Empty:
         return None
-
-
-def _beginning(path: Path) -> str:
-    try:
-        with path.open("rb") as stream:
-            return stream.read(MOST_OUTPUT).decode("utf-8", "replace")
-    except OSError:
-        return ""
 
 
 def serve() -> None:

@@ -22,6 +22,7 @@ from modefront.options import (
 )
 from modefront.text import NAME, clean
 
+R = TypeVar("R")
 T = TypeVar("T")
 
 SUGGESTED = 20
@@ -147,6 +148,15 @@ class Table:
             return None
         place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
         return replace(self, place=place, values=value, requested=[])
+
+    def content(self, key: str, expected: str, read: Callable[[Path], R]) -> R | None:
+        """Return what is read from a file, None without one; note what is wrong with it."""
+        name = self.text(key, expected, None)
+        try:
+            return None if name is None else read(self.path(name))
+        except InputError as error:
+            self.faults.extend(error.faults)
+            return None
 
     def names(self, key: str) -> dict[str, str]:
         """Return a table of names for names, such as those of columns; an empty one without it."""

@@ -18,7 +18,6 @@ import importlib.util
 
 import numpy as np
 from scipy.sparse.csgraph import minimum_spanning_tree
-from scipy.spatial.distance import pdist, squareform
 
 from modefront._typing import Floats
 from modefront.front.dominance import nondominated
@@ -70,5 +69,6 @@ def largest_gap(Y: Floats) -> float:
     if len(Y) < 2:
         return 0.0
     # Points that coincide are no branch, which a length of 0 would be in a sparse matrix.
-    tree = minimum_spanning_tree(squareform(pdist(np.unique(Y, axis=0))))
+    Y = np.unique(Y, axis=0)
+    tree = minimum_spanning_tree(np.linalg.norm(Y[:, None] - Y, axis=2))
     return float(tree.data.max(initial=0.0))

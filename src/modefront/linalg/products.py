@@ -62,7 +62,8 @@ def gram(X: Floats, Y: Floats) -> Floats:
 
     def fill(first: int, last: int) -> None:
         for rows, columns in tiles[first:last]:
-            out[rows, columns] = _gram(X[:, rows], Y[:, columns], _alone)
+            alone = _gram(X[:, rows], Y[:, columns], lambda work, count, _: work(0, count))
+            out[rows, columns] = alone
 
     _share(fill, len(tiles), X.shape[0] * a * b)
     return out
@@ -149,11 +150,6 @@ def _share(work: Callable[[int, int], None], count: int, multiplications: int) -
     ends = [count * k // shares for k in range(shares + 1)]
     for done in [pool.submit(work, *part) for part in pairwise(ends)]:
         done.result()
-
-
-def _alone(work: Callable[[int, int], None], count: int, _: int) -> None:
-    """Do some work on all of ``count`` pieces in the calling thread."""
-    work(0, count)
 
 
 def threads() -> int:

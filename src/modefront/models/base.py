@@ -35,10 +35,6 @@ class Model(Protocol):
         """
 
     @property
-    def full(self) -> Model:
-        """The model that is solved in full: itself, unless it is reduced."""
-
-    @property
     def places(self) -> tuple[str, ...]:
         """Names of the sensors, and of what else can be loaded or looked at in predictions."""
 
@@ -55,7 +51,7 @@ class Model(Protocol):
 
 
 def full_of(model: Model) -> Model:
-    """Return the model that is solved in full; one that does not say so is that itself."""
+    """Return the model that is solved in full: itself, unless it has another as ``full``."""
     return getattr(model, "full", model)
 
 

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import replace
+from itertools import product
 
 import numpy as np
 import scipy.sparse
@@ -86,8 +87,9 @@ def chain(
     K: _Terms = {BASE: {}}
     M: _Terms = {BASE: {(i, i): float(m) for i, m in enumerate(added)}}
     for i, (k, name) in enumerate(zip(stiffnesses, stiffness_scales, strict=True)):
-        for place, entry in _spring(n, i).items():
-            _add(K, name or BASE, place, k * entry)
+        ends = [mass for mass in (i - 1, i) if 0 <= mass < n]
+        for place in product(ends, ends):
+            _add(K, name or BASE, place, k if place[0] == place[1] else -k)
     for i, (m, name) in enumerate(zip(masses, mass_scales, strict=True)):
         _add(M, name or BASE, (i, i), m)
     if sensors is None:
@@ -97,12 +99,6 @@ def chain(
         parameters, _matrices(K, n), _matrices(M, n), sensors, outputs=outputs, base=base
     )
     return replace(model, geometry=chain_geometry(n, model.selection))
-
-
-def _spring(n: int, i: int) -> dict[tuple[int, int], float]:
-    """Return the entries of the stiffness of a unit spring between mass i-1 and mass i."""
-    ends = [mass for mass in (i - 1, i) if 0 <= mass < n]
-    return {(a, b): 1.0 if a == b else -1.0 for a in ends for b in ends}
 
 
 def _add(terms: _Terms, name: str, place: tuple[int, int], value: float) -> None:

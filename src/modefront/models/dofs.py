@@ -82,7 +82,10 @@ class DofTable:
         """
         dofs = self.of_node(node) if node > 0 else np.zeros(0, np.intp)
         if dofs.size == 0:
-            raise LookupError(f"a node with degrees of freedom, {self._near(node)}", str(node))
+            nodes = np.unique(self.node[self.node > 0])
+            near = nodes[np.argsort(np.abs(nodes - node), kind="stable")[:FEW]]
+            named = ", ".join(map(str, np.sort(near).tolist())) + ", …" * (nodes.size > FEW)
+            raise LookupError(f"a node with degrees of freedom, {named}", str(node))
         out: dict[int, float] = {}
         for number, factor in _components(direction):
             chosen = dofs[(self.direction[dofs] == number) & (self.weight[dofs] != 0)]
@@ -102,13 +105,6 @@ class DofTable:
         if self.node[dof] <= 0:
             return f"degree of freedom {dof} (from 0), which has no node"
         return f"node {self.node[dof]} {name_of(int(self.direction[dof]))}"
-
-    def _near(self, node: int) -> str:
-        """Return the nodes that there are, those next to ``node`` first, for a message."""
-        nodes = np.unique(self.node[self.node > 0])
-        near = nodes[np.argsort(np.abs(nodes - node), kind="stable")[:FEW]]
-        more = ", …" if nodes.size > FEW else ""
-        return ", ".join(map(str, np.sort(near).tolist())) + more
 
 
 def motion_of_nodes(dofs: DofTable, nodes: Ints) -> scipy.sparse.csr_array:

@@ -63,16 +63,6 @@ class FunctionModel:
         return self.nominal.size
 
     @property
-    def full(self) -> FunctionModel:
-        """Itself: it is not reduced."""
-        return self
-
-    @property
-    def version(self) -> int:
-        """Zero: the model does not change."""
-        return 0
-
-    @property
     def parts(self) -> tuple[MatrixModel]:
         """The nominal model, which is sent to other processes on its own."""
         return (self.nominal,)

@@ -53,6 +53,7 @@ def shapes_at(model: Model, theta: Floats, count: int) -> Shapes:
     known = model.at(theta, derivatives=False) if isinstance(model, FunctionModel) else model
     if isinstance(known, MatrixModel | ReducedModel):
         lowest = known.full_modes(theta, count)
-        return Shapes(lowest.lam, known.full.selection @ lowest.Phi, lowest.Phi)
+        full = known.full if isinstance(known, ReducedModel) else known
+        return Shapes(lowest.lam, full.selection @ lowest.Phi, lowest.Phi)
     modes = model.modes(theta, count, derivatives=False)
     return Shapes(modes.lam, modes.phi, None)

@@ -103,21 +103,6 @@ class MatrixModel:
         return isinstance(self.stiffness, SparseAffine) and isinstance(self.mass, SparseAffine)
 
     @property
-    def full(self) -> MatrixModel:
-        """Itself: it is not reduced."""
-        return self
-
-    @property
-    def version(self) -> int:
-        """Zero: the model does not change."""
-        return 0
-
-    @property
-    def parts(self) -> tuple[()]:
-        """Nothing within the model is sent to other processes on its own."""
-        return ()
-
-    @property
     def footprint(self) -> float:
         """Bytes that an eigensolution takes, estimated."""
         return self._eigensolver.footprint

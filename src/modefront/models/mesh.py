@@ -9,7 +9,6 @@ import numpy as np
 import scipy.sparse
 
 from modefront import fem
-from modefront._typing import Floats
 from modefront.errors import wrong
 from modefront.fem.check import check_points
 from modefront.fem.limits import limits_of
@@ -69,6 +68,7 @@ def mesh_model(
         exponents[:, columns] = matrix.coefficients.exponents
         return replace(matrix, coefficients=Monomials(exponents))
 
+    direction = built.dofs.free[:, 1]
     model = affine_model(
         parameters,
         [built.sensors[i] for i in sensors],
@@ -76,7 +76,12 @@ def mesh_model(
         placed(built.stiffness),
         placed(built.mass),
         outputs={built.sensors[i]: built.selection[[i]].toarray()[0] for i in others},
-        base={name: motion for name, motion in _motions(built.dofs).items() if motion.any()},
+        # Slaves of rigid links follow their masters, which is the same translation.
+        base={
+            name: (direction == d).astype(float)
+            for d, name in enumerate(fem.DIRECTIONS[:3])
+            if (direction == d).any()
+        },
     )
     limits = limits_of(structure, check_points(structure.nodes))
     return replace(model, limits=limits, geometry=_geometry(structure, built))
@@ -105,12 +110,3 @@ def _geometry(structure: fem.Structure, built: fem.StructureMatrices) -> Geometr
         built.places.nodes[:count],
         built.places.directions[:count, :3],
     )
-
-
-def _motions(dofs: fem.Dofs) -> dict[str, Floats]:
-    """Return the free degrees of freedom of a translation of the whole along each axis.
-
-    Slaves of rigid links follow their masters, which is the same translation.
-    """
-    direction = dofs.free[:, 1]
-    return {name: (direction == d).astype(float) for d, name in enumerate(fem.DIRECTIONS[:3])}

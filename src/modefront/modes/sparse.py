@@ -246,8 +246,13 @@ def _positive_definite(
         factor, start = _regular(pencil, K, M, s, right)
         A = K + s * M
         if factor is None:
-            dof = int(np.argmax(np.abs(start).max(axis=1))) if start.size else None
-            raise ModelError(_why_not(dof))
+            if not start.size:
+                raise ModelError("the stiffness matrix is indefinite")
+            dof = int(np.argmax(np.abs(start).max(axis=1)))
+            raise ModelError(
+                "the stiffness and the mass matrix are singular together: "
+                f"degree of freedom {dof} (from 0) moves with neither stiffness nor mass"
+            )
         ritz = greatest(factor.solve, A, M, start, needed, steps=6)
         finite = ritz.mu > SINGULAR * ritz.mu[0]
         mu, X = ritz.mu[finite], ritz.X[:, finite]
@@ -257,15 +262,6 @@ def _positive_definite(
         if target > 0.1 * s:
             return Shifted(-s, factor), A, start
         s = target
-
-
-def _why_not(dof: int | None) -> str:
-    if dof is None:
-        return "the stiffness matrix is indefinite"
-    return (
-        "the stiffness and the mass matrix are singular together: "
-        f"degree of freedom {dof} (from 0) moves with neither stiffness nor mass"
-    )
 
 
 def _regular(
@@ -326,25 +322,3 @@ def _refined(
         Phi = X - length * (before - combine(X, known))
         MPhi = MX - length * (Mbefore - combine(MX, known))
     return None
-
-
-LOST = 1e-10
-"""Square of what a normalised direction adds to a space below which it is left out."""
-
-
-def orthonormal(
-    K: scipy.sparse.csr_array, M: scipy.sparse.csr_array, sigma: float, S: Floats, Z: Floats
-) -> Floats:
-    """Return the part of columns Z (N, m) outside S, orthonormal like S in K - sigma M."""
-
-    def product(X: Floats) -> Floats:
-        return times(K, X) - times(M, X) * sigma
-
-    for _ in range(2):
-        square = np.einsum("nc,nc->c", Z, product(Z))
-        Z = Z * np.divide(1.0, np.sqrt(np.maximum(square, 0)), out=0 * square, where=square > 0)
-        if S.shape[1]:
-            Z = Z - combine(S, gram(S, product(Z)))
-    squares, U = np.linalg.eigh(gram(Z, product(Z)))
-    new = squares > LOST
-    return combine(Z, U[:, new] / np.sqrt(squares[new])) if new.any() else Z[:, :0]

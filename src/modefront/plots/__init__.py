@@ -36,9 +36,6 @@ PLOTS: Mapping[str, str] = {
 }
 """Pictures in the order of their files, each a function of this name in a module of the package."""
 
-FORMATS = ("svg", "png", "pdf")
-"""Formats of files."""
-
 
 @contextmanager
 def _drawing() -> Iterator[None]:

@@ -48,7 +48,8 @@ def predictions(data: xr.Dataset) -> Picture:
     labels = [f"{short(name, 40)} ({values[best]:.3g})" for name, values, _ in rows]
     axes.set_yticks(range(len(rows)), labels)
     axes.set_ylim(len(rows) - 0.4, -0.6)
-    if any(_wide(values[chosen]) for _, values, _ in rows):
+    positive = [x[np.isfinite(x) & (x > 0)] for x in (values[chosen] for _, values, _ in rows)]
+    if any(x.size and x.max() > 10 * x.min() for x in positive):
         axes.set_xscale("log")
     label = plain(data["label"].values[best])
     axes.set_xlabel(f"over that of {label} (its value in brackets)")
@@ -58,11 +59,6 @@ def predictions(data: xr.Dataset) -> Picture:
         axes.plot([], [], "X", color="0.4", ls="", label="nominal")
     figure.legend(*axes.get_legend_handles_labels(), loc="outside lower left", ncols=3)
     return figure
-
-
-def _wide(values: Floats) -> bool:
-    known = values[np.isfinite(values) & (values > 0)]
-    return bool(known.size and known.max() > 10 * known.min())
 
 
 def _relative_std(

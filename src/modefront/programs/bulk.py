@@ -150,7 +150,8 @@ def read_bulk(path: Path) -> Bulk:
     if not path.is_file():
         raise FileNotFoundError(f"no file {path.name}")
     text = path.read_text(encoding="utf-8", errors="replace")
-    control, bulk = _parted(text)
+    parted = re.search(r"^\s*BEGIN\s+(BULK|SUPER).*$", text, re.MULTILINE | re.IGNORECASE)
+    control, bulk = (text[: parted.start()], text[parted.end() :]) if parted else ("", text)
     content = Bulk()
     default = ["", "", "", ""]
     if bulk != text and not re.search(r"^\s*ENDDATA", bulk, re.MULTILINE | re.IGNORECASE):
@@ -175,12 +176,6 @@ def read_bulk(path: Path) -> Bulk:
     content.held |= _sets(content.supports, content.added, _chosen(control, "SPC"))
     content.followers |= _sets(content.constraints, content.added, _chosen(control, "MPC"))
     return content
-
-
-def _parted(text: str) -> tuple[str, str]:
-    """Return case control and bulk data."""
-    match = re.search(r"^\s*BEGIN\s+(BULK|SUPER).*$", text, re.MULTILINE | re.IGNORECASE)
-    return ("", text) if match is None else (text[: match.start()], text[match.end() :])
 
 
 def _chosen(control: str, key: str) -> int | None:

@@ -15,6 +15,7 @@ modes) moves with the model, and belongs to no node.
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
@@ -52,7 +53,10 @@ def read(path: Path, options: JobOptions) -> Listed:
         existing(file, "a matrix or table of CalculiX", ADVICE)
     labels = columns(files[".dof"], ".", "ii", comment="#")
     node, direction = (column.astype(np.intp) for column in labels)
-    entries = {suffix: coordinates(files[suffix]) for suffix in (".sti", ".mas")}
+    entries = {
+        suffix: replace(coordinates(files[suffix]), precision=PRECISION)
+        for suffix in (".sti", ".mas")
+    }
     _refuse_cut_off(files, entries, node.size)
     notes: list[str] = []
     own = job.with_name(job.name + ".inp")
@@ -76,7 +80,6 @@ def read(path: Path, options: JobOptions) -> Listed:
         (files[".sti"], files[".mas"]),
         (entries[".sti"], entries[".mas"]),
         dofs,
-        precision=PRECISION,
         mesh=deck.mesh if deck else None,
         notes=notes,
     )

@@ -55,14 +55,11 @@ class Change:
         """Return the line with its numbers times a factor."""
         out = self.text
         for first, last in reversed(self.spans):
-            out = f"{out[:first]}{_pointed(fortran(out[first:last]) * factor)}{out[last:]}"
+            mantissa, e, exponent = f"{fortran(out[first:last]) * factor:.9g}".partition("e")
+            # Some programs take a number without a decimal point for an integer.
+            point = "" if "." in mantissa else "."
+            out = f"{out[:first]}{mantissa}{point}{e}{exponent}{out[last:]}"
         return out
-
-
-def _pointed(value: float) -> str:
-    """Return a number with a decimal point, without which some programs take it for an integer."""
-    mantissa, e, exponent = f"{value:.9g}".partition("e")
-    return f"{mantissa}{'' if '.' in mantissa else '.'}{e}{exponent}"
 
 
 def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Change]:
@@ -87,12 +84,10 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
     for number, old, new in _different_lines(nominal, run)[1]:
         if old.lstrip().startswith(COMMENTS):
             continue
-        before, after = ([fortran(x) for x in NUMBER.findall(text)] for text in (old, new))
-        if len(before) != len(after) or _rest(NUMBER.sub("#", old)) != _rest(NUMBER.sub("#", new)):
+        if (pairs := _changed(old, new)) is None:
             return None
-        for x, y in zip(before, after, strict=True):
-            if x != y:
-                factors.setdefault(float(f"{y / x:.6g}") if x else 0.0, number)
+        for _, x, y in pairs:
+            factors.setdefault(float(f"{y / x:.6g}") if x else 0.0, number)
     if len(factors) != 1:
         return None
     ((value, line),) = factors.items()
@@ -101,14 +96,14 @@ def other_factor(nominal: Path, run: Path, factor: float) -> tuple[float, int] |
 
 def _different_lines(nominal: Path, run: Path) -> tuple[str, list[tuple[int, str, str]]]:
     """Return the name of the nominal deck, and number and texts of the lines that differ."""
-    pair = [_deck(path) for path in (nominal, run)]
-    if pair[0] is None or pair[1] is None:
+    before, after = _deck(nominal), _deck(run)
+    if before is None or after is None:
         return "", []
-    lines = [path.read_text("utf-8", "replace").splitlines() for path in pair if path]
+    lines = [path.read_text("utf-8", "replace").splitlines() for path in (before, after)]
     if len(lines[0]) != len(lines[1]):
-        return pair[0].name, []
+        return before.name, []
     numbered = enumerate(zip(*lines, strict=True), start=1)
-    return pair[0].name, [(k, old, new) for k, (old, new) in numbered if old != new]
+    return before.name, [(k, old, new) for k, (old, new) in numbered if old != new]
 
 
 def _deck(path: Path) -> Path | None:
@@ -121,22 +116,23 @@ def _deck(path: Path) -> Path | None:
 
 def _scaled(old: str, new: str, factor: float) -> tuple[tuple[int, int], ...]:
     """Return the numbers of a line that are multiplied, if nothing else in it is different."""
-    before, after = list(NUMBER.finditer(old)), list(NUMBER.finditer(new))
-    if len(before) != len(after) or _rest(NUMBER.sub("#", old)) != _rest(NUMBER.sub("#", new)):
+    pairs = _changed(old, new) or []
+    if any(x == 0 or abs(y / x / factor - 1) > SAME for _, x, y in pairs):
         return ()
-    spans = []
-    for a, b in zip(before, after, strict=True):
-        x, y = fortran(a[0]), fortran(b[0])
-        if x == y:
-            continue
-        if x == 0 or abs(y / x / factor - 1) > SAME:
-            return ()
-        spans.append(a.span())
-    return tuple(spans)
+    return tuple(span for span, _, _ in pairs)
 
 
-def _rest(text: str) -> str:
-    return "".join(text.split())
+def _changed(old: str, new: str) -> list[tuple[tuple[int, int], float, float]] | None:
+    """Return the numbers of a line that are others: where they are, before and after.
+
+    None where anything else in the line is different.
+    """
+    before, after = list(NUMBER.finditer(old)), list(NUMBER.finditer(new))
+    rest = ["".join(NUMBER.sub("#", text).split()) for text in (old, new)]
+    if len(before) != len(after) or rest[0] != rest[1]:
+        return None
+    pairs = [(a.span(), fortran(a[0]), fortran(b[0])) for a, b in zip(before, after, strict=True)]
+    return [(span, x, y) for span, x, y in pairs if x != y]
 
 
 def write_changes(path: Path, changes: Sequence[Change]) -> None:

@@ -140,10 +140,12 @@ class Differences:
         Raises InputError where its degrees of freedom are others, or nothing differs.
         """
         order = matching(self.nominal, run.job, run.label)
-        differences = {
-            quantity: _cleaned(reordered(A, order), self.nominal.matrices[quantity])
-            for quantity, A in run.job.matrices.items()
-        }
+        differences: dict[Quantity, Matrix] = {}
+        for quantity, A in self.nominal.matrices.items():
+            D = scipy.sparse.coo_array(reordered(run.job.matrices[quantity], order) - A)
+            size, greatest = np.abs(D.data), np.abs(A.data).max(initial=0.0)
+            noise = (size <= DROPPED * greatest) & (size <= LOCAL * _joint(D, A))
+            differences[quantity] = _with(D, ~noise & (D.data != 0))
         if not any(D.nnz for D in differences.values()):
             changed = self._changed(run.values)
             expected = f"other matrices than those of '{self.nominal.name}', as {changed}"
@@ -231,7 +233,9 @@ class Differences:
                 if quantity in term.matrices:
                     E = E - shift * term.matrices[quantity]
             noise = ROUNDING * max(self.precision, run.job.precision)
-            far = _beyond(E.tocsr(), A, noise * max(1.0, float(np.abs(shifts).max(initial=1.0))))
+            noise *= max(1.0, float(np.abs(shifts).max(initial=1.0)))
+            entries = scipy.sparse.coo_array(E)
+            far = _with(entries, np.abs(entries.data) > noise * _joint(entries, A))
             scale = np.abs(change.data).max(initial=0.0)
             if far.nnz and np.abs(far.data).max() > AFFINE * scale:
                 raise self._not_affine(run, terms, quantity, far, scale)
@@ -342,26 +346,12 @@ def _joint(E: scipy.sparse.coo_array, A: Matrix) -> Floats:
     return out
 
 
-def _cleaned(changed: Matrix, A: Matrix) -> Matrix:
-    """Return the difference of a matrix from the nominal one, without noise."""
-    D = scipy.sparse.coo_array(changed - A)
-    greatest = np.abs(A.data).max(initial=0.0)
-    noise = (np.abs(D.data) <= DROPPED * greatest) & (np.abs(D.data) <= LOCAL * _joint(D, A))
-    return _with(D, ~noise & (D.data != 0))
-
-
 def _above(D: Matrix, A: Matrix, noise: float) -> Matrix:
     """Return the entries of D that are above the rounding of those of A at the same places."""
     entries = scipy.sparse.coo_array(D)
     A.sum_duplicates()
     limit = noise * np.abs(np.asarray(A[entries.row, entries.col]).ravel())
     return _with(entries, (np.abs(entries.data) > limit) & (entries.data != 0))
-
-
-def _beyond(E: Matrix, A: Matrix, noise: float) -> Matrix:
-    """Return the entries of E that are above the rounding of the matrix around them."""
-    entries = scipy.sparse.coo_array(E)
-    return _with(entries, np.abs(entries.data) > noise * _joint(entries, A))
 
 
 def _with(entries: scipy.sparse.coo_array, chosen: Bools) -> Matrix:

@@ -8,7 +8,8 @@ is a scalar point.
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import re
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -78,7 +79,9 @@ def read_dmig(path: Path) -> Mapping[str, DmigMatrix]:
     if not rows:
         raise wrong(path, "DMIG entries in large fields ('DMIG*')", "none")
     out: dict[str, DmigMatrix] = {}
-    precision = 10.0 ** -_digits([text for each in texts.values() for text in each[: 10**4]])
+    known = (x.strip().lstrip("+-").upper() for each in texts.values() for x in each[: 10**4])
+    behind = (re.split("[DE+-]", text)[0].partition(".")[2] for text in known)
+    precision = 10.0 ** -max(map(len, behind), default=15)
     for each, labels in rows.items():
         try:
             values = np.array([fortran(text) for text in texts[each]])
@@ -94,10 +97,3 @@ def _label(path: Path, place: str, node: str, component: str) -> tuple[int, int]
         return int(node), int(component)
     except ValueError as error:
         raise wrong(path, "nodes and components in fields of 16", reason(error), place) from None
-
-
-def _digits(texts: Sequence[str]) -> int:
-    """Return the digits behind the point that most numbers have."""
-    parts = [text.upper().replace("D", "E").split("E")[0].strip() for text in texts]
-    found = (len(part.partition(".")[2].split("+")[0].split("-")[0]) for part in parts)
-    return max(found, default=15)

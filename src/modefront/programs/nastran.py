@@ -23,7 +23,6 @@ from modefront.programs.dmig import DmigMatrix, read_dmig
 from modefront.programs.mesh import ProgramMesh
 from modefront.programs.op4 import read_op4
 from modefront.programs.reading import (
-    DOUBLE,
     Entries,
     Listed,
     existing,
@@ -103,19 +102,18 @@ def _deck(path: Path, options: JobOptions, notes: list[str]) -> Bulk | None:
 def _from_op4(path: Path, options: JobOptions) -> Listed:
     matrices = read_op4(path)
     names = _pair(path, matrices, options)
-    pair = [matrices[name] for name in names]
-    size = pair[0].rows
-    for name, matrix in zip(names, pair, strict=True):
-        if (matrix.rows, matrix.columns) != (size, size):
+    K, M = (matrices[name] for name in names)
+    size, _ = K.shape or (0, 0)
+    for name, matrix in zip(names, (K, M), strict=True):
+        if matrix.shape != (size, size):
             expected = f"'{name}' with {size} rows and columns"
-            raise wrong(path, expected, f"{matrix.rows} x {matrix.columns}")
+            raise wrong(path, expected, " x ".join(map(str, matrix.shape or ())))
     notes: list[str] = []
     deck = _deck(path, options, notes)
     listed = Listed(
         (path, path),
-        (pair[0].entries, pair[1].entries),
+        (K, M),
         given_table(options, size) or unlabelled(size),
-        precision=max(DOUBLE, *(matrix.precision for matrix in pair)),
         notes=notes,
     )
     return listed if deck is None or options.dofs else _labelled(listed, deck, notes)
@@ -202,7 +200,6 @@ def _from_dmig(path: Path, options: JobOptions) -> Listed:
         (_numbered(pair[0], table), _numbered(pair[1], table)),
         DofTable(table[:, 0], table[:, 1], np.ones(len(table))),
         counted=False,
-        precision=max(each.precision for each in pair),
         mesh=_drawn(deck, notes) if deck else None,
         notes=notes,
     )
@@ -214,4 +211,4 @@ def _numbered(matrix: DmigMatrix, table: Ints) -> Entries:
     row, column = (
         np.searchsorted(keys, x[:, 0] * 10 + x[:, 1]) for x in (matrix.row, matrix.column)
     )
-    return Entries(row, column, matrix.value)
+    return Entries(row, column, matrix.value, precision=matrix.precision)

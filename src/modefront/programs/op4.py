@@ -16,7 +16,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -34,24 +33,7 @@ PRECISIONS = {1: 6e-8, 2: 1e-15}
 EXPECTED = "a matrix of Nastran's OUTPUT4"
 
 
-@dataclass(frozen=True, eq=False)
-class Op4Matrix:
-    """A matrix of a file.
-
-    Attributes
-    ----------
-    rows, columns : size
-    precision : relative error of its numbers
-    entries : rows and columns from 0, and values
-    """
-
-    rows: int
-    columns: int
-    precision: float
-    entries: Entries
-
-
-def read_op4(path: Path) -> Mapping[str, Op4Matrix]:
+def read_op4(path: Path) -> Mapping[str, Entries]:
     """Return all matrices of a file by their names.
 
     Raises InputError for a file that is none of OUTPUT4, is cut off or holds complex numbers.
@@ -90,21 +72,21 @@ class _Pieces:
         """Add so many values from a row on to the column."""
         self._places.append((self.column, first, length))
 
-    def matrix(self, values: np.ndarray, precision: float = 0.0) -> Op4Matrix:
+    def matrix(self, values: np.ndarray, precision: float = 0.0) -> Entries:
         """Return the matrix with the values of all pieces, one behind the other."""
         column, first, length = np.array(self._places, dtype=np.intp).reshape(-1, 3).T
         start = first - 1 - (np.cumsum(length) - length)
         row = (np.repeat(start, length) + np.arange(values.size)).astype(np.int32)
         column = np.repeat(column - 1, length).astype(np.int32)
         used = values != 0
-        entries = Entries(row[used], column[used], values[used].astype(float))
-        return Op4Matrix(self.rows, self.columns, max(self.precision, precision), entries)
+        shape, precision = (self.rows, self.columns), max(self.precision, precision)
+        return Entries(row[used], column[used], values[used].astype(float), shape, precision)
 
 
 # Binary files
 
 
-def _binary(path: Path, data: bytes, order: str, word: int) -> Iterator[tuple[str, Op4Matrix]]:
+def _binary(path: Path, data: bytes, order: str, word: int) -> Iterator[tuple[str, Entries]]:
     """Yield the matrices of a file of this byte order, with words of so many bytes."""
     position, integer = 0, f"{order}i{word}"
     while position < len(data):
@@ -168,7 +150,7 @@ def _strings(pieces: _Pieces, body: np.ndarray, real: np.dtype[np.floating]) -> 
 # Text
 
 
-def _text(path: Path, data: bytes) -> Iterator[tuple[str, Op4Matrix]]:
+def _text(path: Path, data: bytes) -> Iterator[tuple[str, Entries]]:
     """Yield the matrices of a text; lines of values are those with a point."""
     lines = [line.rstrip() for line in data.split(b"\n")]
     position = 0

@@ -37,11 +37,15 @@ class Entries:
     ----------
     row, column : (entries,) from 0
     value : (entries,)
+    shape : numbers of rows and columns, where the file tells them
+    precision : relative error of the values
     """
 
     row: Ints
     column: Ints
     value: Floats = field(repr=False)
+    shape: tuple[int, int] | None = None
+    precision: float = DOUBLE
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,7 +60,7 @@ class Listed:
     free : which rows are not held, (N,), or what returns it, given both triangles; None for all
     counted : whether files say how many entries they have; else those that are cut off at a line
         show by mass without stiffness, which is refused
-    precision, mesh, notes : as in `Job`
+    mesh, notes : as in `Job`
     """
 
     files: tuple[Path, Path]
@@ -64,7 +68,6 @@ class Listed:
     dofs: DofTable
     free: Bools | Callable[[Matrix, Matrix], Bools] | None = None
     counted: bool = True
-    precision: float = DOUBLE
     mesh: ProgramMesh | None = None
     notes: Sequence[str] = ()
 
@@ -95,8 +98,13 @@ def read_job(path: Path, module: str, stiffness: str, mass: str, dofs: str, deck
         for file, entries in zip(listed.files, listed.entries, strict=True)
     )
     table, notes = listed.dofs, list(listed.notes)
-    if not listed.counted:
-        _refuse_mass_alone(listed.files[0], K, M, table)
+    if not listed.counted:  # a text whose stiffness ends before the mass does is cut off at a line
+        stiff = abs(K).sum(axis=0) + abs(K).sum(axis=1) > 0
+        alone = np.flatnonzero(~stiff & (M.diagonal() != 0))
+        if alone.size:
+            found = f"none at {alone.size} of them, the first {table.label(int(alone[0]))}"
+            expected = "stiffness at all degrees of freedom that have mass (is the file cut off?)"
+            raise wrong(listed.files[0], expected, found)
     unheld = listed.free(K, M) if callable(listed.free) else listed.free
     free = np.arange(table.size) if unheld is None else np.flatnonzero(unheld)
     if free.size < table.size:
@@ -110,7 +118,7 @@ def read_job(path: Path, module: str, stiffness: str, mass: str, dofs: str, deck
         arrays |= {f"{letter}{k}": x for k, x in enumerate((A.data, A.indices, A.indptr))}
     if listed.mesh is not None:
         arrays |= arrays_of(listed.mesh)
-    return arrays, [str(listed.files[0]), listed.precision, notes]
+    return arrays, [str(listed.files[0]), max(x.precision for x in listed.entries), notes]
 
 
 def upper(path: Path, entries: Entries, dofs: DofTable) -> Matrix:
@@ -172,15 +180,6 @@ def _symmetric(path: Path, entries: Entries, below: Bools, dofs: DofTable) -> Ma
     half = Matrix(A - difference / 2)
     half.sort_indices()
     return half
-
-
-def _refuse_mass_alone(path: Path, K: Matrix, M: Matrix, dofs: DofTable) -> None:
-    """Refuse a text file whose stiffness ends before the mass does: it is cut off at a line."""
-    alone = np.flatnonzero((abs(K).sum(axis=0) + abs(K).sum(axis=1) == 0) & (M.diagonal() != 0))
-    if alone.size:
-        found = f"none at {alone.size} of them, the first {dofs.label(int(alone[0]))}"
-        expected = "stiffness at all degrees of freedom that have mass (is the file cut off?)"
-        raise wrong(path, expected, found)
 
 
 def existing(path: Path, expected: str, advice: str) -> Path:

@@ -38,8 +38,12 @@ CHECKSUM = "checksum"
 
 def write(data: xr.Dataset, path: Path) -> None:
     """Write a dataset with its checksum, whole or not at all."""
-    with output(path, lasting=True) as stream:
-        data.assign_attrs({CHECKSUM: checksum(data)}).to_netcdf(stream, engine="h5netcdf")
+    import h5netcdf
+    from xarray.backends.h5netcdf_ import H5NetCDFStore
+
+    # `to_netcdf` would import Dask, with all that belongs to it, for a lock between processes.
+    with output(path, lasting=True) as stream, h5netcdf.File(stream, "w") as file:
+        data.assign_attrs({CHECKSUM: checksum(data)}).dump_to_store(H5NetCDFStore(file))
 
 
 def read_dataset(folder: Path, *, whole: bool = True) -> xr.Dataset:

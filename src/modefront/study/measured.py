@@ -168,7 +168,9 @@ def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | 
     if inner is None:
         return None
     node = inner.integer("node", 0, 10**9)
-    direction: Any = inner.take("direction", "x, y, z, rx, ry, rz or a vector", _is_any, ...)
+    direction: Any = inner.take(
+        "direction", "x, y, z, rx, ry, rz or a vector", lambda x: isinstance(x, str | list), ...
+    )
     inner.close()
     if node is None or direction is None:
         return None
@@ -181,10 +183,6 @@ def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | 
     except FemError as error:
         inner.fault("direction", "x, y, z, rx, ry, rz or a vector", str(error))
         return None
-
-
-def _is_any(value: object) -> bool:
-    return isinstance(value, str | list)
 
 
 def _by_coordinates(

@@ -19,6 +19,7 @@ from concurrent.futures.process import BrokenProcessPool
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, field
 from enum import Enum
+from functools import cache
 from multiprocessing import resource_tracker
 from multiprocessing.connection import wait
 from multiprocessing.context import SpawnContext, SpawnProcess
@@ -79,16 +80,14 @@ class _Process(SpawnProcess):
 
     def start(self) -> None:
         """Start the process, which takes the environment that it finds."""
-        before = {name: os.environ.get(name) for name in ONE_THREAD}
+        before = dict(os.environ)
         os.environ.update(ONE_THREAD)
         try:
             super().start()
         finally:
-            for name, value in before.items():
-                if value is None:
-                    del os.environ[name]
-                else:
-                    os.environ[name] = value
+            for name in ONE_THREAD.keys() - before.keys():
+                del os.environ[name]
+            os.environ.update(before)
         self.started.append(self)
 
 
@@ -166,6 +165,7 @@ def _prepare(warm: Sequence[str]) -> None:
     _take_one_thread()
 
 
+@cache
 def _take_one_thread() -> None:
     """Limit the BLAS of this process, and what it first shares among threads later, to one."""
     os.environ.update(ONE_THREAD)
@@ -274,11 +274,5 @@ class Cluster:
 
 def _work_of_one_thread(message: Message, objects: dict[str, bytes]) -> Reply:
     """Compute a message with one thread."""
-    global _LIMITED
-    if not _LIMITED:
-        _take_one_thread()
-        _LIMITED = True
+    _take_one_thread()
     return work(message, objects)
-
-
-_LIMITED = False

@@ -10,6 +10,7 @@ without a plan they take as long as all tasks.
 from __future__ import annotations
 
 import time
+from collections import Counter
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from contextvars import ContextVar
@@ -44,10 +45,6 @@ class State:
     surpassed: bool = False
 
 
-def ignore(_: State) -> None:
-    """Ignore progress reports."""
-
-
 # 12 fields: five are given, the others are its state.
 @dataclass
 class Progress:
@@ -62,23 +59,23 @@ class Progress:
     planned : seconds that a task of each stage will probably take
     """
 
-    report: Callable[[State], None] = ignore
+    report: Callable[[State], object] = lambda _: None
     clock: Callable[[], float] = time.monotonic
     spent: Costs = field(default_factory=Costs)
     workers: int = 1
     planned: Mapping[str, float] = field(default_factory=dict)
-    _expected: dict[str, int] = field(default_factory=dict)
-    _done: dict[str, int] = field(default_factory=dict)
-    _running: dict[str, int] = field(default_factory=dict)
+    _expected: Counter[str] = field(default_factory=Counter)
+    _done: Counter[str] = field(default_factory=Counter)
+    _running: Counter[str] = field(default_factory=Counter)
     _stage: str = ""
-    _computed: dict[str, int] = field(default_factory=dict)
+    _computed: Counter[str] = field(default_factory=Counter)
     _seconds: dict[str, float] = field(default_factory=dict)
     _began: float | None = None
 
     def expect(self, stages: Mapping[str, int]) -> None:
         """Note the number of tasks of each stage that are still to come."""
         for stage, count in stages.items():
-            self._expected[stage] = self._done.get(stage, 0) + count
+            self._expected[stage] = self._done[stage] + count
         self.report(self.state)
 
     def start(self, stage: str) -> None:
@@ -88,38 +85,37 @@ class Progress:
         if stage != self._stage and self._stage:
             self._expected[self._stage] = self._met(self._stage)
         self._stage = stage
-        self._running[stage] = self._running.get(stage, 0) + 1
+        self._running[stage] += 1
         self.report(self.state)
 
     def end(self, stage: str, seconds: float | None) -> None:
         """Take note that a task has ended; it took no ``seconds`` where its result was kept."""
         self._running[stage] -= 1
-        self._done[stage] = self._done.get(stage, 0) + 1
+        self._done[stage] += 1
         if seconds is not None:
-            self._computed[stage] = self._computed.get(stage, 0) + 1
+            self._computed[stage] += 1
             self._seconds[stage] = self._seconds.get(stage, 0.0) + seconds
         self.report(self.state)
 
     @property
     def state(self) -> State:
         """State of the run."""
-        done, running = sum(self._done.values()), sum(self._running.values())
-        extents = self._extents()
-        elapsed = 0.0 if self._began is None else self.clock() - self._began
-        at_hand = self._done.get(self._stage, 0), extents.get(self._stage, 0)
-        surpassed = self._met(self._stage) > self._expected.get(self._stage, 0)
-        left = self._left(extents)
-        all_tasks = sum(extents.values())
-        return State(self._stage, done, running, all_tasks, elapsed, left, at_hand, surpassed)
-
-    def _extents(self) -> dict[str, int]:
-        """Return how many tasks each stage has, as far as is known."""
         stages = dict.fromkeys([*self._expected, *self._done, *self._running])
-        return {stage: max(self._expected.get(stage, 0), self._met(stage)) for stage in stages}
+        extents = {stage: max(self._expected[stage], self._met(stage)) for stage in stages}
+        return State(
+            self._stage,
+            self._done.total(),
+            self._running.total(),
+            sum(extents.values()),
+            0.0 if self._began is None else self.clock() - self._began,
+            self._left(extents),
+            (self._done[self._stage], extents.get(self._stage, 0)),
+            self._met(self._stage) > self._expected[self._stage],
+        )
 
     def _left(self, extents: Mapping[str, int]) -> float | None:
         """Return the seconds that all tasks to come will probably take; None for unknown."""
-        count = sum(self._computed.values())
+        count = self._computed.total()
         if not count and not self.planned:
             return None
         mean = sum(self._seconds.values()) / count if count else 0.0
@@ -128,24 +124,19 @@ class Progress:
             each = self.planned.get(stage, mean)
             if stage in self._computed:
                 each = self._seconds[stage] / self._computed[stage]
-            left += (extent - self._done.get(stage, 0)) * each
+            left += (extent - self._done[stage]) * each
         return left / self.workers
 
     def _met(self, stage: str) -> int:
-        return self._done.get(stage, 0) + self._running.get(stage, 0)
+        return self._done[stage] + self._running[stage]
 
 
 ITERATION = "iteration "
 """What a note begins with that is a detail of the one before it."""
 
-Listener = Callable[[str], None]
+Listener = Callable[[str], object]
 
-
-def _ignore(_: str) -> None:
-    """Ignore a note."""
-
-
-_LISTENER: ContextVar[Listener] = ContextVar("listener", default=_ignore)
+_LISTENER: ContextVar[Listener] = ContextVar("listener", default=lambda _: None)
 
 
 def note(text: str) -> None:

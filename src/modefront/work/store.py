@@ -11,6 +11,7 @@ import hashlib
 import io
 import json
 import os
+import re
 import socket
 import warnings
 from collections.abc import Iterator
@@ -73,23 +74,14 @@ class Store:
         write_bytes(path, kept + _checksum(task, kept), lasting=True)
 
     def _path(self, task: Task[Any]) -> Path:
-        return self.folder / f"{_file_name(task)}.npz"
+        """Return a file that no other task has, whatever the characters of its key and case."""
+        safe = re.sub(r"[^A-Za-z0-9_-]", ".", task.name)[:LONGEST]
+        return self.folder / f"{safe}-{hash_text(repr(task.identity))[:8]}.npz"
 
 
 def _checksum(task: Task[Any], content: bytes) -> bytes:
     """Return a hash of what is kept of a task, and of which task that is."""
-    return hashlib.blake2b(_identity(task).encode() + content, digest_size=CHECKSUM).digest()
-
-
-def _identity(task: Task[Any]) -> str:
-    """Return the identity of a task as text: its parts, which may hold any characters."""
-    return repr(task.identity)
-
-
-def _file_name(task: Task[Any]) -> str:
-    """Return a file name that no other task has, whatever the characters of its key and case."""
-    safe = "".join(c if c.isascii() and (c.isalnum() or c in "-_") else "." for c in task.name)
-    return f"{safe[:LONGEST]}-{hash_text(_identity(task))[:8]}"
+    return hashlib.blake2b(repr(task.identity).encode() + content, digest_size=CHECKSUM).digest()
 
 
 def hash_text(text: str) -> str:
@@ -127,7 +119,7 @@ def locked(folder: Path) -> Iterator[None]:
             lock.acquire()
         write_text(holder, f"process {os.getpid()} on {socket.gethostname()}")
     except Timeout:
-        found = f"{_run(holder)}: wait until it has ended, or choose another folder with -o"
+        found = f"{_holding(holder)}: wait until it has ended, or choose another folder with -o"
         if isinstance(lock, SoftFileLock):
             found += f"; if it was killed, remove '{path}', as this drive has no locks"
         raise InputError(Fault(str(folder), "folder", "no other run in it", found)) from None
@@ -143,14 +135,11 @@ def locked(folder: Path) -> Iterator[None]:
         lock.release()
 
 
-def _run(holder: Path) -> str:
+def _holding(holder: Path) -> str:
     """Return which run holds a lock."""
-    try:
+    with suppress(OSError):
         if holder.is_file():  # a pipe in its place would be waited for
             with holder.open("rb") as stream:
-                return clean(
-                    f"the run of {stream.read(LONGEST_HOLDER).decode('utf-8', 'replace')}", NAME
-                )
-    except OSError:
-        pass
+                known = stream.read(LONGEST_HOLDER).decode("utf-8", "replace")
+                return clean(f"the run of {known}", NAME)
     return "another run"

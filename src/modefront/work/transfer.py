@@ -24,19 +24,15 @@ KNOWN = 3
 
 
 class Shared(Protocol):
-    """An object that many tasks have among their arguments."""
+    """An object that many tasks have among their arguments.
 
-    @property
-    def version(self) -> Hashable:
-        """Number that changes whenever the object does."""
+    One that changes has a number ``version``, which changes with it. One with objects that change
+    less often, and are sent on their own, has a sequence of these, ``parts``.
+    """
 
     @property
     def footprint(self) -> float:
         """Bytes that a process takes to work with it, estimated."""
-
-    @property
-    def parts(self) -> Sequence[Shared]:
-        """Objects within it that are sent on their own, as they change less often."""
 
 
 S = TypeVar("S", bound=type)
@@ -91,7 +87,7 @@ class Sender:
 
     def name(self, value: Shared) -> str:
         """Return the name of a shared object; another version of it has another name."""
-        key = id(value), value.version
+        key = id(value), getattr(value, "version", 0)
         name, known = self._objects.get(key, ("", None))
         if known is None or known() is not value:
             # Of an object that changes, no task asks for an earlier version again, and of one that
@@ -122,7 +118,7 @@ class _Pickler(pickle.Pickler):
 
     def _meet(self, value: Shared) -> str:
         """Take note of a shared object after its parts; return its name."""
-        for part in value.parts:
+        for part in getattr(value, "parts", ()):
             self._meet(part)
         name = self.sender.name(value)
         self.met[name] = value

@@ -121,7 +121,11 @@ class Workers:
         call = _Call(tasks, begun, deque(range(len(tasks))))
         while call.pending or call.alone or call.flying:
             if self._is_for_this_process(call):
-                yield self._computed_here(call)
+                k = call.pending.popleft()
+                begun(k)
+                done = computed(tasks[k])
+                self._learn(tasks[k], done.seconds)
+                yield k, done
                 continue
             self._send(call)
             for future in wait(call.flying, return_when=FIRST_COMPLETED).done:
@@ -143,14 +147,6 @@ class Workers:
         seconds = (self._seconds.get(_kind(call.tasks[k]), SHORT) for k in call.pending)
         return lone or sum(seconds) < TINY
 
-    def _computed_here(self, call: _Call) -> tuple[int, Done]:
-        """Return the position and the result of the next task, computed in this process."""
-        k = call.pending.popleft()
-        call.begun(k)
-        done = computed(call.tasks[k])
-        self._learn(call.tasks[k], done.seconds)
-        return k, done
-
     def _send(self, call: _Call) -> None:
         """Send tasks of a call, as many as the processes have room for."""
         if call.alone:
@@ -159,8 +155,8 @@ class Workers:
             return
         while call.pending and len(call.flying) < QUEUED * self.pool.count:
             share = ceil(len(call.pending) / self.pool.count)
-            first = call.tasks[call.pending[0]]
-            count = min(share, self._together(first), len(call.pending))
+            each = self._seconds.get(_kind(call.tasks[call.pending[0]]), SHORT)
+            count = max(1, min(share, int(SHORT / max(each, SHORT / 1000))))
             positions = [call.pending[k] for k in range(count)]
             if not self._submit(call, positions):
                 return
@@ -214,16 +210,13 @@ class Workers:
             self._learn(call.tasks[k], done.seconds)
             spend(done.costs)
             yield k, done
-        if reply.error is not None:
-            self._fail(call, sent.positions[len(reply.done) :], reply.error)
-
-    def _fail(self, call: _Call, positions: Sequence[int], error: Exception) -> None:
-        """Take note of the error of the first of some tasks; the others are sent again."""
-        failed, *others = positions
-        if isinstance(error, MemoryError):
+        if reply.error is None:
+            return
+        failed, *others = sent.positions[len(reply.done) :]
+        if isinstance(reply.error, MemoryError):
             self._lost_one(call, failed, "its memory does not suffice")
         else:
-            call.errors[failed] = error
+            call.errors[failed] = reply.error
         call.pending.extend(others)
 
     def _lose(self, call: _Call, future: Future[Reply], loss: Loss) -> None:
@@ -249,10 +242,6 @@ class Workers:
             return
         text = f"task '{task.name}' could not be done: {reason}, twice; all others are kept"
         call.errors[position] = UnfinishedError(text)
-
-    def _together(self, task: Task[Any]) -> int:
-        """Return how many tasks like this one are sent together."""
-        return max(1, int(SHORT / max(self._seconds.get(_kind(task), SHORT), SHORT / 1000)))
 
     def _learn(self, task: Task[Any], seconds: float) -> None:
         """Note the time of tasks of this kind."""

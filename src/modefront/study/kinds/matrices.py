@@ -27,7 +27,12 @@ def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     size = _common_size(table, terms)
     if size is not None:
         _check_entries(table, terms, size)
-    dofs, mesh = _dofs(table, size), _mesh(table)
+    dofs = table.content("dofs", "the name of a table of degrees of freedom", read_dofs)
+    if dofs is not None and size not in (None, dofs.size):
+        expected = f"{size} rows, one a degree of freedom"
+        table.fault("dofs", expected, f"{dofs.size} in '{table.values['dofs']}'")
+        dofs = None
+    mesh = table.content("mesh", "the name of a file of nodes and elements", read_mesh)
     sensors = read_sensors(table, size, dofs=dofs)
     floating = table.take("floating", "true or false", lambda x: isinstance(x, bool), False)
     outputs = read_outputs(table, size, sensors, dofs)
@@ -40,13 +45,6 @@ def read_matrices(table: Table, parameters: Sequence[str]) -> Model | None:
     if dofs is None or mesh is None:
         return model
     return replace(model, geometry=_geometry(dofs, mesh, model.selection))
-
-
-def _note(table: Table, key: str, error: InputError) -> None:
-    """Note what is wrong with a file under the key that names it."""
-    table.faults += [
-        replace(fault, place=f"{table.place} {key}, {fault.place}") for fault in error.faults
-    ]
 
 
 def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy.sparse.coo_array]:
@@ -67,37 +65,11 @@ def _terms(model: Table, key: str, parameters: Sequence[str]) -> dict[str, scipy
             continue
         try:
             out[name] = read_matrix(table.path(file[0]), file[1])
-        except InputError as error:
-            _note(table, name, error)
+        except InputError as error:  # the file, in which there may be several, under its key
+            table.faults += [
+                replace(x, place=f"{table.place} {name}, {x.place}") for x in error.faults
+            ]
     return out
-
-
-def _dofs(table: Table, size: int | None) -> DofTable | None:
-    """Return the nodes and directions of the degrees of freedom, where a file names them."""
-    name = table.text("dofs", "the name of a table of degrees of freedom", None)
-    if name is None:
-        return None
-    try:
-        dofs = read_dofs(table.path(name))
-    except InputError as error:
-        table.faults.extend(error.faults)
-        return None
-    if size is not None and dofs.size != size:
-        table.fault("dofs", f"{size} rows, one a degree of freedom", f"{dofs.size} in '{name}'")
-        return None
-    return dofs
-
-
-def _mesh(table: Table) -> ProgramMesh | None:
-    """Return nodes and elements for pictures, where a file names them."""
-    name = table.text("mesh", "the name of a file of nodes and elements", None)
-    if name is None:
-        return None
-    try:
-        return read_mesh(table.path(name))
-    except InputError as error:
-        table.faults.extend(error.faults)
-        return None
 
 
 def _geometry(dofs: DofTable, mesh: ProgramMesh, selection: scipy.sparse.csr_array) -> Geometry:
