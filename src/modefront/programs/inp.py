@@ -160,7 +160,7 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], l
                 yield keyword, options, rows
             elif rows and rows[0][0].isdigit():
                 raise wrong(path, "a keyword before lines of numbers", ", ".join(rows[0]))
-            keyword, options, rows = *_keyword(text), []
+            keyword, options, rows = *keyword_of(text), []
             if keyword == "INCLUDE" and options.get("INPUT") and depth < DEEPEST:
                 other = path.parent / options["INPUT"]
                 if other.resolve().is_relative_to(path.parent.resolve()):  # nothing from elsewhere
@@ -169,7 +169,8 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], l
         yield keyword, options, rows
 
 
-def _keyword(text: str) -> tuple[str, dict[str, str]]:
+def keyword_of(text: str) -> tuple[str, dict[str, str]]:
+    """Return the keyword of a line with a star, and its options."""
     name, *parts = text[1:].split(",")
     options = {}
     for part in parts:

@@ -117,8 +117,8 @@ def _front(data: xr.Dataset) -> Iterator[Finding]:
     for k in range(gaps):
         end, start = data["end_objective"].values[2 * k : 2 * k + 2]
         if np.isfinite([end, start]).all():
-            said = {"end": _vector(end), "start": _vector(start)}
-            yield found("branch-ends", str(k + 1), other=k + 2, **said)
+            ends = _vector(end), _vector(start)
+            yield found("branch-ends", str(k + 1), other=k + 2, end=ends[0], start=ends[1])
     if "piece" in data:
         inside = ~pareto & ~data["dominated_among_front"].values
         inside &= data["kind"].values == Kind.FRONT.value
@@ -168,11 +168,14 @@ def _misfit(data: xr.Dataset) -> Iterator[Finding]:
     nominal, beside = data["kind"].values == Kind.NOMINAL.value, ""
     if nominal.any() and np.isfinite(data["frequency"].values[nominal]).any():
         beside = f"; the nominal model has {_fit(data, nominal)}"
-    said = {
-        "whole": _fit(data, chosen, whole=True),
-        "reference": _fit(data, data["label"].values == best),
-    }
-    yield found("misfit", best, models=int(chosen.sum()), nominal=beside, **said)
+    yield found(
+        "misfit",
+        best,
+        models=int(chosen.sum()),
+        whole=_fit(data, chosen, whole=True),
+        reference=_fit(data, data["label"].values == best),
+        nominal=beside,
+    )
 
 
 def _fit(data: xr.Dataset, chosen: Bools, *, whole: bool = False) -> str:

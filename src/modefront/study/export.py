@@ -12,7 +12,7 @@ from modefront.brief import as_html, brief
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError, reason, suggestion
 from modefront.exports.model import Origin, matrix_size, write_model
 from modefront.models.dofs import read_dofs
-from modefront.programs.changes import read_changes
+from modefront.programs.changes import read_changes, write_deck
 from modefront.programs.mesh import read_mesh
 from modefront.results.files import FILE, read_dataset
 from modefront.results.results import Results
@@ -47,7 +47,7 @@ def export(
     study: Path | str | None = None,
     modes: int | None = None,
 ) -> Exported:
-    """Write a model of results: parameters, matrices, mode shapes, changed lines of the deck.
+    """Write a model of results: parameters, matrices, mode shapes, the deck with its values.
 
     Parameters
     ----------
@@ -85,6 +85,7 @@ def export(
         output.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=output, prefix=".export-") as unfinished:
             missing = write_model(model, _origin(loaded.file), Path(unfinished), count)
+            write_deck(loaded.file.parent, model.theta, Path(unfinished))
             files = sorted(Path(unfinished).iterdir())
             moved = tuple(Path(shutil.move(file, output / file.name)) for file in files)
     except ModelError as error:
