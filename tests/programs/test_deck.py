@@ -113,12 +113,12 @@ def test_what_cannot_be_run_is_refused(deck: Path, tmp_path: Path) -> None:
 @needs_ccx
 def test_a_deck_is_imported_with_jobs_of_its_own_and_comes_back_whole(tmp_path: Path) -> None:
     write_example("calculix", tmp_path / "decks")
-    parameters = {"plate": "material:PLATE", "t": "section:PLATE", "spring": "spring:SPRING"}
+    parameters = {"columns": "material:COLUMNS", "t": "section:PLATE", "k": "spring:SPRING"}
     imported = mf.import_deck(tmp_path / "decks" / "nominal.inp", parameters)
     assert max(imported.errors) < 1e-10
     assert any("those that the program prints" in note for note in imported.notes)
     imported.write(tmp_path / "study")
-    theta = {"plate": 1.3, "t": 1.2, "spring": 0.6}
+    theta = {"columns": 1.3, "t": 1.2, "k": 0.6}
     write_deck(tmp_path / "study", theta, tmp_path)
     text = (tmp_path / "nominal.inp").read_text()
     (tmp_path / "updated.inp").write_text(
@@ -127,4 +127,4 @@ def test_a_deck_is_imported_with_jobs_of_its_own_and_comes_back_whole(tmp_path: 
     subprocess.run([str(CCX), "updated"], cwd=tmp_path, check=True, capture_output=True)
     expected = printed_frequencies(tmp_path / "updated.dat")
     lam = model_of(imported.terms).full_modes(np.array(list(theta.values())), 8).lam
-    assert np.sqrt(lam) / (2 * np.pi) == pytest.approx(expected, rel=1e-6)
+    assert np.sqrt(lam) / (2 * np.pi) == pytest.approx(expected, rel=2e-5)

@@ -294,7 +294,7 @@ def _variables() -> Iterator[Variable]:
             heading = cells
 
 
-DIMENSIONS: Mapping[str, str] = {name: text for name, text in _rows(_DIMENSIONS)}
+DIMENSIONS: Mapping[str, str] = {row[0]: row[1] for row in _rows(_DIMENSIONS)}
 """Meanings of the dimensions, by name."""
 
 VARIABLES: Mapping[str, Variable] = {x.name: x for x in _variables()}
