@@ -192,7 +192,7 @@ def measure_import(program: str, job: Path, out: multiprocessing.Queue[tuple[flo
     memory = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss / 2**20
     terms = imported.terms
     (term,) = terms.terms
-    counts = terms.base["stiffness"].nnz, term.matrices["stiffness"].nnz
+    counts = terms.base.matrices["stiffness"].nnz, term.matrices["stiffness"].nnz
     out.put((terms.dofs.size, *counts, *times, memory))
 
 

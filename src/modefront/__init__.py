@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from modefront.errors import ModelError as ModelError
     from modefront.errors import UnfinishedError as UnfinishedError
     from modefront.front.given import Weighted as Weighted
+    from modefront.front.methods import Method as Method
     from modefront.front.options import Pareto as Pareto
     from modefront.front.search import Search as Search
     from modefront.identifiability.combinations import combinations as combinations
@@ -39,7 +40,6 @@ if TYPE_CHECKING:
     from modefront.predictions import Prediction as Prediction
     from modefront.predictions import PredictionKind as PredictionKind
     from modefront.predictions import SoilFilter as SoilFilter
-    from modefront.predictions import register as register
     from modefront.programs.deck import import_deck as import_deck
     from modefront.programs.importing import import_model as import_model
     from modefront.reports.page import report as report
@@ -53,7 +53,10 @@ if TYPE_CHECKING:
     from modefront.study.check import check as check
     from modefront.study.definition import Study as Study
     from modefront.study.export import export as export
+    from modefront.study.extensions import register as register
     from modefront.study.file import load as load
+    from modefront.study.kinds.sensors import ModelKind as ModelKind
+    from modefront.study.measured import DataReader as DataReader
     from modefront.study.session import run as run
     from modefront.study.session import solve as solve
     from modefront.uncertainty.options import Uncertainty as Uncertainty

@@ -1,10 +1,10 @@
-"""Options that check themselves, with the same words in Python and in a study file.
+"""Options that check themselves, with the same words in Python and in a file.
 
 An option is a field of a frozen dataclass. Its annotation has its requirement: a ``Literal``, or
-``Annotated`` with a `Requirement`; ``None`` besides, where the annotation has it. `check_fields`,
-called from ``__post_init__``, compares all fields with their requirements and brings their values
-into plain Python: the same record is made from TOML, from literals and from numpy scalars. A reader
-of files takes `requirements` for the keys of a table.
+``Annotated`` with a `Requirement`, or with a function that returns one when it is needed; ``None``
+besides, where the annotation has it. `check_fields`, called from ``__post_init__``, compares all
+fields with their requirements and brings their values into plain Python: the same record is made
+from TOML (`modefront.toml.Table`), from literals and from numpy scalars.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 import math
 import types
 import typing
+from collections import Counter
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import MISSING, dataclass, fields
 from enum import Enum
@@ -20,9 +21,10 @@ from typing import Annotated, Any, Literal, get_args, get_origin, get_type_hints
 import numpy as np
 
 from modefront.errors import Fault, refuse
-from modefront.toml import describe, repeated
-from modefront.toml import is_name as is_name
-from modefront.toml import is_number as is_number
+from modefront.rounding import LARGEST
+
+SHORT = 6
+"""Longest list that a message shows item by item."""
 
 
 @dataclass(frozen=True)
@@ -41,6 +43,10 @@ class Requirement:
     holds: Callable[[Any], bool]
     convert: Callable[[Any], Any] = lambda value: value
     record: type | None = None
+
+    def fault(self, place: str, value: object) -> Fault | None:
+        """Return the fault of a value, None where it has none."""
+        return None if self.holds(plain(value)) else Fault("", place, self.expected, shown(value))
 
 
 def one_of(*choices: str) -> Requirement:
@@ -103,12 +109,6 @@ class Option:
     optional: bool
     required: bool
 
-    def fault(self, value: object) -> Fault | None:
-        """Return the fault of a value, None where it has none."""
-        if (value is None and self.optional) or self.requirement.holds(plain(value)):
-            return None
-        return Fault("", self.name, self.requirement.expected, shown(value))
-
 
 def options(record: type) -> tuple[Option, ...]:
     """Return the fields of a class of records that have requirements."""
@@ -128,8 +128,8 @@ def _requirement(hint: Any) -> Requirement | None:
     if get_origin(hint) is Literal:
         return one_of(*get_args(hint))
     if get_origin(hint) is Annotated:
-        requirements = (each for each in get_args(hint)[1:] if isinstance(each, Requirement))
-        return next(requirements, None)
+        given = (each() if callable(each) else each for each in get_args(hint)[1:])
+        return next((each for each in given if isinstance(each, Requirement)), None)
     if get_origin(hint) in (types.UnionType, typing.Union):
         known = (_requirement(part) for part in get_args(hint))
         return next((each for each in known if each is not None), None)
@@ -141,19 +141,32 @@ def check_fields(record: Any) -> None:
 
     Raises InputError with everything that is wrong with single fields.
     """
-    chosen = options(type(record))
-    faults = [option.fault(getattr(record, option.name)) for option in chosen]
-    refuse(fault for fault in faults if fault is not None)
-    for option in chosen:
-        value = getattr(record, option.name)
-        if value is not None:
-            # The record is frozen for everybody else; it is not finished before this.
-            object.__setattr__(record, option.name, option.requirement.convert(plain(value)))
+    given = [(each, getattr(record, each.name)) for each in options(type(record))]
+    given = [(each, value) for each, value in given if not (each.optional and value is None)]
+    refuse(x for each, value in given if (x := each.requirement.fault(each.name, value)))
+    for each, value in given:
+        # The record is frozen for everybody else; it is not finished before this.
+        object.__setattr__(record, each.name, each.requirement.convert(plain(value)))
 
 
 def each_once(place: str, names: Iterable[str]) -> list[Fault]:
     """Return the faults of names that repeat."""
     return [Fault("", place, "each name once", f"'{name}' twice") for name in repeated(names)]
+
+
+def repeated(names: Iterable[str]) -> list[str]:
+    """Return the names that occur more than once."""
+    return [name for name, count in Counter(names).items() if count > 1]
+
+
+def is_number(value: object) -> bool:
+    """Return whether a value is a finite number of which products are finite as well."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
+
+
+def is_name(value: object) -> bool:
+    """Return whether a value is a text that can be printed and is not blank."""
+    return isinstance(value, str) and bool(value.strip()) and value.isprintable()
 
 
 def plain(value: Any) -> Any:
@@ -172,4 +185,15 @@ def plain(value: Any) -> Any:
 def shown(value: object) -> str:
     """Return a value as a message shows it."""
     known = plain(value)
-    return repr(known) if isinstance(known, str) else describe(known)
+    if isinstance(known, bool):
+        return str(known).lower()
+    if isinstance(known, str):
+        return repr(known)
+    if isinstance(known, dict):
+        return "a table"
+    if isinstance(known, list):
+        short = len(known) <= SHORT and not any(isinstance(x, dict) for x in known)
+        return f"[{', '.join(map(shown, known))}]" if short else f"a list of {len(known)}"
+    if isinstance(known, int | float) and LARGEST < abs(known) < math.inf:
+        return f"a number beyond {LARGEST:g}"
+    return str(known)

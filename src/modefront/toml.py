@@ -2,46 +2,38 @@
 
 from __future__ import annotations
 
-import math
+import tomllib
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from modefront.errors import Fault, suggestion
-from modefront.rounding import LARGEST
+from modefront.errors import Fault, InputError, reason, suggestion
+from modefront.inputs import MOST_TABLES, read_text_bytes
+from modefront.options import (
+    Requirement,
+    number,
+    numbers,
+    one_of,
+    options,
+    shown,
+    text,
+    whole,
+)
 from modefront.text import NAME, clean
+
+T = TypeVar("T")
 
 SUGGESTED = 20
 """Unknown keys of a table for which a known one is sought."""
-
-SHORT = 6
-"""Longest list that a message shows item by item."""
-
-
-def describe(value: object) -> str:
-    """Return a value and its kind as a message shows them."""
-    if isinstance(value, bool):
-        return str(value).lower()
-    if isinstance(value, str):
-        return f"the text {value!r}"
-    if isinstance(value, dict):
-        return "a table"
-    if isinstance(value, list):
-        short = len(value) <= SHORT and not any(isinstance(x, dict) for x in value)
-        return f"[{', '.join(map(_item, value))}]" if short else f"a list of {len(value)}"
-    if isinstance(value, int | float) and LARGEST < abs(value) < math.inf:
-        return f"a number beyond {LARGEST:g}"
-    return str(value)
-
-
-def _item(value: object) -> str:
-    return repr(value) if isinstance(value, str) else describe(value)
 
 
 @dataclass
 class Table:
     """One table of a TOML file.
+
+    Readers of values return a default where there is no value, and note a fault and return None
+    where there is none either (a default of ``...``); a value that is wrong is a fault, too.
 
     Attributes
     ----------
@@ -64,9 +56,14 @@ class Table:
 
     def fault(self, key: str, expected: str, found: str) -> None:
         """Note that something is wrong; an empty key means the table itself."""
-        shown = key if key.isprintable() else repr(key)
-        place = f"{self.place} {shown}".strip() or "top level"
+        known = key if key.isprintable() else repr(key)
+        place = f"{self.place} {known}".strip() or "top level"
         self.faults.append(Fault(self.file, place, expected, found))
+
+    def note(self, faults: Iterable[Fault]) -> None:
+        """Note faults whose places are keys of the table."""
+        for fault in faults:
+            self.fault(fault.place, fault.expected, fault.found)
 
     def path(self, name: str) -> Path:
         """Return the path of a file that a table names, relative to the TOML file, and note it.
@@ -78,60 +75,70 @@ class Table:
             self.files.append(path)
         return path
 
-    def take(self, key: str, expected: str, test: Callable[[Any], bool], default: Any) -> Any:
-        """Return a value that passes a test, or the default, with a fault where it does not.
-
-        A default of ``...`` says that the key is required; None is returned in its place.
-        """
+    def value(self, key: str, requirement: Requirement, default: Any = ...) -> Any:
+        """Return a value that meets a requirement."""
         self.requested.append(key)
-        if key not in self.values:
-            if default is ...:
-                self.fault(key, expected, "nothing")
-                return None
+        value = self.values.get(key)
+        if value is None and default is not ...:
             return default
-        value = self.values[key]
-        if not test(value):
-            self.fault(key, expected, describe(value))
-            return None if default is ... else default
-        return value
+        if value is not None and requirement.holds(value):
+            return requirement.convert(value)
+        self.fault(key, requirement.expected, "nothing" if value is None else shown(value))
+        return None if default is ... else default
 
-    def text(self, key: str, expected: str = "a text", default: Any = ...) -> str | None:
+    def take(self, key: str, expected: str, test: Callable[[Any], bool], default: Any) -> Any:
+        """Return a value that passes a test."""
+        return self.value(key, Requirement(expected, test), default)
+
+    def text(self, key: str, expected: str = "a text", default: Any = ...) -> Any:
         """Return a text of printable characters that is not empty."""
-        value = self.take(key, expected, is_name, default)
-        return None if value is None else str(value)
+        return self.value(key, text(expected), default)
 
-    def choice(self, key: str, options: Sequence[str], default: Any = ...) -> Any:
-        """Return one of the options."""
-        expected = "one of " + ", ".join(f"'{x}'" for x in options)
-        return self.take(key, expected, lambda x: x in options, default)
+    def choice(self, key: str, choices: Sequence[str], default: Any = ...) -> Any:
+        """Return one of some texts."""
+        return self.value(key, one_of(*choices), default)
 
     def number(
         self, key: str, expected: str, test: Callable[[float], bool], default: Any = ...
     ) -> Any:
         """Return a finite number that passes a test."""
-        value = self.take(key, expected, lambda x: is_number(x) and test(x), default)
-        return float(value) if is_number(value) else value
+        return self.value(key, number(expected, test), default)
 
     def integer(self, key: str, least: int, most: int, default: Any = ...) -> Any:
         """Return a whole number within limits."""
-        return self.take(
-            key,
-            f"a whole number from {least} to {most}",
-            lambda x: isinstance(x, int) and not isinstance(x, bool) and least <= x <= most,
-            default,
-        )
+        return self.value(key, whole(least, most), default)
 
     def numbers(
         self, key: str, expected: str, test: Callable[[list[float]], bool], default: Any = ...
-    ) -> list[float] | None:
-        """Return a list of finite numbers that passes a test."""
-        value = self.take(
-            key,
-            expected,
-            lambda x: isinstance(x, list) and all(map(is_number, x)) and test(x),
-            default,
-        )
-        return None if value is None else [float(x) for x in value]
+    ) -> Any:
+        """Return finite numbers that pass a test."""
+        return self.value(key, numbers(expected, test), default)
+
+    def record(self, record: type[T]) -> T | None:
+        """Return the record of options that the table describes, None where something is wrong.
+
+        Keys are its fields. Everything that is wrong is noted: single values first, and where these
+        are right, what contradicts another.
+        """
+        before = len(self.faults)
+        values: dict[str, Any] = {}
+        for option in options(record):
+            name, given = option.name, self.values.get(option.name)
+            if given is None and not option.required:
+                self.requested.append(name)
+            elif option.requirement.record and isinstance(given, dict):
+                inner = self.table(name)
+                values[name] = inner and inner.record(option.requirement.record)
+            else:
+                values[name] = self.value(name, option.requirement)
+        self.close()
+        if len(self.faults) > before:
+            return None
+        try:
+            return record(**values)
+        except InputError as error:
+            self.note(error.faults)
+            return None
 
     def table(self, key: str, expected: str = "a table", default: Any = ...) -> Table | None:
         """Return a table within this one."""
@@ -139,7 +146,7 @@ class Table:
         if value is None:
             return None
         place = f"{self.place} {key}".strip() if self.place else f"[{key}]"
-        return Table(self.file, place, value, self.faults, files=self.files, notes=self.notes)
+        return replace(self, place=place, values=value, requested=[])
 
     def names(self, key: str) -> dict[str, str]:
         """Return a table of names for names, such as those of columns; an empty one without it."""
@@ -149,59 +156,40 @@ class Table:
 
     def tables(self, key: str, required: bool) -> list[Table]:
         """Return the tables of a list, such as ``[[parameter]]``."""
-        path = f"{self.place[1:-1]}.{key}" if self.place else key
+        path = f"{self.place.strip('[]')}.{key}" if self.place else key
         value = self.take(
             key,
             f"at least one table [[{path}]]" if required else f"tables [[{path}]]",
             lambda x: isinstance(x, list) and bool(x) and all(isinstance(y, dict) for y in x),
             ... if required else [],
         )
-        path = f"{self.place.strip('[]')}.{key}" if self.place else key
-        return [
-            Table(
-                *(self.file, f"[[{path}]] {i + 1}{_named(item)}", item, self.faults),
-                files=self.files,
-                notes=self.notes,
-            )
-            for i, item in enumerate(value or [])
-        ]
+        out = []
+        for k, item in enumerate(value or [], start=1):
+            named = f" ({item['name']!r})" if isinstance(item.get("name"), str) else ""
+            place = f"[[{path}]] {k}{named}"
+            out.append(replace(self, place=place, values=item, requested=[]))
+        return out
 
     def close(self) -> None:
         """Note every unknown key."""
         known = set(self.requested)
-        for number, key in enumerate(key for key in self.values if key not in known):
-            found = (
-                suggestion(key, self.requested) if number < SUGGESTED else repr(clean(key, NAME))
-            )
+        for k, key in enumerate(key for key in self.values if key not in known):
+            found = suggestion(key, self.requested) if k < SUGGESTED else repr(clean(key, NAME))
             self.fault("", "a known key", found)
 
 
-def is_number(value: object) -> bool:
-    """Return whether a value is a finite number of which products are finite as well."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= LARGEST
+def read_toml(path: Path, expected: str) -> tuple[Table, bytes]:
+    """Return the top level of a TOML file, and its content.
+
+    Raises InputError where it cannot be read; ``expected`` says what it should be.
+    """
+    content = read_text_bytes(path, expected, MOST_TABLES)
+    try:
+        return Table(str(path), "", tomllib.loads(content.decode("utf-8-sig")), []), content
+    except (ValueError, RecursionError) as error:
+        raise InputError(Fault(str(path), "file", "TOML in UTF-8", reason(error))) from None
 
 
-def is_name(value: object) -> bool:
-    """Return whether a value is a text that can be printed and is not blank."""
-    return isinstance(value, str) and bool(value.strip()) and value.isprintable()
-
-
-def repeated(names: Iterable[str | None]) -> list[str]:
-    """Return the names that occur more than once."""
-    seen: list[str] = []
-    twice: list[str] = []
-    for name in names:
-        if name is not None and name in seen and name not in twice:
-            twice.append(name)
-        seen.append(name or "")
-    return twice
-
-
-def _named(item: dict[str, Any]) -> str:
-    name = item.get("name")
-    return f" ({name!r})" if isinstance(name, str) else ""
-
-
-def has_name(table: Table) -> bool:
-    """Return whether a table holds a text called ``name``."""
-    return isinstance(table.values.get("name"), str)
+def names_of(tables: Iterable[Table]) -> list[str]:
+    """Return what tables of a list say as their names."""
+    return [name for table in tables if isinstance(name := table.values.get("name"), str)]

@@ -75,7 +75,7 @@ def _quadratic(corners: Floats, edges: Edges, curved: float = 0.0) -> Floats:
 def _beam(X: Floats, r: Floats) -> ElementMatrices:
     axis = X[:, 1] - X[:, 0]
     side = np.cross(axis, axis[:, [1, 2, 0]] + np.array([0.3, 0, 0]))
-    return beam(X, STEEL, SECTION, side, r)
+    return beam(X, STEEL, SECTION, side, r)[0]
 
 
 def _shell(X: Floats, thickness: float, offset: float) -> ElementMatrices:

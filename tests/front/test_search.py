@@ -35,10 +35,10 @@ from modefront.front.proposers.base import Offer, Proposer, Rate, at, evaluate_a
 from modefront.front.proposers.evolution import CHILDREN, Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.rivals import Rivals
-from modefront.front.proposers.starts import BLOCK, Starts, coverage, unseen
+from modefront.front.proposers.starts import BLOCK, SURE, Minima, Starts, unseen
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import lattice, spanned
-from modefront.front.state import State
+from modefront.front.state import Place, State
 from modefront.front.subproblems import Least, Subproblem, Weights
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.optim.problem import Evaluation
@@ -382,14 +382,34 @@ def test_a_rival_is_none_for_its_own_incumbent() -> None:
     assert not list(Rivals().offers(state, 6))
 
 
-@given(st.integers(2, 60), st.integers(0, 60), st.integers(0, 20))
-def test_the_chance_of_a_start_is_what_is_not_covered(tries: int, gains: int, w: int) -> None:
-    rate = Rate(tries, min(gains, tries))
-    bound = w * (w + 1) / (tries * (tries - 1))
-    assert unseen(tries, w) == pytest.approx(min(bound, 1.0))
-    assert coverage(rate, w) == min(unseen(tries, w), rate.chance)
-    assert 0 <= coverage(rate, w) < 1
+def ended(J: float, tries: int, gains: int, counts: list[int]) -> tuple[Minima, Place]:
+    """Return minima of one objective, of values J, J + 1 and so on, and the place of the first."""
+    ends = [begin(Evaluation(np.zeros(1), np.array([J + k]))) for k in range(len(counts))]
+    return Minima(Rate(tries, gains), ends, counts), Place(Least(0, np.ones(1), "J"), ends[0])
+
+
+@given(st.integers(2, 60), st.integers(0, 60), st.lists(st.integers(1, 5), min_size=1))
+def test_the_chance_of_a_start_is_what_is_not_covered(
+    tries: int, gains: int, counts: list[int]
+) -> None:
+    known, place = ended(1.0, tries, min(gains, tries), counts)
+    w = len(counts)
+    assert known.unseen == unseen(tries, w) == min(w * (w + 1) / (tries * (tries - 1)), 1.0)
+    assert known.hits(place, TOLERANCE) == counts[0]
+    assert known.chance == min(known.unseen, known.rate.chance)
+    rare = counts[0] < SURE
+    assert known.doubt(place, TOLERANCE) == (known.unseen if rare else known.chance)
     assert unseen(1, w) == unseen(0, w) == 1.0, "nothing is known of what one start says"
+
+
+def test_starts_that_lead_to_the_same_value_are_counted_together() -> None:
+    known, place = ended(1.0, 5, 1, [1, 1])
+    for J in (1.0 + 0.5 * TOLERANCE, 2.0, 5.0):
+        known.note(place, begin(Evaluation(np.zeros(1), np.array([J]))), TOLERANCE)
+    assert known.counts == [2, 2, 1]
+    assert known.hits(place, TOLERANCE) == 2
+    better = replace(place, incumbent=begin(Evaluation(np.zeros(1), np.array([0.5]))))
+    assert known.hits(better, TOLERANCE) == 0
 
 
 def test_starts_begin_at_the_problem_s_own_and_cover_each_range_evenly() -> None:
@@ -419,11 +439,12 @@ def test_starts_find_all_minima_and_then_stop() -> None:
     state = state_of(problem, [Least(0, np.ones(1), "J1")], [[0.0]])
     starts = Starts(np.random.default_rng(0))
     run(state, Polish(), starts)
-    ends = sorted(round(float(x.theta[0]), 1) for x in starts.ends[state.places[0].subproblem.key])
+    known = starts.of(state.places[0])
+    ends = sorted(round(float(x.theta[0]), 1) for x in known.ends)
     assert ends == [-1.7, 0.0, 1.7]
     assert state.places[0].incumbent.theta == pytest.approx([np.sqrt(3)], abs=0.02)
-    assert coverage(starts.rates[state.places[0].subproblem.key], 3) < Search().doubt
-    assert starts.unseen == unseen(starts.rates[state.places[0].subproblem.key].tries, 3)
+    assert known.doubt(state.places[0], TOLERANCE) < Search().doubt
+    assert starts.unseen == unseen(known.rate.tries, 3)
 
 
 def test_an_edge_that_hardly_any_start_leads_to_is_doubtful() -> None:
@@ -437,7 +458,8 @@ def test_an_edge_that_hardly_any_start_leads_to_is_doubtful() -> None:
         return J, dJ, H
 
     problem = box(rugged, [-1.0] * 4, [1.0] * 4)
-    rough, smooth = pareto_front(problem, ONES, Pareto(points=2), seed=1).edges
+    search = Search(evaluations=1500)
+    rough, smooth = pareto_front(problem, ONES, Pareto(points=2), seed=1, search=search).edges
     assert rough.doubtful
     assert rough.found > rough.starts / 2
     assert not smooth.doubtful

@@ -353,7 +353,7 @@ def test_without_matrices_changes_are_over_the_range() -> None:
             self._model = model
 
         def __getattr__(self, name: str) -> object:
-            return getattr(self._model, name)
+            return self if name == "full" else getattr(self._model, name)
 
     problem = problem_of("alpha")
     assert isinstance(problem.model, MatrixModel)

@@ -11,7 +11,7 @@ import pytest
 from two_masses import FRF, PASSAGE, write_study
 
 import modefront as mf
-from modefront.predictions import Prediction, known
+from modefront.predictions import CLASSES, Prediction
 from modefront.response import ResponseQuantity
 
 PEAK: dict[str, Any] = {"name": "peak", "response": ["high"], "force": "high", "damping": 0.02}
@@ -152,7 +152,7 @@ def test_what_is_not_complete_is_not_evaluated(problem: mf.UpdatingProblem) -> N
 
 def test_every_kind_returns_what_it_says_it_does(problem: mf.UpdatingProblem) -> None:
     given: list[Prediction] = [mf.PeakResponse(**PEAK), mf.Passage(**DRIFT | {"samples": 10})]
-    own = [each for each in known() if each.__module__.startswith("modefront.")]
+    own = [each for each in CLASSES.values() if each.__module__.startswith("modefront.")]
     assert [type(each) for each in given] == own, "a new kind belongs into this test"
     for prediction in given:
         ready = prediction.complete(problem)

@@ -21,7 +21,7 @@ from program_files import (
 )
 
 from modefront.errors import InputError
-from modefront.programs.differences import Quantity, all_terms
+from modefront.programs.base import Quantity
 from modefront.programs.importing import Imported, import_model, model_of
 
 
@@ -277,5 +277,5 @@ def test_rigid_bodies_and_massless_degrees_of_freedom_are_said(tmp_path: Path) -
     result = imported(tmp_path, [("k", "k")])
     assert result.floating
     assert result.frequencies == pytest.approx([0.0, np.sqrt(1.0) / (2 * np.pi)], abs=1e-9)
-    assert all_terms(result.terms, "stiffness").keys() == {"k"}
+    assert result.terms.of("stiffness").keys() == {"k"}
     assert any("1 degrees of freedom have no mass" in note for note in result.notes)

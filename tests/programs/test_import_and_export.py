@@ -21,7 +21,6 @@ from program_files import dense, labels, structure, write_op4, write_opensees
 
 from modefront.cli.main import cli
 from modefront.errors import InputError
-from modefront.exports.model import node_motion
 from modefront.models.dofs import read_dofs
 from modefront.models.matrices import MatrixModel
 from modefront.programs import PROGRAMS
@@ -30,6 +29,7 @@ from modefront.programs.mesh import read_mesh
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.check import check
 from modefront.study.examples import write_example
+from modefront.study.export import node_motion
 from modefront.study.file import load
 
 DATA = Path(__file__).parents[3] / "shared" / "data" / "fe"
@@ -422,10 +422,10 @@ def test_the_example_holds_what_calculix_writes(tmp_path: Path) -> None:
     labels = [line.split(".") for line in (tmp_path / "nominal.dof").read_text().split()]
     assert np.abs(dofs.node).tolist() == [int(node) for node, _ in labels]
     assert mesh.number.size == 33
-    motion = node_motion(dofs, mesh, np.ones((dofs.size, 1)))
-    moving = motion.values[0, :, :3].any(axis=1)
-    assert motion.number[~moving].tolist() == [100, 200, 300, 400, 901], "the supports"
-    assert motion.values[0, moving, :3] == pytest.approx(1.0)
+    number, motion = node_motion(dofs, mesh, np.ones((dofs.size, 1)))
+    moving = motion[0, :, :3].any(axis=1)
+    assert number[~moving].tolist() == [100, 200, 300, 400, 901], "the supports"
+    assert motion[0, moving, :3] == pytest.approx(1.0)
 
 
 CANTILEVER = """*NODE, NSET=NALL

@@ -30,7 +30,7 @@ CONTRADICTIONS = [
     ("low = 0", "low = -1", SENSOR + "-1"),
     ("low = 0", "low = 0.0", SENSOR + "0.0"),
     ("low = 0", "low = false", SENSOR + "false"),
-    ("low = 0", 'low = "0"', SENSOR + "the text '0'"),
+    ("low = 0", 'low = "0"', SENSOR + "'0'"),
     ("low = 0", "low = []", SENSOR + "[]"),
     ("low = 0", "low = {}", SENSOR + "a table"),
     ("low = 0", "low = [0, 1]", SENSOR + "[0, 1]"),

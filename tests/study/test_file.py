@@ -9,6 +9,7 @@ import pytest
 import scipy.io
 import scipy.sparse
 
+import modefront as mf
 from modefront.front.given import Weighted
 from modefront.front.options import Pareto
 from modefront.front.search import Search
@@ -19,7 +20,6 @@ from modefront.pairing.match import Pairing
 from modefront.residuals.groups import Group
 from modefront.study.definition import Study
 from modefront.study.file import load
-from modefront.study.kinds.sensors import ModelKind
 from modefront.toml import Table
 
 HEAD = """
@@ -190,16 +190,13 @@ def test_the_hash_tells_of_every_input(study: Callable[[str], Study], tmp_path: 
     assert len(digests) == 4
 
 
-def test_files_of_any_kind_of_model_are_part_of_the_digest(
-    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_files_of_any_kind_of_model_are_part_of_the_digest(tmp_path: Path) -> None:
     def read_springs(table: Table, parameters: Sequence[str]) -> Model:
         path = table.path(table.text("springs") or "")
         k = [float(x) for x in path.read_text().split()]
         return chain(parameters, [1.0, 1.0], k, stiffness_parameters=["theta1", "theta2"])
 
-    kinds = {"springs": ModelKind("springs", read_springs)}
-    monkeypatch.setattr("modefront.study.tables.model.KINDS", kinds)
+    mf.register(mf.ModelKind("springs", read_springs))
     parameters = "".join(
         f'[[parameter]]\nname = "theta{i}"\nnominal = 1.0\nbounds = [0.5, 2.0]\n' for i in (1, 2)
     )

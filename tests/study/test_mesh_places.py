@@ -144,7 +144,7 @@ def test_faults_of_tables_do_not_hide_those_of_sensors_and_scales(tmp_path: Path
         "material: expected one of 'steel', 'joint'",
         "no group or set of nodes named 'bse'",
         "sensors floor2: expected nodes from 0 to 113, found 999",
-        "scale theta3 of: expected the name of a group, spring or mass, found 'stroy3'",
+        "scale theta3 of: expected the name of a group, spring, mass or load, found 'stroy3'",
     ):
         assert text.count(part) == 1, part
     assert len(error.value.faults) == 5

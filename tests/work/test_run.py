@@ -252,14 +252,14 @@ def test_a_run_is_followed_from_task_to_task() -> None:
     follow.expect({"edge": 2, "front": 8})
     clock.now += 5
     follow.start("edge")
-    assert states[-1] == State("edge", 0, 1, 10, 0.0, None), "time runs from the first task"
+    assert states[-1] == State("edge", 0, 1, 10, 0.0, None, (0, 2)), "time runs from the first task"
     clock.now += 3
     follow.end("edge", 3.0)
-    assert states[-1] == State("edge", 1, 0, 10, 3.0, 9 * 3.0)
+    assert states[-1] == State("edge", 1, 0, 10, 3.0, 9 * 3.0, (1, 2))
     follow.start("edge")
     clock.now += 1
     follow.end("edge", 1.0)
-    assert states[-1] == State("edge", 2, 0, 10, 4.0, 8 * 2.0)
+    assert states[-1] == State("edge", 2, 0, 10, 4.0, 8 * 2.0, (2, 2))
     assert len(states) == 5, "after every change"
 
 
@@ -283,12 +283,14 @@ def test_a_stage_ends_where_another_one_starts() -> None:
         follow.end("front", 1.0)
     assert states[-1].expected == 22
     follow.start("gap")
-    assert states[-1] == State("gap", 3, 1, 3 + 2, 0.0, 2 * 1.0)
+    assert states[-1] == State("gap", 3, 1, 3 + 2, 0.0, 2 * 1.0, (0, 2))
     follow.end("gap", 1.0)
     for _ in range(4):
         follow.start("gap")
         follow.end("gap", 1.0)
     assert (states[-1].done, states[-1].expected) == (8, 8), "more than was expected"
+    assert states[-1].surpassed
+    assert states[-1].of_stage == (5, 5)
 
 
 def test_what_is_expected_is_still_to_come() -> None:

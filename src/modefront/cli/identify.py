@@ -35,9 +35,9 @@ def run_identify(
     screen = Screen.of_output()
     written = [] if test.modes is None else test.write(output)
     if figures is not None:
-        from modefront.plots.identification import write_figures
+        from modefront.plots import identification_figures
 
-        written += write_figures(test.names, test.identified, figures)
+        written += identification_figures(test.names, test.identified, figures)
     if test.modes is not None:
         _print_modes(screen, test, test.modes)
     findings = test.warnings

@@ -7,7 +7,6 @@ for every data set. A universal file or a CSV file alone is a test of one set.
 from __future__ import annotations
 
 import math
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from pathlib import Path
@@ -18,9 +17,9 @@ from modefront.data.frf_csv import read_test_csv
 from modefront.data.impact import ESTIMATORS, Windows
 from modefront.data.responses import ORDERS, joined
 from modefront.data.uff import read_uff
-from modefront.errors import Fault, InputError, reason, suggestion
-from modefront.inputs import MOST_TABLES, read_text_bytes
-from modefront.toml import Table, is_name, repeated
+from modefront.errors import Fault, InputError, suggestion
+from modefront.options import is_name, repeated
+from modefront.toml import Table, read_toml
 
 UFF_ENDINGS = (".uff", ".unv", ".uf", ".bunv", ".ufb")
 MOST_MODES = 200
@@ -111,7 +110,8 @@ def is_universal(path: Path) -> bool:
 
 def _from_toml(path: Path) -> ModalTest:
     faults: list[Fault] = []
-    root = Table(str(path), "", _parsed(path), faults)
+    root, _ = read_toml(path, "a test file")
+    faults = root.faults
     name, settings = _test_table(root)
     settings = replace(settings, windows=_impact_table(root))
     band, modes = _identify_table(root)
@@ -133,14 +133,6 @@ def _from_toml(path: Path) -> ModalTest:
         its_own = replace(settings, decay=each.decay)
         data_sets.append(DataSet(each.name, _assembled(contents, each.name, its_own, root)))
     return ModalTest(name or path.stem, band, modes, tuple(data_sets))
-
-
-def _parsed(path: Path) -> dict[str, object]:
-    content = read_text_bytes(path, "a test file", MOST_TABLES)
-    try:
-        return tomllib.loads(content.decode("utf-8-sig"))
-    except (ValueError, RecursionError) as error:
-        raise InputError(Fault(str(path), "file", "TOML in UTF-8", reason(error))) from None
 
 
 def _test_table(root: Table) -> tuple[str, _Settings]:

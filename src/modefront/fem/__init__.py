@@ -41,8 +41,10 @@ if TYPE_CHECKING:
     from modefront.fem.section import tube as tube
     from modefront.fem.structure import ALL as ALL
     from modefront.fem.structure import Beams as Beams
+    from modefront.fem.structure import Coupling as Coupling
     from modefront.fem.structure import Direction as Direction
     from modefront.fem.structure import Link as Link
+    from modefront.fem.structure import Load as Load
     from modefront.fem.structure import Mass as Mass
     from modefront.fem.structure import Parameter as Parameter
     from modefront.fem.structure import Sensor as Sensor
@@ -51,5 +53,6 @@ if TYPE_CHECKING:
     from modefront.fem.structure import Spring as Spring
     from modefront.fem.structure import Structure as Structure
     from modefront.fem.structure import Support as Support
+    from modefront.fem.structure import Trusses as Trusses
 
 __getattr__, __dir__, __all__ = lazy(__name__, __file__)

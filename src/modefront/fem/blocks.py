@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 import numpy as np
+import numpy.typing as npt
 
 from modefront._typing import Floats, Ints
 from modefront.fem.check import (
     ALONG,
     COINCIDENT,
+    axes_of,
     cell_array,
     check_positive,
     check_sizes,
@@ -18,13 +20,15 @@ from modefront.fem.check import (
     solid_sizes,
     unit_vector,
 )
-from modefront.fem.elements.beam import beam
+from modefront.fem.dofs import direction_indices
+from modefront.fem.elements.beam import beam, truss
+from modefront.fem.elements.common import attachment
 from modefront.fem.elements.point import lumped_mass, spring
 from modefront.fem.elements.shell import directors, shell
 from modefront.fem.elements.solid import SOLIDS, solid
 from modefront.fem.scatter import Block
 from modefront.fem.section import Checks, FemError
-from modefront.fem.structure import Beams, Mass, Shells, Solids, Spring
+from modefront.fem.structure import Beams, Group, Mass, Shells, Solids, Spring, Trusses
 from modefront.rounding import TINY
 
 SYMMETRIC = 1e-9
@@ -35,9 +39,7 @@ SIX = (0, 1, 2, 3, 4, 5)
 """Directions of nodes of solids, and of beams and shells."""
 
 
-def element_blocks(
-    X: Floats, groups: Sequence[Beams | Shells | Solids], checks: Checks
-) -> list[Block]:
+def element_blocks(X: Floats, groups: Sequence[Group], checks: Checks) -> list[Block]:
     """One block for each group of elements in which nothing is wrong."""
     shells = [each for each in groups if isinstance(each, Shells)]
     cells = [checks.attempt(_shell_cells, X, each) for each in shells]
@@ -51,6 +53,8 @@ def element_blocks(
     for group in groups:
         if isinstance(group, Beams):
             blocks.append(checks.attempt(_beams, X, group))
+        elif isinstance(group, Trusses):
+            blocks.append(checks.attempt(_trusses, X, group))
         elif isinstance(group, Solids):
             blocks.append(checks.attempt(_solids, X, group))
     return [block for block in blocks if block is not None]
@@ -58,15 +62,10 @@ def element_blocks(
 
 def _beams(X: Floats, group: Beams) -> Block:
     place = f"group {group.name!r}"
-    cells = cell_array(group.cells, (2,), len(X), place)
     r = np.asarray(group.offsets, dtype=float)
     if r.shape != (2, 3):
         raise FemError(f"{place}: expected offsets of the shape (2, 3), found {r.shape}")
-    ends = X[cells] + r
-    axis = ends[:, 1] - ends[:, 0]
-    length = np.linalg.norm(axis, axis=1)
-    check_sizes(length / np.ptp(X, axis=0).max(initial=TINY), cells, "length", place)
-    axis = axis / length[:, None]
+    cells, axis = _lines(X, group.cells, r, place)
     section = group.section
     if group.orientation is None:
         if section.I_y != section.I_z or section.kappa_y != section.kappa_z:
@@ -86,7 +85,37 @@ def _beams(X: Floats, group: Beams) -> Block:
                 f" axis, but it is at element {parallel[0]}"
                 f" (nodes {', '.join(map(str, cells[parallel[0]].tolist()))})"
             )
-    return Block(group.name, cells, SIX, beam(X[cells], group.material, section, orientation, r))
+    released = [
+        6 * end + d
+        for end, names in enumerate(group.releases)
+        if len(names)
+        for d in direction_indices(names, f"{place}, releases")
+    ]
+    try:
+        made, axial = beam(X[cells], group.material, section, orientation, r, released)
+    except FemError as error:
+        raise FemError(f"{place}: {error}") from None
+    given = group.force * axial.unit if group.force else None
+    return Block(group.name, cells, SIX, made, not released, given, axial)
+
+
+def _trusses(X: Floats, group: Trusses) -> Block:
+    place = f"group {group.name!r}"
+    check_positive(group.area, "area", place)
+    cells, _ = _lines(X, group.cells, np.zeros((2, 3)), place)
+    made, axial = truss(X[cells], group.material, group.area)
+    given = group.force * axial.unit if group.force else None
+    return Block(group.name, cells, TRANSLATIONS, made, False, given, axial)
+
+
+def _lines(X: Floats, given: npt.ArrayLike, r: Floats, place: str) -> tuple[Ints, Floats]:
+    """Return cells (elements, 2) and the unit vectors along them, with offsets r of the ends."""
+    cells = cell_array(given, (2,), len(X), place)
+    ends = X[cells] + r
+    axis = ends[:, 1] - ends[:, 0]
+    length = np.linalg.norm(axis, axis=1)
+    check_sizes(length / np.ptp(X, axis=0).max(initial=TINY), cells, "length", place)
+    return cells, axis / length[:, None]
 
 
 def _shell_cells(X: Floats, group: Shells) -> Ints:
@@ -99,7 +128,7 @@ def _shell_cells(X: Floats, group: Shells) -> Ints:
 
 def _shells(X: Floats, group: Shells, cells: Ints, d: Floats) -> Block:
     matrices = shell(X[cells], d, group.material, group.thickness, group.offset)
-    return Block(group.name, cells, SIX, matrices)
+    return Block(group.name, cells, SIX, matrices, rigid=True)
 
 
 def _solids(X: Floats, group: Solids) -> Block:
@@ -111,7 +140,7 @@ def _solids(X: Floats, group: Solids) -> Block:
         )
     cells = cell_array(group.cells, tuple(SOLIDS), len(X), place)
     check_sizes(solid_sizes(X[cells]), cells, "volume", place)
-    return Block(group.name, cells, TRANSLATIONS, solid(X[cells], group.material))
+    return Block(group.name, cells, TRANSLATIONS, solid(X[cells], group.material), rigid=True)
 
 
 def spring_blocks(X: Floats, springs: Sequence[Spring], checks: Checks) -> list[Block]:
@@ -122,33 +151,51 @@ def spring_blocks(X: Floats, springs: Sequence[Spring], checks: Checks) -> list[
 
 def _springs(X: Floats, member: Spring, place: str) -> Block:
     nodes = node_list(member.nodes, len(X), place)[:, None]
-    check_positive(member.stiffness, "stiffness", place)
-    gap = np.zeros((len(nodes), 3))
     if member.to is not None:
         to = node_list(member.to, len(X), place)
         if len(to) != len(nodes):
             raise FemError(f"{place}: expected {len(nodes)} partners, found {len(to)}")
         nodes = np.stack([nodes[:, 0], to], 1)
-        gap = X[nodes[:, 1]] - X[nodes[:, 0]]
+    gap = X[nodes[:, -1]] - X[nodes[:, 0]]
+    if np.ndim(member.stiffness):
+        k = np.asarray(member.stiffness, dtype=float)
+        if k.shape != (6,) or not (k >= 0).all() or not k.any() or member.direction is not None:
+            raise FemError(
+                f"{place}: expected 6 stiffnesses of 0 or more without a direction, found"
+                f" {member.stiffness!r} and direction {member.direction!r}"
+            )
+        R = np.broadcast_to(axes_of(member.axes, place), (len(nodes), 3, 3))
+        arms = np.stack([gap / 2, -gap / 2], 1)[:, : nodes.shape[1]]
+        A = attachment(R, arms).reshape(len(nodes), -1, 6, 6 * nodes.shape[1])
+        rows = A[:, 0] - A[:, 1] if nodes.shape[1] == 2 else A[:, 0]
+    else:
+        k = np.array([member.stiffness], dtype=float)
+        check_positive(k[0], "stiffness", place)
+        axis = _spring_axis(X, member, nodes, gap, place)
+        rows = np.concatenate([axis, -axis][: nodes.shape[1]], 1)[:, None]
+    return Block(member.name, nodes, SIX, spring(rows, k))
+
+
+def _spring_axis(X: Floats, member: Spring, nodes: Ints, gap: Floats, place: str) -> Floats:
+    """Return the unit vectors (springs, 6) along which springs of one stiffness act."""
     length = np.linalg.norm(gap, axis=1, keepdims=True)
     size = np.ptp(X, axis=0).max()
+    if member.axes is not None:
+        raise FemError(f"{place}: axes are for 6 stiffnesses; expected a vector as direction")
     if member.direction is None:
         if member.to is None or (length <= COINCIDENT * size).any():
             raise FemError(f"{place}: a direction is needed unless it joins two distant nodes")
-        axis = np.pad(gap / length, ((0, 0), (0, 3)))
-    else:
-        axis = np.tile(unit_vector(member.direction, place), (len(nodes), 1))
-        slant = np.linalg.norm(np.cross(gap, axis[:, :3]), axis=1)
-        skew = np.flatnonzero(slant > ALONG * length[:, 0] + COINCIDENT * size)
-        if axis[0, :3].any() and len(skew):
-            raise FemError(
-                f"{place}: between distant nodes it must act along their line, else it resists a"
-                f" rotation of the whole; nodes {nodes[skew[0], 0]} and {nodes[skew[0], 1]} do not"
-                f" lie along {member.direction!r}. Link one of them rigidly to a node at the other"
-            )
-    used = tuple(np.flatnonzero(axis.any(0)).tolist())
-    matrices = spring(axis[:, list(used)], member.stiffness, nodes.shape[1])
-    return Block(member.name, nodes, used, matrices)
+        return np.pad(gap / length, ((0, 0), (0, 3)))
+    axis = np.tile(unit_vector(member.direction, place), (len(nodes), 1))
+    slant = np.linalg.norm(np.cross(gap, axis[:, :3]), axis=1)
+    skew = np.flatnonzero(slant > ALONG * length[:, 0] + COINCIDENT * size)
+    if axis[0, :3].any() and len(skew):
+        raise FemError(
+            f"{place}: between distant nodes it must act along their line, else it resists a"
+            f" rotation of the whole; nodes {nodes[skew[0], 0]} and {nodes[skew[0], 1]} do not"
+            f" lie along {member.direction!r}. Give six stiffnesses, which act by rigid arms"
+        )
+    return axis
 
 
 def mass_blocks(X: Floats, masses: Sequence[Mass], checks: Checks) -> list[Block]:
@@ -160,16 +207,19 @@ def mass_blocks(X: Floats, masses: Sequence[Mass], checks: Checks) -> list[Block
 def _masses(X: Floats, member: Mass, place: str) -> Block:
     nodes = node_list(member.nodes, len(X), place)[:, None]
     inertia, c = np.asarray(member.inertia, dtype=float), np.asarray(member.offset, dtype=float)
+    m = np.asarray(member.mass, dtype=float)
+    if m.shape == ():
+        m = np.repeat(m, 3)
     if inertia.shape == (3,):
         inertia = np.diag(inertia)
-    if inertia.shape != (3, 3) or c.shape != (3,):
+    if m.shape != (3,) or inertia.shape != (3, 3) or c.shape != (3,):
         raise FemError(
-            f"{place}: expected inertia (3,) or (3, 3) and offset (3,), found {inertia.shape} and"
-            f" {c.shape}"
+            f"{place}: expected mass () or (3,), inertia (3,) or (3, 3) and offset (3,), found"
+            f" {m.shape}, {inertia.shape} and {c.shape}"
         )
     symmetric = np.allclose(inertia, inertia.T, rtol=SYMMETRIC, atol=0)
     if (
-        member.mass < 0
+        not (m >= 0).all()
         or not symmetric
         or np.linalg.eigvalsh(inertia)[0] < -SYMMETRIC * inertia.max()
     ):
@@ -177,7 +227,4 @@ def _masses(X: Floats, member: Mass, place: str) -> Block:
             f"{place}: expected mass >= 0 and inertia symmetric and not negative, found"
             f" {member.mass!r} and {inertia.tolist()}"
         )
-    rotates = bool(inertia.any() or c.any())
-    used = SIX if rotates else TRANSLATIONS
-    M = lumped_mass(member.mass, inertia, c, len(nodes), len(used))
-    return Block(member.name, nodes, used, M)
+    return Block(member.name, nodes, SIX, lumped_mass(m, inertia, c, len(nodes)))

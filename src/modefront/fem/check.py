@@ -18,7 +18,7 @@ from modefront.fem.elements.shapes import jacobian
 from modefront.fem.elements.shell import corner_normals
 from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.section import Checks, FemError
-from modefront.fem.structure import Direction, Parameter, Shells, Structure
+from modefront.fem.structure import Axes, Beams, Direction, Parameter, Shells, Structure, Trusses
 
 FLAT = 1e-8
 """Length, area or volume of an element over that of its extent that is rounding of coordinates."""
@@ -89,6 +89,19 @@ def unit_vector(direction: Direction, place: str) -> Floats:
     return vector
 
 
+def axes_of(axes: Axes | None, place: str) -> Floats:
+    """Local axes (3, 3), x, y and z in rows; those of the model without any."""
+    if axes is None:
+        return np.eye(3)
+    given = np.asarray(axes, dtype=float)
+    if given.shape != (2, 3) or not np.isfinite(given).all():
+        raise FemError(f"{place}: expected axes of the shape (2, 3), found {axes!r}")
+    x, z = given[0], np.cross(*given)
+    if not np.linalg.norm(z) > ALONG * np.prod(np.linalg.norm(given, axis=1)):
+        raise FemError(f"{place}: expected axes of two directions, found {axes!r}")
+    return np.stack([v / np.linalg.norm(v) for v in (x, np.cross(z, x), z)])
+
+
 def check_positive(value: float, what: str, place: str) -> None:
     """A stiffness, thickness or mass is positive and finite."""
     if not 0 < value < np.inf:
@@ -138,6 +151,7 @@ def check_names(structure: Structure) -> None:
         "group": {g.name for g in structure.groups},
         "spring": [s.name for s in structure.springs],
         "mass": [m.name for m in structure.masses],
+        "load": [x.name for x in structure.loads],
     }
     members = [name for names in kinds.values() for name in names]
     checks = Checks()
@@ -172,6 +186,8 @@ def check_parameters(structure: Structure) -> None:
         "thickness": {g.name for g in structure.groups if isinstance(g, Shells)},
         "spring": {s.name for s in structure.springs},
         "mass": {m.name for m in structure.masses},
+        "prestress": {x.name for x in structure.loads}
+        | {g.name for g in structure.groups if isinstance(g, Beams | Trusses) and g.force},
     }
     checks = Checks()
     for parameter in structure.parameters:

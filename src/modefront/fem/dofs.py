@@ -1,12 +1,13 @@
 r"""Degrees of freedom: which exist, which are held, which follow others.
 
-Every node has six possible DOFs u = (x, y, z, rx, ry, rz); those that an element, mass,
-spring or link touches exist. Supports hold some; a rigid link makes those of a slave node
-follow the master's,
+Every node has six possible DOFs u = (x, y, z, rx, ry, rz); those that have stiffness or mass, or
+that a link uses, exist. Supports hold some; by a rigid link those of a slave follow the master's,
 
     u_s = u_m + omega_m x (x_s - x_m),     omega_s = omega_m,
 
-so that all of them are u = T q with the free ones q: K_q = T^T K T is exact.
+an interpolating coupling those of a node the mean motion of others, and a support that is not along
+an axis one displacement the others of its node. So all of them are u = T q with the free ones q:
+K_q = T^T K T is exact.
 
 ========  =====================================================================
 symbol    meaning
@@ -28,6 +29,7 @@ from scipy import sparse
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.elements.common import cross_matrix
 from modefront.fem.section import FemError
+from modefront.rounding import ACCUMULATED
 
 DIRECTIONS = ("x", "y", "z", "rx", "ry", "rz")
 
@@ -72,54 +74,161 @@ class Dofs:
 
 
 @dataclass(frozen=True)
-class LinkRows:
-    """Rigid links as rows: slave DOF = sum of weights times master DOFs.
+class Followers:
+    """Degrees of freedom that follow others: u[slave] = weight u.
 
     Attributes
     ----------
     slave : (rows,) 6 node + direction
-    master, weight : (rows, 3): 6 node + direction and factor; unused entries have weight 0
+    weight : CSR (rows, 6 nodes)
     """
 
     slave: Ints
-    master: Ints
-    weight: Floats
+    weight: sparse.csr_array
 
 
-def link_rows(X: Floats, master: int, slaves: Ints, directions: Sequence[int]) -> LinkRows:
-    """Rows of one rigid link from `master` to `slaves` in the given directions."""
-    lever = -cross_matrix(X[slaves] - X[master])
-    slave, masters, weight = [], [], []
-    for d in directions:
-        slave.append(6 * slaves + d)
-        columns, w = np.full((len(slaves), 3), 6 * master + d), np.zeros((len(slaves), 3))
-        w[:, 0] = 1
-        if d < 3:
-            e, f = (d + 1) % 3, (d + 2) % 3
-            columns[:, 1:] = 6 * master + 3 + np.array([e, f])
-            w[:, 1:] = lever[:, d, [e, f]]
-        masters.append(columns)
-        weight.append(w)
-    return LinkRows(np.concatenate(slave), np.concatenate(masters), np.concatenate(weight))
+def followers(
+    X: Floats, slaves: Ints, masters: Ints, weight: Floats, directions: Sequence[int]
+) -> Followers:
+    """Return the rows of the given directions of slaves (slaves,).
+
+    Parameters
+    ----------
+    masters, weight : nodes (slaves, k), and factors (slaves, 6, k, 6) on their DOFs
+    """
+    count, k = masters.shape
+    weight = weight[:, directions].reshape(count * len(directions), -1)
+    columns = (6 * masters[:, :, None] + np.arange(6)).reshape(count, -1)
+    columns = np.repeat(columns, len(directions), axis=0)
+    rows = sparse.csr_array(
+        (weight.ravel(), columns.ravel(), np.arange(len(weight) + 1) * 6 * k),
+        shape=(len(weight), 6 * len(X)),
+    )
+    rows.eliminate_zeros()
+    return Followers((6 * slaves[:, None] + np.array(directions)).ravel(), rows)
 
 
-def number_dofs(exists: Bools, held: Bools, links: Sequence[LinkRows]) -> Dofs:
+def rigid_link(X: Floats, master: int, slaves: Ints, directions: Sequence[int]) -> Followers:
+    """Return the rows of a rigid link from `master` to `slaves` in the given directions."""
+    motion = rigid_motion(X[slaves] - X[master])
+    masters = np.full((len(slaves), 1), master)
+    return followers(X, slaves, masters, motion[:, :, None], directions)
+
+
+def mean_motion(
+    X: Floats, node: int, of: Ints, weights: Floats, directions: Sequence[int], place: str
+) -> Followers:
+    """Return the rows of a node with the mean motion of others.
+
+    With the displacement P_i q of node i in the rigid motion q of `node`, least squares of
+    sum_i w_i |u_i - P_i q|^2 are q = (sum_i w_i P_i^T P_i)^-1 sum_i w_i P_i^T u_i.
+
+    Raises
+    ------
+    FemError
+        If the others do not determine the motion, such as a rotation about their line.
+    """
+    arms = X[of] - X[node]
+    size = np.ptp(X[of], axis=0).max() or 1.0
+    P = rigid_motion(arms)[:, :3] * np.repeat([1, 1 / size], 3)
+    weighted = weights[:, None, None] * P
+    normal = np.einsum("ndi,ndj->ij", weighted, P)
+    inverse = np.linalg.pinv(normal, rcond=UNDETERMINED, hermitian=True)
+    lost = [d for d in directions if abs(inverse[d] @ normal - np.eye(6)[d]).max() > UNDETERMINED]
+    if lost:
+        raise FemError(
+            f"{place}: the nodes do not determine {', '.join(DIRECTIONS[d] for d in lost)} of node"
+            f" {node}; expected nodes that are not on one line, or fewer directions"
+        )
+    factors = np.zeros((1, 6, len(of), 6))
+    factors[0, :, :, :3] = np.einsum("ij,ndj->ind", inverse, weighted)
+    factors[0, 3:] /= size
+    return followers(X, np.array([node]), of[None], factors, directions)
+
+
+UNDETERMINED = 1e-9
+"""Eigenvalue of the normal equations of a mean motion, over the greatest, that is rounding."""
+
+
+def rigid_motion(arms: Floats) -> Floats:
+    """Motions (points, 6, 6) of points at arms (points, 3) from a node, from its motion."""
+    P = np.tile(np.eye(6), (len(arms), 1, 1))
+    P[:, :3, 3:] = -cross_matrix(arms)
+    return P
+
+
+def hold(held: Bools, exists: Bools, skew: Sequence[tuple[Ints, Floats]]) -> list[Followers]:
+    """Hold nodes along directions that are not global; return what of their motion follows.
+
+    The rows C u = 0 of a node are solved for as many of its DOFs, by complete pivoting.
+
+    Parameters
+    ----------
+    held, exists : (nodes, 6); what is held altogether is added to ``held``
+    skew : nodes (n,) and rows (m, 6) that each of them has
+    """
+    rows: dict[int, list[Floats]] = {}
+    for nodes, C in skew:
+        for node in nodes.tolist():
+            rows.setdefault(node, []).append(C)
+    slaves, weights = [], []
+    for node, several in rows.items():
+        C = np.concatenate([np.eye(6)[held[node]], *several]) * exists[node]
+        for pivot, row in _solved(C):
+            if row.any():
+                slaves.append(6 * node + pivot)
+                weights.append(row)
+            else:
+                held[node, pivot] = True
+    if not slaves:
+        return []
+    slave = np.array(slaves)
+    columns = 6 * (slave // 6)[:, None] + np.arange(6)
+    weight = sparse.csr_array(
+        (np.ravel(weights), columns.ravel(), 6 * np.arange(len(slave) + 1)),
+        shape=(len(slave), exists.size),
+    )
+    weight.eliminate_zeros()
+    return [Followers(slave, weight)]
+
+
+def _solved(C: Floats) -> list[tuple[int, Floats]]:
+    """Return pivots j with rows of x_j = row x, from the rows of C x = 0."""
+    C, pivots = C.copy(), []
+    for n in range(min(C.shape)):
+        i, j = divmod(int(np.argmax(abs(C[n:]))), 6)
+        if abs(C[n + i, j]) <= SKEW:
+            break
+        C[[n, n + i]] = C[[n + i, n]]
+        C[n] /= C[n, j]
+        others = np.arange(len(C)) != n
+        C[others] -= np.outer(C[others, j], C[n])
+        pivots.append(j)
+    C[abs(C) <= ACCUMULATED] = 0
+    return [(j, np.eye(6)[j] - C[n]) for n, j in enumerate(pivots)]
+
+
+SKEW = 1e-6
+"""Component of a direction that is nothing: files hold seven digits."""
+
+
+def number_dofs(exists: Bools, held: Bools, following: Sequence[Followers]) -> Dofs:
     """Number the DOFs node by node and build T.
 
     Parameters
     ----------
     exists, held : (nodes, 6), true where an element or link uses the DOF, where a support holds it
-    links : rows of all rigid links
+    following : rows of all links, couplings and skew supports; of chains of them too
 
     Raises
     ------
     FemError
-        If a DOF is slave twice, slave and held, or slave and master.
+        If a DOF is slave twice, slave and held, or follows itself.
     """
     nodes = len(exists)
-    slave = np.concatenate([link.slave for link in links] + [np.zeros(0, np.int64)])
-    masters = np.concatenate([link.master for link in links] + [np.zeros((0, 3), np.int64)])
-    weight = np.concatenate([link.weight for link in links] + [np.zeros((0, 3))])
+    none = Followers(np.zeros(0, np.int64), sparse.csr_array((0, 6 * nodes)))
+    slave = np.concatenate([each.slave for each in (none, *following)])
+    weight = sparse.csr_array(sparse.vstack([each.weight for each in (none, *following)]))
 
     def refuse(wrong: Ints, what: str) -> None:
         if len(wrong):
@@ -127,27 +236,28 @@ def number_dofs(exists: Bools, held: Bools, links: Sequence[LinkRows]) -> Dofs:
             raise FemError(f"link: node {node}, {DIRECTIONS[direction]} is a slave and {what}")
 
     values, counts = np.unique(slave, return_counts=True)
-    refuse(values[counts > 1], "a slave of another link; expected one master for each")
+    refuse(
+        values[counts > 1],
+        "a slave of another link, coupling or support in axes; expected one of them for each",
+    )
     refuse(slave[held.ravel()[slave]], "held by a support; put the support on the master")
-    used = masters[weight != 0]
-    refuse(np.intersect1d(slave, used), "a master as well; link all slaves to one master")
 
-    kept_mask = (exists & ~held).ravel()
-    free_mask = kept_mask.copy()
+    free_mask = (exists & ~held).ravel()
+    kept_mask = free_mask.copy()
     free_mask[slave] = False
     kept = np.where(kept_mask, np.cumsum(kept_mask) - 1, -1)
-    free = np.where(free_mask, np.cumsum(free_mask) - 1, -1)
     q = np.flatnonzero(free_mask)
-    rows = np.concatenate([q, np.repeat(slave, 3)])
-    columns = np.concatenate([free[q], free[masters].ravel()])
-    values = np.concatenate([np.ones(len(q)), weight.ravel()])
-    present = (columns >= 0) & (values != 0)
-    T = sparse.csr_array(
-        (values[present], (rows[present], columns[present])), shape=(6 * nodes, len(q))
+    # Slaves of slaves: u_s = A u_s + B q is (1 + A + A^2 + ...) B q, where no chain is closed.
+    A, B = weight[:, slave], weight[:, q]
+    total, step = B, A
+    for _ in following:
+        total, step = total + step @ B, sparse.csr_array(step @ A)
+        step.eliminate_zeros()
+    refuse(slave[abs(step).sum(1) > 0], "its own master, by way of others")
+    rows = sparse.csr_array((np.ones(len(q)), (q, np.arange(len(q)))), shape=(6 * nodes, len(q)))
+    place = sparse.csr_array(
+        (np.ones(len(slave)), (slave, np.arange(len(slave)))), shape=(6 * nodes, len(slave))
     )
-    return Dofs(
-        kept.reshape(nodes, 6),
-        np.stack(np.divmod(q, 6), 1),
-        T,
-        ~free_mask[kept_mask],
-    )
+    T = sparse.csr_array(rows + place @ total)
+    T.sort_indices()
+    return Dofs(kept.reshape(nodes, 6), np.stack(np.divmod(q, 6), 1), T, ~free_mask[kept_mask])

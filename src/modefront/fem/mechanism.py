@@ -1,20 +1,22 @@
 r"""Mechanisms: motions of a structure that no stiffness resists, found before any solve.
 
 Elements that share a node with rotations (beams, shells) or a face (solids) move together as
-one rigid body when nothing deforms. Every such body b has the motion (t_b, omega_b), and a
-displacement along a, rotation along a', at its node x is
+one rigid body when nothing deforms. Every such body b has the motion (t_b, omega_b), in which a
+node at x has
 
-    a . (t_b + omega_b x (x - c_b)) + a' . omega_b.
+    u = t_b + omega_b x (x - c_b),   omega = omega_b,   all of them: u = H b.
 
-Supports, springs, links and nodes shared by bodies (hinges) each set one such expression, or
-the difference of two, to zero. The null space of these rows C is what can move freely. It is
-found for each part, a set of bodies that rows connect.
+Supports, links, nodes shared by bodies (hinges) and what resists few motions only (springs, bars,
+beams with releases: u^T K u = 0 is as many rows as K has eigenvalues) each set rows of u, or the
+difference of two, to zero. The null space of these rows C is what can move freely. It is found for
+each part, a set of bodies that rows connect.
 
 ========  =====================================================================
 symbol    meaning
 ========  =====================================================================
 home      body of each node (the one with its rotations, if there is one)
 c_b       centroid of the body's nodes
+H         (6 nodes, 6 bodies) displacements of the nodes from motions of bodies
 C         (rows, 6 bodies); columns of rotations scaled by the body's extent
 ========  =====================================================================
 """
@@ -31,11 +33,11 @@ from scipy.spatial import KDTree
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.check import SAME_PLACE
-from modefront.fem.dofs import DIRECTIONS, LinkRows
+from modefront.fem.dofs import DIRECTIONS, Followers, rigid_motion
 from modefront.fem.elements.solid import SOLIDS
 from modefront.fem.scatter import Block
 from modefront.fem.section import FemError
-from modefront.rounding import ACCUMULATED, TINY
+from modefront.rounding import ACCUMULATED
 
 LARGEST_PART = 3000
 """Motions of a part beyond which it is not examined: its null space takes their cube."""
@@ -87,7 +89,7 @@ def rigid_bodies(X: Floats, elements: Sequence[Block], exists: Bools) -> Bodies:
     alone = members == 1
     moves[alone] = False
     np.logical_or.at(moves, b, exists[n])
-    extent[alone] = max(float(np.ptp(X, axis=0).max()), TINY)
+    extent[alone] = float(np.ptp(X, axis=0).max()) or 1.0
     return Bodies(home, shared, centre, extent, moves)
 
 
@@ -138,55 +140,57 @@ def _incidence(nodes: int, elements: Sequence[Block], exists: Bools) -> Ints:
 def constraint_rows(
     X: Floats,
     bodies: Bodies,
-    springs: Sequence[Block],
-    links: Sequence[LinkRows],
+    soft: Sequence[Block],
+    following: Sequence[Followers],
     held: Bools,
 ) -> sparse.csr_array:
     """C (rows, 6 bodies), rows of unit length."""
-    data, columns, rows = [], [], []
-    total = 0
-
-    def add(terms: Sequence[tuple[Ints, Ints, Floats]]) -> None:
-        """Add rows that are sums over (nodes, bodies, components in (u, r))."""
-        nonlocal total
-        for node, body, a in terms:
-            arm = X[node] - bodies.centre[body]
-            turn = np.cross(arm, a[:, :3]) + a[:, 3:]
-            values = np.concatenate([a[:, :3], turn / bodies.extent[body, None]], 1)
-            data.append(values.ravel())
-            columns.append((6 * body[:, None] + np.arange(6)).ravel())
-            rows.append(np.repeat(total + np.arange(len(node)), 6))
-        total += len(terms[0][0])
-
-    unit = np.eye(6)
+    nodes = np.flatnonzero(bodies.home >= 0)
+    H = _motions(X, bodies, nodes, bodies.home[nodes], 6 * nodes, 6 * len(X))
     node, body = bodies.shared.T
-    for d in range(3):
-        a = np.broadcast_to(unit[d], (len(node), 6))
-        add([(node, body, a), (node, bodies.home[node], -a)])
-    node, direction = np.nonzero(held & (bodies.home >= 0)[:, None])
-    add([(node, bodies.home[node], unit[direction])])
-    for block in springs:
-        # K = k s s^T, so the row of its largest diagonal is s but for a factor.
-        K = block.matrices.stiffness[0].matrices
-        e = np.arange(len(K))
-        s = K[e, np.argmax(np.diagonal(K, axis1=1, axis2=2), 1)]
-        s = s.reshape(*block.cells.shape, -1) / np.abs(s).max(1)[:, None, None]
-        a = np.zeros((*block.cells.shape, 6))
-        a[:, :, list(block.directions)] = s
-        add([(n, bodies.home[n], a[:, k]) for k, n in enumerate(block.cells.T)])
-    for link in links:
-        node, direction = np.divmod(link.slave, 6)
-        a = np.zeros((len(node), 6))
-        for k in range(3):
-            a[np.arange(len(node)), link.master[:, k] % 6] += link.weight[:, k]
-        master = link.master[:, 0] // 6
-        add([(node, bodies.home[node], unit[direction]), (master, bodies.home[master], -a)])
-    C = sparse.csr_array(
-        (np.concatenate(data), (np.concatenate(rows), np.concatenate(columns))),
-        shape=(total, 6 * len(bodies.extent)),
-    )
+    other = _motions(X, bodies, node, body, 6 * np.arange(len(node)), 6 * len(node))
+    moves = np.arange(6 * len(node)) % 6 < 3
+    rows = [
+        (other - H[(6 * node[:, None] + np.arange(6)).ravel()])[moves],
+        H[np.flatnonzero(held & (bodies.home >= 0)[:, None])],
+        *(_resisted(block, 6 * len(X)) @ H for block in soft),
+        *(H[each.slave] - each.weight @ H for each in following),
+    ]
+    C = sparse.csr_array(sparse.vstack(rows))
     norm = np.sqrt(np.asarray(C.power(2).sum(1)).ravel())
     return sparse.diags_array(1 / np.where(norm > 0, norm, 1)).tocsr() @ C
+
+
+def _motions(
+    X: Floats, bodies: Bodies, node: Ints, body: Ints, first: Ints, size: int
+) -> sparse.csr_array:
+    """Return displacements of nodes in motions of bodies, in six rows each from `first` on."""
+    P = rigid_motion(X[node] - bodies.centre[body])
+    P[:, :, 3:] /= bodies.extent[body, None, None]
+    rows, columns = (each[:, None] + np.arange(6) for each in (first, 6 * body))
+    rows, columns = np.broadcast_arrays(rows[:, :, None], columns[:, None])
+    shape = size, 6 * len(bodies.extent)
+    H = sparse.csr_array((P.ravel(), (rows.ravel(), columns.ravel())), shape=shape)
+    H.eliminate_zeros()
+    return H
+
+
+def _resisted(block: Block, size: int) -> sparse.csr_array:
+    """Return the rows (.., 6 nodes) of displacements that elements of a block resist."""
+    K = block.matrices.stiffness[0].matrices
+    if block.prestress is not None:
+        K = K + block.prestress
+    scale = np.sqrt(np.diagonal(K, axis1=1, axis2=2).clip(0))
+    unit = np.where(scale > 0, scale, 1)
+    values, vectors = np.linalg.eigh(K / unit[:, :, None] / unit[:, None])
+    vectors = vectors * (values > ACCUMULATED * values[:, -1:])[:, None]
+    rows = np.swapaxes(vectors, 1, 2) * unit[:, None]
+    count, k = rows.shape[:2]
+    columns = np.repeat(block.dofs(), k, axis=0)
+    pointer = np.arange(count * k + 1) * k
+    out = sparse.csr_array((rows.ravel(), columns.ravel(), pointer), shape=(count * k, size))
+    out.eliminate_zeros()
+    return out
 
 
 def null_space(C: sparse.csr_array, columns: Ints) -> Floats:
@@ -197,12 +201,10 @@ def null_space(C: sparse.csr_array, columns: Ints) -> Floats:
     return np.asarray(vectors[:, values <= ACCUMULATED * max(values[-1], 1.0)])
 
 
-# 7 arguments: the parts of a structure that can hold a motion.
 def check_mechanisms(
     X: Floats,
-    elements: Sequence[Block],
-    springs: Sequence[Block],
-    links: Sequence[LinkRows],
+    blocks: Sequence[Block],
+    following: Sequence[Followers],
     held: Bools,
     exists: Bools,
     floating: bool,
@@ -212,7 +214,7 @@ def check_mechanisms(
     Parameters
     ----------
     X : nodes (nodes, 3)
-    elements, springs, links : what connects them
+    blocks, following : what connects them
     held, exists : (nodes, 6) whether a support holds the DOF and whether it exists
     floating : whether the structure as a whole may move as a rigid body
 
@@ -222,8 +224,9 @@ def check_mechanisms(
         Names the nodes of the part that moves, and how. Parts of more than `LARGEST_PART` / 6
         hinged bodies are not examined.
     """
-    bodies = rigid_bodies(X, elements, exists)
-    C = constraint_rows(X, bodies, springs, links, held)
+    bodies = rigid_bodies(X, [block for block in blocks if block.rigid], exists)
+    soft = [block for block in blocks if block.matrices.stiffness and not block.rigid]
+    C = constraint_rows(X, bodies, soft, following, held)
     count = len(bodies.extent)
     body_of = sparse.csr_array(
         (np.ones(6 * count), (np.arange(6 * count), np.repeat(np.arange(count), 6)))

@@ -23,9 +23,10 @@ from modefront.inputs import MOST_DATA, available_memory, file_size, is_hdf5, re
 from modefront.isolated import IsolatedError, isolated
 from modefront.text import one_line
 
-Kind = Literal["beam", "shell", "solid"]
+Kind = Literal["beam", "truss", "shell", "solid"]
 CELL_TYPES: Mapping[Kind, tuple[str, ...]] = {
     "beam": ("line",),
+    "truss": ("line",),
     "shell": ("triangle", "quad"),
     "solid": ("hexahedron", "tetra10", "wedge15", "hexahedron20"),
 }

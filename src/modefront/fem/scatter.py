@@ -22,12 +22,23 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import Protocol
 
 import numpy as np
 from scipy import sparse
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.fem.elements.common import ElementMatrices
+
+
+class InternalForces(Protocol):
+    """Internal forces of displacements, and the geometric stiffness that they make."""
+
+    def free_forces(self, strain: float) -> Floats:
+        """Return forces (elements, n) that make a free strain."""
+
+    def stiffness(self, q: Floats, strain: float) -> Floats:
+        """Return K_G (elements, n, n) of displacements q (elements, n) and a free strain."""
 
 
 @dataclass(frozen=True)
@@ -40,12 +51,23 @@ class Block:
     cells : nodes (elements, k)
     directions : the d DOFs of each node that the matrices have, ascending
     matrices : of size k d
+    rigid : whether an element that nothing deforms is one rigid body with its nodes
+    prestress : geometric stiffness (elements, k d, k d) of given forces; None without any
+    internal : internal forces of displacements; None for elements that make no geometric stiffness
     """
 
     name: str
     cells: Ints
     directions: tuple[int, ...]
     matrices: ElementMatrices
+    rigid: bool = False
+    prestress: Floats | None = None
+    internal: InternalForces | None = None
+
+    def dofs(self) -> Ints:
+        """Return 6 node + direction of each row of the matrices (elements, k d)."""
+        dofs = 6 * self.cells[:, :, None] + np.array(self.directions)
+        return np.asarray(dofs.reshape(len(dofs), -1))
 
 
 @dataclass(frozen=True)

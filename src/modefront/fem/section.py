@@ -1,7 +1,6 @@
-r"""Sections of beams: constants about the principal axes y and z through the centroid.
+r"""Materials, and sections of beams: constants about principal axes y and z through the centroid.
 
-Shear centre and centroid coincide and warping is free; sections for which this is far from
-true (channels, open thin walls) are better meshed with shells.
+Warping is free: where it is held, open thin walls twist less than beams.
 
 =========  ==============================================================
 symbol     meaning
@@ -106,7 +105,9 @@ class Section:
     Attributes
     ----------
     A, I_y, I_z, J : area, second moments of area and torsion constant, all > 0
-    kappa_y, kappa_z : shear correction factors for deflection along y and z
+    kappa_y, kappa_z : shear correction factors for deflection along y and z; `inf` leaves out shear
+        deformation
+    shear_centre : its y and z, from the centroid
 
     Raises
     ------
@@ -120,11 +121,12 @@ class Section:
     J: float
     kappa_y: float = 5 / 6
     kappa_z: float = 5 / 6
+    shear_centre: tuple[float, float] = (0.0, 0.0)
 
     def __post_init__(self) -> None:
         """Refuse constants that leave a motion of the section without stiffness."""
         for name, value in vars(self).items():
-            if not value > 0:
+            if name != "shear_centre" and not value > 0:
                 raise FemError(f"section: {name} must be > 0, found {value!r}")
 
 

@@ -1,4 +1,4 @@
-r"""A structure as a value: nodes, members, supports, links, sensors and parameters.
+r"""A structure as a value: nodes, members, supports, couplings, loads, sensors and parameters.
 
 Every class is plain data; `modefront.fem.assembly.assemble` checks it and turns it into
 matrices. Nodes and elements are counted from 0. Units are consistent ones, such as SI.
@@ -6,8 +6,8 @@ matrices. Nodes and elements are counted from 0. Units are consistent ones, such
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
 from typing import Literal
 
 import numpy.typing as npt
@@ -16,7 +16,10 @@ from modefront.fem.dofs import DIRECTIONS
 from modefront.fem.section import Material, Section
 
 Direction = str | Sequence[float]
-Quantity = Literal["E", "density", "thickness", "spring", "mass"]
+Axes = tuple[Sequence[float], Sequence[float]]
+"""Local axes: the local x axis, and a vector in the local x-y plane."""
+
+Quantity = Literal["E", "density", "thickness", "spring", "mass", "prestress"]
 ALL = DIRECTIONS
 
 
@@ -32,6 +35,9 @@ class Beams:
     orientation : vector in the plane of the axis and local y; needed unless the section is the same
         in y and z
     offsets : vectors (2, 3) from the first and second node to the flexible part's ends
+    releases : directions of local axes that either end leaves free; ``(("ry", "rz"), ())`` is a
+        hinge at the first node. Supports, masses and sensors are on the node's side of it.
+    force : axial force of the prestress, tension is positive
     """
 
     name: str
@@ -40,6 +46,27 @@ class Beams:
     section: Section
     orientation: Sequence[float] | None = None
     offsets: npt.ArrayLike = ((0.0, 0.0, 0.0), (0.0, 0.0, 0.0))
+    releases: tuple[Sequence[str], Sequence[str]] = ((), ())
+    force: float = 0.0
+
+
+@dataclass(frozen=True)
+class Trusses:
+    """Group of straight bars that carry axial forces only, such as members of trusses and cables.
+
+    Attributes
+    ----------
+    name : of the group; several blocks may share it
+    cells : nodes (elements, 2)
+    material, area : of all elements
+    force : axial force of the prestress, tension is positive
+    """
+
+    name: str
+    cells: npt.ArrayLike
+    material: Material
+    area: float
+    force: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -78,6 +105,9 @@ class Solids:
     material: Material
 
 
+Group = Beams | Trusses | Shells | Solids
+
+
 @dataclass(frozen=True)
 class Support:
     """Nodes held in the given directions.
@@ -86,32 +116,38 @@ class Support:
     ----------
     nodes : a node, or (nodes,), counted from 0
     directions : of x, y, z, rx, ry, rz; all of them unless given
+    axes : the directions are along these; None is the global axes
     """
 
     nodes: npt.ArrayLike
     directions: Sequence[str] = ALL
+    axes: Axes | None = None
 
 
 @dataclass(frozen=True)
 class Spring:
-    """Springs of one stiffness, from each node to the ground or to a partner.
+    """Springs, equal ones, from each node to the ground or to a partner.
 
     Attributes
     ----------
     name : of the springs, for parameters
     nodes : one spring at each
-    stiffness : force per length, or moment per angle for rotations
-    direction : one of x, y, z, rx, ry, rz, or a vector of displacement; None is along the line to
-        the partner. Between distant nodes a spring on displacements has to act along that line: any
-        other would resist a rotation of the whole.
+    stiffness : force per length, or moment per angle for rotations; or (6,), one for each of x, y,
+        z, rx, ry, rz
+    direction : of one stiffness: one of x, y, z, rx, ry, rz, or a vector of displacement; None is
+        along the line to the partner. Between distant nodes a spring on displacements has to act
+        along that line: any other would resist a rotation of the whole.
     to : partner of each node; None is the ground
+    axes : of six stiffnesses; None is the global axes. Between distant nodes, the six are in the
+        middle of two rigid arms.
     """
 
     name: str
     nodes: npt.ArrayLike
-    stiffness: float
+    stiffness: float | Sequence[float]
     direction: Direction | None = None
     to: npt.ArrayLike | None = None
+    axes: Axes | None = None
 
 
 @dataclass(frozen=True)
@@ -122,21 +158,21 @@ class Mass:
     ----------
     name : of the masses, for parameters
     nodes : one mass at each
-    mass : of each
+    mass : of each; or (3,), those that motions along x, y and z see, such as water around a pile
     inertia : about the mass's centre, global axes: (3,) principal or (3, 3)
     offset : of the centre from the node, (3,)
     """
 
     name: str
     nodes: npt.ArrayLike
-    mass: float
+    mass: float | Sequence[float]
     inertia: npt.ArrayLike = (0.0, 0.0, 0.0)
     offset: npt.ArrayLike = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True)
 class Link:
-    """Rigid link: the slaves follow the master in the given directions.
+    """Rigid link (RBE2): the slaves follow the master in the given directions.
 
     Attributes
     ----------
@@ -148,6 +184,49 @@ class Link:
     master: int
     slaves: npt.ArrayLike
     directions: Sequence[str] = ALL
+
+
+@dataclass(frozen=True)
+class Coupling:
+    """Interpolating coupling (RBE3): a node follows the mean motion of others.
+
+    It has the rigid motion that is nearest to the displacements of the others, in weighted least
+    squares; what acts on it is distributed to them, and stiffens nothing.
+
+    Attributes
+    ----------
+    node : that follows, counted from 0
+    of : nodes (nodes,) whose mean motion it has
+    weights : of each of them, or of all
+    directions : in which it follows, of x, y, z, rx, ry, rz; all of them unless given
+    """
+
+    node: int
+    of: npt.ArrayLike
+    weights: npt.ArrayLike = 1.0
+    directions: Sequence[str] = ALL
+
+
+@dataclass(frozen=True)
+class Load:
+    """Static load, of which the internal forces add to the stiffness (prestress).
+
+    Forces in the structure as given are found by a linear solution, and held; the axial forces of
+    beams and trusses and the membrane forces of shells make its geometric stiffness.
+
+    Attributes
+    ----------
+    name : of the load, for parameters
+    nodes, force : (3,) or (6,) with moments, global axes, at each of the nodes
+    acceleration : (3,) of gravity, which acts on all masses
+    strains : free strain, such as that of heat, of beams and trusses by name of the group
+    """
+
+    name: str
+    nodes: npt.ArrayLike = ()
+    force: Sequence[float] = (0.0, 0.0, 0.0)
+    acceleration: Sequence[float] = (0.0, 0.0, 0.0)
+    strains: Mapping[str, float] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)
@@ -177,8 +256,9 @@ class Parameter:
     Attributes
     ----------
     name : as in the study; `modefront.Parameter` has its bounds
-    quantity : "E", "density" or "thickness" of groups, "spring" stiffness, or "mass"
-    of : names of groups, springs or masses
+    quantity : "E", "density" or "thickness" of groups, "spring" stiffness, "mass", or "prestress"
+        of loads and of groups with a force
+    of : names of groups, springs, masses or loads
     """
 
     name: str
@@ -188,22 +268,25 @@ class Parameter:
 
 @dataclass(frozen=True)
 class Structure:
-    """Nodes, members, supports, links, sensors and parameters of a structure.
+    """Nodes, members, supports, couplings, loads, sensors and parameters of a structure.
 
     Attributes
     ----------
     nodes : coordinates (nodes, 3)
-    groups : beams, shells and solids
-    supports, springs, masses, links : at nodes
+    groups : beams, trusses, shells and solids
+    supports, springs, masses, links, couplings : at nodes
+    loads : static ones, of which the internal forces add to the stiffness
     sensors : in the order of the measured shapes
     parameters : factors that are updated
     """
 
     nodes: npt.ArrayLike
-    groups: Sequence[Beams | Shells | Solids] = ()
+    groups: Sequence[Group] = ()
     supports: Sequence[Support] = ()
     springs: Sequence[Spring] = ()
     masses: Sequence[Mass] = ()
     links: Sequence[Link] = ()
+    couplings: Sequence[Coupling] = ()
+    loads: Sequence[Load] = ()
     sensors: Sequence[Sensor] = ()
     parameters: Sequence[Parameter] = ()

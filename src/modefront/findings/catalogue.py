@@ -78,8 +78,8 @@ CATALOGUE: Mapping[str, tuple[Severity, str]] = {
     "doubtful-edge": (
         OPEN,
         "the edge of {subject} may not be the best: {starts} random starts led to {minima} "
-        "different minima, and at most one of them to it. Ask for more with [search] doubt = "
-        "0.01, or choose a pairing that changes less",
+        "different minima, and at most one of them to it. Ask for more with [search] evaluations, "
+        "or choose a pairing that changes less",
     ),
     "unknown-end": (OPEN, "the front has a gap: where branch {subject} {end} is not known"),
     "no-effect": (

@@ -15,12 +15,12 @@ from __future__ import annotations
 import zlib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
-from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.dominance import nondominated
+from modefront.front.methods import METHODS
 from modefront.optim.problem import Evaluation, Problem, infeasible
 from modefront.optim.sqp import Solution, Status
 from modefront.work.codec import record
@@ -48,7 +48,9 @@ def evolve_front(
 
     n, p = len(problem.objectives), problem.lower.size
     described = Described(n_var=p, n_obj=n, xl=problem.lower, xu=problem.upper)
-    algorithm = _algorithm(method, population)
+    make = METHODS[method].algorithm
+    assert make is not None, method
+    algorithm = make(population)
     algorithm.setup(
         described,
         termination=("n_gen", max(evaluations // population, 1)),
@@ -81,17 +83,6 @@ def evolve_front(
         _sampled(evaluation)
         for evaluation in sorted(chosen, key=lambda evaluation: tuple(evaluation.J))
     ]
-
-
-def _algorithm(method: str, population: int) -> Any:
-    if method == "spea2":
-        from pymoo.algorithms.moo.spea2 import SPEA2, SPEA2Survival
-
-        # The default survival is one object for all runs and remembers the ranges of the last one.
-        return SPEA2(pop_size=population, survival=SPEA2Survival(normalize=True))
-    from pymoo.algorithms.moo.nsga2 import NSGA2
-
-    return NSGA2(pop_size=population)
 
 
 @record

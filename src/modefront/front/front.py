@@ -23,7 +23,8 @@ class Edge:
     best, minima : the edge, and all minima with it
     starts : number of random models from which the least objective was sought
     found : number of different minima to which they led
-    doubtful : whether fewer than two of them led to the edge, and unseen minima are likely
+    doubtful : whether the budget was spent before two of them led to the edge, or before unseen
+        minima were unlikely
     """
 
     best: Solution

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from importlib.util import find_spec
-from typing import Literal
+from typing import Any, Literal
+
+from modefront.families import Family
 
 
 @dataclass(frozen=True)
@@ -16,12 +19,15 @@ class Method:
     name : in ``[pareto] method``, and first part of the labels of its points
     title : in sentences
     programme : that a point solves: of the simplex between edges, of its weights, or none
+    algorithm : of a method without one, returns an algorithm with the interface of pymoo's
+        (``setup``, ``ask``, ``tell``, ``pop``) for so many models in a generation
     package, extra : that it needs besides, and the extra of modefront that brings it
     """
 
     name: str
     title: str
     programme: Literal["boundary", "weights"] | None = None
+    algorithm: Callable[[int], Any] | None = None
     package: str = ""
     extra: str = ""
 
@@ -38,11 +44,29 @@ class Method:
         return f"{self.package}: pip install modefront[{self.extra}]"
 
 
-_ALL = (
-    Method("nbi", "normal-boundary intersection", "boundary"),
-    Method("weights", "a sweep of the weights", "weights"),
-    Method("spea2", "SPEA2", package="pymoo", extra="evolutionary"),
-    Method("nsga2", "NSGA-II", package="pymoo", extra="evolutionary"),
-)
+def _spea2(population: int) -> Any:
+    from pymoo.algorithms.moo.spea2 import SPEA2, SPEA2Survival
 
-METHODS = {method.name: method for method in _ALL}
+    # The default survival is one object for all runs and remembers the ranges of the last one.
+    return SPEA2(pop_size=population, survival=SPEA2Survival(normalize=True))
+
+
+def _nsga2(population: int) -> Any:
+    from pymoo.algorithms.moo.nsga2 import NSGA2
+
+    return NSGA2(pop_size=population)
+
+
+METHODS: Family[Method] = Family(
+    "modefront.methods",
+    "a Method of fronts",
+    lambda method: isinstance(method, Method),
+    lambda method: method.name,
+    (
+        Method("nbi", "normal-boundary intersection", "boundary"),
+        Method("weights", "a sweep of the weights", "weights"),
+        Method("spea2", "SPEA2", None, _spea2, "pymoo", "evolutionary"),
+        Method("nsga2", "NSGA-II", None, _nsga2, "pymoo", "evolutionary"),
+    ),
+)
+"""All methods by their names."""

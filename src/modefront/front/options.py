@@ -9,10 +9,14 @@ from typing import Annotated, TypedDict
 from modefront.errors import Fault, refuse
 from modefront.front.methods import METHODS
 from modefront.front.simplex import size
-from modefront.options import check_fields, number, one_of, whole
+from modefront.options import Requirement, check_fields, number, one_of, whole
 
 MOST = 10_000
 """Points of a front at most."""
+
+
+def _one_of_the_methods() -> Requirement:
+    return one_of(*METHODS)  # those that are registered by now
 
 
 @dataclass(frozen=True)
@@ -36,7 +40,7 @@ class Pareto:
         above which points are added between them, from 0.001 to 1; None for no refinement
     """
 
-    method: Annotated[str, one_of(*METHODS)] = "nbi"
+    method: Annotated[str, _one_of_the_methods] = "nbi"
     points: Annotated[int, whole(2, MOST)] | None = None
     programme: Annotated[str, one_of("bounds", "equations")] = "bounds"
     tolerance: Annotated[float, number("a share from 0 to 1", lambda x: 0 <= x <= 1)] = 0.0

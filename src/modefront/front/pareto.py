@@ -23,7 +23,7 @@ from modefront.front.proposers.base import Proposer, Rate
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.rivals import Rivals
-from modefront.front.proposers.starts import Starts, unseen
+from modefront.front.proposers.starts import Starts
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import (
     Payoff,
@@ -60,9 +60,6 @@ FINEST = 7
 
 FINE = 10_000
 """Divisions of the lattice on which points are added at known models."""
-
-SURE = 2
-"""Random starts that lead to an edge, from which it is hardly a matter of chance."""
 
 TURNS = 4
 """Fronts that are searched at most, each between edges that the search of the one before moved."""
@@ -396,18 +393,14 @@ class _Run:
     def _edges(self) -> list[Edge]:
         """Return the edge of each objective with its other minima."""
         out = []
-        span = self.state.span
-        for k, _ in enumerate(self.problem.objectives):
-            place = self.places[k]
-            best = place.incumbent
-            minima = [best]
-            ends = self.starts.ends.get(place.subproblem.key, ())
-            for solution in sorted(ends, key=lambda x: float(x.J[k])):
-                if all(np.abs((solution.theta - x.theta) / span).max() > DISTINCT for x in minima):
-                    minima.append(solution)
-            tries, found, hits = self.starts.record(place, best, self.state.tolerance)
-            doubtful = hits < SURE and unseen(tries, found) > self.loop.search.doubt
-            out.append(Edge(best, minima, tries, found, doubtful and self.known is None))
+        for k, place in enumerate(self.places[: self.n]):
+            known, minima = self.starts.of(place), [place.incumbent]
+            for x in sorted(known.ends, key=lambda x: float(x.J[k])):
+                if self.state.is_new(x, minima):
+                    minima.append(x)
+            doubt = known.doubt(place, self.state.tolerance)
+            doubtful = self.known is None and doubt >= self.loop.search.doubt
+            out.append(Edge(place.incumbent, minima, known.rate.tries, len(known.ends), doubtful))
         return out
 
     def _points(
@@ -495,8 +488,7 @@ class _Run:
         for seen in self.work.run(tasks):
             self.state.evaluations += seen.evaluations
             x: Solution = seen.result
-            apart = [np.abs((x.theta - y.theta) / self.state.span).max() > DISTINCT for y in minima]
-            if x.converged and all(apart):
+            if x.converged and self.state.is_new(x, minima):
                 minima.append(x)
         return accepted(self.problem, minima, self.a, sizes)
 

@@ -1,7 +1,7 @@
 """The search: proposers are asked, the best offers are solved, and all are told what was found.
 
-An offer is worth making as long as the chance that some subproblem gains more than the tolerance is
-above the doubt that is allowed. Of these, the ones with the greatest chance per evaluation are
+An offer is worth making as long as the chance that some subproblem gains more than the tolerance,
+or the part of the box that may hold something better, is above the doubt that is allowed. Of these, the ones with the greatest chance per evaluation are
 solved, some at a time. The search ends when no offer is worth making, or at its budget. Nothing
 depends on who solves the offers, and in which order they are done.
 """
@@ -104,7 +104,7 @@ class Loop:
         for place, proposer in enumerate(self.proposers):
             cost = self._cost(proposer.name)
             for offer in proposer.offers(self.state, BATCH):
-                if offer.chance >= self.search.doubt:
+                if max(offer.chance, offer.unseen) >= self.search.doubt:
                     offers.append((offer.chance / cost, -place, proposer, offer))
         offers.sort(key=lambda each: each[:2], reverse=True)
         return [(proposer, offer) for _, _, proposer, offer in offers]

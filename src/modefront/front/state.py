@@ -107,7 +107,8 @@ class State:
             self.places[k].closed = True
         for place in self.places:
             gain = max(gain, self.challenge(place, outcome.theta, outcome.J, solution))
-        if solution.feasible and solution.evaluation.derivatives and self.is_new(solution):
+        derivatives = solution.evaluation.derivatives
+        if solution.feasible and derivatives and self.is_new(solution, self.models):
             self.models.append(solution)
         return gain
 
@@ -129,11 +130,10 @@ class State:
         place.closed = False
         return gain if was_closed else 0.0
 
-    def is_new(self, solution: Solution) -> bool:
+    def is_new(self, solution: Solution, known: Sequence[Solution]) -> bool:
         """Return whether a solution is another model than all known ones."""
-        return all(
-            np.abs((solution.theta - x.theta) / self.span).max() > DISTINCT for x in self.models
-        )
+        apart = (np.abs((solution.theta - x.theta) / self.span).max() for x in known)
+        return all(distance > DISTINCT for distance in apart)
 
 
 def distinct_points(points: Sequence[Solution], scale: Floats) -> list[Solution]:

@@ -43,8 +43,13 @@ RANK = 1e-7
 """Singular value of the residuals' derivatives, over the greatest, that counts as none: the
 tolerance of the parameters."""
 
-PATH = (1e-1, 1e-2, 1e-3, 1e-4, 1e-5)
-"""Values of epsilon, from which the limit is approached."""
+FIRST, LAST, RATIO = 1e-1, 1e-10, 10
+"""Values of epsilon at which the path begins, and beyond which it is not followed; ratio of one to
+the next."""
+
+ARRIVED = 1e-6
+"""Distance of two limits, over the ranges of the parameters, below which they are the same: ten
+times the tolerance of a step."""
 
 
 @dataclass(frozen=True)
@@ -88,31 +93,36 @@ class Lexicographic:
         if not best.feasible or self.sizes.size == 1 or not self.is_open(problem, best.evaluation):
             return best
         spent = best.evaluations
-        for path, begins in ((PATH, start), (PATH[-2:], best)):
-            end = self._end(problem, path, begins, options)
+        for first, begins in ((FIRST, start), (FIRST / 1000, best)):
+            end = self._end(problem, first, begins, best, options)
             spent += end.evaluations
-            i = self.objective
-            if end.feasible and (end.J[i] <= best.J[i] or self.ties(end.J, best.J)):
+            if end.feasible and self._reaches(end.J, best.J):
                 return replace(end, evaluations=spent)
         return replace(best, evaluations=spent)  # the path leads to another basin
 
+    # 6 arguments: a path from a start, and the minimum that it is to reach.
     def _end(
-        self, problem: Problem, path: tuple[float, ...], start: Solution, options: Options
+        self, problem: Problem, epsilon: float, start: Solution, best: Solution, options: Options
     ) -> Solution:
-        """Return the limit to which a path of minimisers leads."""
-        coarse = fine = replace(start, evaluations=0)
-        for epsilon in path:
-            coarse = fine
+        """Return the limit to which a path of minimisers leads, from the first epsilon on."""
+        coarse = _solved(problem, self._with(epsilon), replace(start, evaluations=0), options)
+        last, span = coarse.theta, problem.upper - problem.lower
+        while True:
+            epsilon /= RATIO
             fine = _solved(problem, self._with(epsilon), coarse, options)
-        theta = fine.theta + (fine.theta - coarse.theta) * path[-1] / (path[-2] - path[-1])
-        limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper), second=True)
-        i = self.objective
-        better = limit.feasible and limit.J[i] <= fine.J[i]
-        return replace(
-            fine,
-            evaluation=limit if better else fine.evaluation,
-            evaluations=fine.evaluations + 1,
-        )
+            theta = fine.theta + (fine.theta - coarse.theta) / (RATIO - 1)
+            limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper), second=True)
+            fine = replace(fine, evaluations=fine.evaluations + 1)
+            moved = float(np.abs((limit.theta - last) / span).max())
+            arrived = limit.feasible and moved <= ARRIVED and self._reaches(limit.J, best.J)
+            if arrived or epsilon <= LAST:
+                closer = limit.feasible and limit.J[self.objective] <= fine.J[self.objective]
+                return replace(fine, evaluation=limit if closer else fine.evaluation)
+            coarse, last = fine, limit.theta
+
+    def _reaches(self, J: Floats, best: Floats) -> bool:
+        """Return whether the first objective is no greater than the best one."""
+        return bool(J[self.objective] <= best[self.objective] or self.ties(J, best))
 
     def first(self, problem: Problem, start: Solution, options: Options) -> Solution:
         """Return the minimum of the first objective alone below a start."""

@@ -1,4 +1,4 @@
-"""Pictures of results, one a module: all of them are registered in `PLOTS`.
+"""Pictures of results: all of them are registered in `PLOTS`.
 
 matplotlib, an extra, is imported when a picture is drawn.
 """
@@ -16,23 +16,25 @@ import xarray as xr
 
 from modefront.errors import Fault, InputError, reason
 from modefront.outputs import output
-from modefront.plots.style import STYLE
 from modefront.text import file_name
 
 if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+
+    from modefront.identification.record import Identification
     from modefront.plots.canvas import Picture
 
-PLOTS = (
-    "front",
-    "parameters",
-    "frequencies",
-    "mac",
-    "modes",
-    "predictions",
-    "uncertainty",
-    "minima",
-)
-"""Modules of this package that draw a picture, ``draw(data)``, in the order of the files."""
+PLOTS: Mapping[str, str] = {
+    "front": "front",
+    "parameters": "quantities",
+    "frequencies": "quantities",
+    "mac": "quantities",
+    "modes": "modes",
+    "predictions": "predictions",
+    "uncertainty": "uncertainty",
+    "minima": "minima",
+}
+"""Pictures in the order of their files, each a function of this name in a module of the package."""
 
 FORMATS = ("svg", "png", "pdf")
 """Formats of files."""
@@ -46,6 +48,8 @@ def _drawing() -> Iterator[None]:
     except ImportError:
         expected = "matplotlib, which `pip install modefront[figures]` brings"
         raise InputError(Fault("", "figures", expected, "no such package")) from None
+    from modefront.plots.canvas import STYLE
+
     with rc_context(dict(STYLE)):
         yield
 
@@ -103,7 +107,8 @@ class Plots:
         with _drawing():
             if missing := _missing(self.data, name):
                 raise InputError(Fault("", f"plot of {name}", *missing))
-            return import_module(f"modefront.plots.{name}").draw(self.data, **options)
+            module = import_module(f"modefront.plots.{PLOTS[name]}")
+            return getattr(module, name)(self.data, **options)
 
 
 NEEDED: Mapping[str, tuple[tuple[str, ...], str, str]] = {
@@ -149,11 +154,23 @@ def write_figures(data: xr.Dataset, folder: Path, form: str = "svg") -> list[Pat
 def paper_figures(studies: Sequence[tuple[str, xr.Dataset]], folder: Path) -> list[Path]:
     """Write figures 2 to 7 of the paper for named results; see `modefront.plots.paper`."""
     with _drawing():
-        return import_module("modefront.plots.paper").write_paper_figures(studies, folder)
+        return write_pictures(import_module("modefront.plots.paper").figures(studies), folder)
+
+
+def identification_figures(
+    names: Sequence[str], identified: Sequence[Identification], folder: Path
+) -> list[Path]:
+    """Write three pictures for every data set of an identification and return their paths.
+
+    Raises what `write_figures` raises.
+    """
+    with _drawing():
+        figures = import_module("modefront.plots.identification").figures
+        return write_pictures(figures(names, identified), folder)
 
 
 def write_pictures(
-    named: Iterator[tuple[str, Picture]], folder: Path, form: str = "svg"
+    named: Iterator[tuple[str, Figure]], folder: Path, form: str = "svg"
 ) -> list[Path]:
     """Write named figures into a folder; raises what `write_figures` raises."""
     written: list[Path] = []

@@ -8,28 +8,29 @@ standard deviation of its posterior to either side. Points are joined along bran
 from __future__ import annotations
 
 import math
-from collections.abc import Sequence
-from dataclasses import dataclass
+from collections.abc import Callable, Sequence
 
 import numpy as np
 import xarray as xr
 from matplotlib import colormaps
 from matplotlib.axes import Axes
+from matplotlib.cm import ScalarMappable
+from matplotlib.colors import Normalize
 from matplotlib.lines import Line2D
 
 from modefront._typing import Floats
 from modefront.front.point import INTERNAL, Kind
-from modefront.plots.canvas import Picture, picture
+from modefront.plots.canvas import (
+    COLOURS,
+    COLUMNS,
+    MAP,
+    Picture,
+    panels,
+    picture,
+    short,
+    titled,
+)
 from modefront.plots.models import front_of, is_path, reference_of, shown
-from modefront.plots.style import COLOURS, MAP, plain, short
-
-
-@dataclass(frozen=True)
-class Bar:
-    """Range (lower, upper) that is drawn at each of some points, NaN where there is none."""
-
-    lower: Floats
-    upper: Floats
 
 
 class Along:
@@ -58,31 +59,21 @@ class Along:
         axes.plot(x[best], y[best], "o", color=colour, ms=4, label=label or "model")
         axes.plot(x[~best], y[~best], "o", mfc="w", mec=colour, ms=4)
         axes.plot(self.beside, values[self.others], "D", color=colour, mec="k", mew=0.6, ms=5)
-        self._limit(axes, y[~best], np.concatenate([y[best], values[self.others]]))
-
-    def _limit(self, axes: Axes, dominated: Floats, others: Floats) -> None:
-        """Leave dominated models out that are far from all others."""
-        known = others[np.isfinite(others)]
-        if not known.size or axes.get_yscale() != "linear":
+        others = np.concatenate([y[best], values[self.others]])
+        others = others[np.isfinite(others)]
+        if not others.size or axes.get_yscale() != "linear":
             return
-        low, high = known.min(), known.max()
-        size = high - low
-        if size > 0 and ((dominated < low - size) | (dominated > high + size)).any():
-            axes.set_ylim(low - 0.15 * size, high + 0.15 * size)
+        # Dominated models that are far from all others are left out.
+        low, high = others.min(), others.max()
+        far = (y[~best] < 2 * low - high) | (y[~best] > 2 * high - low)
+        if high > low and far.any():
+            axes.set_ylim(1.15 * low - 0.15 * high, 1.15 * high - 0.15 * low)
 
-    def bar(self, axes: Axes, bar: Bar, colour: str = COLOURS[0]) -> None:
-        """Draw ranges at the points that have one."""
-        known = np.isfinite(bar.lower) & np.isfinite(bar.upper) & np.isfinite(self.x)
+    def bars(self, axes: Axes, lower: Floats, upper: Floats, colour: str = COLOURS[0]) -> None:
+        """Draw ranges (points,) at the points that have one: others are NaN."""
+        known = np.isfinite(lower) & np.isfinite(upper) & np.isfinite(self.x)
         for i in np.flatnonzero(known).tolist():
-            axes.plot(
-                [self.x[i]] * 2, [bar.lower[i], bar.upper[i]], "-_", color=colour, lw=1.2, ms=6
-            )
-
-    def at_best(self, lower: float, upper: float) -> Bar:
-        """Return a range of the reference alone."""
-        ends = np.full((2, len(self.x)), np.nan)
-        ends[:, self.best] = lower, upper
-        return Bar(*ends)
+            axes.plot([self.x[i]] * 2, [lower[i], upper[i]], "-_", color=colour, lw=1.2, ms=6)
 
     def finish(self, figure: Picture, grid: Sequence[Axes], columns: int) -> None:
         """Put ticks and labels on the abscissae, and one legend below the panels."""
@@ -117,9 +108,44 @@ class Along:
             figure.legend(handles, labels, loc="outside lower center", ncols=min(4, len(labels)))
 
 
-def titled(axes: Axes, title: object) -> None:
-    """Put a title above a panel."""
-    axes.set_title(plain(title), loc="left")
+Bars = tuple[Floats, Floats] | None
+"""Lower and upper ends (points, quantities), NaN where there is none."""
+
+
+# 6 arguments: the values with their names, and what is drawn besides.
+def panels_along(
+    data: xr.Dataset,
+    values: Floats,
+    names: Sequence[str],
+    label: str = "",
+    bars: Bars = None,
+    mark: Callable[[Axes, int], object] = lambda *_: None,
+) -> Picture:
+    """Return a figure with a panel for each quantity of ``values`` (points, quantities).
+
+    ``mark`` adds to the panel of a quantity.
+    """
+    along = Along(data)
+    figure, grid = panels(len(names))
+    for k, (axes, name) in enumerate(zip(grid, names, strict=True)):
+        along.draw(axes, values[:, k])
+        if bars is not None:
+            along.bars(axes, bars[0][:, k], bars[1][:, k])
+        mark(axes, k)
+        titled(axes, name)
+        if k % COLUMNS == 0:
+            axes.set_ylabel(label)
+    along.finish(figure, grid, min(COLUMNS, len(grid)))
+    return figure
+
+
+def at_reference(data: xr.Dataset, values: Floats, std: xr.DataArray | None) -> Bars:
+    """Return one standard deviation (quantities,) to either side of the reference alone."""
+    if std is None:
+        return None
+    out = np.full(values.shape, np.nan)
+    out[reference_of(data)] = std.values
+    return values - out, values + out
 
 
 def parallel(axes: Axes, data: xr.Dataset, values: Floats, names: Sequence[str]) -> None:
@@ -157,9 +183,6 @@ def parallel(axes: Axes, data: xr.Dataset, values: Floats, names: Sequence[str])
 
 def key(axes: Axes, data: xr.Dataset) -> None:
     """Draw the colours of the lines beside the axes, and a legend above."""
-    from matplotlib.cm import ScalarMappable
-    from matplotlib.colors import Normalize
-
     error = data["error"].values[shown(data), 0]
     figure = axes.get_figure()
     if figure is not None and np.ptp(error) > 0:

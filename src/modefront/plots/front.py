@@ -2,24 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 import numpy as np
 import xarray as xr
 from matplotlib.axes import Axes
 
-from modefront._typing import Bools, Floats
+from modefront._typing import Floats
 from modefront.front.methods import METHODS
 from modefront.plots.along import key, parallel
-from modefront.plots.canvas import Picture, picture
+from modefront.plots.canvas import COLOURS, Picture, picture, plain, short
 from modefront.plots.models import branches, is_path, series, shown
-from modefront.plots.style import COLOURS, plain, short
 
 FAR = 2.5
 """Error over the greatest of the Pareto-optimal models from which a model is beyond the axes."""
 
 
-def draw(data: xr.Dataset, *, log: bool = False) -> Picture:
+def front(data: xr.Dataset, *, log: bool = False) -> Picture:
     """Return the front in the space of errors, with logarithmic axes if ``log``."""
     error = data["error"].values
     if log:
@@ -75,15 +72,11 @@ def _limits(axes: Axes, data: xr.Dataset, error: Floats) -> None:
     most = np.where(most > 0, most, 1.0)
     axes.set(xlim=(-0.05 * most[0], 1.1 * most[0]), ylim=(-0.05 * most[1], 1.1 * most[1]))
     count = int(far.sum())
-    text = f"beyond the axes: {count} models" if count > 1 else _where(data, error, far)
-    axes.set_title(text, loc="right", color="0.35")
-
-
-def _where(data: xr.Dataset, error: Floats, far: Bools) -> str:
-    """Return which model is beyond the axes, and where."""
-    (i,) = np.flatnonzero(far)
-    label = plain(data["label"].values[i])
-    return f"beyond the axes: {label} ({error[i, 0]:.3g}, {error[i, 1]:.3g})"
+    text = f"{count} models"
+    if count == 1:
+        (i,) = np.flatnonzero(far)
+        text = f"{plain(data['label'].values[i])} ({error[i, 0]:.3g}, {error[i, 1]:.3g})"
+    axes.set_title(f"beyond the axes: {text}", loc="right", color="0.35")
 
 
 def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> Picture:
@@ -107,8 +100,9 @@ def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> P
                 axes.set_xlabel(f"error of {short(groups[j])}")
             if j == 0:
                 axes.set_ylabel(f"error of {short(groups[i])}")
-    handles, labels = _once(*grid[0][0].get_legend_handles_labels())
-    above.legend(handles, labels, loc="upper right")
+    handles, labels = grid[0][0].get_legend_handles_labels()
+    once = dict(zip(labels, handles, strict=True))
+    above.legend(once.values(), once.keys(), loc="upper right")
     axes = below.add_subplot()
     parallel(axes, data, error, groups)
     axes.set_ylabel("error")
@@ -121,8 +115,3 @@ def _many(data: xr.Dataset, error: Floats, groups: list[str], *, log: bool) -> P
 def _points(axes: Axes, data: xr.Dataset, error: Floats) -> None:
     for each in series(data):
         axes.plot(*error[each.positions].T, **each.marks, label=each.name)
-
-
-def _once(handles: Iterable[object], labels: Iterable[object]) -> tuple[list[object], list[str]]:
-    known = {str(label): handle for handle, label in zip(handles, labels, strict=True)}
-    return list(known.values()), list(known)

@@ -2,21 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from pathlib import Path
-from typing import TYPE_CHECKING
+from collections.abc import Iterator, Sequence
 
 import numpy as np
+from matplotlib.figure import Figure
 
-from modefront.errors import Fault, InputError, reason
 from modefront.identification.record import Identification
 from modefront.identification.shapes import auto_mac
-from modefront.outputs import output
-from modefront.plots.style import COLOURS, STYLE, plain
-from modefront.text import file_name
-
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
+from modefront.plots.canvas import COLOURS, plain
 
 MOST_PANELS = 12
 """Functions in a picture, at most: more are too small to read."""
@@ -25,41 +18,16 @@ SHORT = 40
 """Characters of the name of a data set in those of its files."""
 
 
-def write_figures(
-    names: Sequence[str], identified: Sequence[Identification], folder: Path
-) -> list[Path]:
-    """Write three pictures for every data set and return their paths.
-
-    Raises InputError where matplotlib is missing or the folder cannot be written to.
-    """
-    try:
-        from matplotlib import rc_context
-        from matplotlib.figure import Figure
-    except ImportError:
-        expected = "matplotlib, which `pip install modefront[figures]` brings"
-        raise InputError(Fault("--figures", "option", expected, "no such package")) from None
-    kinds: list[tuple[str, Callable[[Figure, Identification], None]]] = [
-        ("stabilisation", _stabilisation),
-        ("functions", _functions),
-        ("auto-mac", _auto_mac),
-    ]
-    written: list[Path] = []
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, identification in zip(names, identified, strict=True):
-            for kind, draw in kinds:
-                with rc_context(dict(STYLE)):
-                    figure = Figure(layout="constrained")
-                    draw(figure, identification)
-                    stem = file_name(f"{name[:SHORT]}-{kind}", [each.stem for each in written])
-                    path = folder / f"{stem}.svg"
-                    with output(path) as stream:
-                        figure.savefig(stream, format="svg", metadata={"Date": None})
-                written.append(path)
-    except OSError as error:
-        expected = "a folder that can be written to"
-        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
-    return written
+def figures(
+    names: Sequence[str], identified: Sequence[Identification]
+) -> Iterator[tuple[str, Figure]]:
+    """Yield names and three pictures of every data set."""
+    kinds = {"stabilisation": _stabilisation, "functions": _functions, "auto-mac": _auto_mac}
+    for name, identification in zip(names, identified, strict=True):
+        for kind, draw in kinds.items():
+            figure = Figure(layout="constrained")
+            draw(figure, identification)
+            yield f"{name[:SHORT]}-{kind}", figure
 
 
 def _stabilisation(figure: Figure, identification: Identification) -> None:

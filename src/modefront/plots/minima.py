@@ -6,12 +6,11 @@ import numpy as np
 import xarray as xr
 from matplotlib.ticker import LogLocator, NullFormatter
 
-from modefront.plots.canvas import Picture, legend, picture
-from modefront.plots.parameters import unit_of
-from modefront.plots.style import COLOURS, plain, short
+from modefront.plots.canvas import COLOURS, Picture, legend, picture, plain, short
+from modefront.plots.quantities import unit_of
 
 
-def draw(data: xr.Dataset) -> Picture:
+def minima(data: xr.Dataset) -> Picture:
     """Return a line a minimum across the parameters; thin lines are equivalent models."""
     names = [short(name) for name in data["parameter"].values]
     unit, title = unit_of(data)

@@ -11,7 +11,7 @@ import xarray as xr
 
 from modefront._typing import Bools, Ints
 from modefront.front.point import REFERENCES, WEIGHTED, Kind
-from modefront.plots.style import COLOURS
+from modefront.plots.canvas import COLOURS
 
 
 @dataclass(frozen=True)

@@ -16,9 +16,8 @@ from mpl_toolkits.mplot3d import Axes3D
 from mpl_toolkits.mplot3d.art3d import Line3DCollection, Poly3DCollection
 
 from modefront._typing import Floats, Ints
-from modefront.plots.canvas import Picture, panels, picture
+from modefront.plots.canvas import COLOURS, COLUMNS, Picture, panels, picture, plain, short
 from modefront.plots.models import position, reference_of
-from modefront.plots.style import COLOURS, COLUMNS, plain, short
 
 REACH = 0.15
 """Greatest displacement that is drawn, over the diagonal of the model."""
@@ -45,7 +44,7 @@ class _Shape:
     displacement: Floats | None
 
 
-def draw(data: xr.Dataset, *, point: str | int | None = None) -> Picture:
+def modes(data: xr.Dataset, *, point: str | int | None = None) -> Picture:
     """Return a panel a mode of one model, the reference unless a point is given."""
     i = reference_of(data) if point is None else position(data, point)
     shapes = [_shape(data, i, r) for r in range(data.sizes["mode"])]

@@ -18,9 +18,8 @@ figure  what it shows
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from itertools import combinations
-from pathlib import Path
 
 import numpy as np
 import xarray as xr
@@ -28,11 +27,8 @@ from matplotlib.axes import Axes
 
 from modefront._typing import Floats
 from modefront.errors import Fault, refuse
-from modefront.plots import write_pictures
-from modefront.plots.along import titled
-from modefront.plots.canvas import Picture, legend, picture
+from modefront.plots.canvas import COLOURS, COLUMNS, Picture, legend, panels, picture, plain, titled
 from modefront.plots.models import branches, front_of
-from modefront.plots.style import COLOURS, plain
 from modefront.predictions.registry import predictions_in
 
 Studies = Sequence[tuple[str, xr.Dataset]]
@@ -45,42 +41,30 @@ EQUAL, OPTIMAL = "P", "*"
 """Marks of the models with equal and with optimal weights."""
 
 
-def write_paper_figures(studies: Studies, folder: Path, form: str = "svg") -> list[Path]:
-    """Write figures 2 to 7 of some studies into a folder and return their paths.
+def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
+    """Yield name and figure of each that can be drawn.
 
     Figures 6 and 7 need predictions and are left out without them. Parameters go by their names in
     the first study. Raises InputError for results that are not those of two groups and as many
-    parameters, without matplotlib, and where the folder cannot be written to.
+    parameters.
     """
-    refuse(_faults(studies))
-    return write_pictures(figures(studies), folder, form)
-
-
-def _faults(studies: Studies) -> Iterator[Fault]:
     count = studies[0][1].sizes["parameter"]
+    faults = []
     for name, data in studies:
         if data.sizes["group"] != 2 or not front_of(data).size:
             found = f"{data.sizes['group']} groups, {front_of(data).size} points"
-            yield Fault(name, "--figures", "a front of two groups", found)
+            faults.append(Fault(name, "--figures", "a front of two groups", found))
         if data.sizes["parameter"] != count:
             expected = f"as many parameters as in the first study, {count}"
-            yield Fault(name, "--figures", expected, str(data.sizes["parameter"]))
-
-
-def figures(studies: Studies) -> Iterator[tuple[str, Picture]]:
-    """Yield name and figure of each that can be drawn."""
-    draw: Mapping[str, Callable[[Studies], Picture | None]] = {
-        "figure-2": fronts,
-        "figure-3": planes,
-        "figure-4": parameters,
-        "figure-5": modes,
-        "figure-6": lambda some: predictions(some, "frf"),
-        "figure-7": lambda some: predictions(some, "failure"),
-    }
-    for name, each in draw.items():
-        figure = each(studies)
-        if figure is not None:
-            yield name, figure
+            faults.append(Fault(name, "--figures", expected, str(data.sizes["parameter"])))
+    refuse(faults)
+    yield "figure-2", fronts(studies)
+    yield "figure-3", planes(studies)
+    yield "figure-4", parameters(studies)
+    yield "figure-5", modes(studies)
+    for number, dimension in ((6, "frf"), (7, "failure")):
+        if figure := predictions(studies, dimension):
+            yield f"figure-{number}", figure
 
 
 def fronts(studies: Studies) -> Picture:
@@ -114,16 +98,11 @@ def planes(studies: Studies) -> Picture:
     """Return figure 3: the models in the planes of each two parameters."""
     names = [plain(name) for name in studies[0][1]["parameter"].values]
     pairs = list(combinations(range(len(names)), 2)) or [(0, 0)]
-    columns = min(3, len(pairs))
-    rows = -(-len(pairs) // columns)
-    figure = picture(2.7 * columns, 2.5 * rows + 0.4)
-    grid = figure.subplots(rows, columns, squeeze=False).ravel()
-    for axes, (i, j) in zip(grid, pairs, strict=False):
+    figure, grid = panels(len(pairs))
+    for axes, (i, j) in zip(grid, pairs, strict=True):
         for k, (name, data) in enumerate(studies):
             _points(axes, data, data["theta"].values[:, [i, j]], k, name)
         axes.set(xlabel=names[i], ylabel=names[j])
-    for axes in grid[len(pairs) :]:
-        axes.remove()
     legend(figure, grid[0], "outside lower center", min(len(studies) + 2, 4))
     return figure
 
@@ -187,15 +166,10 @@ def predictions(studies: Studies, dimension: str) -> Picture | None:
 
 def _grid(count: int) -> tuple[Picture, list[Axes]]:
     """Return a figure with so many panels along the front."""
-    columns = min(3, count)
-    rows = -(-count // columns)
-    figure = picture(max(2.6 * columns, 4.4), 2.3 * rows + 0.5)
-    grid = list(figure.subplots(rows, columns, squeeze=False).ravel())
-    for axes in grid[count:]:
-        axes.remove()
-    for axes in grid[max(count - columns, 0) : count]:
+    figure, grid = panels(count)
+    for axes in grid[-COLUMNS:]:
         axes.set_xlabel("point of the front")
-    return figure, grid[:count]
+    return figure, grid
 
 
 def _colour(k: int) -> str:

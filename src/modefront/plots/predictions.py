@@ -3,17 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 
 import numpy as np
 import xarray as xr
-from matplotlib.axes import Axes
 
 from modefront._typing import Floats
-from modefront.plots.along import Along, key, parallel, titled
-from modefront.plots.canvas import Picture, panels, picture
+from modefront.plots.along import Along, at_reference, key, panels_along, parallel
+from modefront.plots.canvas import COLOURS, Picture, picture, plain, short
 from modefront.plots.models import is_path, reference_of, shown
-from modefront.plots.style import COLOURS, COLUMNS, plain, short
 from modefront.predictions import PredictionKind, ResultVariable
 from modefront.predictions.registry import RecordedPrediction, predictions_in
 
@@ -21,7 +18,7 @@ FEW = 12
 """Values of a prediction up to which each has a panel of its own along the front."""
 
 
-def draw(data: xr.Dataset) -> Picture:
+def predictions(data: xr.Dataset) -> Picture:
     """Return the range of each prediction over the Pareto-optimal models, over the reference.
 
     Ticks are the posterior's standard deviation to either side; the cross is the nominal model.
@@ -82,85 +79,50 @@ def _relative_std(
 def pages(data: xr.Dataset) -> Iterator[tuple[str, Picture]]:
     """Yield a name and a picture of each prediction at all models."""
     for each in predictions_in(data):
-        yield f"{each.kind.dimension} {each.name}", _Page(data, each).picture()
+        yield f"{each.kind.dimension} {each.name}", _page(data, each)
 
 
-@dataclass(frozen=True)
-class _Page:
-    """One prediction at all models.
-
-    Attributes
-    ----------
-    data : the results
-    of : the prediction
-    """
-
-    data: xr.Dataset
-    of: RecordedPrediction
-
-    @property
-    def variable(self) -> ResultVariable:
-        """The variable that is drawn: the first one with a range, if there is any."""
-        return (*self.of.kind.ranged, *self.of.kind.variables)[0]
-
-    @property
-    def values(self) -> Floats:
-        """Values (points, positions); NaN where a logarithm has none."""
-        values = np.asarray(self.data[self.variable.name].values[:, list(self.of.positions)])
-        return np.where(values > 0, values, np.nan) if self.variable.logarithmic else values
-
-    @property
-    def title(self) -> str:
-        """Name of the prediction with its load case."""
-        load = self.data.get(f"{self.of.kind.dimension}_load")
-        named = "" if load is None else f" ({load.values[self.of.positions[0]]})"
-        return f"{self.of.name}{named}"
-
-    def picture(self) -> Picture:
-        """Return the picture, along the front where that is a path."""
-        if not is_path(self.data) or len(self.of.positions) > FEW:
-            figure = picture(max(5.2, 0.4 * len(self.of.places)), 3.4)
-            axes = figure.add_subplot()
-            parallel(axes, self.data, self.values, self.of.places)
-            key(axes, self.data)
-        elif self.variable.logarithmic:
-            figure = picture(4.8, 3.3)
-            axes = figure.add_subplot()
-            self._draw_levels(figure, axes)
-        else:
-            return self._panels()
-        if self.variable.logarithmic and np.isfinite(self.values).any():
+def _page(data: xr.Dataset, of: RecordedPrediction) -> Picture:
+    """Return one prediction at all models: of its variables the first one with a range, if any."""
+    variable, positions = (*of.kind.ranged, *of.kind.variables)[0], list(of.positions)
+    values, dimension = data[variable.name].values[:, positions], of.kind.dimension
+    if variable.logarithmic:
+        values = np.where(values > 0, values, np.nan)
+    if not is_path(data) or len(positions) > FEW:
+        figure = picture(max(5.2, 0.4 * len(of.places)), 3.4)
+        axes = figure.add_subplot()
+        parallel(axes, data, values, of.places)
+        key(axes, data)
+        axes.set_ylabel(variable.title)
+        if variable.logarithmic and np.isfinite(values).any():
             axes.set_yscale("log")
-        axes.set_ylabel(self.variable.title)
-        figure.suptitle(plain(self.title), x=0.01, ha="left")
-        return figure
+    elif variable.logarithmic:
+        figure = _levels(data, of, variable, values)
+    else:
+        std = data.get(f"posterior_{variable.name}_std")
+        bars = at_reference(data, values, None if std is None else std[positions])
+        figure = panels_along(data, values, of.places, variable.title, bars)
+    load = data.get(f"{dimension}_load")
+    case = "" if load is None else f" ({load.values[positions[0]]})"
+    figure.suptitle(plain(f"{of.name}{case}"), x=0.01, ha="left")
+    return figure
 
-    def _draw_levels(self, figure: Picture, axes: Axes) -> None:
-        """Draw a line a level of probabilities along the front."""
-        along, values = Along(self.data), self.values
-        axes.set_yscale("log")
-        std = self.data.get(f"posterior_{self.of.kind.dimension}_log_std")
-        for k, (i, place) in enumerate(zip(self.of.positions, self.of.places, strict=True)):
-            colour = COLOURS[k % len(COLOURS)]
-            along.draw(axes, values[:, k], colour, short(place))
-            if std is not None:
-                x, factor = values[along.best, k], float(np.exp(std.values[i]))
-                along.bar(axes, along.at_best(x / factor, x * factor), colour)
-        along.finish(figure, [axes], 1)
 
-    def _panels(self) -> Picture:
-        """Return a panel a value along the front."""
-        along, values = Along(self.data), self.values
-        figure, grid = panels(len(self.of.places))
-        std = self.data.get(f"posterior_{self.variable.name}_std")
-        for k, (axes, place) in enumerate(zip(grid, self.of.places, strict=True)):
-            along.draw(axes, values[:, k])
-            if std is not None:
-                x, s = values[along.best, k], float(std.values[self.of.positions[k]])
-                along.bar(axes, along.at_best(x - s, x + s))
-            titled(axes, place)
-            if k % COLUMNS == 0:
-                axes.set_ylabel(self.variable.title)
-        figure.suptitle(plain(self.title), x=0.01, ha="left")
-        along.finish(figure, grid, min(COLUMNS, len(grid)))
-        return figure
+def _levels(
+    data: xr.Dataset, of: RecordedPrediction, variable: ResultVariable, values: Floats
+) -> Picture:
+    """Return a line a level of probabilities along the front."""
+    figure = picture(4.8, 3.3)
+    axes = figure.add_subplot()
+    axes.set_yscale("log")
+    axes.set_ylabel(variable.title)
+    along, std = Along(data), data.get(f"posterior_{of.kind.dimension}_log_std")
+    logarithms = None if std is None else std[list(of.positions)]
+    bars = at_reference(data, np.log(values), logarithms)
+    for k, place in enumerate(of.places):
+        colour = COLOURS[k % len(COLOURS)]
+        along.draw(axes, values[:, k], colour, short(place))
+        if bars is not None:
+            along.bars(axes, np.exp(bars[0][:, k]), np.exp(bars[1][:, k]), colour)
+    along.finish(figure, [axes], 1)
+    return figure

@@ -8,16 +8,15 @@ from matplotlib.axes import Axes
 from matplotlib.patches import Ellipse
 
 from modefront._typing import Floats
-from modefront.plots.canvas import Picture, legend, picture
+from modefront.plots.canvas import COLOURS, Picture, legend, picture, plain, short
 from modefront.plots.models import front_of, reference_of, series
-from modefront.plots.parameters import parameter_std, unit_of
-from modefront.plots.style import COLOURS, plain, short
+from modefront.plots.quantities import parameter_std, unit_of
 
 HOW_MANY = 20
 """Parameters up to which the correlations are written as numbers."""
 
 
-def draw(data: xr.Dataset) -> Picture:
+def uncertainty(data: xr.Dataset) -> Picture:
     """Return parameters with deviations, their correlation, and the front with its scatter."""
     p = data.sizes["parameter"]
     covariance = _covariance(data)

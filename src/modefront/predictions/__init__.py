@@ -9,12 +9,13 @@ from modefront.predictions.base import (
 )
 from modefront.predictions.first_passage import Passage, SoilFilter
 from modefront.predictions.peak_response import PeakResponse
-from modefront.predictions.registry import known, register
+from modefront.predictions.registry import CLASSES
 
-register(PeakResponse)
-register(Passage)
+CLASSES.add(PeakResponse)
+CLASSES.add(Passage)
 
 __all__ = [
+    "CLASSES",
     "NumericalCheck",
     "Passage",
     "PeakResponse",
@@ -23,6 +24,4 @@ __all__ = [
     "ResultVariable",
     "Setting",
     "SoilFilter",
-    "known",
-    "register",
 ]

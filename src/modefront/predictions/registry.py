@@ -6,10 +6,10 @@ import json
 from collections.abc import Iterable, Iterator
 from dataclasses import asdict, dataclass, is_dataclass
 from functools import cache
-from importlib.metadata import entry_points
-from typing import TYPE_CHECKING, Any, TypeVar
+from typing import TYPE_CHECKING, Any
 
-from modefront.errors import Fault, InputError, reason, refuse
+from modefront.errors import Fault, InputError, refuse
+from modefront.families import Family
 from modefront.options import each_once
 from modefront.predictions.base import (
     NumericalCheck,
@@ -23,35 +23,8 @@ from modefront.text import NAME, clean
 if TYPE_CHECKING:
     import xarray as xr
 
-GROUP = "modefront.predictions"
-"""Entry points by which installed packages bring classes of predictions."""
-
 ATTRIBUTE = "prediction_kinds"
 """Attribute of results that holds the kinds of their predictions, in JSON."""
-
-C = TypeVar("C", bound=type)
-
-_classes: dict[str, type[Prediction]] = {}
-
-
-def register(prediction: C) -> C:
-    """Make a class of predictions known to study files, and return it.
-
-    Parameters
-    ----------
-    prediction
-        A frozen dataclass with what `Prediction` has; ``kind.table`` names its tables. Of a class
-        that was registered before, under the same name in the same module, it takes the place.
-
-    Raises
-    ------
-    InputError
-        Where it is no such class, or its tables are those of another one.
-    """
-    refuse(_faults(prediction))
-    added: Any = prediction
-    _classes[added.kind.table] = added
-    return prediction
 
 
 def _faults(prediction: Any) -> Iterator[Fault]:
@@ -70,33 +43,20 @@ def _faults(prediction: Any) -> Iterator[Fault]:
         missing.append("name")
     if missing:
         yield Fault("", place, "what modefront.Prediction has", f"no {', '.join(missing)}")
-    other = _classes.get(kind.table)
-    if other is not None and (other.__module__, other.__qualname__) != (
-        prediction.__module__,
-        prediction.__qualname__,
-    ):
+    other: Any = CLASSES.added.get(kind.table)
+    names = [(x.__module__, x.__qualname__) for x in (other or prediction, prediction)]
+    if names[0] != names[1]:
         yield Fault("", place, "a table of its own", f"'{kind.table}', of {other.__qualname__}")
 
 
-def known() -> tuple[type[Prediction], ...]:
-    """Return all classes that study files may name.
-
-    Raises InputError for an entry point of an installed package that brings none.
-    """
-    _load_entry_points()
-    return tuple(_classes.values())
-
-
-@cache
-def _load_entry_points() -> None:
-    for each in entry_points(group=GROUP):
-        try:
-            register(each.load())
-        except InputError:
-            raise
-        except Exception as error:  # the package of another may raise anything
-            place = f"entry point '{each.name}' = {each.value} of {GROUP}"
-            raise InputError(Fault("", place, "a class of predictions", reason(error))) from None
+CLASSES: Family[type[Prediction]] = Family(
+    "modefront.predictions",
+    "a class of predictions",
+    lambda each: isinstance(each, type),
+    lambda each: each.kind.table,
+    faults=_faults,
+)
+"""Classes of predictions by the names of their tables in study files."""
 
 
 def as_text(kinds: Iterable[PredictionKind]) -> str:

@@ -14,12 +14,11 @@ from pathlib import Path
 import numpy as np
 import scipy.sparse
 
-from modefront._typing import Bools, Ints
+from modefront._typing import Bools
 from modefront.inputs import wrong
 from modefront.models.dofs import DofTable
 from modefront.programs.base import JobOptions, Matrix
 from modefront.programs.inp import deck_of
-from modefront.programs.mesh import ProgramMesh
 from modefront.programs.reading import (
     Entries,
     Listed,
@@ -41,14 +40,15 @@ ADVICE = "*MATRIX GENERATE, STIFFNESS, MASS with *MATRIX OUTPUT, STIFFNESS, MASS
 def read(path: Path, options: JobOptions) -> Listed:
     """Return the matrices of a job, given by its name or by its file of the stiffness."""
     files = _files(path)
-    widths = [len(_fields(file)) for file in files]
-    rows = widths == [3, 3]
-    dofs, entries = _by_rows(files, options) if rows else _by_labels(files)
+    rows = [len(_fields(file)) for file in files] == [3, 3]
+    dofs, (K, M) = _by_rows(files, options) if rows else _by_labels(files)
     notes: list[str] = []
-    mesh = _mesh(files[0], options, notes)
-    return Listed(
-        files, (entries[0], entries[1]), dofs, _free, counted=False, mesh=mesh, notes=notes
-    )
+    job = re.sub(r"_STIF\d+$", "", files[0].stem, flags=re.IGNORECASE)
+    deck = deck_of(options.deck or files[0].with_name(job + ".inp"), notes)
+    if deck is not None and deck.parts:
+        notes.append("the deck numbers nodes in parts: coordinates are left out")
+    mesh = None if deck is None or deck.parts else deck.mesh
+    return Listed(files, (K, M), dofs, _free, counted=False, mesh=mesh, notes=notes)
 
 
 def _files(path: Path) -> tuple[Path, Path]:
@@ -125,35 +125,17 @@ def _by_rows(files: tuple[Path, Path], options: JobOptions) -> tuple[DofTable, l
         np.append(own.direction, np.zeros(made, np.intp)),
         np.append(own.weight, np.zeros(made)),
     )
-    entries = [
-        Entries(_place(row, highest), _place(column, highest), value)
-        for row, column, value in parts
-    ]
+    entries = []
+    for *places, value in parts:
+        row, column = (np.where(x > 0, x - 1, highest - 1 - x) for x in places)
+        entries.append(Entries(row, column, value))
     return dofs, entries
-
-
-def _place(index: Ints, highest: int) -> Ints:
-    return np.where(index > 0, index - 1, highest - 1 - index)
 
 
 def _free(K: Matrix, M: Matrix) -> Bools:
     """Return which degrees of freedom are not held."""
-    used: Bools = (K.diagonal() < HELD) & (K.diagonal() + M.diagonal() != 0)
-    return used | _tied(K)
-
-
-def _tied(K: Matrix) -> Bools:
-    """Return which rows have entries beside the diagonal, as those of Lagrange multipliers."""
     off = scipy.sparse.coo_array(K)
     beside = (off.row != off.col) & (off.data != 0)
-    out = np.zeros(K.shape[0], bool)
-    out[off.row[beside]] = out[off.col[beside]] = True
-    return out & (K.diagonal() < HELD)
-
-
-def _mesh(path: Path, options: JobOptions, notes: list[str]) -> ProgramMesh | None:
-    job = re.sub(r"_STIF\d+$", "", path.stem, flags=re.IGNORECASE)
-    deck = deck_of(options.deck or path.with_name(job + ".inp"), notes)
-    if deck is not None and deck.parts:
-        notes.append("the deck numbers nodes in parts: coordinates are left out")
-    return None if deck is None or deck.parts else deck.mesh
+    used: Bools = K.diagonal() + M.diagonal() != 0
+    used[off.row[beside]] = used[off.col[beside]] = True  # those of Lagrange multipliers too
+    return used & (K.diagonal() < HELD)

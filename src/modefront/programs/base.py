@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TypeAlias
+from typing import Literal, TypeAlias
 
-import numpy as np
 import scipy.sparse
 
 from modefront.inputs import wrong
@@ -17,6 +17,8 @@ from modefront.programs.mesh import ProgramMesh, mesh_from
 READER = "modefront.programs.reading:read_job"
 
 Matrix: TypeAlias = scipy.sparse.csr_array
+
+Quantity = Literal["stiffness", "mass"]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +47,11 @@ class Job:
     def size(self) -> int:
         """Number of degrees of freedom N."""
         return self.dofs.size
+
+    @property
+    def matrices(self) -> Mapping[Quantity, Matrix]:
+        """Both matrices by their names."""
+        return {"stiffness": self.stiffness, "mass": self.mass}
 
     @property
     def labelled(self) -> bool:
@@ -90,23 +97,16 @@ class Program:
         texts = (options.stiffness, options.mass, options.dofs, options.deck)
         arguments = (self.module, *(str(text or "") for text in texts))
         try:
-            return _unpacked(
-                *isolated("modefront.programs.reading:read_job", path, arguments=arguments)
-            )
+            arrays, (name, precision, notes) = isolated(READER, path, arguments=arguments)
         except IsolatedError as error:
             raise wrong(path, f"a job of {self.name}", str(error)) from None
-
-
-def _unpacked(arrays: dict[str, np.ndarray], texts: tuple[str, float, list[str]]) -> Job:
-    """Return the job of its parts."""
-    name, precision, notes = texts
-    dofs = DofTable(*(arrays.pop(part) for part in ("node", "direction", "weight")))
-    K, M = (
-        Matrix(tuple(arrays.pop(f"{letter}{k}") for k in range(3)), shape=(dofs.size, dofs.size))
-        for letter in "KM"
-    )
-    mesh = mesh_from(arrays) if arrays else None
-    return Job(name, K, M, dofs, precision, mesh, tuple(notes))
+        dofs = DofTable(*(arrays.pop(part) for part in ("node", "direction", "weight")))
+        K, M = (
+            Matrix(tuple(arrays.pop(f"{A}{k}") for k in range(3)), shape=(dofs.size, dofs.size))
+            for A in "KM"
+        )
+        mesh = mesh_from(arrays) if arrays else None
+        return Job(name, K, M, dofs, precision, mesh, tuple(notes))
 
 
 def whole(triangle: Matrix) -> Matrix:

@@ -14,7 +14,7 @@ modes) moves with the model, and belongs to no node.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 from itertools import pairwise
 from pathlib import Path
 
@@ -64,7 +64,14 @@ def read(path: Path, options: JobOptions) -> Listed:
     if deck is not None and own.is_file() and own.stat().st_mtime > files[".sti"].stat().st_mtime:
         notes.append(f"{job.name}.inp is newer than {job.name}.sti: was it run since?")
     dofs = _table(DofTable(node, direction, np.ones(node.size)), deck)
-    _describe(dofs, notes)
+    shared = np.unique(dofs.node[(dofs.weight > 0) & (dofs.weight < 1)]).size
+    if shared:
+        notes.append(f"{shared} nodes of shells and beams are means of the nodes made of them")
+    if internal := int((dofs.node <= 0).sum()):
+        notes.append(f"{internal} degrees of freedom that the program made belong to no node")
+    nodes = np.unique(dofs.node[dofs.node > 0])
+    if dead := np.setdiff1d(nodes, dofs.node[dofs.weight != 0]).size:
+        notes.append(f"{dead} nodes are held: there are no sensors at them")
     return Listed(
         (files[".sti"], files[".mas"]),
         (entries[".sti"], entries[".mas"]),
@@ -165,7 +172,8 @@ def _own_blocks(labels: DofTable, deck: Deck | None) -> tuple[dict[int, tuple[in
     places_of: dict[int, list[int]] = {}
     for k, (number, _, _) in enumerate(blocks):
         places_of.setdefault(number, []).append(k)
-    leading = _ascending(number for number, _, _ in blocks)
+    pairs = enumerate(pairwise(blocks), start=1)
+    leading = next((k for k, (one, other) in pairs if other[0] <= one[0]), len(blocks))
     out = {}
     for number, places in places_of.items():
         if len(places) < 2 or places[0] >= leading:
@@ -175,24 +183,3 @@ def _own_blocks(labels: DofTable, deck: Deck | None) -> tuple[dict[int, tuple[in
         if apart or attached:
             out[number] = blocks[places[0]][1:]
     return out, blocks[leading - 1][2] if leading else 0
-
-
-def _ascending(numbers: Iterable[int]) -> int:
-    """Return how many numbers at the beginning ascend."""
-    count, before = 0, -1
-    for number in numbers:
-        if number <= before:
-            break
-        count, before = count + 1, number
-    return count
-
-
-def _describe(dofs: DofTable, notes: list[str]) -> None:
-    shared = np.unique(dofs.node[(dofs.weight > 0) & (dofs.weight < 1)]).size
-    if shared:
-        notes.append(f"{shared} nodes of shells and beams are means of the nodes made of them")
-    if internal := int((dofs.node <= 0).sum()):
-        notes.append(f"{internal} degrees of freedom that the program made belong to no node")
-    nodes = np.unique(dofs.node[dofs.node > 0])
-    if dead := np.setdiff1d(nodes, dofs.node[dofs.weight != 0]).size:
-        notes.append(f"{dead} nodes are held: there are no sensors at them")

@@ -21,9 +21,8 @@ from scipy.sparse.csgraph import connected_components
 from modefront._typing import Bools, Ints
 from modefront.errors import Fault, InputError
 from modefront.models.dofs import DofTable
-from modefront.models.terms import BASE
-from modefront.programs.base import Matrix, whole
-from modefront.programs.differences import Quantity, Term, Terms, all_terms
+from modefront.programs.base import Matrix, Quantity, whole
+from modefront.programs.differences import Term, Terms
 
 SINGULAR = 1e-12
 """Least over greatest singular value of a block from which on it can be inverted."""
@@ -37,11 +36,18 @@ def condensed(terms: Terms) -> tuple[Terms, int, int]:
     internal = np.flatnonzero(terms.dofs.node < 0)
     if internal.size == 0:
         return terms, 0, 0
-    stiffness = {name: whole(A) for name, A in all_terms(terms, "stiffness").items()}
-    mass = all_terms(terms, "mass")
-    groups = _groups(stiffness, internal)
+    stiffness = {name: whole(A) for name, A in terms.of("stiffness").items()}
+    mass = terms.of("mass")
+    acting = [abs(A[internal][:, internal]) for A in stiffness.values()]
+    _, groups = connected_components(sum(acting[1:], acting[0]), directed=False)
     owner = _owners(stiffness, mass, internal, groups)
-    _refuse_multipliers(terms, stiffness, internal)
+    diagonal = sum(np.abs(A.diagonal()[internal]) for A in stiffness.values())
+    zero = np.flatnonzero(diagonal == 0)
+    if zero.size:
+        label = f"node {terms.dofs.node[internal[zero[0]]]}"
+        expected = "degrees of freedom with stiffness; constraints with Lagrange multipliers "
+        expected += "(contact, connectors, incompressible elements) cannot be imported"
+        raise InputError(Fault("", label, expected, f"none at {zero.size} of the program's own"))
     gone = np.zeros(internal.size, bool)
     for name in stiffness:
         part = owner[groups] == list(stiffness).index(name)
@@ -50,15 +56,6 @@ def condensed(terms: Terms) -> tuple[Terms, int, int]:
             gone[part] = done
     kept = np.setdiff1d(np.arange(terms.dofs.size), internal[gone])
     return _restricted(terms, stiffness, kept), int(gone.sum()), int((~gone).sum())
-
-
-def _groups(stiffness: Mapping[str, Matrix], internal: Ints) -> Ints:
-    """Return for each internal degree of freedom the number of its group."""
-    size = (internal.size, internal.size)
-    pattern = scipy.sparse.csr_array(size)
-    for A in stiffness.values():
-        pattern = pattern + abs(A[internal][:, internal])
-    return connected_components(pattern, directed=False)[1].astype(np.intp)
 
 
 def _owners(
@@ -75,16 +72,6 @@ def _owners(
         heavy[groups[abs(whole(M)[internal]).sum(axis=1) > 0]] = True
     alone = (acting.sum(axis=1) == 1) & ~heavy
     return np.where(alone, acting.argmax(axis=1), -1)
-
-
-def _refuse_multipliers(terms: Terms, stiffness: Mapping[str, Matrix], internal: Ints) -> None:
-    diagonal = sum(np.abs(A.diagonal()[internal]) for A in stiffness.values())
-    zero = np.flatnonzero(diagonal == 0)
-    if zero.size:
-        label = f"node {terms.dofs.node[internal[zero[0]]]}"
-        expected = "degrees of freedom with stiffness; constraints with Lagrange multipliers "
-        expected += "(contact, connectors, incompressible elements) cannot be imported"
-        raise InputError(Fault("", label, expected, f"none at {zero.size} of the program's own"))
 
 
 def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]:
@@ -122,22 +109,14 @@ def _eliminated(A: Matrix, internal: Ints, groups: Ints) -> tuple[Matrix, Bools]
 def _restricted(terms: Terms, stiffness: Mapping[str, Matrix], kept: Ints) -> Terms:
     """Return terms with other stiffness matrices (both triangles), and only some rows of all."""
 
-    def part(A: Matrix, *, both: bool) -> Matrix:
-        rows = A[kept][:, kept]
-        return (scipy.sparse.triu(rows, format="csr") if both else rows).tocsr()
-
-    empty = scipy.sparse.csr_array((kept.size, kept.size))
-    base: dict[Quantity, Matrix] = {
-        "stiffness": part(stiffness[BASE], both=True) if BASE in stiffness else empty,
-        "mass": part(terms.base["mass"], both=False),
-    }
-    changed: list[Term] = []
-    for term in terms.terms:
+    def part(term: Term) -> Term:
         matrices: dict[Quantity, Matrix] = {}
-        if "stiffness" in term.matrices:
-            matrices["stiffness"] = part(stiffness[term.name], both=True)
-        if "mass" in term.matrices:
-            matrices["mass"] = part(term.matrices["mass"], both=False)
-        changed.append(replace(term, matrices=matrices))
+        for quantity, A in term.matrices.items():
+            both = stiffness[term.name] if quantity == "stiffness" else A
+            rows = scipy.sparse.triu(both[kept][:, kept], format="csr")
+            if rows.nnz:
+                matrices[quantity] = rows
+        return replace(term, matrices=matrices)
+
     dofs = DofTable(terms.dofs.node[kept], terms.dofs.direction[kept], terms.dofs.weight[kept])
-    return Terms(terms.parameters, base, tuple(changed), dofs)
+    return Terms(terms.parameters, part(terms.base), tuple(map(part, terms.terms)), dofs)

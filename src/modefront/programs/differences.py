@@ -29,7 +29,6 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from typing import Literal
 
 import numpy as np
 import scipy.sparse
@@ -39,7 +38,7 @@ from modefront.errors import InputError, wrong
 from modefront.linalg.affine import Monomials
 from modefront.models.dofs import DofTable
 from modefront.models.terms import BASE, term_exponents
-from modefront.programs.base import Job, Matrix, whole
+from modefront.programs.base import Job, Matrix, Quantity, whole
 from modefront.rounding import ACCUMULATED
 
 DROPPED = 1e-13
@@ -62,9 +61,6 @@ SMALL = 60
 
 COVERED = 0.99
 """Share of an error within the terms of a parameter, from which it may come from it."""
-
-Quantity = Literal["stiffness", "mass"]
-QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")
 
 
 @dataclass(frozen=True, eq=False)
@@ -97,8 +93,8 @@ class Term:
 
     name: str
     matrices: Mapping[Quantity, Matrix]
-    dofs: int
-    rank: int | None
+    dofs: int = 0
+    rank: int | None = None
 
 
 @dataclass(frozen=True, eq=False)
@@ -108,15 +104,20 @@ class Terms:
     Attributes
     ----------
     parameters : names
-    base : upper triangles of the terms that do not depend on parameters
+    base : the term that does not depend on parameters
     terms : all others
     dofs : degrees of freedom, those of the nominal run
     """
 
     parameters: tuple[str, ...]
-    base: Mapping[Quantity, Matrix]
+    base: Term
     terms: tuple[Term, ...]
     dofs: DofTable
+
+    def of(self, quantity: Quantity) -> dict[str, Matrix]:
+        """Return the upper triangles of a quantity by the names of the terms, the base first."""
+        every = (self.base, *self.terms)
+        return {x.name: x.matrices[quantity] for x in every if quantity in x.matrices}
 
 
 class Differences:
@@ -138,7 +139,11 @@ class Differences:
 
         Raises InputError where its degrees of freedom are others, or nothing differs.
         """
-        differences = self._differences(run)
+        order = matching(self.nominal, run.job, run.label)
+        differences = {
+            quantity: _cleaned(reordered(A, order), self.nominal.matrices[quantity])
+            for quantity, A in run.job.matrices.items()
+        }
         if not any(D.nnz for D in differences.values()):
             changed = self._changed(run.values)
             expected = f"other matrices than those of '{self.nominal.name}', as {changed}"
@@ -154,17 +159,6 @@ class Differences:
             if value != 1
         )
 
-    def _matrix(self, quantity: Quantity) -> Matrix:
-        return self.nominal.stiffness if quantity == "stiffness" else self.nominal.mass
-
-    def _differences(self, run: Run) -> dict[Quantity, Matrix]:
-        order = matching(self.nominal, run.job, run.label)
-        matrices: dict[Quantity, Matrix] = {"stiffness": run.job.stiffness, "mass": run.job.mass}
-        return {
-            quantity: _cleaned(reordered(A, order), self._matrix(quantity))
-            for quantity, A in matrices.items()
-        }
-
     def terms(self) -> Terms:
         """Return base and terms.
 
@@ -176,8 +170,7 @@ class Differences:
         W = np.linalg.pinv(c)
         terms: dict[str, dict[Quantity, Matrix]] = {name: {} for name in self.names}
         base: dict[Quantity, Matrix] = {}
-        for quantity in QUANTITIES:
-            A = self._matrix(quantity)
+        for quantity, A in self.nominal.matrices.items():
             differences = [each[quantity] for _, each in self._runs]
             noise = ROUNDING * self.precision
             rest = A
@@ -186,13 +179,10 @@ class Differences:
                 if term.nnz:
                     terms[name][quantity] = term
                     rest = rest - term
-            base[quantity] = _above(rest.tocsr(), A, noise)
-        return Terms(
-            self.parameters,
-            base,
-            tuple(self._term(name, terms[name]) for name in self.names),
-            self.nominal.dofs,
-        )
+            if (rest := _above(rest.tocsr(), A, noise)).nnz:
+                base[quantity] = rest
+        found = tuple(self._term(name, terms[name]) for name in self.names)
+        return Terms(self.parameters, Term(BASE, base), found, self.nominal.dofs)
 
     def _refuse_undetermined(self, c: Floats) -> None:
         """Refuse terms that no combination of runs can tell apart."""
@@ -222,7 +212,7 @@ class Differences:
             expected = f"a term '{name}' of the stiffness or the mass"
             raise wrong("--function" if name not in self.parameters else name, expected, "zeros")
         quantity: Quantity = "stiffness" if "stiffness" in matrices else "mass"
-        term, A = matrices[quantity], self._matrix(quantity)
+        term, A = matrices[quantity], self.nominal.matrices[quantity]
         rank = _reduced(term, A, ROUNDING * self.precision)[1]
         return Term(name, matrices, _support(term).size, rank)
 
@@ -234,10 +224,8 @@ class Differences:
         order = matching(self.nominal, run.job, run.label)
         shifts = self.coefficients.values(run.values) - 1.0
         worst = 0.0
-        for quantity in QUANTITIES:
-            A = self._matrix(quantity)
-            matrix = run.job.stiffness if quantity == "stiffness" else run.job.mass
-            change = (reordered(matrix, order) - A).tocsr()
+        for quantity, A in self.nominal.matrices.items():
+            change = (reordered(run.job.matrices[quantity], order) - A).tocsr()
             E = change
             for shift, term in zip(shifts, terms.terms, strict=True):
                 if quantity in term.matrices:
@@ -406,11 +394,3 @@ def _reduced(term: Matrix, A: Matrix, noise: float) -> tuple[Matrix, int | None]
     small = scipy.sparse.coo_array(np.triu(part))
     places = dofs[small.row], dofs[small.col]
     return scipy.sparse.coo_array((small.data, places), shape=term.shape).tocsr(), rank
-
-
-def all_terms(terms: Terms, quantity: Quantity) -> dict[str, Matrix]:
-    """Return the upper triangles of a quantity by the names of the terms, the base first."""
-    out = {BASE: terms.base[quantity]} if terms.base[quantity].nnz else {}
-    return out | {
-        term.name: term.matrices[quantity] for term in terms.terms if quantity in term.matrices
-    }

@@ -22,7 +22,7 @@ from modefront.models.matrices import MatrixModel, matrices
 from modefront.models.terms import exponents_of, form_of
 from modefront.outputs import output, write_text
 from modefront.programs import PROGRAMS
-from modefront.programs.base import Job, JobOptions, whole
+from modefront.programs.base import Job, JobOptions, Quantity, whole
 from modefront.programs.changes import (
     CHANGES,
     KEPT,
@@ -33,15 +33,10 @@ from modefront.programs.changes import (
     write_changes,
 )
 from modefront.programs.condense import condensed
-from modefront.programs.differences import (
-    Differences,
-    Quantity,
-    Run,
-    Term,
-    Terms,
-    all_terms,
-)
+from modefront.programs.differences import Differences, Run, Term, Terms
 from modefront.programs.mesh import write_mesh
+
+QUANTITIES: tuple[Quantity, ...] = ("stiffness", "mass")
 
 FACTOR = 2.0
 """Factor of a parameter in its run, unless given."""
@@ -263,13 +258,8 @@ def _runs(
 
 def model_of(terms: Terms, floating: bool = True) -> MatrixModel:
     """Return the model of terms, without sensors that mean anything."""
-    tables: dict[Quantity, dict[str, scipy.sparse.csr_array]] = {
-        quantity: {name: whole(A) for name, A in all_terms(terms, quantity).items()}
-        for quantity in ("stiffness", "mass")
-    }
-    return matrices(
-        terms.parameters, tables["stiffness"], tables["mass"], {"first": 0}, floating=floating
-    )
+    K, M = ({name: whole(A) for name, A in terms.of(x).items()} for x in QUANTITIES)
+    return matrices(terms.parameters, K, M, {"first": 0}, floating=floating)
 
 
 def _frequencies(
@@ -280,11 +270,11 @@ def _frequencies(
     if modes == 0 or (modes is None and size > LARGE):
         notes.append("frequencies are not computed (--modes computes them)")
         return None, False
-    if not any(A.nnz for A in all_terms(terms, "mass").values()):
+    if not (mass := terms.of("mass")):
         raise InputError(Fault("", "mass", "a mass matrix that is not zero", "only zeros"))
     progress("computing the frequencies of the nominal model")
     model = model_of(terms)
-    massless = int((whole(sum_of(terms, "mass")).diagonal() == 0).sum())
+    massless = int((sum(A.diagonal() for A in mass.values()) == 0).sum())
     if massless:
         notes.append(f"{massless} degrees of freedom have no mass, which is allowed")
     count = min(modes or SHOWN, size - massless)
@@ -300,15 +290,6 @@ def _frequencies(
         count = int((lowest.lam == 0).sum())
         notes.append(f"{count} rigid-body modes or mechanisms: floating = true is written")
     return frequencies, floating
-
-
-def sum_of(terms: Terms, quantity: Quantity) -> scipy.sparse.csr_array:
-    """Return the upper triangle of the nominal matrix."""
-    out = terms.base[quantity]
-    for term in terms.terms:
-        if quantity in term.matrices:
-            out = out + term.matrices[quantity]
-    return out.tocsr()
 
 
 # The study
@@ -345,9 +326,9 @@ def write_study(imported: Imported, program: str, directory: Path) -> list[Path]
 
 def _write_matrices(terms: Terms, folder: Path) -> dict[Quantity, dict[str, str]]:
     """Write all matrices; return the names of their files by quantity and term."""
-    out: dict[Quantity, dict[str, str]] = {"stiffness": {}, "mass": {}}
+    out: dict[Quantity, dict[str, str]] = {quantity: {} for quantity in QUANTITIES}
     for quantity, files in out.items():
-        for name, A in all_terms(terms, quantity).items():
+        for name, A in terms.of(quantity).items():
             stem = f"{quantity}-{re.sub(r'[^A-Za-z0-9]+', '-', name).strip('-') or 'term'}"
             number, file = 1, f"{stem}.npz"
             while file in files.values():

@@ -9,7 +9,7 @@ from typing import Literal, get_args
 from modefront.data.modal import ModalData
 from modefront.errors import suggestion
 from modefront.residuals.base import Member, ResidualKind, Scale, Stack
-from modefront.residuals.kinds import KINDS, kind_named
+from modefront.residuals.kinds import KINDS
 
 ModeNumbers = Sequence[int] | Literal["all"]
 """Numbers of measured modes, counted from 1, or all that were measured."""
@@ -49,7 +49,7 @@ class Group:
     def __init__(
         self, name: str, *by_position: ModeNumbers, scale: Scale = "measured", **modes: ModeNumbers
     ) -> None:
-        known = [kind.name for kind in KINDS]
+        known = list(KINDS)
         if len(by_position) > len(known) or set(known[: len(by_position)]) & set(modes):
             expected = f"each of {', '.join(known)} once at most"
             raise ValueError(f"group '{name}': expected {expected}, found one more")
@@ -80,7 +80,7 @@ class Group:
 
     def positions(self, data: ModalData) -> list[tuple[ResidualKind, tuple[int, ...]]]:
         """Return the positions of the chosen modes in the data, for each kind of the group."""
-        return [(kind_named(name), _positions(name, modes, data)) for name, modes in self.chosen]
+        return [(KINDS[name], _positions(name, modes, data)) for name, modes in self.chosen]
 
     def members(self, data: ModalData) -> list[Member]:
         """Return the members of the group.
@@ -118,7 +118,7 @@ def faults(group: Group, data: ModalData | None) -> Iterator[tuple[str, str, str
     Without data, only what is wrong whatever they are.
     """
     if not group.chosen:
-        kinds = " or ".join(kind.name for kind in KINDS)
+        kinds = " or ".join(KINDS)
         yield "", f"{kinds} with at least one measured mode", "nothing"
     elif data is not None:
         wrong = [fault for name, modes in group.chosen for fault in _of_kind(name, modes, data)]
@@ -151,7 +151,7 @@ def _of_members(group: Group, data: ModalData) -> Iterator[tuple[str, str, str]]
 
 
 def _measured_modes(name: str, data: ModalData) -> list[int]:
-    measured = kind_named(name).measured(data)
+    measured = KINDS[name].measured(data)
     return [mode for mode, known in zip(data.modes, measured, strict=True) if known]
 
 

@@ -1,15 +1,20 @@
-"""The kinds of residuals: a new one is named here, and nowhere else."""
+"""The kinds of residuals: one of the package is named here, and nowhere else."""
 
 from __future__ import annotations
 
+from modefront.families import Family
 from modefront.residuals.base import ResidualKind
 from modefront.residuals.frequency import FrequencyKind
 from modefront.residuals.shape import ShapeKind
 
-KINDS: tuple[ResidualKind, ...] = (FrequencyKind(), ShapeKind())
+NEEDED = ("name", "plural", "usable_std", "measured", "has_usable_std", "members", "stack")
+"""What a kind has, see `ResidualKind`."""
+
+KINDS: Family[ResidualKind] = Family(
+    "modefront.residuals",
+    "a kind of residual, with what modefront.residuals.base.ResidualKind has",
+    lambda kind: not isinstance(kind, type) and all(hasattr(kind, name) for name in NEEDED),
+    lambda kind: kind.name,
+    (FrequencyKind(), ShapeKind()),
+)
 """All kinds, in the order in which their residuals are stacked."""
-
-
-def kind_named(name: str) -> ResidualKind:
-    """Return the kind of this name; raises KeyError where there is none."""
-    return {kind.name: kind for kind in KINDS}[name]

@@ -2,22 +2,37 @@
 
 from __future__ import annotations
 
+import json
 import shutil
 import tempfile
 import tomllib
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 
+import numpy as np
+import scipy.io
+import scipy.sparse
+
+from modefront._typing import Floats, Ints
 from modefront.brief import as_html, brief
+from modefront.data.uff import dataset_55
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError, reason, suggestion
-from modefront.exports.model import Origin, matrix_size, write_model
-from modefront.models.dofs import read_dofs
-from modefront.programs.changes import read_changes, write_deck
-from modefront.programs.mesh import read_mesh
+from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs, write_dofs
+from modefront.models.geometry import Cells
+from modefront.outputs import output as written
+from modefront.outputs import write_table, write_text
+from modefront.programs.changes import Change, read_changes, write_deck
+from modefront.programs.mesh import ProgramMesh, read_mesh
 from modefront.results.files import FILE, read_dataset
-from modefront.results.results import Results
+from modefront.results.results import ReportedModel, Results
+from modefront.results.vtu import write_grid
 from modefront.study.whereabouts import find_study, given_study
 from modefront.text import file_name
+
+ELEMENTS = {"line": 11, "triangle": 91, "quad": 94, "tetra": 111, "wedge": 112, "hexahedron": 115}
+"""Identifiers of dataset 2412: rod, thin shells, solids; others are left out."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -81,10 +96,12 @@ def export(
     model = Results(data, loaded.problem).model(point)
     output = Path(output) if output else folder / file_name(f"export-{point}")
     try:
-        count = min(modes or max(len(model.frequency), 1), matrix_size(model))
+        # As many modes as there are degrees of freedom with mass.
+        most = int(np.count_nonzero(model.mass.diagonal()))
+        count = min(modes or max(len(model.frequency), 1), most)
         output.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=output, prefix=".export-") as unfinished:
-            missing = write_model(model, _origin(loaded.file), Path(unfinished), count)
+            missing = _write(model, loaded.file, Path(unfinished), count)
             write_deck(loaded.file.parent, model.theta, Path(unfinished))
             files = sorted(Path(unfinished).iterdir())
             moved = tuple(Path(shutil.move(file, output / file.name)) for file in files)
@@ -96,15 +113,97 @@ def export(
     return Exported(point, moved, tuple(missing))
 
 
-def _origin(file: Path) -> Origin:
-    """Return the mesh, labels and changed lines that an imported study keeps of its program."""
-    table = tomllib.loads(file.read_text("utf-8-sig")).get("model", {})
-    if table.get("kind") != "matrices":
-        return Origin(None, None, ())
-    dofs, mesh = (table.get(key) for key in ("dofs", "mesh"))
-    changes = file.parent / "changes.json"
-    return Origin(
-        read_dofs(file.parent / dofs) if dofs else None,
-        read_mesh(file.parent / mesh) if mesh else None,
-        read_changes(changes) if changes.is_file() else (),
-    )
+def _write(model: ReportedModel, study: Path, folder: Path, modes: int) -> list[str]:
+    """Write all files of a model into a folder that is there; return what could not be written.
+
+    Raises ModelError where the model has no matrices or no such modes.
+    """
+    values = {name: float(value) for name, value in model.theta.items()}
+    rows = [(name, repr(value)) for name, value in values.items()]
+    write_table(folder / "parameters.csv", [("parameter", "value"), *rows])
+    content = {"label": model.label, "kind": model.kind, "parameters": values}
+    write_text(folder / "parameters.json", json.dumps(content, indent=2, ensure_ascii=False) + "\n")
+    for name, A in (("K", model.stiffness), ("M", model.mass)):
+        matrix = scipy.sparse.coo_array(A)
+        matrix.eliminate_zeros()
+        with written(folder / f"{name}.npz") as stream:
+            scipy.sparse.save_npz(stream, matrix.tocsr())
+        with written(folder / f"{name}.mtx") as stream:
+            scipy.io.mmwrite(stream, matrix, symmetry="symmetric", precision=17)
+    missing = []
+    # What an imported study keeps of its program.
+    table = tomllib.loads(study.read_text("utf-8-sig")).get("model", {})
+    of_program = table if table.get("kind") == "matrices" else {}
+    if "dofs" not in of_program:
+        missing.append("dofs.csv, modes.vtu and modes.uff: the study names no nodes (dofs)")
+    else:
+        dofs = read_dofs(study.parent / of_program["dofs"])
+        write_dofs(folder / "dofs.csv", dofs)
+        mesh = read_mesh(study.parent / of_program["mesh"]) if "mesh" in of_program else None
+        shapes = model.modes(modes)
+        number, motion = node_motion(dofs, mesh, shapes.shape)
+        turns = bool(((dofs.direction > 3) & np.isin(dofs.node, number)).any())
+        moved = motion if turns else motion[:, :, :3]
+        with written(folder / "modes.uff") as stream:
+            stream.write("".join(_uff(mesh, number, moved, shapes.frequency)).encode())
+        if mesh is None:
+            missing.append("modes.vtu: the study names no mesh")
+        elif find_spec("meshio") is None:
+            missing.append("modes.vtu: meshio is not installed: pip install modefront[mesh]")
+        else:
+            named = enumerate(zip(shapes.frequency, motion, strict=True), start=1)
+            vectors = {f"mode {k}, {f:.6g} Hz": values[:, :3] for k, (f, values) in named}
+            cells = [Cells(x, x, np.searchsorted(number, at)) for x, at in mesh.cells.items()]
+            data = {**vectors, "node": number}
+            write_grid(folder / "modes.vtu", mesh.coordinates, cells, data)
+    known = study.parent / "changes.json"
+    changes = read_changes(known) if of_program and known.is_file() else []
+    write_text(folder / "deck.txt", _updated_values(model, changes))
+    return missing
+
+
+def node_motion(dofs: DofTable, mesh: ProgramMesh | None, shapes: Floats) -> tuple[Ints, Floats]:
+    """Return the numbers of nodes and their motion in shapes (N, modes).
+
+    The nodes are those of a mesh, or of ``dofs`` without one. Motion (modes, nodes, 6) are
+    displacements x, y, z and rotations; 0 where a node cannot move.
+    """
+    number = np.unique(dofs.node[dofs.node > 0]) if mesh is None else mesh.number
+    motion = np.asarray(motion_of_nodes(dofs, number) @ shapes)
+    return number, motion.T.reshape(-1, number.size, 6)
+
+
+def _uff(
+    mesh: ProgramMesh | None, number: Ints, motion: Floats, frequencies: Floats
+) -> Iterator[str]:
+    """Yield nodes, elements and real, mass-normalised modes in Hz as datasets of a UFF file."""
+    ending = "    -1\n"
+    if mesh is not None:
+        yield f"{ending}{2411:6d}\n"
+        for node, point in zip(number.tolist(), mesh.coordinates, strict=True):
+            coordinates = "".join(f"{x:25.16E}" for x in np.nan_to_num(point).tolist())
+            yield f"{node:10d}{1:10d}{1:10d}{11:10d}\n{coordinates}\n"
+        yield f"{ending}{ending}{2412:6d}\n"
+        cells = ((x, row) for x in mesh.cells if x in ELEMENTS for row in mesh.cells[x].tolist())
+        for k, (kind, nodes) in enumerate(cells, start=1):
+            records = [(k, ELEMENTS[kind], 1, 1, 7, len(nodes)), nodes]
+            records[1:1] = [(0, 0, 0)] if kind == "line" else []
+            yield from ("".join(f"{x:10d}" for x in record) + "\n" for record in records)
+        yield ending
+    for k, (f, values) in enumerate(zip(frequencies.tolist(), motion, strict=True), start=1):
+        texts = f"mode {k}", f"{f:.9g} Hz"
+        mode = dataset_55(texts, k, (f, 1.0, 0.0, 0.0), number.tolist(), values)
+        yield f"{ending}{55:6d}\n{mode}{ending}"
+
+
+def _updated_values(model: ReportedModel, changes: Sequence[Change]) -> str:
+    """Return the updated values: lines of the deck where they are known, factors elsewhere."""
+    lines = [f"updated values, model '{model.label}'"]
+    for name, value in model.theta.items():
+        lines += ["", f"{name} = {value:.9g}"]
+        of_parameter = [change for change in changes if change.parameter == name]
+        for change in of_parameter:
+            lines += [f"  {change.file}, line {change.line}:", f"  {change.updated(value).strip()}"]
+        if not of_parameter:
+            lines.append("  a factor of what was changed for this parameter")
+    return "\n".join(lines) + "\n"

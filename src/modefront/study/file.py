@@ -4,39 +4,39 @@ from __future__ import annotations
 
 import hashlib
 import json
-import tomllib
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from modefront.data.modal import ModalData
 from modefront.diagnosis.places import DataDirection, UnusedGroup
-from modefront.errors import Fault, InputError, ModelError, reason
+from modefront.errors import InputError, ModelError
 from modefront.front.options import Pareto
 from modefront.front.search import Search
 from modefront.identifiability.options import Identifiability
-from modefront.inputs import MOST_TABLES, read_text_bytes
 from modefront.models.base import full_of
 from modefront.models.matrices import MatrixModel, of_free
 from modefront.pairing.match import Pairing
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.definition import Origin, Study, undrawn
-from modefront.study.labels import labels_of
-from modefront.study.tables.data import read_data
-from modefront.study.tables.groups import read_groups
-from modefront.study.tables.model import read_model
-from modefront.study.tables.options import note, read_options
-from modefront.study.tables.parameters import read_parameters
-from modefront.study.tables.predict import complete, read_predictions
-from modefront.study.tables.weighted import read_weights
-from modefront.toml import Table
+from modefront.study.measured import read_data
+from modefront.study.tables import (
+    complete,
+    read_groups,
+    read_header,
+    read_model,
+    read_options,
+    read_parameters,
+    read_predictions,
+    read_weights,
+)
+from modefront.toml import Table, read_toml
 from modefront.uncertainty.options import Uncertainty
 from modefront.uncertainty.prior import NoisePrior
 
 
+# Many lines: a line or two for each table of the file.
 def load(path: Path | str) -> Study:
     """Return the study that a file describes.
 
@@ -50,28 +50,28 @@ def load(path: Path | str) -> Study:
     InputError
         With everything that is wrong with the file and the files that it names.
     """
-    path = Path(path)
-    values, content = _parse(path)
-    faults: list[Fault] = []
-    root = Table(str(path), "", values, faults)
+    root, content = read_toml(Path(path), "a study file")
+    faults = root.faults
     header = root.table("study", "a table [study]")
     names, parameters = read_parameters(root)
     model, reduction = read_model(root, header, names)
     if model is not None and not faults:
         model, parameters = of_free(model, parameters)
-    title, seed = _read_header(header)
+    title, seed = read_header(header)
     data = read_data(root, model)
     groups = read_groups(root, data)
-    objectives = [group.name for group in groups if group.name]
     pareto = read_options(root, "pareto", Pareto)
-    weighted = read_weights(root, objectives, labels_of(objectives))
+    weighted = read_weights(root, [group.name for group in groups if group.name])
     search = read_options(root, "search", Search)
     identifiability = read_options(root, "identifiability", Identifiability)
-    uncertainty = _read_uncertainty(root, data)
+    uncertainty = read_options(root, "uncertainty", Uncertainty)
+    drawn = replace(root, place="[uncertainty]")
+    drawn.note(undrawn(uncertainty, len(root.values.get("predict") or ())))
+    drawn.note(uncertainty.faults(data) if data is not None else ())
     noise = read_options(root, "noise", NoisePrior)
     pairing = read_options(root, "pairing", Pairing)
     drafts = read_predictions(root, model, data)
-    note(_place(root, "[pareto]"), pareto.faults(len(groups)))
+    replace(root, place="[pareto]").note(pareto.faults(len(groups)))
     root.close()
     if faults or model is None or data is None:
         raise InputError(faults)
@@ -89,92 +89,54 @@ def load(path: Path | str) -> Study:
     predictions = complete(drafts, problem) if not faults else ()
     if faults:
         raise InputError(faults)
-    front = json.dumps(_without_predictions(values), sort_keys=True)
+    front = {key: value for key, value in root.values.items() if key != "predict"}
+    kept = {key: value for key, value in front.pop("uncertainty", {}).items() if key != "draws"}
+    front |= {"uncertainty": kept} if kept else {}
     origin = Origin(
-        path,
+        Path(path),
         _digest(content, root.files),
-        _digest(front.encode(), root.files),
+        _digest(json.dumps(front, sort_keys=True).encode(), root.files),
         problem,
         reduction.fallback(problem.model),
         tuple(note for note in root.notes if isinstance(note, UnusedGroup | DataDirection)),
     )
     return Study(
-        *(problem, title, seed, pareto, weighted, search, identifiability, uncertainty),
-        *(predictions, noise, origin),
+        problem,
+        title,
+        seed,
+        pareto=pareto,
+        weighted=weighted,
+        search=search,
+        identifiability=identifiability,
+        uncertainty=uncertainty,
+        predictions=predictions,
+        noise=noise,
+        origin=origin,
     )
-
-
-def _read_header(header: Table | None) -> tuple[str, int]:
-    """Return name and seed of the table ``[study]``; its memory is read elsewhere."""
-    if header is None:
-        return "", 0
-    name = header.text("name", "a text of printable characters") or ""
-    seed: int = header.integer("seed", 0, 2**63 - 1, default=0)
-    header.close()
-    return name, seed
-
-
-def _read_uncertainty(root: Table, data: ModalData | None) -> Uncertainty:
-    """Return how errors of the data are carried; these have to be known."""
-    uncertainty = read_options(root, "uncertainty", Uncertainty)
-    place = _place(root, "[uncertainty]")
-    note(place, undrawn(uncertainty, len(root.values.get("predict") or ())))
-    if data is not None:
-        note(place, uncertainty.faults(data))
-    return uncertainty
-
-
-def _place(root: Table, place: str) -> Table:
-    """Return where faults of a table are noted that is read already."""
-    return replace(root, place=place)
-
-
-def _parse(path: Path) -> tuple[dict[str, Any], bytes]:
-    content = read_text_bytes(path, "a study file", MOST_TABLES)
-    try:
-        return tomllib.loads(content.decode("utf-8-sig")), content
-    except (ValueError, RecursionError) as error:
-        raise InputError(Fault(str(path), "file", "TOML in UTF-8", reason(error))) from None
 
 
 def _try_model(root: Table, problem: UpdatingProblem) -> None:
     """Note what only an evaluation shows: an indefinite matrix, a parameter without effect."""
     for name in problem.model.unused:
         root.fault(f"[[parameter]] '{name}'", "a parameter that the model uses", "no use of it")
-    if _refuses_zero(root, problem):
+    model = full_of(problem.model)
+    above_zero = model.above_zero if isinstance(model, MatrixModel) else ()
+    before = len(root.faults)
+    for name in above_zero:
+        lower = float(problem.lower[problem.model.parameters.index(name)])
+        if lower <= 0:
+            expected = "a lower bound above 0, as terms of the matrices have quotients or roots"
+            root.fault(f"[[parameter]] '{name}' bounds", f"{expected} of it", f"{lower:g}")
+    if len(root.faults) > before:
         return
     try:
         problem.modes(problem.start, derivatives=False)
     except ModelError as error:
         root.fault("[model]", "modes at the nominal parameters", str(error))
         return
-    model = full_of(problem.model)
     if isinstance(model, MatrixModel) and not model.floating and model.is_singular(problem.start):
         expected = "a structure that is held, or floating = true for rigid-body modes"
         root.fault("[model]", expected, "a singular stiffness matrix at the nominal parameters")
-
-
-def _refuses_zero(root: Table, problem: UpdatingProblem) -> bool:
-    """Note bounds of 0 or less of parameters with roots or quotients; return whether any are."""
-    model = full_of(problem.model)
-    names = model.above_zero if isinstance(model, MatrixModel) else ()
-    before = len(root.faults)
-    for name in names:
-        lower = float(problem.lower[problem.model.parameters.index(name)])
-        if lower <= 0:
-            expected = (
-                "a lower bound above 0, as terms of the matrices have quotients or roots of it"
-            )
-            root.fault(f"[[parameter]] '{name}' bounds", expected, f"{lower:g}")
-    return len(root.faults) > before
-
-
-def _without_predictions(values: dict[str, Any]) -> dict[str, Any]:
-    """Return the contents of a study file without the predictions and their number of draws."""
-    rest = {key: value for key, value in values.items() if key != "predict"}
-    uncertainty = dict(rest.pop("uncertainty", {}))
-    uncertainty.pop("draws", None)
-    return rest | ({"uncertainty": uncertainty} if uncertainty else {})
 
 
 def _digest(content: bytes, files: Sequence[Path]) -> str:

@@ -13,7 +13,6 @@ from typing import TYPE_CHECKING, Unpack
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from modefront._typing import Floats
 from modefront._version import __version__
 from modefront.analysis.certified import (
     certificate_attributes,
@@ -31,7 +30,7 @@ from modefront.front.point import Kind, Point
 from modefront.front.search import Search
 from modefront.identifiability.combinations import unchanged_groups
 from modefront.identifiability.options import Identifiability
-from modefront.optim.sqp import Solution, given
+from modefront.optim.sqp import given
 from modefront.outputs import remove_unfinished
 from modefront.predictions import Prediction
 from modefront.predictions.runner import PredictionRunner
@@ -175,7 +174,7 @@ def run_on(
     progress: Progress | None = None,
 ) -> Results:
     """Do the work of `run` with a backend, which is opened when the folder is at hand."""
-    from modefront.results.files import FILE, write
+    from modefront.results.files import FILE, write, written_for
     from modefront.results.results import Results
 
     if isinstance(study, UpdatingProblem):
@@ -199,7 +198,8 @@ def run_on(
         remove_unfinished(folder, FILE)
         remove_unfinished(tasks)
         data = _worked(study, carrier, progress, Store(tasks))
-        _keep_other(folder / FILE, study.digest)
+        if (folder / FILE).is_file() and written_for(folder / FILE) != study.digest:
+            _set_aside(folder / FILE)
         write(data, folder / FILE)
         if study.origin is not None:
             note_study(folder, tasks, study.origin.file)
@@ -275,7 +275,9 @@ class _Session:
         noise = study.noise.of(problem, study.uncertainty.of(problem.data))
         samples, misfit, unbound = None, np.empty(0), None
         if noise is not None:
-            (best, *_) = most_probable(problem, noise, _known(front), work)
+            minima = [x for edge in front.edges for x in edge.minima]
+            known = [x.theta for x in (*(point.solution for point in front.points), *minima)]
+            (best, *_) = most_probable(problem, noise, known, work)
             points = certified_points(
                 problem, [Point(Kind.MOST_PROBABLE, best)], Within(work, ("most-probable",))
             )
@@ -288,8 +290,8 @@ class _Session:
             study.pareto, study.identifiability, study.uncertainty, study.seed, noise
         )
         analysis = analyse_front(problem, front, options, work)
-        (nominal,) = work.run([Task(("nominal",), _nominal, (problem,))])
-        extra = [*analysis.points, Point(Kind.NOMINAL, nominal)]
+        (nominal,) = work.run([Task(("nominal",), problem.evaluate, (problem.start,))])
+        extra = [*analysis.points, Point(Kind.NOMINAL, given(nominal))]
         analysis = replace(analysis, points=certified_points(problem, extra, work))
         data = self._with_shapes(dataset(problem, front, analysis))
         if noise is not None and samples is not None:
@@ -345,17 +347,6 @@ class _Session:
         return out | certificate_attributes(self.study.problem)
 
 
-def _known(front: Front) -> list[Floats]:
-    """Return the parameters (p,) of the models of a front and of all minima that it knows."""
-    minima = [x for edge in front.edges for x in edge.minima]
-    return [x.theta for x in (*(point.solution for point in front.points), *minima)]
-
-
-def _nominal(problem: UpdatingProblem) -> Solution:
-    """Return the model at the nominal parameters."""
-    return given(problem.evaluate(problem.start))
-
-
 def _set_aside(path: Path) -> None:
     """Rename a file or a folder to a name that is free."""
     if path.exists():
@@ -363,11 +354,3 @@ def _set_aside(path: Path) -> None:
         while (aside := path.with_name(f"{path.stem}.{number}{path.suffix}")).exists():
             number += 1
         path.rename(aside)
-
-
-def _keep_other(path: Path, digest: str) -> None:
-    """Set results aside that belong to other inputs."""
-    from modefront.results.files import written_for
-
-    if path.is_file() and written_for(path) != digest:
-        _set_aside(path)

@@ -1,19 +1,26 @@
-r"""Straight Timoshenko beam in space, two nodes, twelve DOFs.
+r"""Straight Timoshenko beam in space, two nodes, twelve DOFs, and bars with axial forces only.
 
 In a principal plane with deflection v and rotation psi of the section,
 
     EI psi'' + kappa G A (v' - psi) = 0,   kappa G A (v' - psi)' = 0,
 
-has cubic v and quadratic psi as exact solutions; interpolating with them gives nodally exact
-static stiffness and, with int rho A v^2 + rho I psi^2, the consistent mass with rotary
-inertia. With Phi = 12 EI / (kappa G A L^2),
+has cubic v and quadratic psi as exact solutions. With these, linear axial displacement u and twist
+theta, and Phi = 12 EI / (kappa G A L^2), the nodally exact static stiffness, the consistent mass
+with rotary inertia, and the geometric stiffness of an axial force N (tension positive) are
 
-    k = EI / (L^3 (1 + Phi)) [12, 6L, -12, 6L; ., (4 + Phi) L^2, -6L, (2 - Phi) L^2; ...].
+    K = int EA u'^2 + GJ theta'^2 + sum_planes EI psi'^2 + kappa G A (v' - psi)^2,
+    M = int rho A (u^2 + v_c^2 + w_c^2) + rho (I_y + I_z) theta^2 + sum_planes rho I psi^2,
+    K_G = N int v_c'^2 + w_c'^2 + (I_y + I_z) / A theta'^2.
+
+Bending and twist are about the shear centre (y_s, z_s), axial force and mass at the centroid,
+
+    v_c = v + z_s theta,   w_c = w - y_s theta.
 
 Slender beams converge with h^4 in the frequency; where shear dominates (h below the depth) the
-linear part of v leaves rho (w h)^2 / (24 kappa G). Sources: J. S. Przemieniecki, "Theory of
-Matrix Structural Analysis", 1968; Z. Friedman, J. B. Kosmatka,
-doi:10.1016/0045-7949(93)90243-7.
+linear part of v leaves rho (w h)^2 / (24 kappa G). Released DOFs r of an end have no force: with
+G = [1; -K_rr^-1 K_rk] all matrices are G^T A G, the static condensation of K and the mass and
+geometric stiffness of the same shapes. Sources: J. S. Przemieniecki, "Theory of Matrix Structural
+Analysis", 1968; Z. Friedman, J. B. Kosmatka, doi:10.1016/0045-7949(93)90243-7.
 
 ========  =================================================================
 symbol    meaning
@@ -22,22 +29,50 @@ X         end points (elements, 2, 3)
 R         local axes, rows: axis of the beam, local y, local z
 Phi       ratio of shear to bending flexibility, 0 where shear is rigid
 r         offsets of the ends from the nodes, global (2, 3)
+N         axial force
 ========  =================================================================
 """
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+from dataclasses import dataclass
+
 import numpy as np
 
-from modefront._typing import Floats, Ints
-from modefront.fem.elements.common import ElementMatrices, Part, attachment, congruence
-from modefront.fem.section import Material, Section
+from modefront._typing import Floats
+from modefront.fem.elements.common import ElementMatrices, Part, attachment, congruence, symmetric
+from modefront.fem.section import FemError, Material, Section
 
-AXIAL = np.array([0, 6])
-TORSION = np.array([3, 9])
-# Local y deflection turns with +r_z, local z deflection with -r_y.
-PLANE_Y = (np.array([1, 5, 7, 11]), np.array([1.0, 1, 1, 1]))
-PLANE_Z = (np.array([2, 4, 8, 10]), np.array([1.0, -1, 1, -1]))
+U, V, W, TWIST, PSI_Y, PSI_Z = range(6)
+"""Directions of an end in local axes, of which the last two are rotations about y and z."""
+
+
+@dataclass(frozen=True)
+class Axial:
+    """Axial forces N of bars and beams, and the geometric stiffness that they make.
+
+    Attributes
+    ----------
+    rows : elongation (elements, n) of displacements
+    length : (elements,)
+    rigidity : EA, N of a strain that is hindered
+    unit : geometric stiffness (elements, n, n) of N = 1
+    """
+
+    rows: Floats
+    length: Floats
+    rigidity: float
+    unit: Floats
+
+    def free_forces(self, strain: float) -> Floats:
+        """Return forces (elements, n) that make the free strain."""
+        return self.rigidity * strain * self.rows
+
+    def stiffness(self, q: Floats, strain: float) -> Floats:
+        """Return K_G (elements, n, n) of displacements q (elements, n) and a free strain."""
+        N = self.rigidity * ((self.rows * q).sum(1) / self.length - strain)
+        return N[:, None, None] * self.unit
 
 
 def axes(X: Floats, orientation: Floats) -> Floats:
@@ -49,52 +84,71 @@ def axes(X: Floats, orientation: Floats) -> Floats:
     return np.stack([along, y, np.cross(along, y)], 1)
 
 
-def bending_stiffness(EI: float, Phi: Floats, L: Floats) -> Floats:
-    """Stiffness (elements, 4, 4) in one plane, DOFs (v, psi) at either end."""
-    ones = np.ones_like(L)
-    a, b, c, d = 12 * ones, 6 * L, (4 + Phi) * L**2, (2 - Phi) * L**2
-    rows = [[a, b, -a, b], [b, c, -b, d], [-a, -b, a, -b], [b, d, -b, c]]
-    k = np.stack([np.stack(row, -1) for row in rows], -2)
-    return np.asarray(k * (EI / (L**3 * (1 + Phi)))[:, None, None])
+def plane(Phi: Floats, L: Floats, s: Floats) -> tuple[Floats, Floats, Floats]:
+    """Return v and psi, their derivatives, and (v' - psi) / Phi, in one plane.
 
-
-def bending_mass(rho_A: float, rho_I: float, Phi: Floats, L: Floats) -> Floats:
-    """Consistent mass (elements, 4, 4) in one plane, DOFs (v, psi) at either end."""
-    points, weights = np.polynomial.legendre.leggauss(4)
-    s, w = (1 + points) / 2, weights / 2
-    P, h = Phi[:, None], L[:, None]
-    v = np.stack(
-        [
-            1 - 3 * s**2 + 2 * s**3 + P * (1 - s),
-            h * (s - 2 * s**2 + s**3 + P / 2 * (s - s**2)),
-            3 * s**2 - 2 * s**3 + P * s,
-            h * (s**3 - s**2 - P / 2 * (s - s**2)),
-        ],
-        -1,
+    Each has rows (.., elements, points, 4) by the DOFs (v, psi) at either end, s = x / L.
+    """
+    P, h, one = Phi[:, None], L[:, None], np.ones((len(L), len(s)))
+    v = [
+        1 - 3 * s**2 + 2 * s**3 + P * (1 - s),
+        h * (s - 2 * s**2 + s**3 + P / 2 * (s - s**2)),
+        3 * s**2 - 2 * s**3 + P * s,
+        h * (s**3 - s**2 - P / 2 * (s - s**2)),
+    ]
+    psi = [
+        6 * (s**2 - s) / h,
+        1 - 4 * s + 3 * s**2 + P * (1 - s),
+        6 * (s - s**2) / h,
+        3 * s**2 - 2 * s + P * s,
+    ]
+    dv = [
+        (6 * (s**2 - s) - P) / h,
+        1 - 4 * s + 3 * s**2 + P / 2 * (1 - 2 * s),
+        (6 * (s - s**2) + P) / h,
+        3 * s**2 - 2 * s - P / 2 * (1 - 2 * s),
+    ]
+    dpsi = [(12 * s - 6) / h**2, (6 * s - 4 - P) / h, (6 - 12 * s) / h**2, (6 * s - 2 + P) / h]
+    gamma = [-one / h, -one / 2, one / h, -one / 2]
+    f, df, g = (
+        np.stack([np.stack(each, -1) for each in rows]) / (1 + P)[..., None]
+        for rows in ((v, psi), (dv, dpsi), (gamma,))
     )
-    psi = np.stack(
-        [
-            6 * (s**2 - s) / h,
-            1 - 4 * s + 3 * s**2 + P * (1 - s),
-            6 * (s - s**2) / h,
-            3 * s**2 - 2 * s + P * s,
-        ],
-        -1,
-    )
-    m = rho_A * np.einsum("g,egi,egj->eij", w, v, v) + rho_I * np.einsum(
-        "g,egi,egj->eij", w, psi, psi
-    )
-    return np.asarray(m * (L / (1 + Phi) ** 2)[:, None, None])
+    return f, df, g[0]
 
 
-def insert(K: Floats, dof: Ints, block: Floats) -> None:
-    """Add a block (elements, n, n) at the DOFs `dof` of K (elements, 12, 12)."""
-    K[:, dof[:, None], dof] += block
+def integral(rows: Floats, weight: Floats) -> Floats:
+    """Return the sum over points and rows of weight times B^T B, (elements, 12, 12)."""
+    B = rows.reshape(len(rows), -1, rows.shape[-1])
+    w = np.broadcast_to(weight, rows.shape[:-1]).reshape(len(rows), -1, 1)
+    return symmetric(np.swapaxes(B, 1, 2) @ (w * B))
+
+
+def release(K: Floats, directions: Sequence[int]) -> Floats:
+    """Return G (elements, 12, 12), motions of all DOFs from those that are not released."""
+    r = list(directions)
+    K_rr = K[:, r][:, :, r]
+    size = np.sqrt(np.diagonal(K_rr, axis1=1, axis2=2))
+    if np.linalg.eigvalsh(K_rr / size[:, :, None] / size[:, None]).min() < LOOSE:
+        raise FemError("expected releases that leave the beam no free motion, found one")
+    G = np.tile(np.eye(12), (len(K), 1, 1))
+    G[:, r] = -np.linalg.solve(K_rr, K[:, r])
+    G[:, :, r] = 0
+    return G
+
+
+LOOSE = 1e-9
+"""Eigenvalue of the stiffness of released directions, over those of each, that is rounding."""
 
 
 def beam(
-    X: Floats, material: Material, section: Section, orientation: Floats, r: Floats
-) -> ElementMatrices:
+    X: Floats,
+    material: Material,
+    section: Section,
+    orientation: Floats,
+    r: Floats,
+    released: Sequence[int] = (),
+) -> tuple[ElementMatrices, Axial]:
     """Matrices of straight beams, DOFs (u, r) node by node in global axes.
 
     Parameters
@@ -105,25 +159,57 @@ def beam(
         axis
     r : offsets (2, 3) of the flexible part's ends from the nodes, global. Along the axis it is a
         rigid end zone (without mass), across it an eccentricity.
+    released : those of the 12 local DOFs of the flexible part's ends that are without force
     """
     ends = X + r
     R = axes(ends, orientation)
     L = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-    E, G, rho = material.E, material.G, material.rho
-    K, M = np.zeros((2, len(L), 12, 12))
-    bar = np.array([[1.0, -1], [-1, 1]])
-    line = np.array([[2.0, 1], [1, 2]]) / 6
-    insert(K, AXIAL, (E * section.A / L)[:, None, None] * bar)
-    insert(K, TORSION, (G * section.J / L)[:, None, None] * bar)
-    insert(M, AXIAL, (rho * section.A * L)[:, None, None] * line)
-    insert(M, TORSION, (rho * (section.I_y + section.I_z) * L)[:, None, None] * line)
-    for (dof, sign), inertia, factor in (
-        (PLANE_Y, section.I_z, section.kappa_y),
-        (PLANE_Z, section.I_y, section.kappa_z),
+    E, G, A = material.E, material.G, section.A
+    polar = section.I_y + section.I_z
+    points, weights = np.polynomial.legendre.leggauss(4)
+    s, w = (1 + points) / 2, L[:, None, None] * (weights / 2)[:, None]
+    f, df = np.zeros((2, len(L), len(s), 6, 12))
+    for direction in (U, TWIST):
+        f[:, :, direction, [direction, 6 + direction]] = np.stack([1 - s, s], -1)
+        df[:, :, direction, [direction, 6 + direction]] = np.array([-1.0, 1]) / L[:, None, None]
+    gamma = np.zeros((len(L), len(s), 2, 12))
+    shear = np.zeros((len(L), 1, 2))
+    # Local y deflection turns with +r_z, local z deflection with -r_y.
+    for n, (v, psi, sign, inertia, kappa) in enumerate(
+        ((V, PSI_Z, 1, section.I_z, section.kappa_y), (W, PSI_Y, -1, section.I_y, section.kappa_z))
     ):
-        Phi = 12 * E * inertia / (factor * G * section.A * L**2)
-        flip = sign[:, None] * sign
-        insert(K, dof, flip * bending_stiffness(E * inertia, Phi, L))
-        insert(M, dof, flip * bending_mass(rho * section.A, rho * inertia, Phi, L))
-    A = attachment(R, np.broadcast_to(r, (len(L), 2, 3)))
-    return ElementMatrices((Part(0, congruence(A, K)),), (Part(0, congruence(A, M)),))
+        Phi = 12 * E * inertia / (kappa * G * A * L**2)
+        shear[:, 0, n] = 12 * E * inertia * Phi / L**2
+        dof, flip = [v, psi, 6 + v, 6 + psi], np.array([1, sign, 1, sign])
+        (f_v, f_psi), (df_v, df_psi), g = plane(Phi, L, s)
+        f[:, :, v, dof], f[:, :, psi, dof] = f_v * flip, f_psi * flip
+        df[:, :, v, dof], df[:, :, psi, dof] = df_v * flip, df_psi * flip
+        gamma[:, :, n, dof] = g * flip
+    centre = np.eye(12)
+    for direction, arm in ((V, -section.shear_centre[1]), (W, section.shear_centre[0])):
+        centre[[direction, 6 + direction], [TWIST, 6 + TWIST]] = arm
+        for rows in (f, df):
+            rows[:, :, direction] -= arm * rows[:, :, TWIST]
+    EI_y, EI_z = E * section.I_y, E * section.I_z
+    K = integral(df, w * [E * A, 0, 0, G * section.J, EI_y, EI_z]) + integral(gamma, w * shear)
+    M = integral(f, material.rho * w * [A, A, A, polar, section.I_y, section.I_z])
+    K_G = integral(df, w * [0, 1, 1, polar / A, 0, 0])
+    a = centre @ attachment(R, np.broadcast_to(r, (len(L), 2, 3)))
+    if released:
+        a = release(K, released) @ a
+    elongation = L[:, None] * (df[:, :1, U] @ a)[:, 0]
+    K, M, K_G = (congruence(a, each) for each in (K, M, K_G))
+    return ElementMatrices((Part(0, K),), (Part(0, M),)), Axial(elongation, L, E * A, K_G)
+
+
+def truss(X: Floats, material: Material, area: float) -> tuple[ElementMatrices, Axial]:
+    """Matrices of straight bars X (elements, 2, 3), DOFs u node by node in global axes."""
+    along = X[:, 1] - X[:, 0]
+    L = np.linalg.norm(along, axis=1)[:, None]
+    row = np.concatenate([-along, along], 1) / L
+    EA, mass = material.E * area, material.rho * area
+    K = (EA / L)[:, None] * row[:, :, None] * row[:, None, :]
+    M = (mass * L)[:, None] * np.kron(np.array([[2.0, 1], [1, 2]]) / 6, np.eye(3))
+    across = np.kron(np.array([[1.0, -1], [-1, 1]]), np.eye(3)) - row[:, :, None] * row[:, None, :]
+    matrices = ElementMatrices((Part(0, symmetric(K)),), (Part(0, M),))
+    return matrices, Axial(row, L[:, 0], EA, symmetric(across / L[:, None]))

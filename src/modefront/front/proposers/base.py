@@ -30,6 +30,8 @@ class Offer:
     chance : probability that some subproblem gains
     function : what is done with the problem and ``arguments``
     final : whether what it leads to is a solution of the subproblem
+    unseen : part of the box that may lead to something better; the offer is worth making as long as
+        this or the chance is above the doubt that is allowed
     """
 
     place: int
@@ -38,6 +40,7 @@ class Offer:
     function: Callable[..., Any]
     arguments: tuple[Any, ...]
     final: bool = True
+    unseen: float = 0.0
 
 
 class Proposer(Protocol):
@@ -61,21 +64,18 @@ class Rate:
     Attributes
     ----------
     tries, gains : numbers of searches, and of those that gained
-    cost : evaluations that they took
     idle : searches since the last gain
     """
 
     tries: int = 0
     gains: int = 0
-    cost: int = 0
     idle: int = 0
 
-    def note(self, gained: bool, evaluations: int) -> None:
+    def note(self, gained: bool) -> None:
         """Count a search."""
         self.tries += 1
         self.gains += gained
         self.idle = 0 if gained else self.idle + 1
-        self.cost += evaluations
 
     @property
     def chance(self) -> float:

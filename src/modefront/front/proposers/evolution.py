@@ -51,7 +51,7 @@ class Evolution:
 
     def learn(self, state: State, _: Offer, outcome: Outcome, gain: float) -> None:
         """Count the generation."""
-        self.rate.note(gain > state.tolerance, outcome.evaluations)
+        self.rate.note(gain > state.tolerance)
 
     def _children(self, state: State) -> Floats:
         """Return the parameters of a generation, (children, p)."""

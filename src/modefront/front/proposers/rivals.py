@@ -63,7 +63,7 @@ class Rivals:
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
         """Count the search, and try the pair no more."""
-        self.rate.note(gain > state.tolerance, outcome.evaluations)
+        self.rate.note(gain > state.tolerance)
         m = next(i for i, x in enumerate(state.models) if x is offer.start)
         self.found.pop((offer.place, m), None)
 

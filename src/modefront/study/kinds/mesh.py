@@ -7,14 +7,22 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Any, get_args
 
 from modefront import fem
+from modefront._typing import Ints
 from modefront.data.csv import is_reserved
 from modefront.diagnosis.places import unused_groups
 from modefront.errors import suggestion
 from modefront.fem.mesh import Kind, Mesh, read_mesh
-from modefront.fem.structure import Quantity
+from modefront.fem.structure import Group, Quantity
 from modefront.models.base import Model
 from modefront.models.mesh import mesh_model
-from modefront.study.kinds.sensors import ModelKind, is_dof, read_direction, read_directions
+from modefront.options import is_number
+from modefront.study.kinds.sensors import (
+    ModelKind,
+    is_dof,
+    read_axes,
+    read_direction,
+    read_directions,
+)
 from modefront.toml import Table
 
 _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
@@ -25,7 +33,17 @@ _SHAPES: Mapping[str, tuple[Callable[..., fem.Section], Sequence[str]]] = {
     "constants": (fem.Section, ("A", "I_y", "I_z", "J")),
 }
 
-KEYS = ("material", "group", "support", "spring", "mass", "link", "sensors", "outputs", "scale")
+NODES = {
+    "support": ("nodes",),
+    "spring": ("nodes", "to"),
+    "mass": ("nodes",),
+    "link": ("master", "slaves"),
+    "coupling": ("node", "of"),
+    "load": ("nodes",),
+}
+"""Tables at nodes, with the keys that name these."""
+
+KEYS = ("material", "group", *NODES, "sensors", "outputs", "scale")
 """Tables that describe what the mesh is made of."""
 
 
@@ -67,7 +85,7 @@ def _look_further(table: Table, structure: fem.Structure, mesh: Mesh) -> None:
             table.fault(f"sensors {sensor.name}", f"nodes from 0 to {count - 1}", str(sensor.at))
     named = [
         name
-        for kind in ("group", "spring", "mass")
+        for kind in ("group", "spring", "mass", "load")
         for entry in table.values.get(kind) or ()
         for name in [entry.get("name")]
         if isinstance(name, str)
@@ -75,7 +93,7 @@ def _look_further(table: Table, structure: fem.Structure, mesh: Mesh) -> None:
     for parameter in structure.parameters:
         for name in parameter.of:
             if name not in named:
-                expected = "the name of a group, spring or mass"
+                expected = "the name of a group, spring, mass or load"
                 table.fault(f"scale {parameter.name} of", expected, suggestion(name, named))
 
 
@@ -88,19 +106,20 @@ def _structure(table: Table, parameters: Sequence[str], mesh: Mesh) -> fem.Struc
         _springs(table, mesh),
         _masses(table, mesh),
         _links(table, mesh),
+        _couplings(table, mesh),
+        _loads(table, mesh),
         _sensors(table),
         _scales(table, parameters),
     )
 
 
 def _named_nodes(model: Table) -> set[str]:
-    """Return the groups and node sets that supports, springs, masses and links name."""
+    """Return the groups and node sets that supports, springs, masses, links and loads name."""
     named: set[str] = set()
-    for kind in ("support", "spring", "mass", "link"):
+    for kind, keys in NODES.items():
         for table in model.values.get(kind) or ():
-            for key in ("nodes", "to", "master", "slaves"):
-                value = table.get(key)
-                named.update(x for x in _listed(value) if isinstance(x, str))
+            for key in keys:
+                named.update(x for x in _listed(table.get(key)) if isinstance(x, str))
     return named
 
 
@@ -126,56 +145,94 @@ def _materials(model: Table) -> dict[str, fem.Material]:
     return out
 
 
-def _groups(
-    model: Table, mesh: Mesh, materials: dict[str, fem.Material]
-) -> list[fem.Beams | fem.Shells | fem.Solids]:
+def _vector(table: Table, key: str, default: Any = (0.0, 0.0, 0.0)) -> Any:
+    return table.numbers(key, "a vector of 3 numbers", lambda x: len(x) == 3, default)
+
+
+def _groups(model: Table, mesh: Mesh, materials: dict[str, fem.Material]) -> list[Group]:
     """Return the blocks of all groups; one group may have cells of several types."""
-    out: list[fem.Beams | fem.Shells | fem.Solids] = []
+    out: list[Group] = []
     for group in model.tables("group", required=True):
         name = group.text("name", "the name of a group of cells")
         kind: Kind | None = group.choice("elements", get_args(Kind))
         declared = model.values.get("material")  # those with faults too, which are said there
         names = tuple(declared) if isinstance(declared, dict) else ()
         label = group.choice("material", names) if names else group.text("material")
-        thickness = offset = section = orientation = None
-        if kind == "shell":
-            thickness = group.number("thickness", "a thickness above 0", lambda x: x > 0)
-            offset = group.number("offset", "a distance", math.isfinite, default=0.0)
-        if kind == "beam":
-            section = _section(group)
-            orientation = group.numbers(
-                "orientation", "a vector of 3 numbers", lambda x: len(x) == 3, default=None
-            )
+        before = len(group.faults)
+        make = _MEMBERS[kind](group) if kind is not None else None
         group.close()
-        if name is None or kind is None or label not in materials:
+        if name is None or make is None or kind is None or label not in materials:
             continue
         try:
             blocks = mesh.cells_of(name, kind)
         except fem.FemError as error:
             group.fault("name", "a group of the mesh", str(error))
             continue
-        for cells in blocks:
-            if kind == "beam" and section is not None:
-                out.append(fem.Beams(name, cells, materials[label], section, orientation))
-            elif kind == "shell" and thickness is not None:
-                out.append(fem.Shells(name, cells, materials[label], thickness, offset or 0.0))
-            elif kind == "solid":
-                out.append(fem.Solids(name, cells, materials[label]))
+        if len(group.faults) == before:
+            out += [make(name, cells, materials[label]) for cells in blocks]
     return out
 
 
-def _section(group: Table) -> fem.Section | None:
+Maker = Callable[[str, Ints, fem.Material], Group]
+"""A member of a group: from its name, cells and material."""
+
+
+def _shells(group: Table) -> Maker:
+    thickness = group.number("thickness", "a thickness above 0", lambda x: x > 0)
+    offset = group.number("offset", "a distance", math.isfinite, default=0.0)
+    return lambda name, cells, material: fem.Shells(name, cells, material, thickness, offset)
+
+
+def _beams(group: Table) -> Maker:
+    section, orientation = _section(group), _vector(group, "orientation", None)
+    offsets = group.take("offsets", "a vector of 3 numbers for either end", _is_pair(3), None)
+    releases = group.take(
+        "releases",
+        "a list for either end, of " + ", ".join(fem.DIRECTIONS),
+        lambda x: isinstance(x, list) and len(x) == 2 and all(map(_are_directions, x)),
+        ([], []),
+    )
+    force = group.number("force", "an axial force", math.isfinite, default=0.0)
+    options = {"releases": tuple(releases), "force": force}
+    if offsets is not None:
+        options["offsets"] = offsets
+    return lambda name, cells, material: fem.Beams(
+        name, cells, material, section, orientation, **options
+    )
+
+
+def _trusses(group: Table) -> Maker:
+    area = group.number("area", "an area above 0", lambda x: x > 0)
+    force = group.number("force", "an axial force", math.isfinite, default=0.0)
+    return lambda name, cells, material: fem.Trusses(name, cells, material, area, force)
+
+
+_MEMBERS: Mapping[Kind, Callable[[Table], Maker]] = {
+    "beam": _beams,
+    "truss": _trusses,
+    "shell": _shells,
+    "solid": lambda _: fem.Solids,
+}
+
+
+def _section(group: Table) -> Any:
     table = group.table("section", "a table with shape = " + ", ".join(_SHAPES))
     shape = table.choice("shape", tuple(_SHAPES)) if table else None
     if table is None or shape is None:
         return None
     make, keys = _SHAPES[shape]
     values = [table.number(key, "a number above 0", lambda x: x > 0) for key in keys]
+    more: dict[str, Any] = {}
+    if make is fem.Section:
+        for key in ("kappa_y", "kappa_z"):
+            more[key] = table.number(key, "a shear factor above 0", lambda x: x > 0, 5 / 6)
+        centre = table.numbers("shear_centre", "its y and z", lambda x: len(x) == 2, [0.0, 0.0])
+        more["shear_centre"] = tuple(centre or ())
     table.close()
     if None in values:
         return None
     try:
-        section = make(*values)
+        section = make(*values, **more)
     except fem.FemError as error:
         table.fault("", "a section that is possible", str(error))
         return None
@@ -212,24 +269,57 @@ def _is_place(value: object) -> bool:
     return isinstance(value, str) or is_dof(value)
 
 
+def _are_directions(value: object) -> bool:
+    return isinstance(value, list) and all(x in fem.DIRECTIONS for x in value)
+
+
+def _is_pair(count: int) -> Callable[[object], bool]:
+    """Return a test for two lists of as many numbers."""
+    return lambda pair: (
+        isinstance(pair, list)
+        and len(pair) == 2
+        and all(isinstance(x, list) and len(x) == count and all(map(is_number, x)) for x in pair)
+    )
+
+
 def _directions(table: Table) -> list[str]:
-    known = list(fem.DIRECTIONS)
     value = table.take(
         "directions",
-        "a list of " + ", ".join(known),
-        lambda x: isinstance(x, list) and bool(x) and all(y in known for y in x),
-        known,
+        "a list of " + ", ".join(fem.DIRECTIONS),
+        lambda x: bool(x) and _are_directions(x),
+        fem.ALL,
     )
     return list(value)
+
+
+def _numbers(table: Table, key: str, expected: str, count: int, strict: bool = False) -> Any:
+    """Return a number, or a list of as many, of 0 or more; a lone one above 0 where `strict`."""
+    return table.take(
+        key,
+        expected,
+        lambda x: (
+            len(x) == count and all(map(is_number, x)) and min(x) >= 0
+            if isinstance(x, list)
+            else is_number(x) and (x > 0 if strict else x >= 0)
+        ),
+        ...,
+    )
+
+
+def _axes(table: Table) -> Any:
+    """Return the first two of local axes; None for those of the model."""
+    axes = read_axes(table)
+    return None if axes is None else (axes[0].tolist(), axes[1].tolist())
 
 
 def _supports(model: Table, mesh: Mesh) -> list[fem.Support]:
     out = []
     for support in model.tables("support", required=False):
         nodes, directions = _nodes(support, "nodes", mesh), _directions(support)
+        axes = _axes(support)
         support.close()
         if nodes is not None:
-            out.append(fem.Support(nodes, directions))
+            out.append(fem.Support(nodes, directions, axes))
     return out
 
 
@@ -239,11 +329,12 @@ def _springs(model: Table, mesh: Mesh) -> list[fem.Spring]:
         name = spring.text("name", "the name of the springs")
         nodes = _nodes(spring, "nodes", mesh)
         to = _nodes(spring, "to", mesh, default=None)
-        stiffness = spring.number("stiffness", "a stiffness above 0", lambda x: x > 0)
-        direction = read_direction(spring, default=None)
+        expected = "a stiffness above 0, or 6 of 0 or more"
+        stiffness = _numbers(spring, "stiffness", expected, 6, strict=True)
+        direction, axes = read_direction(spring, default=None), _axes(spring)
         spring.close()
         if name is not None and nodes is not None and stiffness is not None:
-            out.append(fem.Spring(name, nodes, stiffness, direction, to))
+            out.append(fem.Spring(name, nodes, stiffness, direction, to, axes))
     return out
 
 
@@ -252,19 +343,17 @@ def _masses(model: Table, mesh: Mesh) -> list[fem.Mass]:
     for entry in model.tables("mass", required=False):
         name = entry.text("name", "the name of the masses")
         nodes = _nodes(entry, "nodes", mesh)
-        mass = entry.number("mass", "a mass of 0 or more", lambda x: x >= 0)
+        mass = _numbers(entry, "mass", "a mass of 0 or more, or 3 for x, y and z", 3)
         inertia = entry.numbers(
             "inertia",
             "3 moments of inertia of 0 or more",
             lambda x: len(x) == 3 and min(x) >= 0,
             default=[0.0, 0.0, 0.0],
         )
-        offset = entry.numbers(
-            "offset", "a vector of 3 numbers", lambda x: len(x) == 3, default=[0.0, 0.0, 0.0]
-        )
+        offset = _vector(entry, "offset")
         entry.close()
         if name is not None and nodes is not None and mass is not None:
-            out.append(fem.Mass(name, nodes, mass, inertia or (0, 0, 0), offset or (0, 0, 0)))
+            out.append(fem.Mass(name, nodes, mass, inertia or (0, 0, 0), offset))
     return out
 
 
@@ -279,6 +368,46 @@ def _links(model: Table, mesh: Mesh) -> list[fem.Link]:
             link.fault("master", "one node", f"{len(master)} nodes")
         elif master is not None and slaves is not None:
             out.append(fem.Link(master[0], [n for n in slaves if n != master[0]], directions))
+    return out
+
+
+def _couplings(model: Table, mesh: Mesh) -> list[fem.Coupling]:
+    out = []
+    for entry in model.tables("coupling", required=False):
+        node, of = _nodes(entry, "node", mesh), _nodes(entry, "of", mesh)
+        directions = _directions(entry)
+        weights = entry.numbers("weights", "numbers above 0", lambda x: min(x) > 0, default=None)
+        entry.close()
+        if node is None or of is None:
+            continue
+        if len(node) != 1:
+            entry.fault("node", "one node", f"{len(node)} nodes")
+        elif weights is not None and len(weights) != len(of):
+            entry.fault("weights", f"one for each of {len(of)} nodes", f"{len(weights)}")
+        else:
+            out.append(fem.Coupling(node[0], of, 1.0 if weights is None else weights, directions))
+    return out
+
+
+def _loads(model: Table, mesh: Mesh) -> list[fem.Load]:
+    out = []
+    for entry in model.tables("load", required=False):
+        name = entry.text("name", "the name of the load")
+        nodes = _nodes(entry, "nodes", mesh, default=None)
+        expected = "3 components, or 6 with moments"
+        force = entry.numbers("force", expected, lambda x: len(x) in (3, 6), default=None)
+        if (nodes is None) != (force is None):
+            entry.fault("", "nodes and force together", "nodes" if force is None else "force")
+        acceleration = _vector(entry, "acceleration")
+        table = entry.table("strains", "a table, group = free strain", default=None)
+        strains = {
+            group: table.number(group, "a strain", math.isfinite)
+            for group in (table.values if table is not None else ())
+            if table is not None
+        }
+        entry.close()
+        if name is not None and acceleration is not None and None not in strains.values():
+            out.append(fem.Load(name, nodes or (), force or (0, 0, 0), acceleration, strains))
     return out
 
 
@@ -324,7 +453,7 @@ def _places(table: Table) -> list[fem.Sensor]:
 
 
 def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:
-    """Return what each parameter scales: one quantity of named groups, springs or masses."""
+    """Return what each parameter scales: one quantity of named members."""
     out: list[fem.Parameter] = []
     table = model.table("scale", "a table, parameter = { quantity, of }")
     for name in table.values if table else ():
@@ -339,7 +468,7 @@ def _scales(model: Table, parameters: Sequence[str]) -> list[fem.Parameter]:
         quantity: Quantity | None = scale.choice("quantity", get_args(Quantity))
         of = scale.take(
             "of",
-            "a list of groups, springs or masses",
+            "a list of groups, springs, masses or loads",
             lambda x: isinstance(x, list) and bool(x) and all(isinstance(y, str) for y in x),
             ...,
         )

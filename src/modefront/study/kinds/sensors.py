@@ -14,7 +14,8 @@ from modefront.fem.dofs import DIRECTIONS
 from modefront.models.base import Model
 from modefront.models.dofs import DofTable, is_direction
 from modefront.models.matrices import SensorSpec
-from modefront.toml import Table, describe, is_name, is_number
+from modefront.options import is_name, is_number, shown
+from modefront.toml import Table
 
 
 @dataclass(frozen=True)
@@ -182,7 +183,7 @@ def _read(
         pairs = [[value, 1.0]] if is_dof(value) else value
         if not _is_weighted(pairs):
             expected = "a degree of freedom from 0, or a list [[degree of freedom, weight], ...]"
-            table.fault(name, expected, describe(value))
+            table.fault(name, expected, shown(value))
             continue
         beyond = [dof for dof, _ in pairs if size is not None and dof >= size]
         if beyond and size is not None:
@@ -190,7 +191,7 @@ def _read(
             one_off = " (they are counted from 0)" if max(beyond) == size else ""
             table.fault(name, f"degrees of freedom from 0 to {size - 1}{one_off}", found)
         elif not _selects(pairs):
-            table.fault(name, "weights that do not cancel", describe(pairs))
+            table.fault(name, "weights that do not cancel", shown(pairs))
         else:
             out[name] = [(int(dof), float(weight)) for dof, weight in pairs]
     return out
@@ -203,7 +204,7 @@ def _by_node(table: Table, name: str, dofs: DofTable | None) -> dict[str, Sensor
     """
     if dofs is None:
         expected = 'a degree of freedom; nodes and directions need dofs = "dofs.csv"'
-        table.fault(name, expected, describe(table.values[name]))
+        table.fault(name, expected, shown(table.values[name]))
         return {}
     place = table.table(name)
     if place is None:

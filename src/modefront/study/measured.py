@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,19 +14,46 @@ from modefront.data.csv import read_csv
 from modefront.data.modal import ModalData
 from modefront.data.uff55 import NodalModes, is_universal, read_uff55
 from modefront.diagnosis.places import DataDirection, axis_name
-from modefront.errors import InputError, suggestion
+from modefront.errors import InputError, reason, suggestion
+from modefront.families import Family
 from modefront.fem.check import unit_vector
 from modefront.fem.section import FemError
+from modefront.inputs import file_size, wrong
 from modefront.models.base import Model
 from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
-from modefront.toml import Table, describe
+from modefront.options import shown
+from modefront.toml import Table
 
 NEAR = 0.01
 """Distance of a sensor from the node of the test that is its own, over the size of the test."""
 
 ASKEW = 0.5
 """Cosine between the directions of a sensor in model and data below which these disagree."""
+
+
+@dataclass(frozen=True)
+class DataReader:
+    """A reader of files of modal data, besides those in CSV and UFF.
+
+    Attributes
+    ----------
+    ending : of the names of its files, with a point
+    read : returns the data of a file, given its path and the names of the model's sensors in their
+        order, or None where these are not known; raises InputError for what is wrong with it
+    """
+
+    ending: str
+    read: Callable[[Path, Sequence[str] | None], ModalData]
+
+
+READERS: Family[DataReader] = Family(
+    "modefront.readers",
+    "a DataReader",
+    lambda reader: isinstance(reader, DataReader),
+    lambda reader: reader.ending,
+)
+"""Readers of the user by their endings."""
 
 
 def read_data(root: Table, model: Model | None) -> ModalData | None:
@@ -40,21 +70,40 @@ def read_data(root: Table, model: Model | None) -> ModalData | None:
     table.close()
     if name is None:
         return None
-    if not is_uff and not name.lower().endswith(".csv"):
-        table.fault("file", "a file that ends in .csv, .uff or .unv", f"'{name}'")
-        return None
+    path, sensors = Path(name), model.sensors if model else None
     try:
         if is_uff:
             data = _of_nodes(table, places, read_uff55(table.path(name)), model)
-        else:
+        elif path.suffix.lower() == ".csv":
             # Without a model all columns may be sensors: what else is wrong is found nevertheless.
-            data = read_csv(table.path(name), model.sensors if model else None, columns)
+            data = read_csv(table.path(name), sensors, columns)
+        elif path.suffix in READERS:
+            data = _read(READERS[path.suffix], table.path(name), sensors)
+        else:
+            endings = ", ".join([*READERS, ".csv", ".uff"])
+            table.fault("file", f"a file that ends in {endings} or .unv", f"'{name}'")
+            return None
     except InputError as error:
         root.faults.extend(error.faults)
         return None
     if data and model and len(data.modes) > model.size:
         found = f"{len(data.modes)} in '{name}'"
         root.fault("[data] file", f"at most {model.size} modes, as the model has", found)
+    return data
+
+
+def _read(reader: DataReader, path: Path, sensors: tuple[str, ...] | None) -> ModalData:
+    """Return what a reader of the user makes of a file; raises InputError where that is wrong."""
+    file_size(path, "a file of modal data")
+    try:
+        data = reader.read(path, sensors)
+    except InputError:
+        raise
+    except Exception as error:  # a user's function may raise anything
+        raise wrong(path, "a file of modal data", reason(error)) from error
+    if sensors is not None and tuple(data.sensors) != sensors:
+        found = ", ".join(data.sensors)
+        raise wrong(path, f"the sensors {', '.join(sensors)}, in this order", found)
     return data
 
 
@@ -113,7 +162,7 @@ def _given(places: Table, name: str, modes: NodalModes) -> tuple[int, Floats] | 
             places.fault(name, f"one of {_listed(modes)}", suggestion(value, modes.measured))
         return place
     if not isinstance(value, dict):
-        places.fault(name, 'node and direction, such as "12Z"', describe(value))
+        places.fault(name, 'node and direction, such as "12Z"', shown(value))
         return None
     inner = places.table(name)
     if inner is None:

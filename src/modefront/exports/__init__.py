@@ -1,1 +1,0 @@
-"""Models of results as files of other programs."""

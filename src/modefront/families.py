@@ -1,0 +1,97 @@
+"""Families that users extend: kinds of models, residuals and predictions, methods, readers.
+
+A member is of the package, is added by a call of `modefront.register`, or is brought by an
+installed package as an entry point.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from functools import cache
+from typing import Any, Generic, TypeVar
+
+from modefront.errors import Fault, InputError, reason, refuse, wrong
+from modefront.text import NAME, clean
+
+T = TypeVar("T")
+
+
+class Family(Mapping[str, T], Generic[T]):
+    """The members of a family by their names, in the order in which they came.
+
+    Parameters
+    ----------
+    group
+        Name of the entry points that bring members.
+    what
+        Description of a member, for messages.
+    takes
+        Whether an object can be a member.
+    name
+        Returns the name of a member.
+    own
+        Members of the package, of which no other one takes the place.
+    faults
+        Yields what keeps an object from being a member.
+    """
+
+    # 6 arguments: see above.
+    def __init__(
+        self,
+        group: str,
+        what: str,
+        takes: Callable[[Any], bool],
+        name: Callable[[T], str],
+        own: Iterable[T] = (),
+        faults: Callable[[T], Iterable[Fault]] = lambda _: (),
+    ) -> None:
+        self.group, self.what, self.takes, self.name = group, what, takes, name
+        self._own = {name(member): member for member in own}
+        self._faults = faults
+        self.added: dict[str, T] = {}
+        self._loaded = False
+
+    def add(self, member: T) -> T:
+        """Add a member, in place of one that was added under its name, and return it.
+
+        Raises InputError where it is none of the family, or the package has one of its name.
+        """
+        if not self.takes(member):
+            raise wrong("register", self.what, clean(repr(member), NAME))
+        refuse(self._faults(member))
+        name = self.name(member)
+        if name in self._own:
+            raise wrong("register", f"{self.what} with a name of its own", repr(name))
+        self.added[name] = member
+        return member
+
+    def __getitem__(self, name: str) -> T:
+        return self._all()[name]
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._all())
+
+    def __len__(self) -> int:
+        return len(self._all())
+
+    def _all(self) -> dict[str, T]:
+        """Return all members; raises InputError for an entry point that brings none."""
+        if not self._loaded:
+            for each in _entry_points().select(group=self.group):
+                try:
+                    self.add(each.load())
+                except Exception as error:  # the package of another may raise anything
+                    if isinstance(error, InputError):
+                        raise
+                    place = f"entry point '{each.name}' = {each.value} of {self.group}"
+                    raise wrong(place, self.what, reason(error)) from None
+            self._loaded = True
+        return self._own | self.added
+
+
+@cache
+def _entry_points() -> Any:
+    """Return those of all installed packages, which takes time to find out."""
+    from importlib.metadata import entry_points
+
+    return entry_points()

@@ -1,0 +1,125 @@
+r"""Prestress: static loads, the internal forces that they make, and whether these buckle it.
+
+At theta = 1 the displacements u = T q under the forces f are the solution of
+
+    T^T K T q = T^T f,
+
+with forces at nodes, gravity f = M a, and the forces that make free strains. The elements turn u
+into internal forces and their geometric stiffness K_G, which is linear in them. The structure with
+it is stable where K + K_G is positive definite: L D L^T has no negative pivots.
+
+========  ===============================================================
+symbol    meaning
+========  ===============================================================
+f, u      forces and displacements (6 nodes,)
+a         acceleration of gravity
+K         kept DOFs, at theta = 1; T their motion by the free ones
+========  ===============================================================
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+from scipy import sparse
+
+from modefront._typing import Bools, Floats
+from modefront.fem.check import node_list
+from modefront.fem.dofs import DIRECTIONS, Dofs
+from modefront.fem.scatter import Block, Pattern
+from modefront.fem.section import Checks, FemError
+from modefront.fem.structure import Load
+from modefront.linalg.factorisation import (
+    Factorisation,
+    LowerPattern,
+    SingularMatrixError,
+    analyse,
+)
+
+
+def strain(load: Load, name: str) -> float:
+    """Return the free strain of a group under a load."""
+    return load.strains.get(name, 0.0)
+
+
+def load_forces(
+    loads: Sequence[Load], blocks: Sequence[Block], exists: Bools, checks: Checks
+) -> list[Floats]:
+    """Return the forces (6 nodes,) of each load in which nothing is wrong."""
+    forces = (checks.attempt(_forces, x, blocks, exists, f"load {x.name!r}") for x in loads)
+    return [f for f in forces if f is not None]
+
+
+def _forces(load: Load, blocks: Sequence[Block], exists: Bools, place: str) -> Floats:
+    force, a = (np.asarray(x, dtype=float) for x in (load.force, load.acceleration))
+    if force.shape not in ((3,), (6,)) or a.shape != (3,) or not np.isfinite([*force, *a]).all():
+        raise FemError(
+            f"{place}: expected a force (3,) or (6,) and an acceleration (3,), found {load.force!r}"
+            f" and {load.acceleration!r}"
+        )
+    f = np.zeros(exists.shape)
+    if np.size(load.nodes):
+        f[node_list(load.nodes, len(f), place), : len(force)] = force
+    nowhere = np.argwhere((f != 0) & ~exists)
+    if len(nowhere):
+        node, direction = nowhere[0]
+        raise FemError(f"{place}: nothing resists {DIRECTIONS[direction]} of node {node}")
+    out = f.ravel()
+    known = {block.name for block in blocks if block.internal is not None}
+    if unknown := set(load.strains) - known:
+        raise FemError(
+            f"{place}: nothing named {min(unknown)!r} has strains; those that do:"
+            f" {', '.join(sorted(known)) or 'none'}"
+        )
+    for block in blocks:
+        pull = np.tile(np.append(a, np.zeros(3))[list(block.directions)], block.cells.shape[1])
+        parts = [part.matrices @ pull for part in block.matrices.mass]
+        if block.internal is not None and strain(load, block.name):
+            parts.append(block.internal.free_forces(strain(load, block.name)))
+        for each in parts:
+            np.add.at(out, block.dofs(), each)
+    if not out.any():
+        raise FemError(f"{place}: expected forces at nodes, an acceleration or strains, found none")
+    return out
+
+
+def static_state(
+    pattern: Pattern, K: Floats, dofs: Dofs, forces: Sequence[Floats], floating: bool
+) -> list[Floats]:
+    """Return the displacements (6 nodes,) under each of the forces.
+
+    Raises
+    ------
+    FemError
+        If nothing holds the structure, or it is not stable without the loads.
+    """
+    if floating:
+        raise FemError("load: expected a structure that is held, found a floating one")
+    factor = _factor(pattern, K, dofs)
+    if factor is None or factor.negative:
+        raise FemError("load: expected a structure that is stable without it, found another")
+    return [dofs.T @ factor.solve((dofs.T.T @ f)[:, None])[:, 0] for f in forces]
+
+
+def check_stability(pattern: Pattern, K: Floats, dofs: Dofs) -> None:
+    """Refuse loads under which the structure buckles."""
+    factor = _factor(pattern, K, dofs)
+    if factor is None or factor.negative:
+        raise FemError(
+            "load: expected loads and forces below the critical ones, but under them the structure"
+            " buckles"
+        )
+
+
+def _factor(pattern: Pattern, data: Floats, dofs: Dofs) -> Factorisation | None:
+    """Return the factor of T^T K T; None where it is singular."""
+    T = dofs.T[np.flatnonzero(dofs.kept.ravel() >= 0)]
+    K = sparse.csr_array((data, pattern.indices, pattern.indptr), shape=(len(T.indptr) - 1,) * 2)
+    lower = sparse.csc_array(sparse.tril(T.T @ K @ T))
+    lower.sort_indices()
+    try:
+        places = LowerPattern(lower.indptr.astype(np.intp), lower.indices.astype(np.intp))
+        return analyse(places).factor(lower.data)
+    except SingularMatrixError:
+        return None
