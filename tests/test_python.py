@@ -46,7 +46,7 @@ def test_fronts_are_compared_by_the_texts_of_their_paths(folder: Path) -> None:
     name = str(folder / "results")
     comparison = mf.compare([name, name])
     assert comparison.pairs[0].least == 0.0
-    assert list(comparison.table.index)[3] == "reference model"
+    assert "reference model" in comparison.table.index
 
 
 def test_a_report_is_written_beside_the_results_or_where_it_is_wanted(folder: Path) -> None:

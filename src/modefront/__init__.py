@@ -40,6 +40,7 @@ if TYPE_CHECKING:
     from modefront.predictions import Prediction as Prediction
     from modefront.predictions import PredictionKind as PredictionKind
     from modefront.predictions import SoilFilter as SoilFilter
+    from modefront.programs.deck import import_deck as import_deck
     from modefront.programs.importing import import_model as import_model
     from modefront.reports.page import report as report
     from modefront.residuals.groups import Group as Group

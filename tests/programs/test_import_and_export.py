@@ -248,6 +248,7 @@ def test_parameters_of_quotients_stay_above_zero(small: Path) -> None:
         (["--parameter", "E=E", "--factor", "E=x"], "--factor: expected a number that is not 0"),
         (["--parameter", "E=E", "--check", "E"], "expected RUN:NAME=VALUE,NAME=VALUE, found 'E'"),
         (["--parameter", "E=E", "--function", "E="], "--function: expected NAME=TERM,TERM"),
+        (["--parameter", "E=E", "--run", "ccx"], "--run: expected calculix, found 'opensees'"),
         ([], "Missing option '--parameter'"),
     ],
 )

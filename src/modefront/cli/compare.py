@@ -35,7 +35,11 @@ def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
         "Errors are root mean squares, which mean the same in all studies. Ranges are those of all "
         "Pareto-optimal models, edges and weighted ones included."
     )
-    screen.table("", columns, _fronts(comparison))
+    rows = {
+        name: [_number(x) if isinstance(x, float) else str(x) for x in row]
+        for name, row in comparison.rows.items()
+    }
+    screen.table("", columns, [[name, *row] for name, row in rows.items()])
     for title, ranges in (
         ("parameters", [x.parameters for x in fronts]),
         ("predictions", [x.predictions for x in fronts]),
@@ -43,11 +47,11 @@ def print_comparison(comparison: Comparison, *, every: bool = False) -> None:
         known = [{x.name: _range(x) for x in row} for row in ranges]
         order = list(dict.fromkeys(name for row in known for name in row))
         order.sort(key=lambda name: name.startswith(OF_MODES))
-        rows = [[name, *(row.get(name, "") for row in known)] for name in order]
-        screen.table(f"{title}: reference model, and least to greatest", columns, rows[:most])
-        if rows[SHOWN:] and most:
+        cells = [[name, *(row.get(name, "") for row in known)] for name in order]
+        screen.table(f"{title}: reference model, and least to greatest", columns, cells[:most])
+        if cells[SHOWN:] and most:
             screen.say(
-                f"and {len(rows) - SHOWN} more {title}: {command('compare', '--all', *folders)}"
+                f"and {len(cells) - SHOWN} more {title}: {command('compare', '--all', *folders)}"
             )
     pairs = [
         [
@@ -70,25 +74,6 @@ def _common(names: Sequence[str], most: int | None) -> str:
     if most is not None and len(names) > most:
         return f"{len(names)} parameters"
     return ", ".join(names) or "none"
-
-
-def _fronts(comparison: Comparison) -> list[list[str]]:
-    """Return the quantities of each front, a row each."""
-    fronts = comparison.fronts
-    rows: dict[str, list[object]] = {
-        "study": [x.study for x in fronts],
-        "method": [x.method for x in fronts],
-        "Pareto-optimal points": [x.points for x in fronts],
-        "eigenproblems": [x.eigenproblems for x in fronts],
-        "length of the front": [_number(x.length) for x in fronts],
-        "  over that of the first": [_number(x.length_ratio) for x in fronts],
-    }
-    for i, group in enumerate(comparison.groups):
-        rows[f"range of error, {group}"] = [_number(x.extent[i]) for x in fronts]
-    rows["least distance from origin"] = [_number(x.distance) for x in fronts]
-    rows["reference model"] = [x.reference for x in fronts]
-    rows["  its distance from origin"] = [_number(x.reference_distance) for x in fronts]
-    return [[name, *map(str, row)] for name, row in rows.items()]
 
 
 def _range(spread: Spread) -> str:

@@ -9,6 +9,7 @@ from typing import Any
 from modefront.cli.terminal import say
 from modefront.errors import Fault, InputError
 from modefront.programs.base import JobOptions
+from modefront.programs.deck import import_deck
 from modefront.programs.importing import Imported, describe, import_model
 
 
@@ -18,6 +19,9 @@ def run_import(program: str, base: Path, options: JobOptions, output: Path, **gi
     The options that may be repeated are given as they are written: ``parameters`` as NAME=RUN,
     ``factors`` as NAME=2.0, ``functions`` as NAME=TERM,TERM, ``checks`` as RUN:NAME=VALUE,….
     """
+    if given["run"] is not None:
+        _run_deck(program, base, output, **given)
+        return
     runs: dict[str, list[Path]] = {}
     for text in given["parameters"]:
         name, run = _pair("--parameter", text, "NAME=RUN")
@@ -26,23 +30,45 @@ def run_import(program: str, base: Path, options: JobOptions, output: Path, **gi
     for text in given["factors"]:
         name, factor = _pair("--factor", text, "NAME=FACTOR")
         factors.setdefault(name, []).append(_number("--factor", factor))
-    functions = {}
-    for text in given["functions"]:
-        name, terms = _pair("--function", text, "NAME=TERM,TERM, such as t=t,t^3")
-        functions[name] = [term.strip() for term in terms.split(",")]
     checks = [_check(text) for text in given["checks"]]
     imported = import_model(
         program,
         base,
         runs,
         factors=factors,
-        functions=functions,
+        functions=_functions(given["functions"]),
         checks=checks,
         options=options,
         modes=given["modes"],
         progress=lambda text: say(text, err=True),
     )
     _print(imported, imported.write(output), len(checks))
+
+
+def _run_deck(program: str, deck: Path, output: Path, **given: Any) -> None:
+    """Make and run the jobs of a deck, write a study, and print what was found."""
+    if program != "calculix":
+        raise InputError(Fault("", "--run", "calculix", f"'{program}', whose jobs you make"))
+    for option in ("factors", "checks"):
+        if given[option]:
+            expected = "no such option beside --run, which makes the jobs itself"
+            raise InputError(Fault("", f"--{option[:-1]}", expected, given[option][0]))
+    pairs = [_pair("--parameter", text, "NAME=WHAT:NAME") for text in given["parameters"]]
+    imported = import_deck(
+        deck,
+        dict(pairs),
+        run=given["run"],
+        functions=_functions(given["functions"]),
+        modes=given["modes"],
+        progress=lambda text: say(text, err=True),
+    )
+    _print(imported, imported.write(output), 1)
+
+
+def _functions(texts: Sequence[str]) -> dict[str, list[str]]:
+    """Return the terms of parameters, given as NAME=TERM,TERM."""
+    pairs = [_pair("--function", text, "NAME=TERM,TERM, such as t=t,t^3") for text in texts]
+    return {name: [term.strip() for term in terms.split(",")] for name, terms in pairs}
 
 
 def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
@@ -59,7 +85,8 @@ def _print(imported: Imported, files: Sequence[Path], checks: int) -> None:
     if imported.frequencies is not None:
         shown = " ".join(f"{f:.5g}" for f in imported.frequencies)
         say(f"frequencies of the nominal model: {shown} Hz")
-        say("  if your program prints other frequencies, check the units (N, kg, m; N, t, mm)")
+        if not any("program prints" in note for note in imported.notes):
+            say("  if your program prints other frequencies, check the units (N, kg, m; N, t, mm)")
     for file in files:
         say(f"wrote {file}")
     say(f"next: add [data] and [model.sensors] to {files[-1]}, then modefront check {files[-1]}")

@@ -64,7 +64,7 @@ LISTS: Mapping[str, str] = {
 
 def _full_lists(command: Callable[..., None]) -> Callable[..., None]:
     """Return a command with an option for each of `LISTS`."""
-    for name, text in reversed(LISTS.items()):
+    for name, text in reversed(list(LISTS.items())):
         option = click.option(f"--{name}", "lists", flag_value=name, multiple=True, help=text)
         command = option(command)
     return command
@@ -320,7 +320,11 @@ def identify(
     metavar="NAME=RUN",
     multiple=True,
     required=True,
-    help="A parameter, and the job with it at a factor of its nominal value.",
+    help="A parameter, and the job with it at a factor of its nominal value; with --run, what it "
+    "multiplies: material:NAME, density:NAME, section:ELSET, spring:ELSET, mass:ELSET.",
+)
+@click.option(
+    "--run", metavar="ccx", help="CalculiX, which runs jobs that are made from the deck BASE."
 )
 @click.option(
     "--factor",

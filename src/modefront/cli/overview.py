@@ -98,7 +98,7 @@ class _Table:
         out = screen.grid("", columns, list(self._rows(models)))
         std, explained = deviations(self.data)
         notes = [f"±: {explained}"] * bool(np.isfinite(std[self.parameters]).any())
-        if self._bound[np.ix_(models, self.parameters)].any():
+        if self._bound[models][:, self.parameters].any():
             notes.append("min, max: at its lower or upper bound")
         return [*out, *screen.sentence("; ".join(notes))] if notes else out
 

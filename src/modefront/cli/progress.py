@@ -10,6 +10,7 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from dataclasses import dataclass, field
+from datetime import timedelta
 
 from rich.console import Console, ConsoleOptions, RenderResult
 from rich.live import Live
@@ -17,6 +18,7 @@ from rich.progress_bar import ProgressBar
 from rich.table import Table
 from rich.text import Text
 
+from modefront.study.estimate import duration
 from modefront.text import NAME, clean
 from modefront.work.costs import Costs, counted
 from modefront.work.progress import ITERATION, Progress, State, listening
@@ -123,7 +125,7 @@ class _Lines:
         expected = done if self.is_done else max(expected, 1)
         known = self.state is not None and not self.is_done
         of = f"{done} of about {expected} tasks" if known else f"{done} tasks"
-        count = f"{of}  {_clock(self.clock() - self.began)}"
+        count = f"{of}  {timedelta(seconds=int(self.clock() - self.began))}"
         if options.max_width < len(self.title) + len(count) + LEAST:
             yield Text(f"{self.title}  {count}", overflow="fold")
             yield Text(self.words, overflow="fold")
@@ -189,22 +191,5 @@ def _left(state: State, since: float = 0.0) -> str:
         return ""
     if state.surpassed:
         return "longer than expected"
-    left = _left_in_words(state.left - since)
+    left = duration(round(state.left - since))
     return f"{left} or more" if state.stage in SEARCHES else f"about {left} left"
-
-
-def _clock(seconds: float) -> str:
-    minutes, rest = divmod(int(seconds), 60)
-    hours, minutes = divmod(minutes, 60)
-    return f"{hours}:{minutes:02d}:{rest:02d}"
-
-
-def _left_in_words(seconds: float) -> str:
-    """Return a time that is left.
-
-    >>> _left_in_words(42.0), _left_in_words(400.0), _left_in_words(9000.0)
-    ('42 s', '7 min', '2.5 h')
-    """
-    if seconds < 90:
-        return f"{seconds:.0f} s"
-    return f"{seconds / 60:.0f} min" if seconds < 5400 else f"{seconds / 3600:.1f} h"

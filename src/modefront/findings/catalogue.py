@@ -126,6 +126,15 @@ CATALOGUE: Mapping[str, tuple[Severity, str]] = {
     "no-scatter": (OPEN, "no standard deviations are known at {subject}"),
     "approximate": (OPEN, "standard deviations are approximate at {subject}: {why}"),
     "determined": (OPEN, DETERMINE),
+    "ranges": (
+        OPEN,
+        "over all {models} Pareto-optimal models, that is for all weights of the groups, {subject}",
+    ),
+    "spread": (
+        OPEN,
+        "predictions of the Pareto-optimal models differ: {subject}. This is what the choice of "
+        "weights leaves open; what errors of the data leave open is the posterior",
+    ),
     "no-posterior": (OPEN, "there is no posterior: no models are drawn from it"),
     "open-in-posterior": (
         OPEN,

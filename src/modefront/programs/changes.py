@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import json
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import asdict, dataclass
 from pathlib import Path
 
@@ -27,6 +27,9 @@ SAME = 1e-6
 
 OTHER = 1e-5
 """Relative difference of two factors from which on they are others: that of six digits."""
+
+CHANGES, KEPT = "changes.json", "deck-"
+"""File of the changes in the folder of a study, and beginning of the name of the nominal deck."""
 
 LARGEST = 2**26
 """Bytes of a deck above which it is not compared."""
@@ -53,13 +56,17 @@ class Change:
 
     def updated(self, factor: float) -> str:
         """Return the line with its numbers times a factor."""
-        out = self.text
-        for first, last in reversed(self.spans):
-            mantissa, e, exponent = f"{fortran(out[first:last]) * factor:.9g}".partition("e")
-            # Some programs take a number without a decimal point for an integer.
-            point = "" if "." in mantissa else "."
-            out = f"{out[:first]}{mantissa}{point}{e}{exponent}{out[last:]}"
-        return out
+        return _multiplied(self.text, dict.fromkeys(self.spans, factor))
+
+
+def _multiplied(text: str, factors: Mapping[tuple[int, int], float]) -> str:
+    """Return a line with the numbers between beginnings and ends times factors."""
+    for (first, last), factor in sorted(factors.items(), reverse=True):
+        mantissa, e, exponent = f"{fortran(text[first:last]) * factor:.9g}".partition("e")
+        # Some programs take a number without a decimal point for an integer.
+        point = "" if "." in mantissa else "."
+        text = f"{text[:first]}{mantissa}{point}{e}{exponent}{text[last:]}"
+    return text
 
 
 def changes(parameter: str, nominal: Path, run: Path, factor: float) -> list[Change]:
@@ -104,6 +111,32 @@ def _different_lines(nominal: Path, run: Path) -> tuple[str, list[tuple[int, str
         return before.name, []
     numbered = enumerate(zip(*lines, strict=True), start=1)
     return before.name, [(k, old, new) for k, (old, new) in numbered if old != new]
+
+
+def deck_text(job: Path) -> str:
+    """Return the deck of a job; empty where there is none."""
+    deck = _deck(job)
+    return deck.read_text("utf-8", "replace") if deck else ""
+
+
+def write_deck(study: Path, theta: Mapping[str, float], folder: Path) -> None:
+    """Write the deck that the folder of a study keeps with updated values, if it keeps one.
+
+    It is left out where a value of the deck is no parameter of the model.
+    """
+    changes = read_changes(study / CHANGES) if (study / CHANGES).is_file() else []
+    kept = study / f"{KEPT}{changes[0].file}" if changes else study
+    if not kept.is_file() or {each.parameter for each in changes} - set(theta):
+        return
+    lines = kept.read_text("utf-8").splitlines()
+    factors: dict[int, dict[tuple[int, int], float]] = {}
+    for each in changes:
+        line = factors.setdefault(each.line - 1, {})
+        for span in each.spans:
+            line[span] = line.get(span, 1.0) * theta[each.parameter]
+    for k, of_line in factors.items():
+        lines[k] = _multiplied(lines[k], of_line)
+    write_text(folder / changes[0].file, "\n".join(lines) + "\n")
 
 
 def _deck(path: Path) -> Path | None:

@@ -23,7 +23,15 @@ from modefront.models.terms import exponents_of, form_of
 from modefront.outputs import output, write_text
 from modefront.programs import PROGRAMS
 from modefront.programs.base import Job, JobOptions, Quantity, whole
-from modefront.programs.changes import Change, changes, other_factor, write_changes
+from modefront.programs.changes import (
+    CHANGES,
+    KEPT,
+    Change,
+    changes,
+    deck_text,
+    other_factor,
+    write_changes,
+)
 from modefront.programs.condense import condensed
 from modefront.programs.differences import Differences, Run, Term, Terms
 from modefront.programs.mesh import write_mesh
@@ -61,6 +69,7 @@ class Imported:
     notes : what the program did to the model, and what was done about it
     changes : lines of the nominal deck that the runs change
     program : that made the jobs
+    deck : text of the nominal deck; empty where it is not at hand
     """
 
     nominal: Job
@@ -71,6 +80,7 @@ class Imported:
     notes: tuple[str, ...]
     changes: tuple[Change, ...] = ()
     program: str = ""
+    deck: str = ""
 
     def write(self, folder: Path | str) -> list[Path]:
         """Write a study with its matrices into a folder that has none, and return the files.
@@ -162,6 +172,7 @@ def import_model(
     return Imported(
         *(nominal, identified, frequencies, floating, tuple(errors), tuple(notes), changed),
         program=program,
+        deck=deck_text(nominal_path),
     )
 
 
@@ -302,7 +313,8 @@ def write_study(imported: Imported, program: str, directory: Path) -> list[Path]
             if imported.nominal.mesh is not None:
                 write_mesh(folder / "mesh.npz", imported.nominal.mesh)
             if imported.changes:
-                write_changes(folder / "changes.json", imported.changes)
+                write_changes(folder / CHANGES, imported.changes)
+                write_text(folder / f"{KEPT}{imported.changes[0].file}", imported.deck)
             text = _study(imported, program, names)
             write_text(folder / "study.toml", text)
             files = sorted(folder.iterdir(), key=lambda file: file.name == "study.toml")

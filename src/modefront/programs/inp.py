@@ -160,16 +160,23 @@ def _blocks(path: Path, depth: int = 0) -> Iterator[tuple[str, dict[str, str], l
                 yield keyword, options, rows
             elif rows and rows[0][0].isdigit():
                 raise wrong(path, "a keyword before lines of numbers", ", ".join(rows[0]))
-            name, *parts = text[1:].split(",")
-            pairs = [part.partition("=") for part in parts]
-            options = {key.strip().upper(): value.strip().strip('"') for key, _, value in pairs}
-            keyword, rows = name.strip().upper(), []
+            keyword, options, rows = *keyword_of(text), []
             if keyword == "INCLUDE" and options.get("INPUT") and depth < DEEPEST:
                 other = path.parent / options["INPUT"]
                 if other.resolve().is_relative_to(path.parent.resolve()):  # nothing from elsewhere
                     yield from _blocks(other, depth + 1)
     if keyword:
         yield keyword, options, rows
+
+
+def keyword_of(text: str) -> tuple[str, dict[str, str]]:
+    """Return the keyword of a line with a star, and its options."""
+    name, *parts = text[1:].split(",")
+    options = {}
+    for part in parts:
+        key, _, value = part.partition("=")
+        options[key.strip().upper()] = value.strip().strip('"')
+    return name.strip().upper(), options
 
 
 def _nodes(deck: Deck, options: dict[str, str], rows: list[list[str]]) -> None:

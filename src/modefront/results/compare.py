@@ -127,19 +127,32 @@ class Comparison:
     pairs: tuple[Apart, ...]
 
     @property
+    def rows(self) -> dict[str, list[object]]:
+        """Quantities by their names, with a value of each front."""
+        fronts = self.fronts
+        return {
+            "study": [x.study for x in fronts],
+            "method": [x.method for x in fronts],
+            "Pareto-optimal points": [x.points for x in fronts],
+            "eigenproblems": [x.eigenproblems for x in fronts],
+            "length of the front": [x.length for x in fronts],
+            "  over that of the first": [x.length_ratio for x in fronts],
+            **{
+                f"range of error, {group}": [x.extent[i] for x in fronts]
+                for i, group in enumerate(self.groups)
+            },
+            "least distance from origin": [x.distance for x in fronts],
+            "reference model": [x.reference for x in fronts],
+            "  its distance from origin": [x.reference_distance for x in fronts],
+        }
+
+    @property
     def table(self) -> pd.DataFrame:
         """One column a study, one row a quantity of its front."""
         import pandas as pd
 
-        rows = {
-            "Pareto-optimal points": [x.points for x in self.fronts],
-            "length of the front": [x.length for x in self.fronts],
-            "least distance from origin": [x.distance for x in self.fronts],
-            "reference model": [x.reference for x in self.fronts],
-            "its distance from origin": [x.reference_distance for x in self.fronts],
-        }
         names = short_names([x.name for x in self.fronts])
-        return pd.DataFrame(rows, index=names, dtype=object).T
+        return pd.DataFrame(self.rows, index=names, dtype=object).T
 
     def __repr__(self) -> str:
         """Return the table."""

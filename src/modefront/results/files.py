@@ -13,6 +13,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
+import h5netcdf
 import numpy as np
 import xarray as xr
 
@@ -27,7 +28,7 @@ from modefront.text import NAME, clean
 
 FILE = "results.nc"
 
-READER = "modefront.results.netcdf:contents"
+READER = "modefront.results.netcdf:try_file"
 
 SECONDS = 120.0
 """Time that reading may take."""
@@ -120,23 +121,14 @@ def _text(*parts: object) -> bytes:
 
 
 def _read(path: Path) -> xr.Dataset:
-    """Return the contents of a netCDF file, read in a process that damaged files may end."""
-    arrays, texts = isolated(READER, path, SECONDS, available_memory())
-
-    def value(part: Mapping[str, Any]) -> Any:
-        if "place" in part:
-            return arrays[part["place"]]
-        return np.array(part["texts"], dtype=object).reshape(part["shape"])
-
-    def attributes(parts: Mapping[str, Any]) -> dict[str, Any]:
-        values = {name: value(part) for name, part in parts.items()}
-        return {name: each[()] if each.ndim == 0 else each for name, each in values.items()}
-
-    variables = {
-        name: xr.Variable(each["dimensions"], value(each["values"]), attributes(each["attributes"]))
-        for name, each in texts["variables"].items()
-    }
-    raw = xr.Dataset(variables, attrs=attributes(texts["attributes"]))
+    """Return the contents of a netCDF file, after a process that damaged files may end read it."""
+    isolated(READER, path, SECONDS, available_memory())
+    with h5netcdf.File(path, "r", decode_vlen_strings=True) as file:
+        variables = {
+            name: xr.Variable(each.dimensions, each[...], dict(each.attrs))
+            for name, each in file.variables.items()
+        }
+        raw = xr.Dataset(variables, attrs=dict(file.attrs))
     return xr.decode_cf(raw, decode_times=False)
 
 

@@ -42,17 +42,11 @@ def findings(
 ) -> list[Finding]:
     """Return the findings; ``front`` holds all points, those of ``analysis`` too."""
     out = [
-        *_open(front),
-        *_weights(problem, front),
-        *_doubtful(problem, front),
-        *_unknown_ends(front),
+        *_search(problem, front),
         *_identifiability(problem, determinations[0]),
         *_flat(problem, front, analysis),
-        *_separate(analysis),
-        *_connected(problem, analysis),
+        *_manifolds(problem, analysis),
         *_scatter(problem, front, analysis),
-        *_held(problem, analysis),
-        *_replicates(analysis),
     ]
     return in_order(out)
 
@@ -65,49 +59,33 @@ def as_values(findings: Sequence[Finding]) -> Values:
     }
 
 
-def _weights(problem: UpdatingProblem, front: Front) -> list[Finding]:
-    """Return why there is no optimally weighted model, where there is none."""
-    if front.optimal:
-        return []
+def _search(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
+    """Yield what the search has not found, or may not have found."""
+    if front.open:
+        yield found("budget", enumeration(front.open))
     exact = [name for name, fits in zip(problem.objectives, front.exact, strict=True) if fits]
-    if exact:
-        why = (
-            f"the model can fit {enumeration(exact)} exactly, where the optimal weights are not "
-            "defined, and sum a ln J has no regular minimum"
-        )
-    else:
-        why = "no regular minimum of sum a ln J was found"
-    if front.reference.kind is Kind.MOST_PROBABLE:
-        then = f"use {label(Kind.MOST_PROBABLE)}"
-    else:
-        then = (
-            f"{label(Kind.EQUAL)} takes the place of {label(Kind.OPTIMAL)}; a weight in [noise] "
-            f"gives {label(Kind.MOST_PROBABLE)}, which is better"
-        )
-    return [found("no-optimal-weights", label(Kind.OPTIMAL), why=why, then=then)]
-
-
-def _open(front: Front) -> list[Finding]:
-    """Return what the search had not finished when its budget was spent."""
-    return [found("budget", enumeration(front.open))] if front.open else []
-
-
-def _doubtful(problem: UpdatingProblem, front: Front) -> Iterator[Finding]:
-    """Yield which edges may not be the best there are."""
+    if not front.optimal:
+        why, probable = "no regular minimum of sum a ln J was found", label(Kind.MOST_PROBABLE)
+        if exact:
+            why = (
+                f"the model can fit {enumeration(exact)} exactly, where the optimal weights are "
+                "not defined, and sum a ln J has no regular minimum"
+            )
+        then = f"use {probable}"
+        if front.reference.kind is not Kind.MOST_PROBABLE:
+            then = (
+                f"{label(Kind.EQUAL)} takes the place of {label(Kind.OPTIMAL)}; a weight in "
+                f"[noise] gives {probable}, which is better"
+            )
+        yield found("no-optimal-weights", label(Kind.OPTIMAL), why=why, then=then)
     for name, edge in zip(problem.objectives, front.edges, strict=True):
         if edge.doubtful:
             yield found("doubtful-edge", name, starts=edge.starts, minima=edge.found)
-
-
-def _unknown_ends(front: Front) -> list[Finding]:
-    """Return which ends of branches are not known."""
-    out = []
-    for k, gap in enumerate(front.gaps):
+    for k, gap in enumerate(front.gaps, start=1):
         if gap.end is None:
-            out.append(found("unknown-end", str(k + 1), end="ends"))
+            yield found("unknown-end", str(k), end="ends")
         if gap.start is None:
-            out.append(found("unknown-end", str(k + 2), end="starts"))
-    return out
+            yield found("unknown-end", str(k + 1), end="starts")
 
 
 def _identifiability(problem: UpdatingProblem, reference: Determination) -> Iterator[Finding]:
@@ -142,27 +120,21 @@ def _flat(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> It
             yield found("uncut", name, edge=label(Kind.EDGE, name), flat=count, **said)
 
 
-def _separate(analysis: FrontAnalysis) -> list[Finding]:
-    """Return how many isolated models are equivalent."""
-    out = []
-    for of, manifolds in analysis.manifolds:
-        isolated = sum(manifold.extent is Extent.ISOLATED for manifold in manifolds)
-        if isolated > 1:
-            out.append(found("separate", of, models=isolated))
-        left = sum(
-            manifold.extent is Extent.SPENT and len(manifold.models) == 1 for manifold in manifolds
-        )
-        if left:
-            spent = sum(manifold.evaluations for manifold in manifolds)
-            out.append(found("not-followed", of, many=left > 1, models=left, spent=spent))
-    return out
+def _manifolds(problem: UpdatingProblem, analysis: FrontAnalysis) -> Iterator[Finding]:
+    """Yield which models are equivalent: how many isolated ones, and how far manifolds go.
 
-
-def _connected(problem: UpdatingProblem, analysis: FrontAnalysis) -> list[Finding]:
-    """Return how far manifolds go, those of one group and dimension at once."""
+    Manifolds of one group and dimension are in one finding.
+    """
     known = followed(analysis.manifolds)
     shared: dict[int, list[str]] = {k: [of] for k, (of, _) in enumerate(known)}
     for of, manifolds in analysis.manifolds:
+        isolated = sum(manifold.extent is Extent.ISOLATED for manifold in manifolds)
+        if isolated > 1:
+            yield found("separate", of, models=isolated)
+        left = sum(x.extent is Extent.SPENT and len(x.models) == 1 for x in manifolds)
+        if left:
+            spent = sum(manifold.evaluations for manifold in manifolds)
+            yield found("not-followed", of, many=left > 1, models=left, spent=spent)
         for manifold in manifolds:
             if manifold.twin is not None and of not in shared[manifold.twin]:
                 shared[manifold.twin].append(of)
@@ -170,7 +142,7 @@ def _connected(problem: UpdatingProblem, analysis: FrontAnalysis) -> list[Findin
     for k, (_, manifold) in enumerate(known):
         if len(manifold.models) > 1:
             connected.setdefault((enumeration(shared[k]), manifold.dimension), []).append(manifold)
-    return [_extent(problem, of, some) for (of, _), some in connected.items()]
+    yield from (_extent(problem, of, some) for (of, _), some in connected.items())
 
 
 KINDS = {1: "curve", 2: "surface"}
@@ -211,58 +183,38 @@ def _far(problem: UpdatingProblem, theta: Floats) -> str:
 
 def _scatter(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> Iterator[Finding]:
     """Yield where the uncertainty of the data is taken from, and where it is not valid."""
-    data = problem.data
+    data, names = problem.data, problem.model.parameters
+    values, deviations = (
+        np.concatenate([x.ravel() for x in of])
+        for of in ((data.frequency, data.shape), (data.frequency_std, data.shape_std))
+    )
     if analysis.source is None:
-        given = np.isfinite(data.frequency_std).any() or np.isfinite(data.shape_std).any()
-        used = (data.frequency_std > 0).any() or (data.shape_std > 0).any()
-        if given and not used:
+        if np.isfinite(deviations).any() and not (deviations > 0).any():
             yield found("no-deviations")
-        return
-    why = {"std": "their standard deviations", "sets": "the scatter of the data sets"}
-    yield found("source", why[analysis.source])
-    unknown = _without_std(problem) if analysis.source == "std" else 0
-    if unknown:
-        yield found("exact-data", values=unknown)
-    labels = [point.label for point in front.points if point.kind is not Kind.NOMINAL]
-    missing = [name for name in labels if name not in analysis.scatter]
-    if missing:
-        yield found("no-scatter", _places(missing, len(labels)))
-    for warning in LinearisationWarning:
-        warned = [
-            name
-            for name in labels
-            if name in analysis.scatter and warning in analysis.scatter[name].warnings
-        ]
-        if warned:
-            yield found("approximate", _places(warned, len(labels)), why=warning.value)
+    else:
+        why = {"std": "their standard deviations", "sets": "the scatter of the data sets"}
+        yield found("source", why[analysis.source])
+        exact = int((np.isfinite(values) & ~(deviations > 0)).sum())
+        if analysis.source == "std" and exact:
+            yield found("exact-data", values=exact)
+        labels = [point.label for point in front.points if point.kind is not Kind.NOMINAL]
+        missing = [name for name in labels if name not in analysis.scatter]
+        if missing:
+            yield found("no-scatter", _places(missing, len(labels)))
+        for warning in LinearisationWarning:
+            scatter = {name: analysis.scatter.get(name) for name in labels}
+            warned = [name for name, each in scatter.items() if each and warning in each.warnings]
+            if warned:
+                yield found("approximate", _places(warned, len(labels)), why=warning.value)
+    if analysis.posterior is not None and any(analysis.posterior.held):
+        held = [x for x, is_held in zip(names, analysis.posterior.held, strict=True) if is_held]
+        yield found("held", enumeration(held))
+    solutions = [solution for each in analysis.replicates for solution in each.values()]
+    failed = sum(not solution.converged for solution in solutions)
+    if failed:
+        yield found("replicates", failed=failed, solutions=len(solutions))
 
 
 def _places(labels: Sequence[str], points: int) -> str:
     """Return the labels of points, or how many of them there are."""
     return ", ".join(labels) if len(labels) <= FEW else f"{len(labels)} of {points} points"
-
-
-def _without_std(problem: UpdatingProblem) -> int:
-    data = problem.data
-    return int(
-        (np.isfinite(data.frequency) & ~(data.frequency_std > 0)).sum()
-        + (np.isfinite(data.shape) & ~(data.shape_std > 0)).sum()
-    )
-
-
-def _held(problem: UpdatingProblem, analysis: FrontAnalysis) -> Iterator[Finding]:
-    """Yield which parameters the posterior holds at a bound."""
-    if analysis.posterior is None:
-        return
-    parameters = zip(problem.model.parameters, analysis.posterior.held, strict=True)
-    held = [name for name, is_held in parameters if is_held]
-    if held:
-        yield found("held", enumeration(held))
-
-
-def _replicates(analysis: FrontAnalysis) -> Iterator[Finding]:
-    """Yield how many solutions with data drawn again failed."""
-    solutions = [solution for each in analysis.replicates for solution in each.values()]
-    failed = sum(not solution.converged for solution in solutions)
-    if failed:
-        yield found("replicates", failed=failed, solutions=len(solutions))

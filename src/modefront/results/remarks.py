@@ -12,6 +12,7 @@ from modefront.findings.catalogue import Severity
 from modefront.findings.record import Finding, found, from_text, in_order
 from modefront.front.point import Kind, preferred
 from modefront.optim.problem import at_bounds
+from modefront.predictions.registry import kinds_in
 from modefront.results.selection import front_points, not_converged, uncertified
 from modefront.rounding import ACCUMULATED
 
@@ -37,6 +38,13 @@ hundred times the tolerance of a step, which minima that are nearly flat miss by
 
 POOR = 0.5
 """MAC below which a pair is poor."""
+
+
+RANGES = 4
+"""Parameters whose ranges a sentence names."""
+
+WIDE = 1.02
+"""Ratio of greatest to least prediction from which a spread is worth a sentence."""
 
 
 def digest(sentences: Sequence[str], where: str, most: int | None = MOST) -> list[str]:
@@ -65,6 +73,7 @@ def findings_of(data: xr.Dataset, *, full: bool = False) -> list[Finding]:
         *_pairs(data, most),
         *_at_bounds(data, most),
         *_analysed(data),
+        *_ranges(data),
     ]
     if full:
         out += [*_weights(data), *_numerics(data)]
@@ -117,8 +126,8 @@ def _front(data: xr.Dataset) -> Iterator[Finding]:
     for k in range(gaps):
         end, start = data["end_objective"].values[2 * k : 2 * k + 2]
         if np.isfinite([end, start]).all():
-            said = {"end": _vector(end), "start": _vector(start)}
-            yield found("branch-ends", str(k + 1), other=k + 2, **said)
+            ends = _vector(end), _vector(start)
+            yield found("branch-ends", str(k + 1), other=k + 2, end=ends[0], start=ends[1])
     if "piece" in data:
         inside = ~pareto & ~data["dominated_among_front"].values
         inside &= data["kind"].values == Kind.FRONT.value
@@ -168,11 +177,14 @@ def _misfit(data: xr.Dataset) -> Iterator[Finding]:
     nominal, beside = data["kind"].values == Kind.NOMINAL.value, ""
     if nominal.any() and np.isfinite(data["frequency"].values[nominal]).any():
         beside = f"; the nominal model has {_fit(data, nominal)}"
-    said = {
-        "whole": _fit(data, chosen, whole=True),
-        "reference": _fit(data, data["label"].values == best),
-    }
-    yield found("misfit", best, models=int(chosen.sum()), nominal=beside, **said)
+    yield found(
+        "misfit",
+        best,
+        models=int(chosen.sum()),
+        whole=_fit(data, chosen, whole=True),
+        reference=_fit(data, data["label"].values == best),
+        nominal=beside,
+    )
 
 
 def _fit(data: xr.Dataset, chosen: Bools, *, whole: bool = False) -> str:
@@ -280,6 +292,49 @@ def _at_bounds(data: xr.Dataset, most: int | None) -> Iterator[Finding]:
     elif held:
         named = "; ".join(f"{names[j]} ({places(data, at_bound[:, j])})" for j in held)
         yield found("at-bounds", named)
+
+
+def _ranges(data: xr.Dataset) -> Iterator[Finding]:
+    """Yield how far parameters and predictions go over the Pareto-optimal models."""
+    best = np.flatnonzero(data["pareto"].values)
+    if best.size > 1:
+        theta, span = data["theta"].values[best], np.ptp(data["bounds"].values, axis=1)
+        low, high = theta.min(axis=0), theta.max(axis=0)
+        order = np.argsort((low - high) / np.where(span > 0, span, 1.0), kind="stable").tolist()
+        names, first = data["parameter"].values, order[:RANGES]
+        said = ", ".join(f"{names[j]} from {low[j]:.3g} to {high[j]:.3g}" for j in first)
+        rest = len(order) - len(first)
+        less = f" ({rest} parameter{'s' * (rest > 1)} more var{'y' if rest > 1 else 'ies'} less)"
+        yield found("ranges", said + less * (rest > 0), models=int(best.size))
+    widest: list[tuple[float, str]] = []
+    for kind in kinds_in(data):
+        for variable in kind.ranged:
+            ratios = data[f"{variable.name}_range"].values[2].tolist()
+            places = data[kind.dimension].values.tolist()
+            widest += [
+                (x, f"{variable.key} of {place} {_times(x)}")
+                for x, place in zip(ratios, places, strict=True)
+                if np.isfinite(x) and x > WIDE
+            ]
+    if widest:
+        some = [text for _, text in sorted(widest, key=lambda each: -each[0])[:3]]
+        yield found("spread", "; ".join(some))
+
+
+def _times(ratio: float) -> str:
+    """Return a ratio in words.
+
+    >>> _times(1.31), _times(2.34), _times(4512.3), _times(3.2e7)
+    ('by 31 %', 'by a factor of 2.3', 'by a factor of 4,500', 'by more than 7 powers of ten')
+    """
+    if ratio < 2:
+        return f"by {100 * (ratio - 1):.2g} %"
+    if ratio < 10:
+        return f"by a factor of {ratio:.2g}"
+    if ratio < 1e6:
+        digits = len(str(int(ratio)))
+        return f"by a factor of {round(ratio, 2 - digits):,.0f}"
+    return f"by more than {int(np.log10(ratio))} powers of ten"
 
 
 def _numerics(data: xr.Dataset) -> Iterator[Finding]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import html
+import textwrap
 import warnings
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
@@ -33,8 +34,11 @@ if TYPE_CHECKING:
 SHOWN = (Kind.NOMINAL, Kind.MOST_PROBABLE, Kind.OPTIMAL, Kind.EQUAL, Kind.EDGE)
 """Kinds of models in the short representation, in its order."""
 
-SENTENCES, ROWS, COLUMNS = 8, 8, 6
+SENTENCES, ROWS, COLUMNS = 8, 6, 6
 """Sentences, models and groups in the short representation."""
+
+LINES, WIDTH = 11, 96
+"""Lines of its sentences as text, and their characters."""
 
 
 @dataclass(frozen=True, repr=False)
@@ -286,7 +290,12 @@ class Results:
 
     def __repr__(self) -> str:
         """Return the verdict, and the errors of the first models."""
-        return "\n".join([*self._said, "", self._short.to_string(float_format="{:.4g}".format)])
+        said: list[str] = []
+        for lines in (textwrap.wrap(text, WIDTH) for text in self._said):
+            if len(said) + len(lines) > LINES:
+                break
+            said += lines
+        return "\n".join([*said, "", self._short.to_string(float_format="{:.4g}".format)])
 
     def _repr_html_(self) -> str:
         said = "".join(f"<p>{html.escape(text)}</p>" for text in self._said)

@@ -267,6 +267,9 @@ largest_gap* | number | greatest distance of neighbours on a branch, in the same
 """
 
 
+KINDS: tuple[Values, ...] = get_args(Values)
+
+
 def _rows(table: str) -> Iterator[list[str]]:
     """Yield the cells of each row, those of a heading with an empty name."""
     for row in re.sub(r"\n {4}", " ", table).splitlines():
@@ -279,7 +282,7 @@ def _variable(
 ) -> Variable:
     """Return what a row describes."""
     name, _, since = name.partition("@")
-    values = next((x for x in get_args(Values) if x in holds.split()), "number")
+    values: Values = next((x for x in KINDS if x in holds.split()), "number")
     unit = holds.replace(values, "").strip()
     required = name.endswith("*")
     return Variable(
@@ -304,7 +307,7 @@ def _variables() -> Iterator[Variable]:
             heading = cells
 
 
-DIMENSIONS: Mapping[str, str] = dict(map(tuple, _rows(_DIMENSIONS)))
+DIMENSIONS: Mapping[str, str] = {row[0]: row[1] for row in _rows(_DIMENSIONS)}
 """Meanings of the dimensions, by name."""
 
 VARIABLES: Mapping[str, Variable] = {x.name: x for x in _variables()}

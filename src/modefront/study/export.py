@@ -24,7 +24,7 @@ from modefront.models.dofs import DofTable, motion_of_nodes, read_dofs, write_do
 from modefront.models.geometry import Cells
 from modefront.outputs import output as written
 from modefront.outputs import write_table, write_text
-from modefront.programs.changes import Change, read_changes
+from modefront.programs.changes import Change, read_changes, write_deck
 from modefront.programs.mesh import ProgramMesh, read_mesh
 from modefront.results.files import FILE, read_dataset
 from modefront.results.results import ReportedModel, Results
@@ -63,7 +63,7 @@ def export(
     study: Path | str | None = None,
     modes: int | None = None,
 ) -> Exported:
-    """Write a model of results: parameters, matrices, mode shapes, changed lines of the deck.
+    """Write a model of results: parameters, matrices, mode shapes, the deck with its values.
 
     Parameters
     ----------
@@ -103,6 +103,7 @@ def export(
         output.mkdir(parents=True, exist_ok=True)
         with tempfile.TemporaryDirectory(dir=output, prefix=".export-") as unfinished:
             missing = _write(model, loaded.file, Path(unfinished), count)
+            write_deck(loaded.file.parent, model.theta, Path(unfinished))
             files = sorted(Path(unfinished).iterdir())
             moved = tuple(Path(shutil.move(file, output / file.name)) for file in files)
     except ModelError as error:

@@ -8,8 +8,9 @@ from typing import Any
 
 from modefront import fem
 from modefront.fem.mesh import Kind, Mesh
+from modefront.options import is_number
 from modefront.study.kinds.sensors import is_dof, read_axes, read_direction
-from modefront.toml import Table, is_number
+from modefront.toml import Table
 
 Reader = Callable[[Table, str, Mesh], Any]
 """Reads a key of a table; None where it is not given, or has a fault, which is noted."""

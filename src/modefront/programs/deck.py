@@ -1,0 +1,293 @@
+r"""Import of a CalculiX deck: the jobs of its parameters are made from it, and run.
+
+A parameter multiplies what the deck says of a name:
+
+===================  ==========================================================  ================
+what                 numbers                                                     matrices
+===================  ==========================================================  ================
+``material:NAME``    moduli in ``*ELASTIC`` of the material                      :math:`\theta`
+``density:NAME``     ``*DENSITY`` of the material                                :math:`\theta`
+``spring:ELSET``     constants of ``*SPRING``                                    :math:`\theta`
+``mass:ELSET``       ``*MASS``                                                   :math:`\theta`
+``section:ELSET``    thickness of ``*SHELL SECTION``, of which the program       :math:`\theta`,
+                     makes solids                                                1/θ, θ², θ³
+===================  ==========================================================  ================
+
+There is a job at the nominal values, one for each term of a parameter, and one with all parameters
+at other values, with which the terms are compared. The program also prints frequencies of the deck,
+with which those of the imported matrices are compared.
+"""
+
+from __future__ import annotations
+
+import re
+import shutil
+import subprocess
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass, replace
+from itertools import cycle
+from pathlib import Path
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.errors import Fault, InputError, reason, suggestion
+from modefront.inputs import fortran
+from modefront.outputs import write_text
+from modefront.programs.importing import Imported, import_model
+from modefront.programs.inp import DEEPEST, keyword_of
+from modefront.text import one_line
+
+FACTORS = (2.0, 0.5, 1.5, 0.75)
+"""Factors of a parameter in its jobs, as many as it has terms."""
+
+CHECK = (1.5, 0.7, 1.3, 0.8)
+"""Factors of the parameters in the job with which the terms are compared, in turn."""
+
+THICKNESS = ("{0}", "1/{0}", "{0}^2", "{0}^3")
+"""Terms of the thickness of a shell, of which the program makes solids."""
+
+PRINTED = 10
+"""Frequencies that the program prints where the deck does not say how many."""
+
+AGREE = 1e-4
+"""Relative difference of frequencies that the digits of the program explain."""
+
+RIGID = 1e-3
+"""Frequency over the greatest one below which a mode is one of a rigid body."""
+
+MODULI: Mapping[str, tuple[Sequence[int], ...]] = {
+    "ISO": ((0,),),
+    "ORTHO": (range(8), (0,)),
+    "ENGINEERING CONSTANTS": ((0, 1, 2, 6, 7), (0,)),
+}
+"""Places of moduli in the lines of ``*ELASTIC``, by its type; lines repeat for temperatures."""
+
+
+@dataclass(frozen=True)
+class Target:
+    """What a parameter multiplies.
+
+    Attributes
+    ----------
+    kind : material, density, spring, mass or section
+    name : of the material or the set of elements
+    """
+
+    kind: str
+    name: str
+
+    def columns(self, line: Line) -> Sequence[int]:
+        """Return the places of the numbers in a line that it multiplies."""
+        option = {"material": line.material, "density": line.material}.get(self.kind, line.elset)
+        if not line.row or (option, line.keyword) != (self.name.upper(), KEYWORDS[self.kind]):
+            return ()
+        if self.kind == "material":
+            rows = MODULI.get(line.type or "ISO", ())
+            return rows[(line.row - 1) % len(rows)] if rows else ()
+        return (0,) if self.kind != "spring" or line.row > 1 else ()
+
+
+KEYWORDS: Mapping[str, str] = {
+    "material": "ELASTIC",
+    "density": "DENSITY",
+    "spring": "SPRING",
+    "mass": "MASS",
+    "section": "SHELL SECTION",
+}
+"""Keywords that hold the numbers, by the kinds of targets."""
+
+
+@dataclass(frozen=True)
+class Line:
+    """A line of a deck, and where it is.
+
+    ``row`` counts the lines of its keyword from 1, and is 0 for the keyword itself and comments.
+    """
+
+    text: str
+    keyword: str = ""
+    elset: str = ""
+    type: str = ""
+    material: str = ""
+    row: int = 0
+
+
+# 6 arguments: the deck with its parameters, and options by keyword.
+def import_deck(
+    deck: Path | str,
+    parameters: Mapping[str, str],
+    *,
+    run: str = "ccx",
+    functions: Mapping[str, Sequence[str]] | None = None,
+    modes: int | None = None,
+    progress: Callable[[str], None] = lambda _: None,
+) -> Imported:
+    """Return the model of a CalculiX deck, whose jobs are made and run.
+
+    They are left in a folder beside the deck, ``NAME-jobs``.
+
+    Parameters
+    ----------
+    deck
+        The deck, with a step ``*FREQUENCY``.
+    parameters
+        Names of the parameters, each with what it multiplies: ``material:STEEL``.
+    run
+        The program.
+    functions
+        Terms of a parameter on which the matrices depend, where not those that are usual.
+    modes
+        Frequencies to compute; a few unless given, none of a large model.
+    progress
+        Is told in words what is done.
+
+    Raises
+    ------
+    InputError
+        Where the program is not installed or fails, and for names that are not in the deck.
+    """
+    path, folder = Path(deck), Path(deck).with_name(f"{Path(deck).stem}-jobs")
+    program = shutil.which(run)
+    if program is None:
+        raise InputError(Fault("", "--run", "a program that is installed", f"'{run}'"))
+    lines, targets = list(lines_of(path)), _targets(path, parameters)
+    terms = {
+        name: tuple(term.format(name) for term in THICKNESS)
+        for name, target in targets.items()
+        if target.kind == "section"
+    }
+    terms |= {name: tuple(each) for name, each in (functions or {}).items()}
+    counts = {name: len(terms.get(name, (name,))) for name in targets}
+    factors = {name: list(FACTORS[:count]) for name, count in counts.items()}
+    jobs = {f"{name}-{factor:g}": {name: factor} for name in targets for factor in factors[name]}
+    check = dict(zip(targets, cycle(CHECK), strict=False))
+    try:
+        folder.mkdir(exist_ok=True)
+    except OSError as error:
+        expected = "a folder that can be written to"
+        raise InputError(Fault(str(folder), "folder", expected, reason(error))) from None
+    for job, values in {"nominal": {}, **jobs, "check": check}.items():
+        progress(f"running {run} {folder / job}")
+        text = job_text(path, lines, {targets[name]: x for name, x in values.items()}, stored=True)
+        _run(program, folder / job, text, ".sti")
+    progress(f"running {run} {folder / 'frequencies'}")
+    _run(program, folder / "frequencies", job_text(path, lines, {}, stored=False), ".dat")
+    imported = import_model(
+        "calculix",
+        folder / "nominal",
+        {name: [folder / f"{name}-{x:g}" for x in factors[name]] for name in targets},
+        factors=factors,
+        functions=terms,
+        checks=[(folder / "check", check)],
+        modes=modes,
+        progress=progress,
+    )
+    printed = printed_frequencies(folder / "frequencies.dat")
+    notes = (*imported.notes, *_compared(imported.frequencies, printed))
+    return replace(imported, notes=notes)
+
+
+def _targets(path: Path, parameters: Mapping[str, str]) -> dict[str, Target]:
+    """Return what parameters multiply; raises InputError for what is not in the deck."""
+    lines, out, faults = list(lines_of(path)), {}, []
+    for parameter, text in parameters.items():
+        kind, _, name = text.partition(":")
+        target, place = Target(kind, name), f"--parameter {parameter}"
+        if kind not in KEYWORDS or not name:
+            expected = f"NAME=WHAT:NAME, WHAT one of {', '.join(KEYWORDS)}"
+            faults.append(Fault(str(path), place, expected, repr(text)))
+        elif not any(target.columns(line) for line in lines):
+            of = "material" if kind in ("material", "density") else "elset"
+            names = {getattr(x, of) for x in lines if x.keyword == KEYWORDS[kind] and x.row}
+            found = suggestion(name, sorted(names - {""}))
+            faults.append(Fault(str(path), place, f"a name with *{KEYWORDS[kind]}", found))
+        out[parameter] = target
+    if faults:
+        raise InputError(faults)
+    return out
+
+
+def lines_of(path: Path, depth: int = 0) -> Iterator[Line]:
+    """Yield the lines of a deck and of what it includes; raises InputError where there is none."""
+    try:
+        texts = path.read_text("utf-8", "replace").splitlines()
+    except OSError as error:
+        raise InputError(Fault(str(path), "file", "a deck of CalculiX", reason(error))) from None
+    line = Line("")
+    for text in texts:
+        if text.startswith("**"):
+            yield Line(text)
+        elif text.startswith("*"):
+            keyword, options = keyword_of(text)
+            material = options.get("NAME", "").upper() if keyword == "MATERIAL" else line.material
+            elset, kind = (options.get(x, "").upper() for x in ("ELSET", "TYPE"))
+            line = Line(text, keyword, elset, kind, material)
+            if keyword == "INCLUDE" and depth < DEEPEST:
+                yield from lines_of(path.parent / options.get("INPUT", ""), depth + 1)
+            else:
+                yield line
+        else:
+            line = replace(line, text=text, row=line.row + 1)
+            yield line
+
+
+def job_text(
+    path: Path, lines: Sequence[Line], factors: Mapping[Target, float], *, stored: bool
+) -> str:
+    """Return a deck with numbers times factors, which stores matrices or prints frequencies."""
+    out, found = [], False
+    counted = any(line.keyword == "FREQUENCY" and line.row for line in lines)
+    for line in lines:
+        text = line.text
+        if line.keyword == "FREQUENCY" and not line.row:
+            text, found = "*FREQUENCY", True
+            text += ", SOLVER=MATRIXSTORAGE" if stored else f"\n{PRINTED}" * (not counted)
+        items = text.split(",")
+        for target, factor in factors.items():
+            for k in target.columns(line):
+                if k < len(items) and items[k].strip():
+                    items[k] = f" {fortran(items[k].strip()) * factor:.12g}"
+                    items[k] += "." * bool(re.fullmatch(r" -?\d+", items[k]))
+        out.append(",".join(items))
+    if not found:
+        raise InputError(Fault(str(path), "deck", "a step with *FREQUENCY", "none"))
+    return "\n".join(out) + "\n"
+
+
+def _run(program: str, job: Path, text: str, result: str) -> None:
+    """Write a job and run it; raises InputError where it has no result."""
+    made = job.with_name(job.name + result)
+    made.unlink(missing_ok=True)
+    write_text(job.with_name(f"{job.name}.inp"), text)
+    try:
+        done = subprocess.run(
+            [program, job.name], cwd=job.parent, check=False, capture_output=True, text=True
+        )
+    except OSError as error:
+        raise InputError(Fault(program, "--run", "a program that runs", reason(error))) from None
+    errors = re.findall(r"\*ERROR[^*]*", done.stdout)
+    if errors or not made.is_file() or not made.stat().st_size:
+        found = one_line(errors[0] if errors else done.stdout[-400:], 400) or "nothing"
+        raise InputError(Fault(str(job), "job", f"a run of {program} that writes {result}", found))
+
+
+def printed_frequencies(path: Path) -> Floats:
+    """Return the frequencies in Hz that the program prints into a ``.dat`` file."""
+    head = path.read_text("utf-8", "replace").split("P A R T I C I P A T I O N")[0]
+    rows = [line.split() for line in head.splitlines()]
+    return np.array([float(row[3]) for row in rows if len(row) == 5 and row[0].isdigit()])
+
+
+def _compared(computed: Floats | None, printed: Floats) -> list[str]:
+    """Return how far frequencies of the matrices are from those that the program prints."""
+    if computed is None or not printed.size:
+        return []
+    count = min(computed.size, printed.size)
+    f, expected = computed[:count], printed[:count]
+    elastic = expected > RIGID * expected.max()
+    error = np.abs(f[elastic] / expected[elastic] - 1).max(initial=0.0)
+    if error < AGREE:
+        return [f"the first {count} frequencies are those that the program prints, to {error:.0e}"]
+    shown = " ".join(f"{x:.5g}" for x in expected)
+    return [f"the program prints {shown} Hz, up to {100 * error:.2g} % from those of its matrices"]

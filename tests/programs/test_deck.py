@@ -1,0 +1,130 @@
+"""Decks of CalculiX: what parameters multiply, jobs that are made and run, updated decks."""
+
+from __future__ import annotations
+
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import modefront as mf
+from modefront.programs.changes import write_deck
+from modefront.programs.deck import Target, job_text, lines_of, printed_frequencies
+from modefront.programs.importing import model_of
+from modefront.study.examples import write_example
+
+CCX = shutil.which("ccx")
+needs_ccx = pytest.mark.skipif(CCX is None, reason="CalculiX (ccx) is not installed")
+
+DECK = """\
+** *ELASTIC in a comment
+*INCLUDE, INPUT=steel.inp
+*Material, Name=Wood
+*Elastic, Type=Engineering Constants
+11e9, 5e8, 5e8, 0.3, 0.3, 0.4, 7e8, 7e8,
+4e8, 293.
+*Density
+600.
+*Shell section, elset=Deck, material=Wood
+0.02
+*Spring, elset=Feet
+
+2e5
+*Spring, elset=Ends
+3
+4000
+*Mass, elset=Box
+12.5
+*Step
+*Frequency, Solver=Matrixstorage
+*End step
+"""
+STEEL = "*MATERIAL, NAME=STEEL\n*ELASTIC\n2.1E11, 0.3, 293.\n2.0E11, 0.3, 400.\n*DENSITY\n7850,\n"
+
+
+@pytest.fixture
+def deck(tmp_path: Path) -> Path:
+    (tmp_path / "steel.inp").write_text(STEEL)
+    (tmp_path / "bridge.inp").write_text(DECK)
+    return tmp_path / "bridge.inp"
+
+
+@pytest.mark.parametrize(
+    ("kind", "name", "places"),
+    [
+        ("material", "steel", [[0], [0]]),
+        ("material", "WOOD", [[0, 1, 2, 6, 7], [0]]),
+        ("density", "Steel", [[0]]),
+        ("density", "wood", [[0]]),
+        ("section", "DECK", [[0]]),
+        ("spring", "feet", [[0]]),
+        ("spring", "ends", [[0]]),
+        ("mass", "box", [[0]]),
+    ],
+)
+def test_a_parameter_multiplies_what_the_deck_says_of_a_name(
+    kind: str, name: str, places: list[list[int]], deck: Path
+) -> None:
+    lines = list(lines_of(deck))
+    before = job_text(deck, lines, {}, stored=True).splitlines()
+    after = job_text(deck, lines, {Target(kind, name): 2.0}, stored=True).splitlines()
+    pairs = [(x.split(","), y.split(",")) for x, y in zip(before, after, strict=True) if x != y]
+    scaled = [[k for k, (a, b) in enumerate(zip(x, y, strict=True)) if a != b] for x, y in pairs]
+    assert scaled == places
+    for x, y in pairs:
+        for a, b in zip(x, y, strict=True):
+            if a != b:
+                assert float(b) == 2 * float(a)
+                assert "." in b or "e" in b, "a number with a point, as programs want it"
+
+
+def test_jobs_store_matrices_or_print_frequencies(deck: Path) -> None:
+    lines = list(lines_of(deck))
+    assert "*FREQUENCY, SOLVER=MATRIXSTORAGE\n*End" in job_text(deck, lines, {}, stored=True)
+    assert "*FREQUENCY\n10\n*End" in job_text(deck, lines, {}, stored=False)
+    assert "INCLUDE" not in job_text(deck, lines, {}, stored=True)
+
+
+def test_what_cannot_be_run_is_refused(deck: Path, tmp_path: Path) -> None:
+    with pytest.raises(mf.InputError, match="expected a program that is installed, found 'no-ccx'"):
+        mf.import_deck(deck, {"E": "material:STEEL"}, run="no-ccx")
+    wrong = {"E": "material:STEAL", "k": "spring:BOX", "x": "colour:RED", "t": "section"}
+    with pytest.raises(mf.InputError) as caught:
+        mf.import_deck(deck, wrong, run=sys.executable)
+    E, k, x, t = map(str, caught.value.faults)
+    assert "--parameter E: expected a name with *ELASTIC" in E
+    assert "did you mean 'STEEL'" in E
+    assert "a name with *SPRING" in k
+    assert "one of material, density, spring, mass, section, found 'colour:RED'" in x
+    assert "found 'section'" in t
+    assert not list(tmp_path.glob("*-jobs"))
+    with pytest.raises(mf.InputError, match=r"a run of .* that writes \.sti"):
+        mf.import_deck(deck, {"E": "material:STEEL"}, run=sys.executable)
+    deck.write_text(DECK.replace("*Frequency", "*Static"))
+    with pytest.raises(mf.InputError, match=r"expected a step with \*FREQUENCY, found none"):
+        mf.import_deck(deck, {"E": "material:STEEL"}, run=sys.executable)
+    with pytest.raises(mf.InputError, match="a deck of CalculiX"):
+        mf.import_deck(tmp_path / "none.inp", {"E": "material:STEEL"}, run=sys.executable)
+
+
+@needs_ccx
+def test_a_deck_is_imported_with_jobs_of_its_own_and_comes_back_whole(tmp_path: Path) -> None:
+    write_example("calculix", tmp_path / "decks")
+    parameters = {"columns": "material:COLUMNS", "t": "section:PLATE", "k": "spring:SPRING"}
+    imported = mf.import_deck(tmp_path / "decks" / "nominal.inp", parameters)
+    assert max(imported.errors) < 1e-10
+    assert any("those that the program prints" in note for note in imported.notes)
+    imported.write(tmp_path / "study")
+    theta = {"columns": 1.3, "t": 1.2, "k": 0.6}
+    write_deck(tmp_path / "study", theta, tmp_path)
+    text = (tmp_path / "nominal.inp").read_text()
+    (tmp_path / "updated.inp").write_text(
+        text.replace("*FREQUENCY, SOLVER=MATRIXSTORAGE", "*FREQUENCY\n8")
+    )
+    subprocess.run([str(CCX), "updated"], cwd=tmp_path, check=True, capture_output=True)
+    expected = printed_frequencies(tmp_path / "updated.dat")
+    lam = model_of(imported.terms).full_modes(np.array(list(theta.values())), 8).lam
+    assert np.sqrt(lam) / (2 * np.pi) == pytest.approx(expected, rel=2e-5)
