@@ -63,7 +63,7 @@ def middle(problem: Problem, share: float) -> Evaluation:
 
 
 def test_a_task_brings_its_result_with_the_models_that_it_evaluated() -> None:
-    outcome = recorded(middle, box(circles, [-1, -1], [2, 2]), 0.5)
+    outcome = recorded(middle, None, box(circles, [-1, -1], [2, 2]), 0.5)
     assert outcome.result.theta.tolist() == [0.5, 0.5]
     assert outcome.theta.tolist() == [[0.5, 0.5]], "the other one is dominated"
     assert outcome.J.tolist() == [[0.5, 0.5]]
