@@ -569,10 +569,12 @@ class Reference:
 def dominance(J: Floats, point: Floats, floor: Floats) -> Floats:
     """Return by which share rows of J are better than a point in one objective and worse in none.
 
-    It is 0 for rows that are worse in any objective by more than rounding.
+    It is 0 for rows that are worse in any objective by more than rounding. Of two exact fits, below
+    the floor, none is better.
     """
     worse = (point * (1 + TIE) + ROUNDING / EXACT * floor < J).any(axis=1)
-    gain = ((point - J) / np.maximum(point, floor)).max(axis=1)
+    before = np.maximum(point, floor)
+    gain = ((before - np.maximum(J, floor)) / before).max(axis=1)
     out: Floats = np.where(worse, 0.0, np.maximum(gain, 0.0))
     return out
 
@@ -592,9 +594,9 @@ def strict_gain(equation: Equation, point: Floats, model: Known, k: int, floor: 
     for start in starts:
         J = equation.J(_brought_back(equation, start, limits, others))
         if (limits * (1 + STRICT) >= J)[others].all():
-            gains.append((point[k] - J[k]) / max(point[k], floor[k]))
+            gains.append(1 - max(J[k], floor[k]) / limits[k])
     if not gains:
-        return float((point[k] - model.J[k]) / max(point[k], floor[k]))
+        return float(1 - max(model.J[k], floor[k]) / limits[k])
     return float(max(0.0, *gains))
 
 

@@ -13,11 +13,12 @@ from modefront.front.archive import Archive, Recorder, recorded
 from modefront.front.front import Front
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
+from modefront.front.state import Counted, State
 from modefront.optim.problem import Evaluation, Problem, Wrapped
 from modefront.work.costs import Costs
 from modefront.work.run import Run
 from modefront.work.store import Store
-from modefront.work.task import IMMEDIATE, Executor
+from modefront.work.task import IMMEDIATE, Executor, Task
 
 
 def dominated(J: Floats, others: Floats) -> bool:
@@ -63,11 +64,35 @@ def middle(problem: Problem, share: float) -> Evaluation:
 
 
 def test_a_task_brings_its_result_with_the_models_that_it_evaluated() -> None:
-    outcome = recorded(middle, box(circles, [-1, -1], [2, 2]), 0.5)
+    outcome = recorded(middle, None, box(circles, [-1, -1], [2, 2]), 0.5)
     assert outcome.result.theta.tolist() == [0.5, 0.5]
     assert outcome.theta.tolist() == [[0.5, 0.5]], "the other one is dominated"
     assert outcome.J.tolist() == [[0.5, 0.5]]
     assert outcome.evaluations == 2
+
+
+def test_a_task_ends_where_its_evaluations_are_spent_and_its_models_are_known() -> None:
+    problem = box(circles, [-1, -1], [2, 2])
+    cut = recorded(middle, 1, problem, 0.5)
+    assert cut.result is None
+    assert cut.spent
+    assert (cut.evaluations, cut.theta.tolist()) == (1, [[2.0, 2.0]])
+    whole = recorded(middle, 2, problem, 0.5)
+    assert not whole.spent
+    assert whole.evaluations == 2
+
+
+def test_tasks_share_what_is_left_of_the_budget() -> None:
+    problem = box(circles, [-1, -1], [2, 2])
+    state = State(problem, 1e-3, Archive(2, 2))
+    tasks = [Task(("test", k), middle, (problem, share)) for k, share in enumerate((0.3, 0.6))]
+    within = Counted(state, IMMEDIATE, budget=7)
+    assert None not in within.run(tasks)
+    assert (state.evaluations, within.spent) == (4, False)
+    assert within.run(tasks) == [None, None], "three are left, one for each"
+    assert (state.evaluations, within.spent) == (6, True)
+    assert None not in Counted(state, IMMEDIATE).run(tasks), "what has to be done is done"
+    assert state.evaluations == 10
 
 
 def computed_front(work: Executor) -> Front:

@@ -27,6 +27,7 @@ from modefront._typing import Bools, Floats
 from modefront.errors import InputError
 from modefront.front.archive import Archive, Outcome, recorded
 from modefront.front.dominance import undominated
+from modefront.front.edges import SAMPLE
 from modefront.front.front import Front
 from modefront.front.options import Pareto
 from modefront.front.pareto import pareto_front
@@ -196,8 +197,8 @@ def test_at_its_budget_a_search_ends_and_says_what_did_not_converge(budget: int)
     problem = waves(11, 2)
     search = Search(evaluations=budget)
     front = pareto_front(problem, ONES, Pareto(points=20), seed=1, search=search)
-    # What is being solved is finished, weights and gaps follow, and each point has its derivatives.
-    assert len(problem.all) <= budget + 1000
+    # Typical sizes are found, and each model that is reported has its derivatives, at any rate.
+    assert len(problem.all) <= max(budget, SAMPLE) + len(front.points)
     open_points = [point for point in front.points if not point.solution.converged]
     assert open_points
     assert {point.solution.status for point in open_points} <= {Status.EXHAUSTED, Status.STALLED}
@@ -313,7 +314,7 @@ def state_of(problem: Known, subproblems: list[Subproblem], thetas: list[list[fl
         solution = begin(problem.evaluate(np.array(theta)))
         state.archive.add(solution.theta, solution.J)
         state.models.append(solution)
-    state.add(subproblems, [None] * len(subproblems))
+    state.add(subproblems)
     return state
 
 
@@ -483,7 +484,7 @@ def test_children_lie_within_the_bounds(seed: int) -> None:
     assert (children <= problem.upper).all()
     assert offer.place == -1
     assert not offer.final
-    outcome = recorded(offer.function, problem, *offer.arguments)
+    outcome = recorded(offer.function, None, problem, *offer.arguments)
     assert outcome.evaluations == CHILDREN
 
 
@@ -498,7 +499,9 @@ def test_evolution_alone_comes_close_to_an_edge() -> None:
         for place in state.places:
             place.closed = True
         (offer,) = evolution.offers(state, 6)
-        state.tell(-1, offer.start, False, recorded(offer.function, problem, *offer.arguments))
+        state.tell(
+            -1, offer.start, False, recorded(offer.function, None, problem, *offer.arguments)
+        )
     assert np.abs(state.places[0].incumbent.theta).max() < 0.5
 
 
@@ -568,7 +571,7 @@ def test_models_that_cannot_be_evaluated_do_not_compete() -> None:
     problem = box(hole, [-2, -2], [2, 2], 3)
     state = state_of(problem, anchors(problem), [[0.1, 0.1]])
     before = [place.incumbent for place in state.places]
-    outcome = recorded(lambda of: begin(of.evaluate(np.array([1.0, 0.0]))), problem)
+    outcome = recorded(lambda of: begin(of.evaluate(np.array([1.0, 0.0]))), None, problem)
     assert state.tell(0, before[0], True, outcome) == 0.0
     assert all(x is place.incumbent for x, place in zip(before, state.places, strict=True))
     assert len(state.models) == 1

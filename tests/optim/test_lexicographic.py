@@ -28,6 +28,40 @@ def test_of_a_curve_of_minima_the_point_is_found_that_is_best_in_the_other(
     assert best.J[1] < 1e-12
 
 
+@pytest.mark.parametrize("stiffness", [1.0, 1e-2, 1e-4])
+def test_the_path_goes_on_until_a_weak_objective_is_least(stiffness: float) -> None:
+    """Of x y = 1 the point next to (3, 0): x**4 - 3 x**3 = 1. The weaker J2, the farther the path.
+
+    The model at epsilon has J2 = epsilon**2 mu**2 / (4 stiffness), with the multiplier mu.
+    """
+
+    def curve(theta: Floats) -> Derivatives:
+        x, y = theta
+        r = x * y - 1
+        J = np.array([(x - 3) ** 2 + y**2, stiffness * r**2])
+        dJ = np.array([[2 * (x - 3), 2 * y], [2 * stiffness * r * y, 2 * stiffness * r * x]])
+        H = stiffness * np.array([[2 * y**2, 4 * x * y - 2], [4 * x * y - 2, 2 * x**2]])
+        return J, dJ, np.array([2 * np.eye(2), H])
+
+    problem = box(curve, [0.1, 0.1], [5.0, 5.0])
+    x = max(np.roots([1, -3, 0, 0, -1]).real)
+    for start in ([0.5, 4.0], [4.0, 4.0]):
+        best = Lexicographic(1, ONES).solve(
+            problem, begin(problem.evaluate(np.array(start))), TIGHT
+        )
+        assert best.J[1] < 1e-10
+        assert best.theta == pytest.approx([x, 1 / x], abs=1e-4)
+
+
+def test_a_minimum_above_the_least_known_one_is_not_followed_to_its_end() -> None:
+    problem = box(valley, [0.1, 0.1], [3.0, 3.0])
+    start = begin(problem.evaluate(np.array([0.3, 2.9])))
+    whole = Lexicographic(1, ONES).solve(problem, start, TIGHT)
+    short = Lexicographic(1, ONES).solve(problem, start, TIGHT, least=-1.0)
+    assert short.evaluations < whole.evaluations / 2
+    assert short.J[0] > whole.J[0]
+
+
 @given(st.integers(0, 2**31), st.floats(1e-3, 1e3))
 def test_of_a_line_of_minima_the_sizes_decide(seed: int, size: float) -> None:
     """J1 = x**2 leaves y open; J2 / c2 + J3 / c3 is least at a mean of y and 1."""

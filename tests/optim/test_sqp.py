@@ -10,9 +10,8 @@ from hypothesis import strategies as st
 from problems import Derivatives, Known, bowls, box, circles, curved, sphere
 
 from modefront._typing import Floats
-from modefront.optim.correction import Correction
 from modefront.optim.merit import Merit, Multipliers, projected, surplus
-from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Residual
+from modefront.optim.problem import Evaluation, ObjectiveDerivatives
 from modefront.optim.scalarisation import Scalarisation, achievement, level, weighted
 from modefront.optim.secant import learned_from
 from modefront.optim.sqp import Options, Solution, Status, begin, solve
@@ -173,39 +172,6 @@ def test_only_what_adds_to_known_second_derivatives_shrinks_with_them() -> None:
         S = np.diag([1.0, 1.0])[None]
         new = learned_from(S, at(0 * s, 0 * s, H), at(s, 0 * s, H), np.ones(2))
         assert new[0] == pytest.approx(np.diag([0.0, kept]))
-
-
-# ---- second-order correction -----------------------------------------------------------------
-
-
-def test_a_correction_leads_back_into_a_bent_valley() -> None:
-    """Of y - x**2 = 0 from the origin along x: the step ends beside it, the correction on it."""
-
-    def valley(theta: Floats) -> Evaluation:
-        x, y = theta
-        r = Residual(np.array([y - x**2]), np.array([[-2 * x, 1.0]]))
-        J, dJ = np.array([r.r @ r.r]), 2 * (r.r @ r.dr)[None]
-        H = 2 * (r.dr.T @ r.dr)[None]
-        return Evaluation(theta, J, ObjectiveDerivatives(dJ, H), residuals=[r])
-
-    class Valley(Known):
-        def evaluate(
-            self, theta: Floats, *, derivatives: bool = True, second: bool = False
-        ) -> Evaluation:
-            del derivatives
-            return valley(theta)
-
-    problem = Valley(curved, -np.ones(2), np.ones(2), np.zeros(2), ("J1",))
-    correction = Correction(Merit(weighted(np.ones(1)), NONE, 10.0), np.zeros((0, 1)))
-    point, s = valley(np.zeros(2)), np.array([0.1, 0.0])
-    new = valley(np.array([0.2, 0.0]))
-    corrected = correction.evaluated(problem, point, s, new)
-    assert corrected is not None
-    assert corrected.J[0] < 0.1 * new.J[0]
-    # No longer than the step itself, and never for the worse.
-    tiny = valley(np.array([1e-3, 0.5]))
-    assert correction.corrected(problem, point, np.array([5e-4, 0.0]), tiny) is not None
-    assert correction.evaluated(problem, point, np.zeros(2), valley(np.zeros(2))) is None
 
 
 # ---- programmes with a maximum ---------------------------------------------------------------

@@ -117,7 +117,7 @@ def identifiable_part(
     state.models += [*ends, *points]
     counts = lattice(len(edges), divisions)
     subproblems = [Point(row / divisions, tuple(row.tolist()), target) for row in counts]
-    state.add(subproblems, [None] * len(counts))
+    state.add(subproblems)
     Loop(state, [Polish(), Rivals()], Search(), work).run("identifiable")
     along = distinct_points([place.incumbent for place in state.places], target.scale)
     floor = np.where(flat > 0, (1 - TIE) * target.utopia, 0.0)

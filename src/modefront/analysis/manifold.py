@@ -51,7 +51,7 @@ import scipy.linalg
 
 from modefront._typing import Bools, Floats
 from modefront.analysis.tangents import ARRIVED, Context, TangentPoint, context_of
-from modefront.optim.problem import AT_BOUND, Evaluation, Problem, Wrapped
+from modefront.optim.problem import AT_BOUND, Evaluation, Problem, SpentError, Wrapped
 from modefront.optim.scalarisation import Scalarisation
 from modefront.work.codec import record
 from modefront.work.progress import note
@@ -134,10 +134,6 @@ class Manifold:
     twin: int | None = None
 
 
-class _SpentError(Exception):
-    """The evaluations that were allowed are spent."""
-
-
 @dataclass
 class _Meter:
     """Counts evaluations, of which no more than ``most`` are made."""
@@ -148,9 +144,9 @@ class _Meter:
     def evaluation(
         self, problem: Problem, theta: Floats, derivatives: bool, second: bool
     ) -> Evaluation:
-        """Return an evaluation; raises _SpentError where none is left."""
+        """Return an evaluation; raises SpentError where none is left."""
         if self.spent >= self.most:
-            raise _SpentError
+            raise SpentError
         self.spent += 1
         note(f"model {self.spent} of at most {self.most}")
         return problem.evaluate(theta, derivatives=derivatives, second=second)
@@ -192,7 +188,7 @@ def equivalent_models(
                 twin = _position(context, first, [*out, *known], h)
                 on = twin if twin is not None and twin < len(out) else None
                 manifold = _follow(context, first, h, limit) if twin is None else None
-            except _SpentError:
+            except SpentError:
                 manifold = Manifold(0, [minimum], Extent.SPENT)
         spent = meter.spent - before
         if on is not None:
@@ -259,7 +255,7 @@ def _follow(context: Context, first: TangentPoint, h: float, limit: int) -> Mani
             extent = _cover(context, points, max(h, covering ** (-1 / 2)), covering)
         if d > COVERED or (d == COVERED and extent is Extent.CUT):
             extent = _span(context, points, limit)
-    except _SpentError:
+    except SpentError:
         extent = Extent.SPENT
     if len(points) == 1 and extent not in (Extent.CUT, Extent.SPENT):
         d, extent = 0, Extent.ISOLATED  # flat to second order only, or held by bounds

@@ -3,14 +3,15 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.optim.problem import Evaluation, Problem, Wrapped
+from modefront.optim.problem import Evaluation, Problem, SpentError, Wrapped
 from modefront.work.codec import record
+from modefront.work.task import Task
 
 ROOM = 64
 """Models for which there is room at first; it doubles when it is full."""
@@ -60,15 +61,18 @@ class Archive:
 
 @dataclass
 class Recorder:
-    """Counts the evaluations of a problem, and archives the nondominated ones."""
+    """Archives the models that are evaluated, of which there are no more than ``most``."""
 
     archive: Archive
+    most: int | None = None
     evaluations: int = 0
 
     def evaluation(
         self, problem: Problem, theta: Floats, derivatives: bool, second: bool
     ) -> Evaluation:
-        """Return the evaluation of a problem at ``theta``, and remember it."""
+        """Return the evaluation at ``theta``; raises SpentError where none is left."""
+        if self.most is not None and self.evaluations >= self.most:
+            raise SpentError
         evaluation = problem.evaluate(theta, derivatives=derivatives, second=second)
         self.evaluations += 1
         self.archive.add(evaluation.theta, evaluation.J)
@@ -82,21 +86,36 @@ class Outcome:
 
     Attributes
     ----------
-    result : of the task
+    result : of the task; None where its evaluations were spent before
     theta, J : (models, p) and (models, n)
     evaluations : number of evaluations
+    spent : whether there was none left for it to end
     """
 
     result: Any
     theta: Floats
     J: Floats
     evaluations: int
+    spent: bool = False
 
 
 def recorded(
-    function: Callable[..., Any], problem: Problem, *arguments: Any, **options: Any
+    function: Callable[..., Any],
+    most: int | None,
+    problem: Problem,
+    *arguments: Any,
+    **options: Any,
 ) -> Outcome:
     """Return the result of a function of a problem, with the models that it evaluates."""
-    seen = Recorder(Archive(problem.lower.size, len(problem.objectives)))
-    result = function(Wrapped(problem, seen.evaluation), *arguments, **options)
-    return Outcome(result, seen.archive.theta, seen.archive.J, seen.evaluations)
+    seen = Recorder(Archive(problem.lower.size, len(problem.objectives)), most)
+    result, spent = None, False
+    try:
+        result = function(Wrapped(problem, seen.evaluation), *arguments, **options)
+    except SpentError:
+        spent = True
+    return Outcome(result, seen.archive.theta, seen.archive.J, seen.evaluations, spent)
+
+
+def limited(task: Task[Any], most: int | None) -> Task[Outcome]:
+    """Return a task on a problem, its first argument, with the evaluations that it may make."""
+    return replace(task, function=recorded, arguments=(task.function, most, *task.arguments))

@@ -13,17 +13,14 @@ again with those that are kept, without solving anything, up to where it stopped
 from __future__ import annotations
 
 import zlib
-from collections.abc import Mapping
-from dataclasses import dataclass, replace
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.dominance import nondominated
 from modefront.front.methods import METHODS
-from modefront.optim.problem import Evaluation, Problem, infeasible
+from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, Status
-from modefront.work.codec import record
 from modefront.work.task import IMMEDIATE, Executor, Task
 
 UNDEFINED = 1e20
@@ -40,7 +37,8 @@ def evolve_front(
 ) -> list[Solution]:
     """Return the non-dominated models of the last population, ascending in the first objective.
 
-    ``evaluations`` is the budget; whole generations of size ``population`` are spent of it.
+    ``evaluations`` is the budget; whole generations of size ``population`` are spent of it. The
+    models that are returned are evaluated once more, for their quantities.
     """
     from pymoo.core.evaluator import Evaluator
     from pymoo.core.problem import Problem as Described
@@ -57,77 +55,30 @@ def evolve_front(
         seed=int(rng.integers(2**31)),
         verbose=False,
     )
-    known: dict[bytes, Evaluation] = {}
     spent = 0
     while spent == 0 or spent + population <= evaluations:
         proposals = algorithm.ask()
         thetas = proposals.get("X")
         # Another version of pymoo may ask for other models.
         key = ("front", method, spent, f"{zlib.crc32(thetas.tobytes()):x}")
-        (generation,) = work.run([Task(key, _generation, (problem, thetas))])
-        members = _members(generation, n)
+        (J,) = work.run([Task(key, _objectives, (problem, thetas))])
         spent += len(proposals)
-        known |= {
-            theta.tobytes(): evaluation for theta, evaluation in zip(thetas, members, strict=True)
-        }
-        J = np.array([evaluation.J for evaluation in members])
         F = np.nan_to_num(J, posinf=UNDEFINED)
         Evaluator().eval(StaticProblem(described, F=F), proposals)
         algorithm.tell(infills=proposals)
-        alive = {theta.tobytes() for theta in algorithm.pop.get("X")}
-        known = {key: evaluation for key, evaluation in known.items() if key in alive}
-    last = [evaluation for evaluation in known.values() if evaluation.feasible]
-    optimal = nondominated(_objectives(last, n))
-    chosen = [evaluation for evaluation, kept in zip(last, optimal, strict=True) if kept]
-    return [
-        _sampled(evaluation)
-        for evaluation in sorted(chosen, key=lambda evaluation: tuple(evaluation.J))
-    ]
+    F = algorithm.pop.get("F")
+    chosen = nondominated(F) & (UNDEFINED > F).all(axis=1)
+    last = algorithm.pop.get("X")[chosen][np.lexsort(F[chosen].T[::-1])]
+    members = work.run([Task(("known", method), _members, (problem, last))])[0]
+    return [Solution(x, np.full(n, np.nan), 0.0, Status.SAMPLED, 0) for x in members]
 
 
-@record
-@dataclass(frozen=True)
-class Generation:
-    """Evaluations of a generation.
-
-    Attributes
-    ----------
-    theta, J : (members, p) and (members, n)
-    quantities : of the feasible members, their first dimension
-    """
-
-    theta: Floats
-    J: Floats
-    quantities: Mapping[str, Floats]
+def _objectives(problem: Problem, thetas: Floats) -> Floats:
+    """Return the objectives (members, n) of models (members, p), moved into the bounds."""
+    return np.array([x.J for x in _members(problem, thetas)])
 
 
-def _generation(problem: Problem, thetas: Floats) -> Generation:
+def _members(problem: Problem, thetas: Floats) -> list[Evaluation]:
     """Return the evaluations of models (members, p), moved into the bounds."""
     inside = np.clip(thetas, problem.lower, problem.upper)
-    evaluations = [problem.evaluate(theta, derivatives=False) for theta in inside]
-    kept = [evaluation.quantities for evaluation in evaluations if evaluation.feasible]
-    names = kept[0] if kept else {}
-    quantities = {name: np.array([member[name] for member in kept]) for name in names}
-    return Generation(inside, np.array([evaluation.J for evaluation in evaluations]), quantities)
-
-
-def _members(generation: Generation, n: int) -> list[Evaluation]:
-    """Return the evaluations of a generation."""
-    count = iter(range(len(generation.theta)))
-    out = []
-    for theta, J in zip(generation.theta, generation.J, strict=True):
-        member = infeasible(theta, n)
-        if np.isfinite(J).all():
-            k = next(count)
-            quantities = {name: values[k] for name, values in generation.quantities.items()}
-            member = replace(member, J=J, quantities=quantities)
-        out.append(member)
-    return out
-
-
-def _objectives(evaluations: list[Evaluation], n: int) -> Floats:
-    return np.array([evaluation.J for evaluation in evaluations]).reshape(-1, n)
-
-
-def _sampled(evaluation: Evaluation) -> Solution:
-    return Solution(evaluation, np.full(evaluation.J.size, np.nan), 0.0, Status.SAMPLED, 0)
+    return [problem.evaluate(theta, derivatives=False) for theta in inside]

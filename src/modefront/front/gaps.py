@@ -86,7 +86,8 @@ def gaps(
             tasks.append(Task(("gap", a + 1, b + 1), _ends, arguments))
             sides.append((points[a], points[b], known))
     out = []
-    for (last, first, known), (end, start) in zip(sides, work.run(tasks), strict=True):
+    for (last, first, known), ends in zip(sides, work.run(tasks), strict=True):
+        end, start = ends or (None, None)
         if end and start and not _lies_between(end, start, scale):
             own, beyond = (end, first) if known[0] else (start, last)
             if not any(known) or np.abs((own.J - beyond.J) / scale).max() <= NARROW:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 
@@ -10,7 +10,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import UnfinishedError
-from modefront.front.archive import Archive, recorded
+from modefront.front.archive import Archive
 from modefront.front.dominance import nondominated
 from modefront.front.edges import near_best, sample
 from modefront.front.evolutionary import evolve_front
@@ -19,7 +19,7 @@ from modefront.front.gaps import NARROW, Gap, gaps
 from modefront.front.methods import METHODS
 from modefront.front.options import Pareto
 from modefront.front.point import Kind, Point, label, of_kind
-from modefront.front.proposers.base import Proposer, Rate
+from modefront.front.proposers.base import Proposer, Rate, at, evaluated
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.rivals import Rivals
@@ -34,7 +34,7 @@ from modefront.front.simplex import (
     neighbours,
     payoff,
 )
-from modefront.front.state import DISTINCT, Place, State, distinct_points
+from modefront.front.state import DISTINCT, Counted, Place, State, distinct_points
 from modefront.front.subproblems import RHO, Least, Subproblem, Weights, active_bounds, is_along
 from modefront.front.subproblems import Point as LatticePoint
 from modefront.front.weights import (
@@ -103,9 +103,10 @@ class _Run:
         known: Front | None,
     ) -> None:
         self.problem, self.a, self.options, self.given = problem, a, options, given
-        self.work, self.known, self.seed = work, known, seed
-        self.n = len(problem.objectives)
+        self.known, self.seed, self.n = known, seed, len(problem.objectives)
         self.state = State(problem, search.tolerance, Archive(problem.lower.size, self.n))
+        self.needed = Counted(self.state, work)
+        self.work = Counted(self.state, work, search.evaluations)
         self._swept: dict[Key, Floats] = {}
         rng = np.random.default_rng(seed_sequence(seed, "search"))
         self.starts, self.rivals = Starts(rng), Rivals()
@@ -118,6 +119,7 @@ class _Run:
     def front(self) -> Front:
         """Return all that is found."""
         sizes = self._sizes()
+        self._recall()
         self._add_anchors(sizes)
         self.loop.run("edges")
         for place in self.places:
@@ -165,8 +167,9 @@ class _Run:
         names: dict[Key, str] = {("edge", x): label(Kind.EDGE, x) for x in self.problem.objectives}
         names |= {("weights", k.value, x): label(k, x) for k, x, _ in self._weights()}
         left = self.loop.open
-        between = ("points between the edges",) * bool(left - names.keys())
-        return (*(text for key, text in names.items() if key in left), *between)
+        more = ("points between the edges",) * bool(left - names.keys())
+        more += ("what follows from the points",) * self.work.spent
+        return (*(text for key, text in names.items() if key in left), *more)
 
     @property
     def places(self) -> list[Place]:
@@ -185,18 +188,14 @@ class _Run:
     def _sizes(self) -> Floats:
         """Return the typical size of each objective, (n,), of random models, unless it is known."""
         seed = seed_sequence(0 if self.known else 1, "sample")
-        task = Task(("sample",), recorded, (sample, self.problem), seed)
-        (seen,) = self.work.run([task])
-        self.state.evaluations += seen.evaluations
-        for theta, J in zip(seen.theta, seen.J, strict=True):
-            self.state.archive.add(theta, J)
+        (sizes,) = self.needed.run([Task(("sample",), sample, (self.problem,), seed)])
         if self.known:
             return self.known.sizes
-        if not seen.result.size:
+        if not sizes.size:
             raise UnfinishedError(
                 "the model cannot be evaluated at any of the parameters tried within the bounds"
             )
-        return np.asarray(seen.result)
+        return np.asarray(sizes)
 
     def _add_anchors(self, sizes: Floats) -> None:
         """Add the subproblems of the edges and of the weighted models."""
@@ -205,32 +204,20 @@ class _Run:
         ]
         for kind, name, w in self._weights():
             out.append(Weights(w, ("weights", kind.value, name), EXACT * float(w @ sizes)))
-        self.state.add(out, [self._known_solution(each) for each in out])
+        self.state.add(out)
 
-    def _known_solution(self, subproblem: Subproblem) -> Solution | None:
-        """Return the solution of a subproblem in the known front, evaluated again."""
-        if self.known is None:
-            return None
-        found: list[Solution] = []
-        if isinstance(subproblem, Least):
-            found = [self.known.edges[subproblem.objective].best]
-        elif isinstance(subproblem, LatticePoint):
-            along = [x.solution for x in of_kind(self.known.points, Kind.FRONT)]
-            apart = {
-                k: np.abs(x.beta - subproblem.beta).max()
-                for k, x in enumerate(along)
-                if x.beta is not None
-            }
-            found = [along[min(apart, key=lambda k: apart[k])]] if apart else []
-        else:
-            labels = {("weights", x.kind.value, x.name): x.solution for x in self.known.points}
-            found = [x for key, x in labels.items() if key == subproblem.key]
-        if not found:
-            return None
-        task = Task(("known", *subproblem.key), recorded, (_evaluated, self.problem, found[0]))
-        (seen,) = self.work.run([task])
-        self.state.evaluations += seen.evaluations
-        return seen.result if seen.result.feasible else None
+    def _recall(self) -> None:
+        """Evaluate the models of the known front again, from which subproblems start."""
+        models = [point.solution for point in self.known.points] if self.known else []
+        distinct: list[Solution] = []
+        for x in models:
+            if self.state.is_new(x, distinct):
+                distinct.append(x)
+        tasks = [
+            Task(("known", k + 1), evaluated, (self.problem, at(x.theta)))
+            for k, x in enumerate(distinct)
+        ]
+        self.state.models += [x for x in self.needed.run(tasks) if x.feasible]
 
     def _between(self, sizes: Floats) -> Payoff | None:
         """Search the points between the edges, until these stay where they are."""
@@ -250,8 +237,8 @@ class _Run:
             target = new
             if METHODS[self.options.method].programme is None:
                 break  # its points are the models of a population
-            before = {x.subproblem.key: x.incumbent for x in self._drop_points()}
-            self._add_points(target, counts, before)
+            self._drop_points()
+            self._add_points(target, counts)
             self._run_front()
             self._grow(target)
             self._fill(target, len(counts))
@@ -271,7 +258,7 @@ class _Run:
             for i, key in enumerate(keys):
                 w = np.where(np.arange(self.n) == i, LEAST, 1.0) / sizes
                 new.append(Weights(w, key, EXACT * self.n))
-            self.state.add(new, [None] * self.n)
+            self.state.add(new)
             self.loop.run("ranges")
         return [self.place(*key).incumbent for key in keys]
 
@@ -280,13 +267,8 @@ class _Run:
         self.rivals.rate = Rate()
         self.loop.run("front")
 
-    def _add_points(
-        self,
-        target: Payoff,
-        counts: Sequence[tuple[int, ...]],
-        before: Mapping[Key, Solution] | None = None,
-    ) -> None:
-        """Add points of the lattice, from the models that they had ``before``."""
+    def _add_points(self, target: Payoff, counts: Sequence[tuple[int, ...]]) -> None:
+        """Add points of the lattice."""
         new: list[Subproblem] = []
         for row in counts:
             beta = np.array(row) / sum(row)
@@ -296,14 +278,11 @@ class _Run:
                 self._swept[new[-1].key] = beta
             else:
                 new.append(LatticePoint(beta, row, target, self.options.programme == "equations"))
-        starts = [(before or {}).get(each.key) or self._known_solution(each) for each in new]
-        self.state.add(new, starts)
+        self.state.add(new)
 
-    def _drop_points(self) -> list[Place]:
-        """Take the points of a front away, and return them."""
-        along = [x for x in self.places if is_along(x.subproblem)]
+    def _drop_points(self) -> None:
+        """Take the points of a front away."""
         self.state.places = [x for x in self.places if not is_along(x.subproblem)]
-        return along
 
     def _lattice(self) -> list[tuple[Place, LatticePoint]]:
         """Return the places of the points of the lattice, with their subproblems."""
@@ -378,17 +357,14 @@ class _Run:
     def _complete(self) -> None:
         """Evaluate the derivatives of incumbents that no search has started from: at the budget."""
         rest = [x for x in self.places if x.incumbent.evaluation.derivatives is None]
+        models = {x.incumbent.theta.tobytes(): x.incumbent for x in rest}
         tasks = [
-            Task(
-                ("front", "rest", *x.subproblem.key),
-                recorded,
-                (_evaluated, self.problem, x.incumbent),
-            )
-            for x in rest
+            Task(("front", "rest", k + 1), evaluated, (self.problem, x))
+            for k, x in enumerate(models.values())
         ]
-        for place, seen in zip(rest, self.work.run(tasks), strict=True):
-            place.incumbent = seen.result
-            self.state.evaluations += seen.evaluations
+        found = dict(zip(models, self.needed.run(tasks), strict=True))
+        for place in rest:
+            place.incumbent = found[place.incumbent.theta.tobytes()]
 
     def _edges(self) -> list[Edge]:
         """Return the edge of each objective with its other minima."""
@@ -445,14 +421,15 @@ class _Run:
             )
             for i, (name, x) in enumerate(zip(names, bests, strict=True))
         ]
-        return self.work.run(tasks)
+        found = self.work.run(tasks)
+        return [x or best for x, best in zip(found, bests, strict=True)]
 
     def _evolved(self) -> list[Solution]:
         """Return the nondominated models of the last population of an evolutionary method."""
         options = self.options
         rng = np.random.default_rng(seed_sequence(self.seed, options.method))
         population, evaluations = options.population, options.evaluations
-        arguments = (self.problem, options.method, population, evaluations, rng, self.work)
+        arguments = (self.problem, options.method, population, evaluations, rng, self.needed)
         return evolve_front(*arguments)
 
     def _gaps(self, points: Sequence[Solution], target: Payoff | None) -> Sequence[Gap]:
@@ -477,18 +454,12 @@ class _Run:
         """Return the regular minima of the optimally weighted residuals, each once, best first."""
         starts = [*(x.solution for x in models), *bests, *least_along(points, self.a, sizes)]
         tasks = [
-            Task(
-                ("optimal-weights", k + 1),
-                recorded,
-                (optimal_minimum, self.problem, self.a, sizes, x),
-            )
+            Task(("optimal-weights", k + 1), optimal_minimum, (self.problem, self.a, sizes, x))
             for k, x in enumerate(starts)
         ]
         minima: list[Solution] = []
-        for seen in self.work.run(tasks):
-            self.state.evaluations += seen.evaluations
-            x: Solution = seen.result
-            if x.converged and self.state.is_new(x, minima):
+        for x in self.work.run(tasks):
+            if x and x.converged and self.state.is_new(x, minima):
                 minima.append(x)
         return accepted(self.problem, minima, self.a, sizes)
 
@@ -499,15 +470,11 @@ class _Run:
         equal = of_kind(models, Kind.EQUAL)
         first = equal[0].solution if equal else bests[0]
         arguments = (self.problem, self.a, sizes, first)
-        return self.work.run([Task(("iterated-weights",), iterate_weights, arguments)])[0]
+        (fixed,) = self.work.run([Task(("iterated-weights",), iterate_weights, arguments)])
+        return fixed
 
 
 def _are_alike(one: Payoff, other: Payoff) -> bool:
     """Return whether two simplexes hardly differ."""
     utopia = np.abs((one.utopia - other.utopia) / one.scale).max()
     return bool(max(utopia, np.abs(one.scale / other.scale - 1).max()) < DISTINCT)
-
-
-def _evaluated(problem: Problem, solution: Solution) -> Solution:
-    """Return a solution with derivatives."""
-    return replace(solution, evaluation=problem.evaluate(solution.theta, second=True))

@@ -1,9 +1,10 @@
 """The search: proposers are asked, the best offers are solved, and all are told what was found.
 
 An offer is worth making as long as the chance that some subproblem gains more than the tolerance,
-or the part of the box that may hold something better, is above the doubt that is allowed. Of these, the ones with the greatest chance per evaluation are
-solved, some at a time. The search ends when no offer is worth making, or at its budget. Nothing
-depends on who solves the offers, and in which order they are done.
+or the part of the box that may hold something better, is above the doubt that is allowed. Of these,
+the ones with the greatest chance per evaluation are solved, some at a time. The search ends when no
+offer is worth making, or at its budget. Nothing depends on who solves the offers, and in which
+order they are done.
 """
 
 from __future__ import annotations
@@ -12,7 +13,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass, field
 from typing import Annotated
 
-from modefront.front.archive import recorded
+from modefront.front.archive import limited
 from modefront.front.proposers.base import Offer, Proposer
 from modefront.front.state import State
 from modefront.options import check_fields, number, whole
@@ -28,6 +29,10 @@ SHARE = number("a share above 0 and below 1", lambda x: 0 < x < 1)
 
 USUAL = 10
 """Evaluations that a search is expected to take before any is known."""
+
+SEARCHING = 0.9
+"""Share of the budget that is searched with; the rest is for what follows from the front: optimal
+weights and the ends of its branches."""
 
 
 @dataclass(frozen=True)
@@ -76,8 +81,10 @@ class Loop:
 
     def run(self, stage: str) -> None:
         """Search until nothing is worth it, or until the budget is spent."""
+        budget = int(SEARCHING * self.search.evaluations)
         while offers := self._offers():
-            if self.state.evaluations >= self.search.evaluations:
+            left = budget - self.state.evaluations
+            if left <= 0:
                 places = self.state.places
                 self.open |= {places[offer.place].subproblem.key for _, offer in offers}
                 break
@@ -86,14 +93,17 @@ class Loop:
             tasks = [
                 Task(
                     (stage, self.turn, j + 1),
-                    recorded,
-                    (offer.function, self.state.problem, *offer.arguments),
+                    offer.function,
+                    (self.state.problem, *offer.arguments),
                 )
                 for j, (_, offer) in enumerate(chosen)
             ]
-            for (proposer, offer), outcome in zip(chosen, self.work.run(tasks), strict=True):
+            share = max(left // len(chosen), 1)
+            outcomes = self.work.run([limited(task, share) for task in tasks])
+            for (proposer, offer), outcome in zip(chosen, outcomes, strict=True):
                 gain = self.state.tell(offer.place, offer.start, offer.final, outcome)
-                proposer.learn(self.state, offer, outcome, gain)
+                if outcome.result is not None:
+                    proposer.learn(self.state, offer, outcome, gain)
                 spent = self.costs.setdefault(proposer.name, [0, 0])
                 spent[0] += 1
                 spent[1] += outcome.evaluations

@@ -2,16 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.front.archive import Archive, Outcome
+from modefront.front.archive import Archive, Outcome, limited
 from modefront.front.subproblems import Subproblem
 from modefront.optim.problem import Evaluation, Problem
 from modefront.optim.sqp import Solution, begin
+from modefront.work.task import Executor, Task
 
 DISTINCT = 1e-3
 """Distance of two models, over the ranges of the parameters, above which they are two."""
@@ -63,12 +65,10 @@ class State:
         """Ranges of the parameters, (p,)."""
         return self.problem.upper - self.problem.lower
 
-    def add(self, subproblems: Sequence[Subproblem], starts: Sequence[Solution | None]) -> None:
-        """Add subproblems; what is known of each, or the best model of the archive, is a start."""
-        for subproblem, start in zip(subproblems, starts, strict=True):
-            place = Place(subproblem, start or self.best(subproblem), closed=False)
-            self.places.append(place)
-            self.challenge(place, self.archive.theta, self.archive.J)
+    def add(self, subproblems: Sequence[Subproblem]) -> None:
+        """Add subproblems, with the best of the known models."""
+        for subproblem in subproblems:
+            self.places.append(Place(subproblem, self.best(subproblem)))
 
     def best(self, subproblem: Subproblem) -> Solution:
         """Return the best of the known models in a subproblem."""
@@ -80,37 +80,42 @@ class State:
         close = near >= 0 and subproblem.gain(best.J, self.models[near]) <= self.tolerance
         return self.models[near] if close else best
 
+    def note(self, outcome: Outcome) -> None:
+        """Count the evaluations of a task, and archive its models."""
+        self.evaluations += outcome.evaluations
+        for theta, J in zip(outcome.theta, outcome.J, strict=True):
+            self.archive.add(theta, J)
+
     def tell(self, k: int, start: Solution, final: bool, outcome: Outcome) -> float:
         """Take note of what a search led to; return the greatest gain of a subproblem.
 
         It is a solution of the place ``k`` where it is ``final``.
         """
-        solution: Solution = outcome.result
-        self.evaluations += outcome.evaluations
-        for theta, J in zip(outcome.theta, outcome.J, strict=True):
-            self.archive.add(theta, J)
+        solution: Solution | None = outcome.result
+        self.note(outcome)
         gain = 0.0
-        if final and solution.feasible:
+        if final and solution:
             place = self.places[k]
-            own = place.subproblem.gain(solution.J, place.incumbent)
             is_incumbent = start is place.incumbent
-            if place.subproblem.competes:
-                first = solution.converged and not place.closed
-                better = own > 0 or (own > -self.tolerance and first)
-            else:
-                better = not place.closed or (solution.converged and not place.incumbent.converged)
-            gain = max(gain, own)
-            if better:
-                place.incumbent = solution
-            place.closed = place.closed or better or is_incumbent
-        elif final and start is self.places[k].incumbent:
-            self.places[k].closed = True
+            if solution.feasible:
+                own = place.subproblem.gain(solution.J, place.incumbent)
+                gain = max(gain, own)
+                if self._replaces(solution, own, place):
+                    place.incumbent, is_incumbent = solution, True
+            place.closed = place.closed or is_incumbent
         for place in self.places:
             gain = max(gain, self.challenge(place, outcome.theta, outcome.J, solution))
-        derivatives = solution.evaluation.derivatives
-        if solution.feasible and derivatives and self.is_new(solution, self.models):
+        is_known = not (solution and solution.feasible and solution.evaluation.derivatives)
+        if solution and not is_known and self.is_new(solution, self.models):
             self.models.append(solution)
         return gain
+
+    def _replaces(self, solution: Solution, gain: float, place: Place) -> bool:
+        """Return whether a solution of a place takes that of its incumbent."""
+        if place.subproblem.competes:
+            first = solution.converged and not place.closed
+            return gain > 0 or (gain > -self.tolerance and first)
+        return not place.closed or (solution.converged and not place.incumbent.converged)
 
     def challenge(
         self, place: Place, theta: Floats, J: Floats, solution: Solution | None = None
@@ -134,6 +139,42 @@ class State:
         """Return whether a solution is another model than all known ones."""
         apart = (np.abs((solution.theta - x.theta) / self.span).max() for x in known)
         return all(distance > DISTINCT for distance in apart)
+
+
+@dataclass
+class Counted:
+    """Carries out tasks on a problem, whose models are archived, within a budget.
+
+    Attributes
+    ----------
+    state : which takes note of them
+    inner : carries out the tasks
+    budget : evaluations up to which tasks have a result; None where each of them has
+    spent : whether some task had none
+    """
+
+    state: State
+    inner: Executor
+    budget: int | None = None
+    spent: bool = False
+
+    def run(self, tasks: Sequence[Task[Any]]) -> list[Any]:
+        """Return the results of tasks, None where the evaluations of one were spent."""
+        outcomes = self.inner.run([limited(task, self.share(len(tasks))) for task in tasks])
+        for outcome in outcomes:
+            self.state.note(outcome)
+            self.spent |= outcome.spent
+        return [outcome.result for outcome in outcomes]
+
+    def share(self, tasks: int) -> int | None:
+        """Return the evaluations that each of so many tasks may make."""
+        if self.budget is None:
+            return None
+        return max(self.budget - self.state.evaluations, 0) // max(tasks, 1)
+
+    def expect(self, stages: Mapping[str, int]) -> None:
+        """Pass on the extent of the work."""
+        self.inner.expect(stages)
 
 
 def distinct_points(points: Sequence[Solution], scale: Floats) -> list[Solution]:

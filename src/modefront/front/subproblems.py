@@ -62,10 +62,7 @@ def active_bounds(shares: Floats) -> Bools:
 NEGLIGIBLE = 1e-16
 """Objective over its typical size at which a search ends: residuals of the tolerance of steps."""
 
-_TIGHT, _ROUGH = (
-    Options(step=1e-8, reduction=1e-24, negligible=NEGLIGIBLE),
-    Options(step=3e-4, constraint=3e-4),
-)
+_TIGHT = Options(step=1e-8, reduction=1e-24, negligible=NEGLIGIBLE)
 
 
 class Subproblem(Protocol):
@@ -95,11 +92,8 @@ class Subproblem(Protocol):
     def programme(self) -> Scalarisation:
         """What is minimised, among equals apart."""
 
-    def solve(self, problem: Problem, start: Solution) -> Solution:
-        """Return the solution that a start leads to."""
-
-    def approach(self, problem: Problem, start: Solution, steps: int) -> Solution:
-        """Return a model on the way to the solution, after so many steps at most."""
+    def solve(self, problem: Problem, start: Solution, known: Floats | None = None, /) -> Solution:
+        """Return the solution that a start leads to, in full if it may beat objectives (n,)."""
 
 
 @dataclass(frozen=True)
@@ -147,13 +141,10 @@ class Least:
         """J_i."""
         return weighted(self._slope(0.0))
 
-    def solve(self, problem: Problem, start: Solution) -> Solution:
-        """Return the lexicographic minimum below a start."""
-        return self.order.solve(problem, start, _TIGHT)
-
-    def approach(self, problem: Problem, start: Solution, steps: int) -> Solution:
-        """Return the minimum of J_i alone."""
-        return self.order.first(problem, start, replace(_TIGHT, iterations=steps))
+    def solve(self, problem: Problem, start: Solution, known: Floats | None = None) -> Solution:
+        """Return the lexicographic minimum below a start, if J_i may be as small as known."""
+        least = np.inf if known is None else float(known[self.objective])
+        return self.order.solve(problem, start, _TIGHT, least)
 
     def _slope(self, rest: float) -> Floats:
         out = rest * self.order.others
@@ -192,23 +183,10 @@ class Weights:
         """w^T J."""
         return weighted(self.w)
 
-    def solve(self, problem: Problem, start: Solution) -> Solution:
+    def solve(self, problem: Problem, start: Solution, _: Floats | None = None) -> Solution:
         """Return the minimum below a start."""
-        return solve(problem, self.programme, start, self._options)
-
-    def approach(self, problem: Problem, start: Solution, steps: int) -> Solution:
-        """Return a model near the minimum below a start."""
-        return solve(
-            problem,
-            self.programme,
-            start,
-            replace(_ROUGH, iterations=steps, negligible=self._options.negligible),
-        )
-
-    @property
-    def _options(self) -> Options:
-        """Options of a solution."""
-        return Options(negligible=NEGLIGIBLE / EXACT * self.negligible)
+        options = Options(negligible=NEGLIGIBLE / EXACT * self.negligible)
+        return solve(problem, self.programme, start, options)
 
 
 @dataclass(frozen=True)
@@ -260,13 +238,9 @@ class Point:
         c = self.target.excess(self.beta, known.J)
         return np.asarray(((c == c.max()) + RHO) / self.target.unit)
 
-    def solve(self, problem: Problem, start: Solution) -> Solution:
+    def solve(self, problem: Problem, start: Solution, _: Floats | None = None) -> Solution:
         """Return the point that a start leads to."""
         return replace(solve(problem, self.programme, start), beta=self.beta)
-
-    def approach(self, problem: Problem, start: Solution, steps: int) -> Solution:
-        """Return a model near the point that a start leads to."""
-        return solve(problem, self.programme, start, replace(_ROUGH, iterations=steps))
 
     @property
     def programme(self) -> Scalarisation:

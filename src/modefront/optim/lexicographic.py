@@ -47,9 +47,8 @@ FIRST, LAST, RATIO = 1e-1, 1e-10, 10
 """Values of epsilon at which the path begins, and beyond which it is not followed; ratio of one to
 the next."""
 
-ARRIVED = 1e-6
-"""Distance of two limits, over the ranges of the parameters, below which they are the same: ten
-times the tolerance of a step."""
+SHARE = 1e-8
+"""Change of the others, over themselves, below which a minimiser on the path is exact enough."""
 
 
 @dataclass(frozen=True)
@@ -87,51 +86,61 @@ class Lexicographic:
         rank = int((sigma > RANK * sigma.max(initial=np.finfo(float).tiny)).sum())
         return rank < evaluation.theta.size
 
-    def solve(self, problem: Problem, start: Solution, options: Options) -> Solution:
-        """Return the lexicographic minimum below a start."""
-        best = self.first(problem, start, options)
-        if not best.feasible or self.sizes.size == 1 or not self.is_open(problem, best.evaluation):
+    def solve(
+        self, problem: Problem, start: Solution, options: Options, least: float = np.inf
+    ) -> Solution:
+        """Return the lexicographic minimum below a start.
+
+        A minimum of the first objective that exceeds the ``least`` one is left where it is.
+        """
+        i = self.objective
+        best = _solved(problem, self._with(0.0), replace(start, evaluations=0), options)
+        above = best.feasible and best.J[i] > least + self.margin(least)
+        alone = self.sizes.size == 1 or not best.feasible
+        if above or alone or not self.is_open(problem, best.evaluation):
             return best
         spent = best.evaluations
-        for first, begins in ((FIRST, start), (FIRST / 1000, best)):
-            end = self._end(problem, first, begins, best, options)
+        for epsilon, begins in ((FIRST, start), (FIRST / 1000, best)):
+            end = self._end(problem, epsilon, begins, options)
             spent += end.evaluations
-            if end.feasible and self._reaches(end.J, best.J):
-                return replace(end, evaluations=spent)
+            if end.feasible and (end.J[i] <= best.J[i] or self.ties(end.J, best.J)):
+                isolated = self._equal(end.J, best.J)
+                return replace(best if isolated else end, evaluations=spent)
         return replace(best, evaluations=spent)  # the path leads to another basin
 
-    # 6 arguments: a path from a start, and the minimum that it is to reach.
-    def _end(
-        self, problem: Problem, epsilon: float, start: Solution, best: Solution, options: Options
-    ) -> Solution:
-        """Return the limit to which a path of minimisers leads, from the first epsilon on."""
-        coarse = _solved(problem, self._with(epsilon), replace(start, evaluations=0), options)
-        last, span = coarse.theta, problem.upper - problem.lower
+    def _end(self, problem: Problem, epsilon: float, start: Solution, options: Options) -> Solution:
+        """Return the limit of the path of minimisers from an epsilon on.
+
+        Each but the first ones is solved for from the limit that those before it tell.
+        """
+        start = replace(start, evaluations=0)
+        coarse = ahead = _solved(problem, self._with(epsilon), start, _along(epsilon, options))
         while True:
             epsilon /= RATIO
-            fine = _solved(problem, self._with(epsilon), coarse, options)
+            spent = replace(ahead, evaluations=coarse.evaluations)
+            fine = _solved(problem, self._with(epsilon), spent, _along(epsilon, options))
             theta = fine.theta + (fine.theta - coarse.theta) / (RATIO - 1)
             limit = problem.evaluate(np.clip(theta, problem.lower, problem.upper), second=True)
             fine = replace(fine, evaluations=fine.evaluations + 1)
-            moved = float(np.abs((limit.theta - last) / span).max())
-            arrived = limit.feasible and moved <= ARRIVED and self._reaches(limit.J, best.J)
-            if arrived or epsilon <= LAST:
+            if not limit.feasible or epsilon <= LAST or self._equal(limit.J, ahead.J):
                 closer = limit.feasible and limit.J[self.objective] <= fine.J[self.objective]
                 return replace(fine, evaluation=limit if closer else fine.evaluation)
-            coarse, last = fine, limit.theta
+            coarse, ahead = fine, replace(fine, evaluation=limit)
 
-    def _reaches(self, J: Floats, best: Floats) -> bool:
-        """Return whether the first objective is no greater than the best one."""
-        return bool(J[self.objective] <= best[self.objective] or self.ties(J, best))
-
-    def first(self, problem: Problem, start: Solution, options: Options) -> Solution:
-        """Return the minimum of the first objective alone below a start."""
-        return _solved(problem, self._with(0.0), start, options)
+    def _equal(self, J: Floats, other: Floats) -> bool:
+        """Return whether the first objective is as good in both, and so are the others."""
+        one, two = float(self.others @ J), float(self.others @ other)
+        return self.ties(J, other) and abs(one - two) <= TIE * max(one, two)
 
     def _with(self, epsilon: float) -> Linear:
         return weighted(
             np.eye(self.sizes.size)[self.objective] / self.sizes + epsilon * self.others
         )
+
+
+def _along(epsilon: float, options: Options) -> Options:
+    """Return options of a minimiser on the path: as exact as the share of the others asks for."""
+    return replace(options, step=Options().step, reduction=SHARE * epsilon)
 
 
 def _solved(problem: Problem, programme: Linear, start: Solution, options: Options) -> Solution:

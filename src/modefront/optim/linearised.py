@@ -113,11 +113,6 @@ class Linearised:
             return self.g
         return np.asarray(self.g + multipliers.mu @ self.dc + multipliers.kappa @ self.dy)
 
-    def tied(self, active: list[int]) -> Floats:
-        """Return the rows (., n) of A, and the differences of active functions from the base."""
-        A, C = self.programme.constraints.matrix, self.programme.maximised.matrix
-        return np.vstack([A, C[active[1:]] - C[active[:1]]])
-
     def unchanging(self, s: Floats, reduction: float) -> bool:
         """Return whether what is minimised changes by less than its share along a step."""
         before = self.y.max() if self.y.size else 0.0

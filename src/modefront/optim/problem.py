@@ -110,6 +110,10 @@ def infeasible(theta: Floats, objectives: int) -> Evaluation:
     return Evaluation(theta, np.full(objectives, np.inf))
 
 
+class SpentError(Exception):
+    """The evaluations that were allowed are spent."""
+
+
 class Problem(Protocol):
     """A vector of objectives over a box."""
 

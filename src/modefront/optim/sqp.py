@@ -21,9 +21,8 @@ Steps solve a quadratic programme within a box, the trust region; they are judge
 Lagrangian (`modefront.optim.merit`) which, unlike an exact penalty, does not reject good steps
 near the solution. Far from it, multipliers may be absurd: they are bounded, and a step that leaves
 the constraints by much more than the start did is shortened. One attempt is made to leave a
-stationary point with clearly negative curvature. A poor step gets a second-order
-correction (`modefront.optim.correction`), and both steps are judged as one. Where the objectives
-are known no better than the steps promise, a solution ends before its tolerances are met.
+stationary point with clearly negative curvature. Where the objectives are known no better than the
+steps promise, a solution ends before its tolerances are met.
 
 =========  =========  ==================================================================
 symbol     shape      meaning
@@ -48,7 +47,6 @@ import numpy as np
 import scipy.linalg
 
 from modefront._typing import Floats
-from modefront.optim.correction import Correction
 from modefront.optim.linearised import length, linearised
 from modefront.optim.merit import PENALTY, Merit, Multipliers
 from modefront.optim.problem import Evaluation, Problem
@@ -80,10 +78,6 @@ range of the objectives where constraints are in units of these."""
 SWITCH = 0.5
 """Share of the error of a prediction, below which the other model is the better one: with 1, the
 models would take turns near a solution, where both are right."""
-
-FAILURES, BENT = 4, 0.5
-"""Failures of corrections one after another, after which none is tried; actual over predicted
-reduction up to which a step is corrected."""
 
 FREE = 1e-4
 """Gradient, over the greatest curvature, below which a bound does not hold a variable."""
@@ -183,7 +177,6 @@ def begin(evaluation: Evaluation) -> Solution:
     return Solution(evaluation, np.zeros(evaluation.J.size), np.inf, status, 0)
 
 
-# 62 lines: the loop reads as the algorithm in the head of the module.
 def solve(
     problem: Problem, programme: Scalarisation, start: Solution, options: Options | None = None
 ) -> Solution:
@@ -199,7 +192,7 @@ def solve(
     if evaluation.derivatives is None:
         evaluation, count = problem.evaluate(evaluation.theta, second=True), 0
     S = evaluation.H - evaluation.gauss_newton
-    trusted, escaped, failed = evaluation.exact, False, 0
+    trusted, escaped = evaluation.exact, False
     radius, penalty = options.radius, PENALTY
     multipliers: Multipliers | None = None
     progress = _Progress(options, length(programme.constraints.at(evaluation.J)))
@@ -235,18 +228,7 @@ def solve(
             radius = far / 4
             continue
         merit = Merit(programme, multipliers, penalty)
-        before = merit.at(evaluation)
-        if (
-            evaluation.residuals
-            and failed < FAILURES
-            and before - merit.at(new) <= BENT * predicted
-        ):
-            corrected = Correction(merit, local.tied(step.active)).evaluated(
-                problem, evaluation, s, new
-            )
-            failed = 0 if corrected else failed + 1
-            new = corrected or new
-        actual = before - merit.at(new)
+        actual = merit.at(evaluation) - merit.at(new)
         change = s * local.span
         rest = 0.5 * w @ (S @ change @ change) * (1 if trusted else -1)
         if abs(actual - predicted - rest) < SWITCH * abs(actual - predicted):

@@ -10,13 +10,14 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.archive import Outcome
-from modefront.front.state import State
+from modefront.front.state import Place, State
 from modefront.front.subproblems import Subproblem
 from modefront.optim.problem import Evaluation, Problem
-from modefront.optim.sqp import Solution, begin
+from modefront.optim.scalarisation import Scalarisation
+from modefront.optim.sqp import Options, Solution, begin, solve
 
-STEPS = 4
-"""Steps of an approach, after which the model that is reached is compared with all others."""
+_ROUGH = Options(step=3e-4, constraint=3e-4, iterations=4)
+"""A few steps, after which the model that is reached is compared with all others."""
 
 
 @dataclass(frozen=True)
@@ -88,16 +89,14 @@ class Rate:
         return 1 / (self.idle + 2)
 
 
-def solve_from(place: int, subproblem: Subproblem, start: Solution, chance: float) -> Offer:
-    """Return the offer to solve a subproblem from a start."""
-    return Offer(place, start, chance, _solved, (subproblem, start))
+def solve_from(k: int, place: Place, start: Solution, chance: float) -> Offer:
+    """Return the offer to solve the subproblem of a place, the k-th one, from a start."""
+    return Offer(k, start, chance, _solved, (place.subproblem, start, place.incumbent.J))
 
 
-def approach_from(
-    place: int, subproblem: Subproblem, start: Solution, chance: float, steps: int = 100
-) -> Offer:
-    """Return the offer to approach the solution of a subproblem, by so many steps at most."""
-    return Offer(place, start, chance, _approached, (subproblem, start, steps), final=False)
+def approach_from(k: int, place: Place, start: Solution, chance: float) -> Offer:
+    """Return the offer to take a few steps towards the solution of a place, the k-th one."""
+    return Offer(k, start, chance, _approached, (place.subproblem.programme, start), final=False)
 
 
 def evaluate_all(thetas: Floats, chance: float) -> Offer:
@@ -110,18 +109,22 @@ def at(theta: Floats) -> Solution:
     return begin(Evaluation(theta, np.zeros(1)))
 
 
-def _solved(problem: Problem, subproblem: Subproblem, start: Solution) -> Solution:
+def _solved(problem: Problem, subproblem: Subproblem, start: Solution, known: Floats) -> Solution:
     """Return the solution of a subproblem from a start."""
-    if start.evaluation.derivatives is None:
-        start = begin(problem.evaluate(start.theta, second=True))
-    return subproblem.solve(problem, start) if start.feasible else start
+    start = evaluated(problem, start)
+    return subproblem.solve(problem, start, known) if start.feasible else start
 
 
-def _approached(problem: Problem, subproblem: Subproblem, start: Solution, steps: int) -> Solution:
-    """Return a model on the way to the solution of a subproblem."""
-    if start.evaluation.derivatives is None:
-        start = begin(problem.evaluate(start.theta, second=True))
-    return subproblem.approach(problem, start, steps) if start.feasible else start
+def _approached(problem: Problem, programme: Scalarisation, start: Solution) -> Solution:
+    """Return a model on the way to the solution of a programme."""
+    return solve(problem, programme, evaluated(problem, start), _ROUGH)
+
+
+def evaluated(problem: Problem, solution: Solution) -> Solution:
+    """Return a solution, or where its derivatives are not known, a start at its parameters."""
+    if solution.evaluation.derivatives:
+        return solution
+    return begin(problem.evaluate(solution.theta, second=True))
 
 
 def _evaluated(problem: Problem, thetas: Floats) -> Solution:

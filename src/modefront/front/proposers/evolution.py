@@ -49,7 +49,7 @@ class Evolution:
             chance = max(self.rate.recent, self.starts.unseen * self.rate.chance)
             yield evaluate_all(self._children(state), chance)
 
-    def learn(self, state: State, _: Offer, outcome: Outcome, gain: float) -> None:
+    def learn(self, state: State, _: Offer, __: Outcome, gain: float) -> None:
         """Count the generation."""
         self.rate.note(gain > state.tolerance)
 

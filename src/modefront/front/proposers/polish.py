@@ -36,7 +36,7 @@ class Polish:
         )
         for k in ranked[:most]:
             place = state.places[k]
-            yield solve_from(k, place.subproblem, place.incumbent, 1.0)
+            yield solve_from(k, place, place.incumbent, 1.0)
         equations = [(k, x) for k, x in enumerate(state.places) if not x.subproblem.competes]
         met = [x.incumbent for _, x in equations if x.incumbent.converged]
         for k, place in equations:
@@ -44,7 +44,7 @@ class Polish:
                 key = place.subproblem.key
                 for start in sorted(met, key=lambda x: lag(place, x.J))[:SIDES]:
                     if (key, start.theta.tobytes()) not in self._tried:
-                        yield solve_from(k, place.subproblem, start, 1.0)
+                        yield solve_from(k, place, start, 1.0)
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, _: float) -> None:
         """Let the new model start what is open and lies nearer to it than the incumbents do."""

@@ -13,7 +13,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from modefront.front.archive import Outcome
-from modefront.front.proposers.base import STEPS, Offer, Rate, approach_from
+from modefront.front.proposers.base import Offer, Rate, approach_from
 from modefront.front.proposers.prediction import is_hopeless, promised
 from modefront.front.state import DISTINCT, State
 from modefront.optim.sqp import Solution
@@ -59,9 +59,9 @@ class Rivals:
                 del self.found[k, m]  # the incumbent has become better
                 continue
             start, chance = state.models[m], self.rate.recent
-            yield approach_from(k, place.subproblem, start, chance, STEPS)
+            yield approach_from(k, place, start, chance)
 
-    def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
+    def learn(self, state: State, offer: Offer, _: Outcome, gain: float) -> None:
         """Count the search, and try the pair no more."""
         self.rate.note(gain > state.tolerance)
         m = next(i for i, x in enumerate(state.models) if x is offer.start)

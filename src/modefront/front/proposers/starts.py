@@ -23,7 +23,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.front.archive import Outcome
-from modefront.front.proposers.base import STEPS, Offer, Rate, approach_from, at, solve_from
+from modefront.front.proposers.base import Offer, Rate, approach_from, at, solve_from
 from modefront.front.state import Place, State
 from modefront.front.subproblems import is_along
 from modefront.optim.sqp import Solution
@@ -113,12 +113,12 @@ class Starts:
             doubt, tries = known.doubt(place, state.tolerance), known.rate.tries
             for number in range(tries, tries + most):
                 theta = state.problem.start if number == 0 else self._next(state)
-                offer = solve_from(k, place.subproblem, at(theta), known.chance)
+                offer = solve_from(k, place, at(theta), known.chance)
                 yield replace(offer, unseen=doubt)
         for _ in range(most if points else 0):
             k = points[int(self.rng.integers(len(points)))]
             start = at(self._next(state))
-            yield approach_from(k, state.places[k].subproblem, start, self.along.recent, STEPS)
+            yield approach_from(k, state.places[k], start, self.along.recent)
 
     def learn(self, state: State, offer: Offer, outcome: Outcome, gain: float) -> None:
         """Count the start, and keep its minimum if it is new."""
