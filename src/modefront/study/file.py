@@ -70,7 +70,7 @@ def load(path: Path | str) -> Study:
     uncertainty = _read_uncertainty(root, data)
     noise = read_options(root, "noise", NoisePrior)
     pairing = read_options(root, "pairing", Pairing)
-    drafts = read_predictions(root, model, data)
+    drafts, slack = read_predictions(root, model, data)
     note(_place(root, "[pareto]"), pareto.faults(len(groups)))
     root.close()
     if faults or model is None or data is None:
@@ -100,7 +100,7 @@ def load(path: Path | str) -> Study:
     )
     return Study(
         *(problem, title, seed, pareto, weighted, search, identifiability, uncertainty),
-        *(predictions, noise, origin),
+        *(predictions, noise, slack, origin),
     )
 
 

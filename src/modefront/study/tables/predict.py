@@ -10,6 +10,7 @@ from modefront.findings.knowledge import enumeration
 from modefront.models.base import Model
 from modefront.options import each_once
 from modefront.predictions import Prediction, known
+from modefront.predictions.ranges import SLACK
 from modefront.residuals.problem import UpdatingProblem
 from modefront.study.tables.options import note, read_record
 from modefront.toml import Table, has_name
@@ -18,16 +19,19 @@ Drafts = Sequence[tuple[Table, Prediction]]
 """Predictions as in their tables, without the defaults that follow from the nominal model."""
 
 
-def read_predictions(root: Table, model: Model | None, data: ModalData | None) -> Drafts:
-    """Return the predictions that a study asks for, as far as nothing is wrong with them."""
+def read_predictions(
+    root: Table, model: Model | None, data: ModalData | None
+) -> tuple[Drafts, float]:
+    """Return the predictions that a study asks for, as far as they are right, and their slack."""
     if "predict" not in root.values:
         root.requested.append("predict")
-        return []
+        return [], 0.0
     classes = known()
     expected = f"tables {enumeration([f'[[predict.{each.kind.table}]]' for each in classes])}"
     table = root.table("predict", expected)
     if table is None:
-        return []
+        return [], 0.0
+    slack = table.take("slack", SLACK.expected, SLACK.holds, 0.0)
     out: list[tuple[Table, Prediction]] = []
     names = []
     for prediction_class in classes:
@@ -41,7 +45,7 @@ def read_predictions(root: Table, model: Model | None, data: ModalData | None) -
             out.append((each, prediction))
     table.close()
     note(table, each_once("", names))
-    return out
+    return out, float(slack or 0.0)
 
 
 def complete(drafts: Drafts, problem: UpdatingProblem) -> tuple[Prediction, ...]:
