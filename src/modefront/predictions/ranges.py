@@ -59,14 +59,12 @@ class Equivalent:
     ----------
     problem : the problem
     model : evaluation of the model of the front
-    sizes : (n,) typical sizes of the objectives
     slack : share by which objectives may be greater
     step : of differences of a prediction, over the ranges of the parameters
     """
 
     problem: Problem
     model: Evaluation
-    sizes: Floats
     slack: float
     step: float
 
@@ -99,7 +97,8 @@ class Equivalent:
     @property
     def level(self) -> Floats:
         """Greatest objectives (n,)."""
-        return (1 + max(self.slack, SAME)) * self.model.J + EXACT * self.sizes
+        grown = np.sqrt((1 + max(self.slack, SAME)) * self.model.J)
+        return np.asarray((grown + np.sqrt(EXACT) * np.array(self._lengths())) ** 2)
 
     def extreme(self, q: Values, size: float, sign: float, start: Floats) -> Solution | None:
         """Return the model with the least (sign 1) or greatest (-1) value; None without others.
@@ -171,17 +170,6 @@ class Equivalent:
         return out / self.span
 
 
-def any_open(problem: Problem, thetas: Floats) -> bool:
-    """Return whether models (m, p) leave a combination of parameters open."""
-    models = [problem.evaluate(theta) for theta in thetas]
-    sizes = models[0].J if models else np.zeros(0)
-    return any(
-        Equivalent(problem, model, sizes, 0.0, 0.0).equations()[1].size
-        for model in models
-        if model.feasible
-    )
-
-
 # 6 arguments: the problem, the models, and what is sought.
 def extreme(
     problem: Problem, thetas: Floats, q: Values, sign: float, slack: float, step: float
@@ -192,15 +180,13 @@ def extreme(
     where none has a value.
     """
     best, shift = np.nan, np.zeros(problem.start.size)
-    sizes = problem.evaluate(problem.start, derivatives=False).J
-    sizes = np.where(np.isfinite(sizes), sizes, 0.0)
     for theta in thetas:
         here, value = problem.evaluate(theta), q(theta)
         if not (here.feasible and np.isfinite(value)):
             continue
         size = abs(value) if value else 1.0
         start = np.clip(theta + shift, problem.lower, problem.upper)
-        found = Equivalent(problem, here, sizes, slack, step).extreme(q, size, sign, start)
+        found = Equivalent(problem, here, slack, step).extreme(q, size, sign, start)
         shift = np.zeros(theta.size) if found is None else found.theta - theta
         ends = [value] if found is None else [value, float(found.J[-1]) * size]
         best = sign * float(np.nanmin([sign * best, *(sign * x for x in ends)]))

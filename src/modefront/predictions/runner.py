@@ -17,7 +17,7 @@ from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
 from modefront.models.base import full_of, is_reduced
 from modefront.predictions import Prediction, ResultVariable
-from modefront.predictions.ranges import any_open, extreme
+from modefront.predictions.ranges import extreme
 from modefront.residuals.problem import UpdatingProblem
 from modefront.work.codec import record
 from modefront.work.store import hash_text
@@ -93,14 +93,6 @@ class PredictionRunner:
             for i, theta in enumerate(thetas, start=1)
         ]
         return self.work.run(tasks)
-
-    def leaves_open(self, thetas: Floats) -> bool:
-        """Return whether other models fit the data as well as models (m, p), or count as well."""
-        mark = hash_text(f"{thetas.tolist()}")[:8]
-        (found,) = self.work.run(
-            [Task(("predict", "open", mark), any_open, (self.problem, thetas))]
-        )
-        return self.slack > 0 or bool(found)
 
     def extremes(self, prediction: Prediction, thetas: Floats) -> dict[str, Floats]:
         """Return least and greatest values over models (m, p) and all that are equivalent.

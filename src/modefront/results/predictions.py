@@ -46,7 +46,7 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
     points = list(zip(map(str, data["label"].values), data["theta"].values, strict=True))
     reference = next(point for point in points if point[0] == preferred(data.attrs))
     thetas = data["theta"].values[optimal]
-    is_open = runner.leaves_open(thetas)
+    is_open = runner.slack > 0 or _leaves_open(data)
     for kind, predictions in by_kind(runner.predictions):
         rows = [runner.at_points(each, points) for each in predictions]
         ends = [runner.extremes(each, thetas) for each in predictions] if is_open else []
@@ -67,6 +67,12 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
     kinds = [kind for kind, _ in by_kind(runner.predictions)]
     out = data.assign(described(values, kinds)).assign_coords(coordinates)
     return out.assign_attrs({ATTRIBUTE: as_text(kinds)})
+
+
+def _leaves_open(data: xr.Dataset) -> bool:
+    """Return whether data at the reference leave a parameter or a combination of them open."""
+    idle = np.diag(data["collinearity"].values) == 0
+    return bool(idle.any() or np.isinf(data["collinearity_index"].values))
 
 
 def _of_points(
