@@ -5,8 +5,9 @@ from __future__ import annotations
 from modefront.residuals.base import ResidualKind
 from modefront.residuals.frequency import FrequencyKind
 from modefront.residuals.shape import ShapeKind
+from modefront.residuals.subspace import SubspaceKind
 
-KINDS: tuple[ResidualKind, ...] = (FrequencyKind(), ShapeKind())
+KINDS: tuple[ResidualKind, ...] = (FrequencyKind(), ShapeKind(), SubspaceKind())
 """All kinds, in the order in which their residuals are stacked."""
 
 
