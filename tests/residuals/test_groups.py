@@ -46,7 +46,7 @@ def test_kinds_may_be_given_by_position() -> None:
     with pytest.raises(ValueError, match=r"each of frequency, shape.* once at most"):
         Group("f", "all", frequency="all")
     with pytest.raises(ValueError, match=r"each of frequency, shape.* once at most"):
-        Group("f", "all", (), ())
+        Group("f", "all", (), (), ())
 
 
 def test_kinds_have_names_of_their_own() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from itertools import combinations
 from pathlib import Path
 
 import numpy as np
@@ -13,6 +14,7 @@ from two_masses import STUDY
 
 import modefront as mf
 from modefront.cli.show import as_json
+from modefront.pairing.mac import mac
 from modefront.study.examples import write_example
 from modefront.uncertainty.freed import wider
 
@@ -119,6 +121,63 @@ def test_no_model_is_advised_where_errors_are_far_above_those_expected(tmp_path:
     assert first.startswith("Do not use any of these models: errors of ")
     assert "times those expected" in first
     assert "etermined" not in data.attrs["verdict"], "nothing is said of its parameters"
+    assert data.attrs["reference"] == ""
+    results = mf.read_results(tmp_path / "r")
+    assert results.reference.label == "most-probable"
+    assert command("show", tmp_path / "r") == 0
+
+
+def test_modes_that_sensors_do_not_tell_apart_are_paired_by_frequencies_and_named() -> None:
+    """Noise exchanges the shapes of two modes that are alike at two sensors."""
+    names = ("k1", "k2")
+    n = 6
+    springs = ["k1", *["k2"] * 5]
+    model = mf.chain(names, [1.0] * n, [1000.0] * n, stiffness_parameters=springs)
+    truth = np.array([1.2, 0.9])
+    modes = model.modes(truth, 4)
+
+    def likeness(i: int, j: int) -> float:
+        return float(np.triu(mac(modes.phi[[i, j]], modes.phi[[i, j]]), 1).max())
+
+    i, j = max(combinations(range(n), 2), key=lambda x: likeness(*x))
+    alike = np.triu(mac(modes.phi[[i, j]], modes.phi[[i, j]]), 1)
+    q, r = np.unravel_index(int(alike.argmax()), alike.shape)
+    shape = modes.phi[[i, j]].T.copy()
+    shape[[q, r]] = shape[[r, q]]
+    data = mf.modal_data(modes.frequency, shape, (model.sensors[i], model.sensors[j]))
+    parameters = [mf.Parameter(name, nominal=1.0, bounds=(0.5, 2.0)) for name in names]
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    problem = mf.updating_problem(model, data, groups, parameters=parameters)
+    results = mf.solve(problem, points=3, search=mf.Search(doubt=0.5))
+    assert results["likely_mode"].values.tolist() == [1, 2, 3, 4]
+    named = " and ".join(str(x + 1) for x in sorted((q, r)))
+    (said,) = [text for text in results.verdict if text.startswith("Shapes at these sensors")]
+    assert f"those measured as {named}: frequencies decide" in said
+    low, _, high = results["interval"].values.T
+    assert (low <= truth).all()
+    assert (truth <= high).all()
+    assert results.reference.theta == pytest.approx(dict(zip(names, truth, strict=True)), 0.02)
+
+
+def test_what_to_measure_fix_or_tie_is_said() -> None:
+    """Of two springs in one place only the sum is known, and a further mode tells no more."""
+    names = ("k1", "k2", "twin")
+    K = np.array([[2.0, -1.0], [-1.0, 1.0]])
+    parts = {"k1": np.diag([1.0, 0.0]), "k2": K - np.diag([1.0, 0.0])}
+    parts = {name: 1000 * part for name, part in parts.items()}
+    model = mf.matrices(
+        names, {**parts, "twin": parts["k1"]}, {"base": np.eye(2)}, {"a": 0, "b": 1}
+    )
+    modes = model.modes(np.array([0.9, 1.1, 1.1]), 2)
+    data = mf.modal_data(modes.frequency, modes.phi.T, model.sensors)
+    parameters = [mf.Parameter(name, nominal=1.0, bounds=(0.2, 1.8)) for name in names]
+    groups = [mf.Group("frequencies", frequency="all"), mf.Group("shapes", shape="all")]
+    problem = mf.updating_problem(model, data, groups, parameters=parameters)
+    results = mf.solve(problem, points=3, search=mf.Search(doubt=0.5))
+    assert results["candidate_gain"].values.max(initial=0.0) < 0.1
+    (said,) = [text for text in results.verdict if text.startswith("Or leave open less")]
+    assert 'k1: tie = "twin"' in said
+    assert "k2" not in said
 
 
 def test_a_bound_that_holds_the_model_is_named(tmp_path: Path) -> None:

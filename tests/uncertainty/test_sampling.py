@@ -13,7 +13,7 @@ from modefront._typing import Floats
 from modefront.residuals.problem import UpdatingProblem
 from modefront.uncertainty.most_probable import log_values, maximum
 from modefront.uncertainty.prior import NoiseModel
-from modefront.uncertainty.sampling import draw_models, variances
+from modefront.uncertainty.sampling import draw_models, truncated, variances
 from modefront.work.task import IMMEDIATE
 
 NU = 4.0
@@ -109,6 +109,20 @@ def test_draws_at_bounds_are_those_of_the_truncated_gaussian(mean: float) -> Non
     exact = scipy.stats.truncnorm(*ends, loc=mean, scale=std)
     assert scipy.stats.kstest(draws[:, 0], exact.cdf).pvalue > 0.01
     assert scipy.stats.kstest(draws[:, 1], scipy.stats.uniform.cdf).pvalue > 0.01
+
+
+@pytest.mark.parametrize(("mean", "std"), [(-50.0, 1.0), (0.3, 0.4), (3.0, 1e-2), (1e6, 1.0)])
+def test_truncated_draws_have_the_mean_of_the_truncated_gaussian(mean: float, std: float) -> None:
+    rng = np.random.default_rng(0)
+    draws = np.array([truncated(mean, std, 1.0, rng) for _ in range(4000)])
+    away = min(abs(mean), abs(mean - 1))
+    if away > 30 * std:  # exponential from the nearer end
+        exact = std**2 / away if mean < 0 else 1 - std**2 / away
+    else:
+        exact = scipy.stats.truncnorm(-mean / std, (1 - mean) / std, loc=mean, scale=std).mean()
+    assert draws.min() >= 0
+    assert draws.max() <= 1
+    assert draws.mean() == pytest.approx(exact, abs=4 * draws.std() / np.sqrt(4000) + 1e-9)
 
 
 def test_twins_beyond_a_bound_fill_the_triangle() -> None:

@@ -9,14 +9,15 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError, ModelError, UnfinishedError
 from modefront.models.base import full_of, is_reduced
-from modefront.predictions import Prediction
+from modefront.predictions import Prediction, ResultVariable
+from modefront.predictions.ranges import extreme
 from modefront.residuals.problem import UpdatingProblem
 from modefront.work.codec import record
 from modefront.work.store import hash_text
@@ -24,6 +25,12 @@ from modefront.work.task import Executor, Part, Task, seed_sequence
 from modefront.work.transfer import is_shared
 
 Arrays = Mapping[str, Floats]
+
+T = TypeVar("T")
+
+STEP, ROUGH = 1e-4, 1e-2
+"""Steps of differences of a prediction over the ranges of the parameters: of smooth ones, and of
+those that are estimated from samples."""
 
 
 @record
@@ -48,6 +55,7 @@ class PredictionRunner:
     Attributes
     ----------
     file : of the study, named in messages
+    slack : share by which objectives of models may be greater that count in ranges
     """
 
     problem: UpdatingProblem
@@ -55,6 +63,7 @@ class PredictionRunner:
     seed: int
     work: Executor
     file: Path
+    slack: float = 0.0
 
     def at_points(
         self, prediction: Prediction, points: Sequence[tuple[str, Floats]]
@@ -85,13 +94,37 @@ class PredictionRunner:
         ]
         return self.work.run(tasks)
 
+    def extremes(self, prediction: Prediction, thetas: Floats) -> dict[str, Floats]:
+        """Return least and greatest values over models (m, p) and all that are equivalent.
+
+        They have the shape (2, places), by the key of each variable of which the range is reported.
+        """
+        kind, places = prediction.kind, len(prediction.places)
+        mark = hash_text(f"{thetas.tolist()} {self.slack}")[:8]
+        tasks = [
+            self._task(
+                prediction,
+                ("least" if sign > 0 else "greatest", variable.key, i + 1, mark),
+                _extreme,
+                (thetas, variable, i, sign, self.slack),
+            )
+            for variable in kind.ranged
+            for sign in (1.0, -1.0)
+            for i in range(places)
+        ]
+        found = iter(self.work.run(tasks))
+        return {
+            variable.key: np.array([[next(found) for _ in range(places)] for _ in range(2)])
+            for variable in kind.ranged
+        }
+
     def _task(
         self,
         prediction: Prediction,
         part: tuple[Part, ...],
-        function: Callable[..., Predicted],
+        function: Callable[..., T],
         arguments: tuple[Any, ...],
-    ) -> Task[Predicted]:
+    ) -> Task[T]:
         """Return a task whose key tells apart all that the prediction depends on."""
         mark = hash_text(f"{prediction!r} {self.seed}")[:8]
         numbers = seed_sequence(self.seed, "predict", prediction.name)
@@ -159,3 +192,27 @@ def _at_model(
         unknown = np.full(len(prediction.places), np.nan)
         values = {variable.key: unknown for variable in prediction.kind.variables}
         return Predicted(values, solved=False)
+
+
+# 8 arguments: the problem and the prediction, and those of `modefront.predictions.ranges.extreme`.
+def _extreme(
+    problem: UpdatingProblem,
+    prediction: Prediction,
+    numbers: np.random.SeedSequence,
+    thetas: Floats,
+    variable: ResultVariable,
+    place: int,
+    sign: float,
+    slack: float,
+) -> float:
+    """Return the least (sign 1) or greatest (-1) value at a place over equivalent models."""
+    logarithmic = variable.logarithmic
+
+    def q(theta: Floats) -> float:
+        value = float(_at_model(problem, prediction, numbers, theta).values[variable.key][place])
+        if not logarithmic:
+            return value
+        return float(np.log(value)) if value > 0 else np.nan
+
+    found = extreme(problem, thetas, q, sign, slack, ROUGH if logarithmic else STEP)
+    return float(np.exp(found)) if logarithmic else found

@@ -13,14 +13,15 @@ is the least squares one, since a mode has no scale. The unit u is
 component. A standard deviation that is 0 or rounding, such as that of the component to which a
 shape was normalised, is replaced by the median of the others in its shape.
 
-With :math:`c = \psi^T \chi`, :math:`a = \psi^T \psi` and :math:`b = \chi^T \chi`, now over a unit
+With the fit :math:`\pi = \beta \chi` of :math:`\psi`, and :math:`a = \psi^T \psi`, now over a unit
 that is given (the standard deviations, or 1), the objective of a data set is
-:math:`J = w (a - c^2 / b)` with :math:`w = 1` for standard deviations and :math:`w = N_0 / a` for
+:math:`J = w (a - \pi^T \pi)` with :math:`w = 1` for standard deviations and :math:`w = N_0 / a` for
 equation (1). An error of measurement changes it by
 
-.. math:: \frac{\partial J}{\partial \psi} = -2 w \Big(\frac{c}{b} \chi - s \psi\Big),
+.. math:: \frac{\partial J}{\partial \psi} = -2 w (\pi - s \psi),
 
-where s = 1 for a given w, and :math:`s = c^2 / (a b)` for the one that changes with :math:`\psi`.
+where s = 1 for a given w, and :math:`s = \pi^T \pi / a` for the one that changes with
+:math:`\psi`.
 """
 
 from __future__ import annotations
@@ -48,6 +49,7 @@ from modefront.residuals.base import (
     together,
     value_numbers,
 )
+from modefront.residuals.span import fitted
 
 
 @dataclass(frozen=True)
@@ -89,11 +91,16 @@ class _Components:
 
 @dataclass(frozen=True, eq=False)
 class ShapeResiduals:
-    """Residuals of the shape of the measured mode at position ``mode`` of the data."""
+    """Residuals of the shape of the measured mode at position ``mode`` of the data.
+
+    With a ``cluster`` of positions, the shape is fitted by all model modes that belong to these
+    (`modefront.residuals.subspace`).
+    """
 
     data: ModalData
     mode: int
     scale: Scale
+    cluster: tuple[int, ...] = ()
 
     @cached_property
     def _measured(self) -> Bools:
@@ -143,9 +150,11 @@ class ShapeResiduals:
     @property
     def remark(self) -> str:
         """Reason why any model fits the shape, empty where models can miss it."""
-        if self.components.sizes.max() > 1:
+        m = len(self.cluster) or 1
+        if self.components.sizes.max() > m:
             return ""
-        return "a shape that is measured at a single sensor fits any model"
+        sensors = "a single sensor" if m == 1 else f"{m} sensors for as many modes"
+        return f"a shape that is measured at {sensors} fits any model"
 
     def margin(self, errors: ModeErrors) -> float:
         """Return the square of the greatest change of r by errors of the paired modes."""
@@ -153,22 +162,22 @@ class ShapeResiduals:
 
     def sensitivities(self, modes: Modes, pairs: Pairs) -> Iterator[Sensitivity]:
         """Yield the change of J by one standard deviation of each measured component."""
-        q = pairs.index[self.mode]
+        q = pairs.index[list(self.cluster or (self.mode,))]
         for part in self.shapes:
             std = self.data.shape_std[part.k, self.mode, part.sensors]
             relative = self.scale == "measured"
             unit = np.ones(std.size) if relative else without_negligible(std)
             psi = self.data.shape[part.k, self.mode, part.sensors] / unit
-            chi = modes.phi[part.sensors, q] / unit
-            dchi = modes.dphi[part.sensors, q] / unit[:, None]
-            c, a, b = psi @ chi, psi @ psi, chi @ chi
-            dc, db = psi @ dchi, 2 * chi @ dchi
-            projection = c * chi / b
-            dprojection = (np.outer(chi, dc) + c * dchi) / b - np.outer(projection, db) / b
-            w, s, ds = 1.0, 1.0, np.zeros(dc.size)
+            places = np.ix_(part.sensors, q)
+            fit = fitted(
+                modes.phi[places] / unit[:, None], modes.dphi[places] / unit[:, None, None], psi
+            )
+            projection, dprojection = fit.r + psi, fit.dr
+            w, s, ds = 1.0, 1.0, np.zeros(fit.dr.shape[1])
             if relative:
-                w, s = psi.size / a, c**2 / (a * b)
-                ds = 2 * c * dc / (a * b) - s * db / b
+                a = psi @ psi
+                w, s = psi.size / a, projection @ projection / a
+                ds = 2 * projection @ dprojection / a
             step = known_std(std) / len(self.shapes)
             yield Sensitivity(
                 value_numbers(self.data, part.k, self.mode)[1:][part.sensors],
@@ -182,9 +191,9 @@ class ShapeResiduals:
         Sets with the same sensors and standard deviations in proportion have one shape, at best the
         first singular vector; all others count as independent of each other.
         """
-        x = self.components
-        total, K = float(x.sizes.sum() - x.sizes.size), x.sizes.size
-        if K > 1 and np.ptp(x.sizes) == 0:
+        x, m = self.components, len(self.cluster) or 1
+        total, K = float(np.maximum(x.sizes - m, 0).sum()), x.sizes.size
+        if K > 1 and m == 1 and np.ptp(x.sizes) == 0:
             psi, weight, sensors = (v.reshape(K, -1) for v in (x.psi, x.weight, x.sensors))
             share = weight / weight[:, :1]
             if (sensors == sensors[0]).all() and np.ptp(share / share[0]) <= NEGLIGIBLE:

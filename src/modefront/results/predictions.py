@@ -17,7 +17,7 @@ from modefront.results.analysis import Values
 from modefront.results.schema import described
 
 RANGE = ("minimum", "maximum", "spread")
-"""Over the Pareto-optimal models; the spread is the ratio of greatest to least."""
+"""Over the Pareto-optimal models and all that are equivalent; the spread is greatest over least."""
 
 
 def extent(predictions: Sequence[Prediction], models: int) -> dict[str, int]:
@@ -45,10 +45,12 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
     coordinates = {"range": list(RANGE)}
     points = list(zip(map(str, data["label"].values), data["theta"].values, strict=True))
     reference = next(point for point in points if point[0] == preferred(data.attrs))
+    thetas = data["theta"].values[optimal]
+    is_open = runner.slack > 0 or _leaves_open(data)
     for kind, predictions in by_kind(runner.predictions):
-        values |= _of_points(
-            kind, [runner.at_points(each, points) for each in predictions], optimal
-        )
+        rows = [runner.at_points(each, points) for each in predictions]
+        ends = [runner.extremes(each, thetas) for each in predictions] if is_open else []
+        values |= _of_points(kind, rows, optimal, ends)
         for setting in kind.settings:
             every = (prediction.settings[setting.name] for prediction in predictions)
             values[setting.name] = list(chain.from_iterable(every))
@@ -67,16 +69,30 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
     return out.assign_attrs({ATTRIBUTE: as_text(kinds)})
 
 
+def _leaves_open(data: xr.Dataset) -> bool:
+    """Return whether data at the reference leave a parameter or a combination of them open."""
+    idle = np.diag(data["collinearity"].values) == 0
+    return bool(idle.any() or np.isinf(data["collinearity_index"].values))
+
+
 def _of_points(
-    kind: PredictionKind, rows: Sequence[Sequence[Mapping[str, Floats]]], optimal: Bools
+    kind: PredictionKind,
+    rows: Sequence[Sequence[Mapping[str, Floats]]],
+    optimal: Bools,
+    ends: Sequence[Mapping[str, Floats]],
 ) -> Values:
-    """Return the values at all points, (points, places), and their ranges over the optimal ones."""
+    """Return the values at all points, (points, places), and their ranges over the optimal ones.
+
+    ``ends`` (2, places) are those over models that are equivalent to these.
+    """
     out: Values = {}
     for variable in kind.variables:
         values = np.hstack([np.array([x[variable.key] for x in each]) for each in rows])
         out[variable.name] = values
         if variable.ranged:
-            out[f"{variable.name}_range"] = _range(values, optimal)
+            more = np.hstack([x[variable.key] for x in ends]) if ends else values[:0]
+            known = np.append(optimal, np.ones(len(more), dtype=np.bool_))
+            out[f"{variable.name}_range"] = _range(np.vstack([values, more]), known)
     return out
 
 

@@ -37,7 +37,7 @@ FORETOLD = 2
 """Predictions that are named."""
 
 TWINS = 0.9
-"""Negative correlation of draws from which two parameters can be told only together."""
+"""Correlation of draws, without its sign, from which two parameters are known only together."""
 
 
 def with_verdict(data: xr.Dataset) -> xr.Dataset:
@@ -226,19 +226,33 @@ def _next(data: xr.Dataset) -> Iterator[str]:
         )
         what = f"at sensor {sensor}" if sensor else f"the mode near {frequency:.3g} Hz"
         yield f"Measure {what}: the interval of {name} becomes {100 * gain[c]:.0f} % narrower."
-    names, lines = data["parameter"].values, []
-    joint = np.corrcoef(data["sample_theta"].values, rowvar=False).reshape(share.size, -1)
-    fixed: set[int] = set()
-    for j in np.flatnonzero(trust == TRUST[2]).tolist():
-        others = [k for k in range(share.size) if k != j and k not in fixed]
-        twin = min(others, key=lambda k: joint[j, k], default=j)
-        if twin != j and joint[j, twin] < -TWINS:
-            lines.append(f'{names[j]}: tie = "{names[twin]}"')
-        else:
-            lines.append(f"{names[j]}: fixed = true")
-        fixed.add(j)
+    lines = _closed(data["parameter"].values.tolist(), data["sample_theta"].values, trust.tolist())
     if lines:
         yield f"Or leave open less, in [[parameter]] of {_some(lines[:NAMED], len(lines), '; ')}."
+
+
+def _closed(names: Sequence[str], samples: Floats, trust: Sequence[str]) -> list[str]:
+    """Return the parameters that could be tied or fixed, with the line of a study that does it.
+
+    Of those that are known together only, one is enough: draws of two whose sum is known are
+    correlated negatively, and of those whose ratio is known positively.
+    """
+    with np.errstate(invalid="ignore", divide="ignore"):
+        joint = np.nan_to_num(np.corrcoef(samples, rowvar=False)).reshape(len(names), -1)
+    lines, done = [], np.array([x == TRUST[0] for x in trust])
+    for j in range(len(names)):
+        if done[j]:
+            continue
+        done[j] = True
+        along = np.where(done, 0.0, joint[j])
+        twin = int(np.argmax(np.abs(along)))
+        if along[twin] < -TWINS:
+            lines.append(f'{names[j]}: tie = "{names[twin]}"')
+        elif along[twin] > TWINS or trust[j] == TRUST[2]:
+            lines.append(f"{names[j]}: fixed = true")
+        if abs(along[twin]) > TWINS:
+            done |= np.abs(along) > TWINS
+    return lines
 
 
 def _row(data: xr.Dataset, kind: Kind) -> xr.Dataset:

@@ -18,6 +18,7 @@ from modefront.identifiability.options import Identifiability
 from modefront.models.parameters import Parameter, parameters_of
 from modefront.options import check_fields, each_once, text, whole
 from modefront.predictions import Prediction
+from modefront.predictions.ranges import SLACK
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.schema import variables_of
 from modefront.study.labels import labels_of
@@ -47,7 +48,7 @@ class Origin:
     notes: tuple[UnusedGroup | DataDirection, ...] = ()
 
 
-# 11 fields: the problem, where it was read, and each table of options.
+# 12 fields: the problem, where it was read, and each table of options.
 @dataclass(frozen=True)
 class Study:
     """A problem with the options of its solution.
@@ -66,6 +67,7 @@ class Study:
     uncertainty : source of the errors of the data, and samples
     predictions : predictions of all models
     noise : what is expected of the errors of the data and the model
+    slack : share by which objectives of models may be greater that count in ranges of predictions
     origin : where the study was read; None for one that was made in Python
     """
 
@@ -79,6 +81,7 @@ class Study:
     uncertainty: Uncertainty = field(default_factory=Uncertainty)
     predictions: Sequence[Prediction] = ()
     noise: NoisePrior = field(default_factory=NoisePrior)
+    slack: Annotated[float, SLACK] = 0.0
     origin: Origin | None = None
 
     def __post_init__(self) -> None:
@@ -148,7 +151,7 @@ class Study:
         """Hash of all inputs; empty where the problem is not read from a file."""
         if self.origin is None or not self.work:
             return ""
-        options = (self.name, self.uncertainty.draws, self.predictions)
+        options = (self.name, self.uncertainty.draws, self.predictions, self.slack)
         text = f"{self.origin.digest} {self.work} {options}"
         return hashlib.sha256(text.encode()).hexdigest()
 

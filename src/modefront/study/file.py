@@ -70,7 +70,7 @@ def load(path: Path | str) -> Study:
     drawn.note(uncertainty.faults(data) if data is not None else ())
     noise = read_options(root, "noise", NoisePrior)
     pairing = read_options(root, "pairing", Pairing)
-    drafts = read_predictions(root, model, data)
+    drafts, slack = read_predictions(root, model, data)
     replace(root, place="[pareto]").note(pareto.faults(len(groups)))
     root.close()
     if faults or model is None or data is None:
@@ -111,6 +111,7 @@ def load(path: Path | str) -> Study:
         uncertainty=uncertainty,
         predictions=predictions,
         noise=noise,
+        slack=slack,
         origin=origin,
     )
 

@@ -55,7 +55,7 @@ if TYPE_CHECKING:
     from modefront.results.results import Results
 
 
-# 9 arguments: the problem, and each record of options by keyword.
+# 10 arguments: the problem, and each record of options by keyword.
 def solve(
     problem: UpdatingProblem,
     *,
@@ -67,6 +67,7 @@ def solve(
     uncertainty: Uncertainty | None = None,
     predictions: Sequence[Prediction] = (),
     noise: NoisePrior | None = None,
+    slack: float = 0.0,
     **front: Unpack[ParetoOptions],
 ) -> Results:
     """Return the Pareto-optimal models, the edges and the weighted models of a problem.
@@ -91,6 +92,8 @@ def solve(
         Predictions of all models, such as `PeakResponse` and `Passage`.
     noise
         What is expected of the errors of the data and the model.
+    slack
+        Share by which objectives of models may be greater that count in ranges of predictions.
     front
         Fields of ``pareto`` as keywords, ``method="weights", points=10``, in place of its own.
 
@@ -111,6 +114,7 @@ def solve(
         uncertainty=uncertainty or Uncertainty(),
         predictions=tuple(predictions),
         noise=noise or NoisePrior(),
+        slack=slack,
     )
     return run(study)
 
@@ -295,7 +299,9 @@ class _Session:
         if inference is not None:
             data = with_intervals(data, inference)
             gaussian, drawn = inference.gaussian, inference.draws.theta
-        runner = PredictionRunner(problem, study.predictions, study.seed, work, study.file)
+        runner = PredictionRunner(
+            problem, study.predictions, study.seed, work, study.file, study.slack
+        )
         models = posterior_models(data, runner, gaussian, study.uncertainty.draws, drawn)
         work.expect(extent(study.predictions, data.sizes["point"] + models.count))
         data = with_posterior(with_predictions(data, runner), runner, models)

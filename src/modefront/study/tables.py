@@ -18,6 +18,7 @@ from modefront.models.parameters import Parameter
 from modefront.models.reduced.options import Reduction
 from modefront.options import each_once, options
 from modefront.predictions import CLASSES, Prediction
+from modefront.predictions.ranges import SLACK
 from modefront.residuals.base import Scale
 from modefront.residuals.groups import MODE_NUMBERS, Group, are_mode_numbers, faults
 from modefront.residuals.kinds import KINDS as RESIDUALS
@@ -142,15 +143,18 @@ def read_weights(root: Table, groups: Sequence[str]) -> tuple[Weighted, ...]:
     return tuple(out)
 
 
-def read_predictions(root: Table, model: Model | None, data: ModalData | None) -> Drafts:
-    """Return the predictions that a study asks for, as far as nothing is wrong with them."""
+def read_predictions(
+    root: Table, model: Model | None, data: ModalData | None
+) -> tuple[Drafts, float]:
+    """Return the predictions that a study asks for, as far as they are right, and their slack."""
     if "predict" not in root.values:
         root.requested.append("predict")
-        return []
+        return [], 0.0
     expected = f"tables {enumeration([f'[[predict.{name}]]' for name in CLASSES])}"
     table = root.table("predict", expected)
     if table is None:
-        return []
+        return [], 0.0
+    slack = table.value("slack", SLACK, 0.0)
     out: list[tuple[Table, Prediction]] = []
     names = []
     for key, prediction_class in CLASSES.items():
@@ -164,7 +168,7 @@ def read_predictions(root: Table, model: Model | None, data: ModalData | None) -
             out.append((each, prediction))
     table.close()
     table.note(each_once("", names))
-    return out
+    return out, float(slack or 0.0)
 
 
 def complete(drafts: Drafts, problem: UpdatingProblem) -> tuple[Prediction, ...]:

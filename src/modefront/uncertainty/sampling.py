@@ -193,6 +193,8 @@ def _within_bounds(
 
 def truncated(mean: float, std: float, reach: float, rng: np.random.Generator) -> float:
     """Return a draw of a Gaussian between 0 and ``reach``, by inversion in its left tail."""
+    if mean > reach / 2:
+        return reach - truncated(reach - mean, std, reach, rng)
     inner, outer = log_ndtr(np.array([mean, mean - reach]) / std)
     u = rng.random()
     t = mean - std * ndtri_exp(inner + np.log1p(u * np.expm1(outer - inner)))

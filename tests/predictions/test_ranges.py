@@ -1,0 +1,99 @@
+"""Ranges over equivalent and nearly optimal models against closed forms."""
+
+import numpy as np
+import pytest
+
+from modefront._typing import Floats
+from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual
+from modefront.predictions.ranges import extreme
+
+LOWER, UPPER = np.array([0.5, 0.5, 0.5]), np.array([2.0, 2.0, 2.0])
+
+
+class Ratios:
+    """Two groups of residuals that know the ratios of three parameters only."""
+
+    objectives = ("a", "b")
+    lower, upper, start = LOWER, UPPER, np.ones(3)
+
+    def __init__(self, known: int = 2) -> None:
+        self.known = known
+
+    def evaluate(
+        self, theta: Floats, *, derivatives: bool = True, second: bool = False
+    ) -> Evaluation:
+        x, y, z = theta
+        r = [np.array([x / y - 1.2, x / y - 0.8])]
+        dr = [np.array([[1 / y, -x / y**2, 0.0]] * 2)]
+        r.append(np.array([y / z - 1.0]) if self.known > 1 else np.array([x / y - 1.1]))
+        dr.append(np.array([[0.0, 1 / z, -y / z**2]]) if self.known > 1 else dr[0][:1])
+        parts = [Residual(a, b) for a, b in zip(r, dr, strict=True)]
+        slopes = ObjectiveDerivatives(
+            np.array([2 * x.r @ x.dr for x in parts]), np.array([2 * x.dr.T @ x.dr for x in parts])
+        )
+        return Evaluation(theta, np.array([x.r @ x.r for x in parts]), slopes, residuals=parts)
+
+
+def along(problem: Problem, q: object, thetas: Floats, slack: float = 0.0) -> tuple[float, float]:
+    """Return the range of a function of the parameters."""
+    least, greatest = (extreme(problem, thetas, q, s, slack, 1e-4) for s in (1.0, -1.0))  # type: ignore[arg-type]
+    return least, greatest
+
+
+def test_models_scaled_together_reach_from_bound_to_bound() -> None:
+    """x = y = z = t from 0.5 to 2: of q = t^2 + 1/t the least is within, at t = 2^(-1/3)."""
+    calls = [0]
+
+    def q(theta: Floats) -> float:
+        calls[0] += 1
+        return float(theta[0] * theta[1] + 1 / theta[2])
+
+    thetas = np.array([[1.0, 1.0, 1.0], [1.1, 1.1, 1.1]])
+    least, greatest = along(Ratios(), q, thetas)
+    t = 2 ** (-1 / 3)
+    assert least == pytest.approx(t**2 + 1 / t, rel=1e-6)
+    assert greatest == pytest.approx(4.5, rel=1e-6)
+    assert calls[0] < 120
+
+
+def test_two_combinations_that_are_open() -> None:
+    """x = y, and z is anything: x z + z from 0.5 0.5 + 0.5 to 2 2 + 2."""
+    least, greatest = along(Ratios(1), lambda x: float(x[0] * x[2] + x[2]), np.ones((1, 3)))
+    assert least == pytest.approx(0.75, rel=1e-6)
+    assert greatest == pytest.approx(6.0, rel=1e-6)
+
+
+def test_no_open_combination_leaves_the_range_of_the_points() -> None:
+    class Known(Ratios):
+        def evaluate(
+            self, theta: Floats, *, derivatives: bool = True, second: bool = False
+        ) -> Evaluation:
+            r = theta - 1.0
+            slopes = ObjectiveDerivatives((2 * r)[None], 2 * np.eye(3)[None])
+            parts = (Residual(r, np.eye(3)),)
+            return Evaluation(theta, np.array([r @ r]), slopes, residuals=parts)
+
+    thetas = np.array([[1.1, 1.2, 0.9], [1.4, 0.9, 1.0], [0.8, 1.5, 1.0]])
+    calls = [0]
+
+    def q(theta: Floats) -> float:
+        calls[0] += 1
+        return float(theta.sum())
+
+    assert along(Known(), q, thetas) == pytest.approx((3.2, 3.3))
+    assert calls[0] == 6
+    # With a slack of 3 the ball of radius sqrt(J) about ones doubles its radius.
+    J = 0.1**2 + 0.5**2 + 0.0
+    J = max(J, 0.2**2 + 0.5**2)
+    least, greatest = along(Known(), q, thetas[2:], 3.0)
+    assert greatest == pytest.approx(3 + np.sqrt(3 * 4 * 0.29), rel=2e-3)
+    assert least == pytest.approx(max(3 - np.sqrt(3 * 4 * 0.29), 1.5), rel=2e-3)
+
+
+def test_where_a_model_has_no_value_it_is_left_out() -> None:
+    def q(theta: Floats) -> float:
+        return float(theta[0]) if theta[0] < 1.5 else np.nan
+
+    least, greatest = along(Ratios(), q, np.array([[1.0, 1.0, 1.0], [1.9, 1.9, 1.9]]))
+    assert least == pytest.approx(0.5, rel=1e-6)
+    assert greatest == pytest.approx(1.5, rel=1e-2)
