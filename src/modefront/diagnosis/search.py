@@ -1,0 +1,261 @@
+"""The search over mistakes: best first, alone and together, and what of it is certain."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass, field
+from typing import Any
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.diagnosis.comparison import Comparison, of_few_sets
+from modefront.diagnosis.evidence import Point, Quick, State, point, quick
+from modefront.diagnosis.mistakes import MISTAKES, Mistake, Setting, Variant
+
+CLEAR = float(np.log(100.0))
+"""Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
+
+BEAM, FITTED, MOST = 3, 10, 8
+"""Explanations that are extended at a time, fits of the extensions of each, and most mistakes."""
+
+EITHER = 3
+"""Explanations that the data cannot tell apart and that are named nevertheless, at most."""
+
+MORE = 4
+"""Model modes with which measured ones may be paired, beyond the candidates of the study."""
+
+
+@dataclass(frozen=True, eq=False)
+class Step:
+    """A variant of a mistake that is assumed."""
+
+    mistake: Mistake
+    variant: Variant
+
+    @property
+    def claim(self) -> tuple[str, ...]:
+        """What is claimed: the kind of mistake and whom it blames."""
+        return (self.mistake.kind, *self.variant.subject)
+
+    @property
+    def price(self) -> float:
+        """Negative logarithm of the probability that a study has it."""
+        return self.variant.price - float(np.log(self.mistake.probability))
+
+
+@dataclass(frozen=True, eq=False)
+class Explanation:
+    """Assumed mistakes, with the state without them at its fitted parameters.
+
+    Attributes
+    ----------
+    steps : the mistakes
+    state, point : data and model without them, and the end of a fit
+    cost : C with the prices
+    """
+
+    steps: tuple[Step, ...]
+    state: State
+    point: Point
+    cost: float
+
+    @property
+    def claims(self) -> frozenset[tuple[str, ...]]:
+        """What is claimed."""
+        return frozenset(step.claim for step in self.steps)
+
+
+@dataclass(frozen=True)
+class Found:
+    """A mistake that is named.
+
+    Attributes
+    ----------
+    kind : of `modefront.diagnosis.mistakes.MISTAKES`
+    subject : what it blames
+    numbers : names and numbers of its sentence
+    sentence, remedy : what is wrong, and what mends it
+    gain : logarithm of the odds against the best explanation without it
+    """
+
+    kind: str
+    subject: tuple[str, ...]
+    numbers: Mapping[str, Any]
+    sentence: str
+    remedy: str
+    gain: float
+    others: tuple[Found, ...] = ()
+
+    def __str__(self) -> str:
+        """Return what is wrong and what mends it."""
+        either = "".join(f", or {other.sentence}" for other in self.others)
+        unsure = " (the data cannot tell)" if either else ""
+        return f"{self.sentence}{either}{unsure}; {self.remedy}"
+
+
+@dataclass(eq=False)
+class Search:
+    """Explanations that were tried.
+
+    Attributes
+    ----------
+    comparison : the nominal model beside the measured modes
+    model : the model, quickly solved
+    known : explanations that were fitted, the best of those with the same claims
+    """
+
+    comparison: Comparison
+    model: Quick
+    known: dict[frozenset[tuple[str, ...]], Explanation] = field(default_factory=dict)
+    extended: set[frozenset[tuple[str, ...]]] = field(default_factory=set)
+
+    @classmethod
+    def of(cls, comparison: Comparison) -> Search:
+        """Return the search that begins with a comparison."""
+        problem = comparison.problem
+        count = min(problem.model.size, comparison.candidates + MORE, comparison.frequency.size)
+        bounds = problem.lower, problem.upper
+        model = quick(problem.model, comparison.matrices, count, problem.start, bounds)
+        return cls(comparison, model)
+
+    @property
+    def plain(self) -> State:
+        """Data and model as they are."""
+        problem, data = self.comparison.problem, self.comparison.view
+        matrices = self.comparison.matrices
+        return State(
+            data,
+            np.zeros(data.logs.size, dtype=bool),
+            0,
+            None if matrices is None else matrices.selection,
+            *(problem.start, problem.lower, problem.upper),
+        )
+
+    def fitted(self, steps: Sequence[Step], starts: Sequence[Floats]) -> Explanation | None:
+        """Return the explanation by some mistakes, the best of fits from several parameters."""
+        state = self.plain
+        for step in steps:
+            state = step.variant.change(state)
+        starts = [np.clip(theta, state.lower, state.upper) for theta in (state.start, *starts)]
+        points = [self._at(state, theta) for theta in starts]
+        begin = [(at.cost, k) for k, at in enumerate(points) if at is not None]
+        if not begin:
+            return None
+        at = self.model.fit(state, starts[min(begin)[1]])
+        if at is None:
+            return None
+        cost = at.cost + sum(step.price for step in steps)
+        new = Explanation(tuple(steps), state, at, cost)
+        old = self.known.get(new.claims)
+        if old is None or new.cost < old.cost:
+            self.known[new.claims] = new
+        return self.known[new.claims]
+
+    def _at(self, state: State, theta: Floats) -> Point | None:
+        whole = self.model.everywhere(theta)
+        if whole is None:
+            return None
+        f, Phi = whole
+        return point(state, theta, f, Phi if state.selection is None else state.selection @ Phi)
+
+    def extend(self, old: Explanation) -> list[Explanation]:
+        """Return the most promising explanations with a mistake more, after a fit of each."""
+        if old.claims in self.extended:
+            return [e for c, e in self.known.items() if len(c) == len(old.claims) + 1 and c > old.claims]
+        self.extended.add(old.claims)
+        state, thetas = old.state, [old.state.start, old.point.theta]
+        wholes = [(theta, self.model.everywhere(theta)) for theta in thetas]
+        models = [(theta, *whole) for theta, whole in wholes if whole is not None]
+        promising: dict[tuple[str, ...], tuple[float, int, Step]] = {}
+        for step in self._steps(old, models):
+            if step.claim in old.claims:
+                continue
+            cost = self._screened(step.variant.change(state), state, models) + step.price
+            rank = cost, len(promising), step
+            if step.claim not in promising or rank[:2] < promising[step.claim][:2]:
+                promising[step.claim] = rank
+        chosen = sorted(promising.values(), key=lambda each: each[:2])[:FITTED]
+        out = [self.fitted((*old.steps, step), [old.point.theta]) for _, _, step in chosen]
+        return sorted((each for each in out if each is not None), key=lambda each: each.cost)
+
+    def _screened(
+        self, new: State, old: State, models: Sequence[tuple[Floats, Floats, Floats]]
+    ) -> float:
+        """Return the least cost of a state at the parameters that are at hand."""
+        costs = [np.inf]
+        for theta, f, Phi in models:
+            if not np.array_equal(new.start, old.start):
+                at = self._at(new, new.theta(old.x(theta)))
+            else:
+                phi = Phi if new.selection is None else new.selection @ Phi
+                at = point(new, theta, f, phi)
+            costs.append(np.inf if at is None else at.cost)
+        return float(min(costs))
+
+    def _steps(
+        self, old: Explanation, models: Sequence[tuple[Floats, Floats, Floats]]
+    ) -> Iterator[Step]:
+        """Yield what may be assumed besides an explanation."""
+        data, matrices = self.comparison.data, self.comparison.matrices
+        select = old.state.selection
+        setting = Setting(
+            old.state,
+            [point(old.state, t, f, Phi if select is None else select @ Phi) for t, f, Phi in models],
+            [f for _, f, _ in models],
+            [Phi for _, _, Phi in models],
+            *(data.sets, data.modes, data.sensors, self.comparison.problem.model.parameters),
+            None if matrices is None else matrices.geometry,
+        )
+        for mistake in MISTAKES:
+            for variant in mistake.variants(setting):
+                yield Step(mistake, variant)
+
+    def best(self) -> Explanation | None:
+        """Return the best explanation, by extending the best ones, and by leaving mistakes out."""
+        plain = self.fitted((), [])
+        if plain is None:
+            return None
+        beam = [plain]
+        for depth in range(MOST):
+            children = {each.claims: each for old in beam for each in self.extend(old)}
+            least = min(old.cost for old in beam)
+            beam = sorted(children.values(), key=lambda each: each.cost)[: BEAM if depth == 0 else 1]
+            if not beam or (depth > 0 and beam[0].cost > least):
+                break
+        while True:
+            best = min(self.known.values(), key=lambda each: each.cost)
+            for step in best.steps:
+                rest = self.fitted([each for each in best.steps if each is not step], [best.point.theta])
+                if rest is not None:
+                    self.extend(rest)
+            if min(each.cost for each in self.known.values()) >= best.cost:
+                return best
+
+    def named(self, best: Explanation) -> list[Found]:
+        """Return the mistakes of the best explanation without which no other one comes near it."""
+        out = []
+        for step in best.steps:
+            rivals = [each for each in self.known.values() if step.claim not in each.claims]
+            near = [each for each in rivals if each.cost - best.cost < CLEAR]
+            rest = best.claims - {step.claim}
+            swaps = [each.steps[-1] for each in near if each.claims > rest and len(each.steps) == len(best.steps)]
+            swaps = [next(s for s in each.steps if s.claim not in rest) for each in near if each.claims > rest and len(each.claims) == len(best.claims)]
+            if len(swaps) < len(near) or len(swaps) >= EITHER:
+                continue
+            gain = min((each.cost for each in rivals if each.claims <= best.claims), default=np.inf) - best.cost
+            out.append(_found(step, gain, tuple(_found(other, gain) for other in swaps)))
+        return out
+
+
+def _found(step: Step, gain: float, others: tuple[Found, ...] = ()) -> Found:
+    numbers = step.variant.numbers
+    sentence, remedy = (x.format(**numbers) for x in (step.mistake.sentence, step.mistake.remedy))
+    return Found(step.mistake.kind, step.variant.subject, numbers, sentence, remedy, float(gain), others)
+
+
+def diagnose(comparison: Comparison) -> list[Found]:
+    """Return the mistakes of a model or its data; of many data sets, some are looked at."""
+    search = Search.of(of_few_sets(comparison))
+    best = search.best()
+    return [] if best is None else search.named(best)
