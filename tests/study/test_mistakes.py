@@ -14,10 +14,7 @@ from click.testing import CliRunner
 from modefront import Group, ModalData, UpdatingProblem, chain, modal_data
 from modefront.cli.main import cli
 from modefront.diagnosis.comparison import compare
-from modefront.diagnosis.diagnose import diagnose
-from modefront.diagnosis.opposed import OpposedSensor
-from modefront.diagnosis.sets import frequency_findings
-from modefront.diagnosis.words import in_words
+from modefront.diagnosis.search import diagnose
 from modefront.study.check import Findings, check
 from modefront.study.examples import write_example
 from modefront.study.file import load

@@ -1,17 +1,8 @@
 r"""The cost of an explanation: how improbable data and parameters are under it.
 
-Data sets differ from what they have in common by noise, and that differs from the model by what
-no parameter describes. Differences :math:`r_k` of a kind (frequencies by their logarithms, shapes
-of mean square 1) have Student's distribution, of which few large ones cost little, with a scale
-:math:`\sigma` that is not known but expected near :math:`\sigma_0`:
-
-.. math:: C = \min_\sigma \sum_k \Big[\ln \sigma
-   + \tfrac{\nu + 1}{2} \ln\Big(1 + \frac{r_k^2}{\nu \sigma^2}\Big)\Big]
-   + \tfrac12 \ln^2 \frac{\sigma}{\sigma_0}.
-
-So a model that is poor everywhere makes nothing of a single difference (Lange, Little & Taylor,
-J. Am. Stat. Assoc. 84, 1989, doi:10.1080/01621459.1989.10478852). A value that the explanation
-leaves out counts as one of a normal distribution of size 1. The parameters are expected near their
+Data sets differ from what they have in common by noise (`modefront.diagnosis.measured`), and that
+differs from the model by what no parameter describes: frequencies by their logarithms, shapes of
+mean square 1, both after `modefront.diagnosis.student`. The parameters are expected near their
 nominal values, by their logarithms where their bounds are positive. They are fitted by Gauss-Newton
 steps with weights :math:`(\nu + 1) / (\nu + r_k^2 / \sigma^2)`, the pairs taken anew at every step.
 
@@ -39,9 +30,9 @@ from modefront.diagnosis.measured import (
     assigned,
     log_frequencies,
     mac_values,
-    median,
     pair_costs,
 )
+from modefront.diagnosis.student import NOTHING, loss, scaled
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, SparseAffine
 from modefront.models.base import Model
@@ -49,23 +40,14 @@ from modefront.models.matrices import MatrixModel
 from modefront.modes.result import Modes
 from modefront.rounding import ACCUMULATED
 
-NOISE, OF_MODEL = 8.0, 4.0
-"""Degrees of freedom nu of noise and parameters, and of what no parameter describes."""
+OF_PARAMETERS, OF_MODEL = 8.0, 4.0
+"""Degrees of freedom nu of parameters, and of what no parameter describes."""
 
-FREQUENCY, SHAPE, FREQUENCY_NOISE, SHAPE_NOISE = 0.03, 0.08, 0.005, 0.03
-"""Scales that are expected: of the model, and of noise where no standard deviation is known."""
+FREQUENCY, SHAPE = 0.03, 0.08
+"""Scales that are expected of what no parameter describes."""
 
 OFF = 0.4
 """Scale of the parameters: of their logarithms, or over their unit."""
-
-DAMPING = float(np.log(0.01))
-"""Logarithm of the damping ratio that is expected, with a scale of 1."""
-
-NOTHING = 0.5
-"""Cost of a value of which nothing is known."""
-
-SCALES = np.linspace(-4.0, 4.0, 33)
-"""Logarithms of the scales that are tried, over the one that is expected."""
 
 STEPS, LONGEST, ENOUGH = 10, 0.7, 0.05
 """Steps of a fit, their longest component, and the decrease of the cost that ends them."""
@@ -73,24 +55,6 @@ STEPS, LONGEST, ENOUGH = 10, 0.7, 0.05
 LARGE, SAMPLES = 80, 4
 """Degrees of freedom from which on a model is reduced, and models of its basis beside the nominal
 one."""
-
-
-def loss(r: Floats, nu: float) -> Floats:
-    """Return the cost of residuals over their scale."""
-    return np.asarray((nu + 1) / 2 * np.log1p(r**2 / nu))
-
-
-def scaled(r: Floats, expected: float, nu: float) -> tuple[float, float]:
-    """Return C of residuals r, and the scale sigma with which it is least."""
-    if not r.size:
-        return 0.0, expected
-    scales = expected * np.exp(SCALES)
-    costs = loss(r / scales[:, None], nu).sum(axis=1) + r.size * np.log(scales) + SCALES**2 / 2
-    k = min(max(int(np.argmin(costs)), 1), SCALES.size - 2)
-    a, b, c = costs[k - 1 : k + 2]
-    shift = float(np.clip((a - c) / (2 * (a - 2 * b + c) + ACCUMULATED), -0.5, 0.5))
-    least = float(b - (a - c) * shift / 4)
-    return least, float(scales[k] * np.exp(shift * (SCALES[1] - SCALES[0])))
 
 
 @dataclass(frozen=True, eq=False)
@@ -101,14 +65,12 @@ class State:
     ----------
     data : the measured modes
     foreign : (modes,) modes that the model does not have
-    left_out : number of values of single data sets that are left out
     selection : (sensors, N) weights of the degrees of freedom; None for a model without matrices
     start, lower, upper : (parameters,) nominal values and bounds
     """
 
     data: Measured
     foreign: Bools
-    left_out: int
     selection: scipy.sparse.csr_array | None
     start: Floats
     lower: Floats
@@ -135,27 +97,6 @@ class State:
             factors = np.exp(np.where(self.is_positive, x, 0.0))
         values = np.where(self.is_positive, self.start * factors, self.start + x * self.unit)
         return np.clip(values, self.lower, self.upper)
-
-
-def cost_of_data(data: Measured, left_out: int) -> float:
-    """Return the cost of the noise between data sets, and of damping ratios."""
-    zeta = median(np.where(data.damping > 0, data.damping, np.nan))
-    damping = np.log(zeta[np.isfinite(zeta)]) - DAMPING
-    total = float(loss(damping, NOISE).sum()) + NOTHING * left_out
-    if data.shape.shape[0] == 1:
-        return total
-    several = data.seen & (data.seen.sum(axis=0) > 1)
-    shapes = (data.psi - data.factors(data.mean) * data.mean)[several]
-    f = np.log(data.frequency)
-    known = np.isfinite(f) & (np.isfinite(f).sum(axis=0) > 1)
-    std = np.where(np.isfinite(data.std), data.std, FREQUENCY_NOISE)[known]
-    frequencies = (f - data.logs)[known] / std
-    return (
-        total
-        + scaled(shapes, SHAPE_NOISE, NOISE)[0]
-        + scaled(frequencies, 1.0, NOISE)[0]
-        + float(np.log(std).sum())
-    )
 
 
 @dataclass(frozen=True, eq=False)
@@ -196,7 +137,7 @@ def point(state: State, theta: Floats, frequency: Floats, phi: Floats) -> Point:
     index = assigned(cost)
     used = known & (known.sum(axis=1) > 1)[:, None]
     chi = np.where(data.known, phi[:, index].T, 0.0)
-    c, weight, beta = data.mean, used.astype(float), np.zeros(index.size)
+    c, weight = data.mean, used.astype(float)
     for _ in range(3):
         square = (weight * chi**2).sum(axis=1)
         beta = np.divide((weight * chi * c).sum(axis=1), square, where=square > 0, out=0 * square)
@@ -207,9 +148,9 @@ def point(state: State, theta: Floats, frequency: Floats, phi: Floats) -> Point:
     of_shapes, sigma = scaled(r[used], SHAPE, OF_MODEL)
     elastic = ~state.foreign & np.isfinite(data.logs) & (frequency[index] > RIGID * frequency.max())
     of_frequencies, sigma_f = scaled((logs[index] - data.logs)[elastic], FREQUENCY, OF_MODEL)
-    alone = NOTHING * (data.known[state.foreign].sum() + state.foreign.sum())
-    prior = loss(state.x(theta) / OFF, NOISE).sum()
-    total = of_shapes + of_frequencies + alone + prior + cost_of_data(data, state.left_out)
+    alone = NOTHING * float(data.known[state.foreign].sum() + state.foreign.sum())
+    prior = loss(state.x(theta) / OFF, OF_PARAMETERS).sum()
+    total = of_shapes + of_frequencies + alone + prior + data.noise
     return Point(theta, float(total), index, beta, chi, sigma, sigma_f)
 
 
@@ -292,12 +233,12 @@ class Quick:
             modes.dfrequency[at.index[known]] / f[known, None] * unit / at.sigma_f,
             np.eye(theta.size) / OFF,
         ]
-        nus = [OF_MODEL, NOISE]
+        nus = [OF_MODEL, OF_PARAMETERS]
         used = data.known & ~state.foreign[:, None] & (data.known.sum(axis=1) > 1)[:, None]
-        for r in np.flatnonzero(used.any(axis=1)).tolist():
-            seen = used[r]
-            chi, dchi = at.chi[r, seen], modes.dphi[seen, at.index[r]] * unit
-            c, beta, b = data.mean[r, seen], at.beta[r], float(at.chi[r, seen] @ at.chi[r, seen])
+        for k in np.flatnonzero(used.any(axis=1)).tolist():
+            seen = used[k]
+            chi, dchi = at.chi[k, seen], modes.dphi[seen, at.index[k]] * unit
+            c, beta, b = data.mean[k, seen], at.beta[k], float(chi @ chi)
             dbeta = (c @ dchi - 2 * beta * (chi @ dchi)) / b if b > 0 else np.zeros(theta.size)
             parts.append((beta * chi - c) / at.sigma)
             slopes.append((np.outer(chi, dbeta) + beta * dchi) / at.sigma)
@@ -308,7 +249,11 @@ class Quick:
 
 
 def quick(
-    model: Model, matrices: MatrixModel | None, count: int, theta: Floats, bounds: tuple[Floats, Floats]
+    model: Model,
+    matrices: MatrixModel | None,
+    count: int,
+    theta: Floats,
+    bounds: tuple[Floats, Floats],
 ) -> Quick:
     """Return a model that is quickly solved: a large one in the space of modes at some parameters.
 
@@ -329,7 +274,9 @@ def quick(
     V = V[:, size > 1e-7 * size[0]]
     K, M = (_projected(A, V) for A in (matrices.stiffness, matrices.mass))
     rows = scipy.sparse.csr_array(matrices.selection @ V)
-    return Quick(replace(matrices, selection=rows, stiffness=K, mass=M, outputs={}, base={}), V, count)
+    return Quick(
+        replace(matrices, selection=rows, stiffness=K, mass=M, outputs={}, base={}), V, count
+    )
 
 
 def _projected(A: DenseAffine | SparseAffine, V: Floats) -> DenseAffine:

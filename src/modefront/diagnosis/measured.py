@@ -17,6 +17,7 @@ import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.data.modal import ModalData
+from modefront.diagnosis.student import NOTHING, loss, scaled
 from modefront.rounding import TINY
 
 RIGID = 1e-6
@@ -25,6 +26,12 @@ root of 1e-13."""
 
 KAPPA, FARTHEST = 0.4, 2.5
 """Cost of a factor e between frequencies, in units of a MAC value, up to the logarithm d."""
+
+NU, FREQUENCY, SHAPE = 20.0, 0.005, 0.03
+"""Degrees of freedom nu of noise, and its scale in frequencies and shapes where nothing is known."""
+
+DAMPING = float(np.log(0.01))
+"""Logarithm of the damping ratio that is expected, with a scale of 1."""
 
 ROUNDS = 8
 """Rounds of the iteration for the shape that data sets have in common."""
@@ -39,12 +46,14 @@ class Measured:
     frequency, damping : (sets, modes) frequencies in Hz and damping ratios
     shape : (sets, modes, sensors) components
     std : (sets, modes) relative standard deviations of frequencies; NaN where not known
+    left_out : number of values that are left out
     """
 
     frequency: Floats
     damping: Floats
     shape: Floats
     std: Floats
+    left_out: int = 0
 
     @cached_property
     def seen(self) -> Bools:
@@ -79,9 +88,9 @@ class Measured:
         return c
 
     def factors(self, c: Floats) -> Floats:
-        """Return by which factors shapes c (modes, sensors) become those measured, (sets, modes, 1).
+        """Return by which factors shapes c (modes, sensors) become those measured.
 
-        They are the least squares at the measured components.
+        They are least squares at the measured components, (sets, modes, 1).
         """
         square = (self.seen * c**2).sum(axis=2, keepdims=True)
         along = (self.psi * c).sum(axis=2, keepdims=True)
@@ -96,6 +105,30 @@ class Measured:
     def logs(self) -> Floats:
         """Medians of the logarithms of frequencies, (modes,); NaN where none."""
         return median(np.log(self.frequency))
+
+    @cached_property
+    def noise(self) -> float:
+        """Cost of the differences between data sets, and of damping ratios.
+
+        Of n values that are compared with their mean, n - 1 are free: each has the weight
+        (n - 1) / n, and its difference is greater by the root of the inverse.
+        """
+        zeta = median(np.where(self.damping > 0, self.damping, np.nan))
+        damping = np.log(zeta[np.isfinite(zeta)]) - DAMPING
+        total = float(loss(damping, NU).sum()) + NOTHING * self.left_out
+        std = np.where(np.isfinite(self.std), self.std, FREQUENCY)
+        frequencies = (np.log(self.frequency) - self.logs) / std
+        shapes = self.psi - self.factors(self.mean) * self.mean
+        for r, known, expected, unit in (
+            (shapes, self.seen, SHAPE, np.ones(shapes.shape)),
+            (frequencies, np.isfinite(frequencies), 1.0, std),
+        ):
+            free = 1 - 1 / np.maximum(known.sum(axis=0), 1)
+            several = known & (free > 0)
+            weight = np.broadcast_to(free, r.shape)[several]
+            total += scaled(r[several] / np.sqrt(weight), expected, NU, weight)[0]
+            total += float(np.log(unit[several]) @ weight)
+        return total
 
     @property
     def has_shape(self) -> Bools:
@@ -112,10 +145,11 @@ def measured(data: ModalData) -> Measured:
 
 def median(values: Floats) -> Floats:
     """Return the median of each column over what is finite; NaN where nothing is."""
-    out = np.full(values.shape[1:], np.nan)
-    some = np.isfinite(values).any(axis=0)
-    out[some] = np.nanmedian(values[:, some], axis=0)
-    return out
+    ascending = np.sort(values, axis=0)
+    count = np.isfinite(values).sum(axis=0)[None]
+    low, high = np.maximum(count - 1, 0) // 2, np.minimum(count // 2, len(values) - 1)
+    below, above = (np.take_along_axis(ascending, k, axis=0)[0] for k in (low, high))
+    return np.asarray((below + above) / 2)
 
 
 def mac_values(psi: Floats, known: Bools, phi: Floats) -> Floats:

@@ -29,6 +29,7 @@ class DataDirection:
     sensor: str
     model: str
     data: str
+    kind = "data-direction"
 
     def __str__(self) -> str:
         """Return the finding and what mends it."""
@@ -52,6 +53,7 @@ class UnusedGroup:
     name: str
     type: str
     cells: int
+    kind = "unused-group"
 
     def __str__(self) -> str:
         """Return the finding and what mends it."""

@@ -3,15 +3,17 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import numpy as np
 
 from modefront._typing import Floats
-from modefront.diagnosis.comparison import Comparison, of_few_sets
+from modefront.diagnosis.comparison import Comparison, compare, of_few_sets
 from modefront.diagnosis.evidence import Point, Quick, State, point, quick
-from modefront.diagnosis.mistakes import MISTAKES, Mistake, Setting, Variant
+from modefront.diagnosis.mistakes import MISTAKES
+from modefront.diagnosis.mistakes.record import Mistake, Setting, Variant
+from modefront.diagnosis.pairs import PairRemark, pair_remarks
 
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
@@ -127,16 +129,20 @@ class Search:
         return State(
             data,
             np.zeros(data.logs.size, dtype=bool),
-            0,
             None if matrices is None else matrices.selection,
             *(problem.start, problem.lower, problem.upper),
         )
 
-    def fitted(self, steps: Sequence[Step], starts: Sequence[Floats]) -> Explanation | None:
-        """Return the explanation by some mistakes, the best of fits from several parameters."""
+    def state(self, steps: Sequence[Step]) -> State:
+        """Return data and model without some mistakes."""
         state = self.plain
         for step in steps:
             state = step.variant.change(state)
+        return state
+
+    def fitted(self, steps: Sequence[Step], starts: Sequence[Floats]) -> Explanation | None:
+        """Return the explanation by some mistakes, the best of fits from several parameters."""
+        state = self.state(steps)
         starts = [np.clip(theta, state.lower, state.upper) for theta in (state.start, *starts)]
         points = [self._at(state, theta) for theta in starts]
         begin = [(at.cost, k) for k, at in enumerate(points) if at is not None]
@@ -162,7 +168,9 @@ class Search:
     def extend(self, old: Explanation) -> list[Explanation]:
         """Return the most promising explanations with a mistake more, after a fit of each."""
         if old.claims in self.extended:
-            return [e for c, e in self.known.items() if len(c) == len(old.claims) + 1 and c > old.claims]
+            return [
+                e for c, e in self.known.items() if len(c) == len(old.claims) + 1 and c > old.claims
+            ]
         self.extended.add(old.claims)
         state, thetas = old.state, [old.state.start, old.point.theta]
         wholes = [(theta, self.model.everywhere(theta)) for theta in thetas]
@@ -201,7 +209,10 @@ class Search:
         select = old.state.selection
         setting = Setting(
             old.state,
-            [point(old.state, t, f, Phi if select is None else select @ Phi) for t, f, Phi in models],
+            [
+                point(old.state, t, f, Phi if select is None else select @ Phi)
+                for t, f, Phi in models
+            ],
             [f for _, f, _ in models],
             [Phi for _, _, Phi in models],
             *(data.sets, data.modes, data.sensors, self.comparison.problem.model.parameters),
@@ -220,42 +231,71 @@ class Search:
         for depth in range(MOST):
             children = {each.claims: each for old in beam for each in self.extend(old)}
             least = min(old.cost for old in beam)
-            beam = sorted(children.values(), key=lambda each: each.cost)[: BEAM if depth == 0 else 1]
+            beam = sorted(children.values(), key=lambda each: each.cost)[
+                : BEAM if depth == 0 else 1
+            ]
             if not beam or (depth > 0 and beam[0].cost > least):
                 break
         while True:
             best = min(self.known.values(), key=lambda each: each.cost)
             for step in best.steps:
-                rest = self.fitted([each for each in best.steps if each is not step], [best.point.theta])
+                rest = self.fitted(
+                    [each for each in best.steps if each is not step], [best.point.theta]
+                )
                 if rest is not None:
                     self.extend(rest)
             if min(each.cost for each in self.known.values()) >= best.cost:
                 return best
 
-    def named(self, best: Explanation) -> list[Found]:
+    def named(self, best: Explanation) -> dict[Step, Found]:
         """Return the mistakes of the best explanation without which no other one comes near it."""
-        out = []
+        out = {}
         for step in best.steps:
             rivals = [each for each in self.known.values() if step.claim not in each.claims]
             near = [each for each in rivals if each.cost - best.cost < CLEAR]
             rest = best.claims - {step.claim}
-            swaps = [each.steps[-1] for each in near if each.claims > rest and len(each.steps) == len(best.steps)]
-            swaps = [next(s for s in each.steps if s.claim not in rest) for each in near if each.claims > rest and len(each.claims) == len(best.claims)]
-            if len(swaps) < len(near) or len(swaps) >= EITHER:
+            swaps = [
+                other
+                for each in near
+                if each.claims > rest and len(each.claims) == len(best.claims)
+                for other in each.steps
+                if other.claim not in rest
+            ]
+            alike = {other.claim for other in swaps}
+            if len(swaps) >= EITHER or not all(each.claims & alike for each in near):
                 continue
-            gain = min((each.cost for each in rivals if each.claims <= best.claims), default=np.inf) - best.cost
-            out.append(_found(step, gain, tuple(_found(other, gain) for other in swaps)))
+            gain = min((each.cost for each in rivals if not each.claims & alike), default=np.inf)
+            others = tuple(_found(other, 0.0) for other in swaps)
+            out[step] = _found(step, gain - best.cost, others)
         return out
 
 
 def _found(step: Step, gain: float, others: tuple[Found, ...] = ()) -> Found:
     numbers = step.variant.numbers
     sentence, remedy = (x.format(**numbers) for x in (step.mistake.sentence, step.mistake.remedy))
-    return Found(step.mistake.kind, step.variant.subject, numbers, sentence, remedy, float(gain), others)
+    return Found(
+        step.mistake.kind, step.variant.subject, numbers, sentence, remedy, float(gain), others
+    )
 
 
-def diagnose(comparison: Comparison) -> list[Found]:
-    """Return the mistakes of a model or its data; of many data sets, some are looked at."""
-    search = Search.of(of_few_sets(comparison))
+def diagnose(comparison: Comparison) -> list[Found | PairRemark]:
+    """Return the mistakes of a model or its data; of many data sets, some are looked at.
+
+    Pairs are looked at without these mistakes.
+    """
+    comparison = of_few_sets(comparison)
+    search = Search.of(comparison)
     best = search.best()
-    return [] if best is None else search.named(best)
+    if best is None:
+        return []
+    named = search.named(best)
+    found = list(named.values())
+    state = search.state(list(named))
+    foreign = {str(mode) for mode in np.array(comparison.data.modes)[state.foreign]}
+    if found:
+        problem, model = comparison.problem, comparison.matrices
+        data = replace(comparison.data, frequency=state.data.frequency, shape=state.data.shape)
+        if model is not None and state.selection is not None:
+            problem = replace(problem, model=replace(model, selection=state.selection))
+        comparison = compare(replace(problem, data=data, start=state.start))
+    return [*found, *(each for each in pair_remarks(comparison) if each.subject[0] not in foreign)]

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from modefront.data.modal import ModalData
-from modefront.diagnosis.places import DataDirection, UnusedGroup
+from modefront.diagnosis.notes import DataDirection, UnusedGroup
 from modefront.errors import Fault, InputError, ModelError, reason
 from modefront.front.options import Pareto
 from modefront.front.search import Search
