@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
@@ -18,11 +19,15 @@ from modefront.diagnosis.pairs import PairRemark, pair_remarks
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
-BEAM, FITTED, MOST = 3, 10, 8
-"""Explanations that are extended at a time, fits of the extensions of each, and most mistakes."""
+BEAM, FITTED, VARIANTS, MOST = 3, 10, 2, 8
+"""Explanations that are extended at a time, claims by which each is, variants of a claim that are
+fitted, and most mistakes."""
 
 EITHER = 3
 """Explanations that the data cannot tell apart and that are named nevertheless, at most."""
+
+SEEN = 0.02
+"""Increase of a MAC value that is worth its name."""
 
 MORE = 4
 """Model modes with which measured ones may be paired, beyond the candidates of the study."""
@@ -79,6 +84,8 @@ class Found:
     numbers : names and numbers of its sentence
     sentence, remedy : what is wrong, and what mends it
     gain : logarithm of the odds against the best explanation without it
+    others : mistakes one of which may be there instead
+    evidence : how a MAC value changes
     """
 
     kind: str
@@ -88,12 +95,13 @@ class Found:
     remedy: str
     gain: float
     others: tuple[Found, ...] = ()
+    evidence: str = ""
 
     def __str__(self) -> str:
         """Return what is wrong and what mends it."""
         either = "".join(f", or {other.sentence}" for other in self.others)
         unsure = " (the data cannot tell)" if either else ""
-        return f"{self.sentence}{either}{unsure}; {self.remedy}"
+        return f"{self.sentence}{either}{unsure}{self.evidence}; {self.remedy}"
 
 
 @dataclass(eq=False)
@@ -175,16 +183,17 @@ class Search:
         state, thetas = old.state, [old.state.start, old.point.theta]
         wholes = [(theta, self.model.everywhere(theta)) for theta in thetas]
         models = [(theta, *whole) for theta, whole in wholes if whole is not None]
-        promising: dict[tuple[str, ...], tuple[float, int, Step]] = {}
+        promising: list[tuple[float, int, Step]] = []
         for step in self._steps(old, models):
-            if step.claim in old.claims:
-                continue
-            cost = self._screened(step.variant.change(state), state, models) + step.price
-            rank = cost, len(promising), step
-            if step.claim not in promising or rank[:2] < promising[step.claim][:2]:
-                promising[step.claim] = rank
-        chosen = sorted(promising.values(), key=lambda each: each[:2])[:FITTED]
-        out = [self.fitted((*old.steps, step), [old.point.theta]) for _, _, step in chosen]
+            if step.claim not in old.claims:
+                cost = self._screened(step.variant.change(state), state, models) + step.price
+                promising.append((cost, len(promising), step))
+        count: Counter[tuple[str, ...]] = Counter()
+        out = []
+        for _, _, step in sorted(promising):
+            count[step.claim] += 1
+            if count[step.claim] <= VARIANTS and len(count) <= FITTED:
+                out.append(self.fitted((*old.steps, step), [old.point.theta]))
         return sorted((each for each in out if each is not None), key=lambda each: each.cost)
 
     def _screened(
@@ -247,6 +256,16 @@ class Search:
             if min(each.cost for each in self.known.values()) >= best.cost:
                 return best
 
+    def _evidence(self, without: Explanation, best: Explanation) -> str:
+        """Return how the MAC value changes that gains most by a mistake, where one does."""
+        before, after = (each.point.mac(each.state.data) for each in (without, best))
+        gain = np.nan_to_num(after - before)
+        r = int(np.argmax(gain))
+        if gain[r] < SEEN:
+            return ""
+        mode = self.comparison.data.modes[r]
+        return f" (without, MAC {mode} is {after[r]:.2f} after a fit, and not {before[r]:.2f})"
+
     def named(self, best: Explanation) -> dict[Step, Found]:
         """Return the mistakes of the best explanation without which no other one comes near it."""
         out = {}
@@ -266,16 +285,17 @@ class Search:
                 continue
             gain = min((each.cost for each in rivals if not each.claims & alike), default=np.inf)
             others = tuple(_found(other, 0.0) for other in swaps)
-            out[step] = _found(step, gain - best.cost, others)
+            without = self.known.get(rest, self.known[frozenset()])
+            out[step] = _found(step, gain - best.cost, others, self._evidence(without, best))
         return out
 
 
-def _found(step: Step, gain: float, others: tuple[Found, ...] = ()) -> Found:
-    numbers = step.variant.numbers
-    sentence, remedy = (x.format(**numbers) for x in (step.mistake.sentence, step.mistake.remedy))
-    return Found(
-        step.mistake.kind, step.variant.subject, numbers, sentence, remedy, float(gain), others
-    )
+def _found(step: Step, gain: float, others: tuple[Found, ...] = (), evidence: str = "") -> Found:
+    """Return the record of a mistake, in words."""
+    mistake, variant = step.mistake, step.variant
+    sentence, remedy = (x.format(**variant.numbers) for x in (mistake.sentence, mistake.remedy))
+    parts = variant.subject, variant.numbers, sentence, remedy
+    return Found(mistake.kind, *parts, float(gain), others, evidence)
 
 
 def diagnose(comparison: Comparison) -> list[Found | PairRemark]:

@@ -18,7 +18,7 @@ import numpy as np
 from modefront._typing import Floats
 from modefront.rounding import ACCUMULATED
 
-SCALES, SPREAD = np.linspace(-4.0, 4.0, 33), 0.7
+SCALES, SPREAD = np.linspace(-4.0, 4.0, 33), 0.5
 """Logarithms of the scales that are tried, over the one that is expected, and their spread."""
 
 NOTHING = 0.5

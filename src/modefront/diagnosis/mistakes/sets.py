@@ -142,7 +142,7 @@ def _odd(setting: Setting, part: str, away: Floats) -> Iterator[Variant]:
             two = setting.sets[max(k, others[0])], setting.sets[min(k, others[0])]
             is_clear = len(others) > 1
             f = setting.state.data.frequency[:, r]
-            value, other = float(f[k]), float(np.exp(np.nanmedian(np.log(f[others]))))
+            value, other = float(f[k]), float(np.exp(median(np.log(f[others, None]))[0]))
             if not is_clear:
                 value, other = float(f[known[1]]), float(f[known[0]])
             numbers = {

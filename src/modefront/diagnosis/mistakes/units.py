@@ -68,7 +68,7 @@ def frequency_factor(setting: Setting) -> Iterator[Variant]:
     for factor in sorted(_ratios(setting)):
         looks = f"stiffness over mass is off by {factor**2:.3g}"
         mend = "check units, sections and masses, or the nominal values of the parameters"
-        yield _factor(factor, looks, mend, 2 * price)
+        yield _factor(factor, looks, mend, 3 * price)
 
 
 def _factor(factor: float, looks: str, mend: str, price: float) -> Variant:
