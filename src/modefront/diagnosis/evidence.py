@@ -137,14 +137,15 @@ def point(state: State, theta: Floats, frequency: Floats, phi: Floats) -> Point:
     index = assigned(cost)
     used = known & (known.sum(axis=1) > 1)[:, None]
     chi = np.where(data.known, phi[:, index].T, 0.0)
-    c, weight = data.mean, used.astype(float)
+    c, weight = data.mean, used / data.motion**2
     for _ in range(3):
         square = (weight * chi**2).sum(axis=1)
         beta = np.divide((weight * chi * c).sum(axis=1), square, where=square > 0, out=0 * square)
-        r = beta[:, None] * chi - c
+        r = (beta[:, None] * chi - c) / data.motion
         size = np.abs(r[used])
-        typical = max(1.5 * float(np.median(size)) if size.size else 0.0, SHAPE / 4)
-        weight = used / (1 + (r / typical) ** 2 / OF_MODEL)
+        middle = float(np.partition(size, size.size // 2)[size.size // 2]) if size.size else 0.0
+        typical = max(1.5 * middle, SHAPE / 4)
+        weight = used / (1 + (r / typical) ** 2 / OF_MODEL) / data.motion**2
     of_shapes, sigma = scaled(r[used], SHAPE, OF_MODEL)
     elastic = ~state.foreign & np.isfinite(data.logs) & (frequency[index] > RIGID * frequency.max())
     of_frequencies, sigma_f = scaled((logs[index] - data.logs)[elastic], FREQUENCY, OF_MODEL)
@@ -240,8 +241,9 @@ class Quick:
             chi, dchi = at.chi[k, seen], modes.dphi[seen, at.index[k]] * unit
             c, beta, b = data.mean[k, seen], at.beta[k], float(chi @ chi)
             dbeta = (c @ dchi - 2 * beta * (chi @ dchi)) / b if b > 0 else np.zeros(theta.size)
-            parts.append((beta * chi - c) / at.sigma)
-            slopes.append((np.outer(chi, dbeta) + beta * dchi) / at.sigma)
+            sigma = at.sigma * data.motion[seen]
+            parts.append((beta * chi - c) / sigma)
+            slopes.append((np.outer(chi, dbeta) + beta * dchi) / sigma[:, None])
             nus.append(OF_MODEL)
         weights = [(nu + 1) / (nu + r**2) for r, nu in zip(parts, nus, strict=True)]
         r, J, w = np.concatenate(parts), np.concatenate(slopes), np.concatenate(weights)

@@ -28,7 +28,10 @@ KAPPA, FARTHEST = 0.4, 2.5
 """Cost of a factor e between frequencies, in units of a MAC value, up to the logarithm d."""
 
 NU, FREQUENCY, SHAPE = 20.0, 0.005, 0.03
-"""Degrees of freedom nu of noise, and its scale in frequencies and shapes where nothing is known."""
+"""Degrees of freedom nu of noise, and its scales in frequencies and shapes where not known."""
+
+OF_MODEL = 0.08
+"""Scale that is expected of what no parameter describes, in shapes of mean square 1."""
 
 DAMPING = float(np.log(0.01))
 """Logarithm of the damping ratio that is expected, with a scale of 1."""
@@ -95,6 +98,16 @@ class Measured:
         square = (self.seen * c**2).sum(axis=2, keepdims=True)
         along = (self.psi * c).sum(axis=2, keepdims=True)
         return np.divide(along, square, out=np.zeros(along.shape), where=square > 0)
+
+    @cached_property
+    def motion(self) -> Floats:
+        """Scale of the differences from a model at each sensor, (sensors,), 1 at a typical one.
+
+        Noise is the same everywhere, and what no parameter describes is a share of the motion.
+        """
+        square = (self.mean**2).sum(axis=0) / np.maximum(self.known.sum(axis=0), 1)
+        least = (SHAPE / OF_MODEL) ** 2
+        return np.sqrt((least + square) / (least + 1))
 
     @cached_property
     def known(self) -> Bools:

@@ -181,6 +181,8 @@ class Search:
             ]
         self.extended.add(old.claims)
         state, thetas = old.state, [old.state.start, old.point.theta]
+        if old.steps:
+            del thetas[0]
         wholes = [(theta, self.model.everywhere(theta)) for theta in thetas]
         models = [(theta, *whole) for theta, whole in wholes if whole is not None]
         promising: list[tuple[float, int, Step]] = []
@@ -237,13 +239,12 @@ class Search:
         if plain is None:
             return None
         beam = [plain]
-        for depth in range(MOST):
+        for width in (BEAM, *[1] * (MOST - 1)):
+            least, fits = min((old.cost, old.point.cost) for old in beam)
             children = {each.claims: each for old in beam for each in self.extend(old)}
-            least = min(old.cost for old in beam)
-            beam = sorted(children.values(), key=lambda each: each.cost)[
-                : BEAM if depth == 0 else 1
-            ]
-            if not beam or (depth > 0 and beam[0].cost > least):
+            better = [each for each in children.values() if each.point.cost < fits - 1]
+            beam = sorted(better, key=lambda each: each.cost)[:width]
+            if not beam or (width == 1 and beam[0].cost > least):
                 break
         while True:
             best = min(self.known.values(), key=lambda each: each.cost)

@@ -22,6 +22,7 @@ from modefront.diagnosis.mistakes.record import (
 )
 from modefront.diagnosis.notes import ALONG, axis_name
 from modefront.models.geometry import Geometry
+from modefront.rounding import ACCUMULATED
 
 AXES = "xyz"
 
@@ -37,10 +38,12 @@ def placed(rows: Mapping[int, scipy.sparse.csr_array]) -> Change:
 
     def change(state: State) -> State:
         assert state.selection is not None
-        selection = state.selection.tolil()
-        for s, row in rows.items():
-            selection[[s]] = row.tolil()
-        return replace(state, selection=selection.tocsr())
+        parts = [(s, (row - state.selection[[s]]).tocoo()) for s, row in rows.items()]
+        values = np.concatenate([part.data for _, part in parts])
+        at = np.concatenate([np.full(part.nnz, s) for s, part in parts])
+        columns = np.concatenate([part.coords[1] for _, part in parts])
+        difference = scipy.sparse.csr_array((values, (at, columns)), shape=state.selection.shape)
+        return replace(state, selection=(state.selection + difference).tocsr())
 
     return change
 
@@ -75,17 +78,17 @@ def wrong_place(setting: Setting) -> Iterator[Variant]:
         if not there.any() or own.nnz == 0:
             continue
         places = max(places, int(there.sum()))
+        place = int(own.indices[0]) if geometry is None else geometry.sensor_nodes[s]
         gains = np.where(there, setting.gain(s, rows), -np.inf)
         for k in np.argsort(-gains)[:NEAREST].tolist():
-            if there[k] and abs(rows[[k]] - own).sum() > 0:
+            if there[k] and k != place:
                 found.append((float(gains[k]), s, k, rows[[k]]))
     price = one_of(places * len(setting.measured))
+    products = (selection @ selection.T).toarray()
+    own = np.diag(products)
+    is_same = np.abs(own[:, None] + own - 2 * products) <= ACCUMULATED * own
     for _, s, k, row in sorted(found, key=lambda each: -each[0])[:TRIED]:
-        others = [
-            setting.sensors[t]
-            for t in range(selection.shape[0])
-            if t != s and not abs(selection[[t]] - selection[[s]]).sum()
-        ]
+        others = [setting.sensors[t] for t in np.flatnonzero(is_same[s]).tolist() if t != s]
         name, node = setting.sensors[s], int(selection[[s]].indices[0])
         numbers = {
             "sensor": name,

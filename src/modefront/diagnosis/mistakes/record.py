@@ -72,9 +72,10 @@ class Setting:
         used = data.known[:, s] & ~self.state.foreign
         c = data.mean[used, s]
         for point, Phi in zip(self.points, self.shapes, strict=True):
+            scale = point.sigma * data.motion[s]
             beta, old = point.beta[used], point.beta[used] * point.chi[used, s]
             new = (rows @ Phi[:, point.index[used]]) * beta
-            before, after = (loss((x - c) / point.sigma, OF_MODEL).sum(axis=-1) for x in (old, new))
+            before, after = (loss((x - c) / scale, OF_MODEL).sum(axis=-1) for x in (old, new))
             out = np.maximum(out, before - after)
         return out
 

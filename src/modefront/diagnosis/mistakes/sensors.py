@@ -97,8 +97,9 @@ def _gains(setting: Setting, sets: list[int]) -> Floats:
     for point in setting.points:
         model = point.beta[:, None] * point.chi
         target = (model if len(sets) == len(data.psi) else data.mean)[:, sensors]
+        scale = point.sigma * data.motion[sensors, None]
         r = np.where(seen, psi[..., None] - target[:, None], 0.0)
-        cost = loss(r / point.sigma, OF_MODEL).mean(axis=0).sum(axis=0)
+        cost = loss(r / scale, OF_MODEL).mean(axis=0).sum(axis=0)
         own = np.diag(cost)
         out.append(own[:, None] + own - cost - cost.T)
     return np.asarray(np.max(out, axis=0))
