@@ -9,7 +9,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.diagnosis.evidence import State
-from modefront.diagnosis.mistakes.record import USUAL, Setting, Variant, mistake, one_of
+from modefront.diagnosis.mistakes.record import RARE, USUAL, Setting, Variant, mistake, one_of
 
 POWERS = (1, -1, 2, -2, 3, -3, 6, -6, 9, -9)
 """Powers of ten by which a value is off."""
@@ -43,7 +43,7 @@ def wrong_nominal_value(setting: Setting) -> Iterator[Variant]:
 
 @mistake(
     "bound",
-    USUAL,
+    RARE,
     "the {side} bound {bound:.4g} of {name} excludes the values that fit the data",
     "widen the bounds of {name}, or find what else differs between model and structure",
 )

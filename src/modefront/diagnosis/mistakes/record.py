@@ -19,7 +19,7 @@ from modefront.diagnosis.evidence import OF_MODEL, Point, State
 from modefront.diagnosis.student import loss
 from modefront.models.geometry import Geometry
 
-RARE, USUAL, OFTEN = 0.002, 0.01, 0.02
+RARE, USUAL, OFTEN = 0.005, 0.02, 0.05
 """Probabilities with which a study has a mistake."""
 
 TRIED = 40

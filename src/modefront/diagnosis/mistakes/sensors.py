@@ -11,6 +11,7 @@ from modefront.diagnosis.evidence import OF_MODEL
 from modefront.diagnosis.mistakes.record import (
     OFTEN,
     TRIED,
+    USUAL,
     Change,
     Setting,
     Variant,
@@ -65,7 +66,7 @@ def reversed_sensor(setting: Setting) -> Iterator[Variant]:
 
 @mistake(
     "exchanged-sensors",
-    OFTEN,
+    USUAL,
     "sensors {sensors} are exchanged in {where}",
     "check the cables of {sensors}, and exchange their columns or sensors",
 )
