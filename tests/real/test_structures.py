@@ -41,13 +41,10 @@ def test_random_starts_find_the_true_concrete_frame(costs: Costs) -> None:
 
 
 def test_small_sensors_of_the_steel_bridge_that_are_reversed() -> None:
-    """Reversing one of 58 sensors changes no MAC by more than 0.002 at ``dof16``.
-
-    At ``dof887`` it lowers MAC 5 from 0.90 to 0.81: a mode must not be left out for that.
-    """
+    """At ``dof887`` it lowers MAC 5 from 0.90 to 0.81: a mode must not be left out for that."""
     problem = frequencies_and_shapes(read("steel_bridge_exp"))
     assert diagnose(compare(problem)) == []
-    for name in ("dof16", "dof936", "dof818", "dof300", "dof893", "dof887", "dof886", "dof851"):
+    for name in ("dof936", "dof818", "dof300", "dof893", "dof887", "dof886", "dof851"):
         shape = problem.data.shape.copy()
         shape[..., problem.data.sensors.index(name)] *= -1
         (result,) = diagnose(compare(replace(problem, data=replace(problem.data, shape=shape))))

@@ -248,12 +248,16 @@ class Search:
                 break
         while True:
             best = min(self.known.values(), key=lambda each: each.cost)
+            theta = [best.point.theta]
             for step in best.steps:
-                rest = self.fitted(
-                    [each for each in best.steps if each is not step], [best.point.theta]
-                )
+                rest = self.fitted([each for each in best.steps if each is not step], theta)
                 if rest is not None:
                     self.extend(rest)
+            # A rival may only have been fitted from where its way is barred.
+            for each in list(self.known.values()):
+                at = self._at(each.state, np.clip(theta[0], each.state.lower, each.state.upper))
+                if at is not None and at.cost < each.point.cost:
+                    self.fitted(each.steps, theta)
             if min(each.cost for each in self.known.values()) >= best.cost:
                 return best
 
