@@ -19,6 +19,7 @@ from modefront.diagnosis.mistakes.record import (
     enumerated,
     mistake,
     one_of,
+    promising,
 )
 from modefront.diagnosis.notes import ALONG, axis_name
 from modefront.models.geometry import Geometry
@@ -119,6 +120,7 @@ def wrong_direction(setting: Setting) -> Iterator[Variant]:
         return
     given = geometry.sensor_directions
     axis = np.where(np.abs(given).max(axis=1) > ALONG, np.abs(given).argmax(axis=1), -1)
+    found = []
     groups = {a: np.flatnonzero(axis == a).tolist() for a in geometry.axes}
     single = one_of(2 * len(geometry.axes) * len(setting.measured))
     several = one_of(12)
@@ -127,7 +129,11 @@ def wrong_direction(setting: Setting) -> Iterator[Variant]:
             if len(members) > 1:
                 yield _turned(setting, geometry, dict.fromkeys(members, (b, sign)), several)
             for s in members:
-                yield _turned(setting, geometry, {s: (b, sign)}, single)
+                turned = np.eye(3)[[b]] * sign * given[s, a]
+                gain = setting.gain(s, geometry.weights(geometry.sensor_nodes[[s]], turned))
+                variant = _turned(setting, geometry, {s: (b, sign)}, single)
+                found.append((float(gain[0]), variant))
+    yield from promising(found)
     for a, b in [(a, b) for a in geometry.axes for b in geometry.axes if a < b]:
         if groups[a] and groups[b]:
             both = dict.fromkeys(groups[a], (b, 1.0)) | dict.fromkeys(groups[b], (a, 1.0))

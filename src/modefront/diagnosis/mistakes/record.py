@@ -7,7 +7,7 @@ they stand in braces.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any, TypeAlias
 
@@ -125,6 +125,12 @@ def mistake(
 ) -> Callable[[Variants], Mistake]:
     """Return the decorator of a function that yields variants, which makes a mistake of it."""
     return lambda variants: Mistake(kind, probability, sentence, remedy, variants)
+
+
+def promising(found: Iterable[tuple[float, Variant]]) -> Iterator[Variant]:
+    """Yield the variants by which the cost promises to fall most, of pairs with that fall."""
+    for _, variant in sorted(found, key=lambda each: -each[0])[:TRIED]:
+        yield variant
 
 
 def one_of(count: float) -> float:

@@ -19,20 +19,24 @@ from modefront.diagnosis.mistakes.record import (
     enumerated,
     mistake,
     one_of,
+    promising,
 )
 from modefront.diagnosis.student import loss
 
 
 def parts(sets: tuple[str, ...]) -> list[tuple[list[int], str]]:
-    """Return data sets in which a sensor may be wrong, with their names."""
+    """Return data sets in which a sensor may be wrong, with their names.
+
+    In all, in one, or in two of three: of more sets, most are right.
+    """
     every = list(range(len(sets)))
-    single = [[k] for k in every] if len(sets) > 1 else []
-    without = [[j for j in every if j != k] for k in every] if len(sets) > 2 else []
-    named = [
-        (part, f"set{'s' * (len(part) > 1)} {enumerated([sets[k] for k in part])}")
-        for part in (*single, *without)
+    some = [[k] for k in every] if len(sets) > 1 else []
+    some += [[j for j in every if j != k] for k in every] if len(sets) == 3 else []
+    named = [(part, enumerated([sets[k] for k in part])) for part in some]
+    return [
+        (every, "all data"),
+        *((part, f"set{'s' * (len(part) > 1)} {names}") for part, names in named),
     ]
-    return [(every, "all data"), *named]
 
 
 def permuted(sets: list[int], sensors: list[int], order: list[int], sign: float) -> Change:
@@ -54,14 +58,20 @@ def permuted(sets: list[int], sensors: list[int], order: list[int], sign: float)
     "the model",
 )
 def reversed_sensor(setting: Setting) -> Iterator[Variant]:
-    """Yield every sensor."""
-    where = parts(setting.sets)
+    """Yield every sensor; of many, those after whose reversal residuals are the least."""
+    where, found = parts(setting.sets), []
     price = one_of(len(where) * len(setting.measured))
-    for s in setting.measured:
-        for sets, name in where:
-            numbers = {"sensor": setting.sensors[s], "where": name}
+    for sets, name in where:
+        gain = np.full(len(setting.measured), -np.inf)
+        for psi, target, scale in _residuals(setting, sets):
+            before, after = (_cost((x - target[:, None]) / scale) for x in (psi, -psi))
+            gain = np.maximum(gain, before - after)
+        for value, s in zip(gain.tolist(), setting.measured, strict=True):
+            sensor = setting.sensors[s]
+            numbers = {"sensor": sensor, "where": name}
             change = permuted(sets, [s], [s], -1.0)
-            yield Variant((setting.sensors[s], name), change, numbers, price)
+            found.append((value, Variant((sensor, name), change, numbers, price)))
+    yield from promising(found)
 
 
 @mistake(
@@ -71,36 +81,41 @@ def reversed_sensor(setting: Setting) -> Iterator[Variant]:
     "check the cables of {sensors}, and exchange their columns or sensors",
 )
 def exchanged_sensors(setting: Setting) -> Iterator[Variant]:
-    """Yield pairs of sensors, of many those after whose exchange residuals are the least."""
-    where = parts(setting.sets)
-    count = len(setting.measured)
+    """Yield pairs of sensors; of many, those after whose exchange residuals are the least."""
+    where, found, count = parts(setting.sets), [], len(setting.measured)
     price = one_of(len(where) * count * (count - 1) / 2)
     for sets, name in where:
-        gain = _gains(setting, sets)
+        gain = np.full((count, count), -np.inf)
+        for psi, target, scale in _residuals(setting, sets):
+            cost = np.array([_cost((psi - x[:, None, None]) / scale) for x in target.T]).T
+            own = np.diag(cost)
+            gain = np.maximum(gain, own[:, None] + own - cost - cost.T)
         pairs = np.argwhere(np.triu(np.ones(gain.shape), 1) > 0)
-        best = np.argsort(-gain[tuple(pairs.T)], kind="stable")
-        for i, j in pairs[best][: TRIED // (1 if len(sets) == len(setting.sets) else 10)].tolist():
+        best = np.argsort(-gain[tuple(pairs.T)], kind="stable")[:TRIED]
+        for i, j in pairs[best].tolist():
             s, t = setting.measured[i], setting.measured[j]
             names = setting.sensors[s], setting.sensors[t]
             numbers = {"sensors": enumerated(names), "where": name}
-            yield Variant((*names, name), permuted(sets, [s, t], [t, s], 1.0), numbers, price)
+            change = permuted(sets, [s, t], [t, s], 1.0)
+            found.append((float(gain[i, j]), Variant((*names, name), change, numbers, price)))
+    yield from promising(found)
 
 
-def _gains(setting: Setting, sets: list[int]) -> Floats:
-    """Return how much less residuals cost after each exchange, (sensors, sensors).
+def _residuals(setting: Setting, sets: list[int]) -> Iterator[tuple[Floats, Floats, Floats]]:
+    """Yield shapes (modes, sets, sensors), what they should be (modes, sensors), and the scale.
 
-    Those from the model where all data sets have it, else those from what the sets have in common.
+    That is the model's where all data sets have the mistake, else what the sets have in common.
     """
-    data, sensors, out = setting.state.data, setting.measured, []
+    data, sensors = setting.state.data, setting.measured
     a = data.factors(data.mean)[sets]
-    psi = (data.psi[sets] / np.where(a == 0, 1.0, a))[:, :, sensors]
-    seen = data.seen[sets][:, :, sensors, None]
+    psi = np.where(data.seen[sets], data.psi[sets] / np.where(a == 0, 1.0, a), np.nan)
     for point in setting.points:
-        model = point.beta[:, None] * point.chi
-        target = (model if len(sets) == len(data.psi) else data.mean)[:, sensors]
-        scale = point.sigma * data.motion[sensors, None]
-        r = np.where(seen, psi[..., None] - target[:, None], 0.0)
-        cost = loss(r / scale, OF_MODEL).mean(axis=0).sum(axis=0)
-        own = np.diag(cost)
-        out.append(own[:, None] + own - cost - cost.T)
-    return np.asarray(np.max(out, axis=0))
+        of_model = len(sets) == len(data.psi)
+        target = point.beta[:, None] * point.chi if of_model else data.mean
+        scale = point.sigma * data.motion[sensors]
+        yield psi[:, :, sensors].transpose(1, 0, 2), target[:, sensors], scale
+
+
+def _cost(r: Floats) -> Floats:
+    """Return the cost of residuals (modes, sets, sensors), mean over the sets, (sensors,)."""
+    return np.asarray(loss(np.nan_to_num(r), OF_MODEL).mean(axis=1).sum(axis=0))
