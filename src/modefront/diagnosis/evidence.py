@@ -36,6 +36,7 @@ from modefront.diagnosis.student import NOTHING, loss, scaled
 from modefront.errors import ModelError
 from modefront.linalg.affine import DenseAffine, SparseAffine
 from modefront.models.base import Model
+from modefront.models.geometry import Geometry
 from modefront.models.matrices import MatrixModel
 from modefront.modes.result import Modes
 from modefront.rounding import ACCUMULATED
@@ -66,12 +67,14 @@ class State:
     data : the measured modes
     foreign : (modes,) modes that the model does not have
     selection : (sensors, N) weights of the degrees of freedom; None for a model without matrices
+    geometry : places and directions of the sensors; None where they are not known
     start, lower, upper : (parameters,) nominal values and bounds
     """
 
     data: Measured
     foreign: Bools
     selection: scipy.sparse.csr_array | None
+    geometry: Geometry | None
     start: Floats
     lower: Floats
     upper: Floats

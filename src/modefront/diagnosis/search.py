@@ -138,6 +138,7 @@ class Search:
             data,
             np.zeros(data.logs.size, dtype=bool),
             None if matrices is None else matrices.selection,
+            None if matrices is None else matrices.geometry,
             *(problem.start, problem.lower, problem.upper),
         )
 
@@ -216,7 +217,7 @@ class Search:
         self, old: Explanation, models: Sequence[tuple[Floats, Floats, Floats]]
     ) -> Iterator[Step]:
         """Yield what may be assumed besides an explanation."""
-        data, matrices = self.comparison.data, self.comparison.matrices
+        data = self.comparison.data
         select = old.state.selection
         setting = Setting(
             old.state,
@@ -227,7 +228,6 @@ class Search:
             [f for _, f, _ in models],
             [Phi for _, _, Phi in models],
             *(data.sets, data.modes, data.sensors, self.comparison.problem.model.parameters),
-            None if matrices is None else matrices.geometry,
         )
         for mistake in MISTAKES:
             for variant in mistake.variants(setting):

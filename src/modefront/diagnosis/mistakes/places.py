@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import replace
+from functools import partial
+from typing import Any
 
 import numpy as np
 import scipy.sparse
@@ -34,24 +36,33 @@ OFTEN_SHARED = 2.0
 """Logarithm of how much likelier a sensor is at a wrong place where it shares it with another."""
 
 
-def placed(rows: Mapping[int, scipy.sparse.csr_array]) -> Change:
-    """Return the change that gives sensors other weights (1, N) of the degrees of freedom."""
+def at_rows(state: State, sensors: Sequence[int], rows: scipy.sparse.csr_array) -> State:
+    """Return the state in which sensors have other weights (sensors, N)."""
+    assert state.selection is not None
+    ones = np.ones(len(sensors)), (sensors, np.arange(len(sensors)))
+    place = scipy.sparse.csr_array(ones, shape=(state.selection.shape[0], len(sensors)))
+    difference = place @ (rows - state.selection[list(sensors)])
+    return replace(state, selection=(state.selection + difference).tocsr())
+
+
+def relocated(sensors: Sequence[int], **changed: Any) -> Change:
+    """Return the change that gives sensors other ``sensor_nodes`` or ``sensor_directions``."""
 
     def change(state: State) -> State:
-        assert state.selection is not None
-        parts = [(s, (row - state.selection[[s]]).tocoo()) for s, row in rows.items()]
-        values = np.concatenate([part.data for _, part in parts])
-        at = np.concatenate([np.full(part.nnz, s) for s, part in parts])
-        columns = np.concatenate([part.coords[1] for _, part in parts])
-        difference = scipy.sparse.csr_array((values, (at, columns)), shape=state.selection.shape)
-        return replace(state, selection=(state.selection + difference).tocsr())
+        assert state.geometry is not None
+        parts = {name: getattr(state.geometry, name).copy() for name in changed}
+        for name, values in parts.items():
+            values[sensors] = changed[name]
+        geometry = replace(state.geometry, **parts)
+        places = geometry.sensor_nodes[sensors], geometry.sensor_directions[sensors]
+        return replace(at_rows(state, sensors, geometry.weights(*places)), geometry=geometry)
 
     return change
 
 
 def in_space(setting: Setting) -> Geometry | None:
     """Return the geometry of a model whose nodes move along several axes."""
-    geometry = setting.geometry
+    geometry = setting.state.geometry
     return geometry if geometry is not None and len(geometry.axes) > 1 else None
 
 
@@ -66,7 +77,10 @@ def wrong_place(setting: Setting) -> Iterator[Variant]:
     selection, geometry = setting.state.selection, in_space(setting)
     if selection is None:
         return
-    found: list[tuple[float, int, int, scipy.sparse.csr_array]] = []
+    products = (selection @ selection.T).toarray()
+    squares = np.diag(products)
+    is_same = np.abs(squares[:, None] + squares - 2 * products) <= ACCUMULATED * squares
+    found: list[tuple[float, int, int, int, Change]] = []
     places = 0
     for s in setting.measured:
         own = selection[[s]]
@@ -82,23 +96,24 @@ def wrong_place(setting: Setting) -> Iterator[Variant]:
         place = int(own.indices[0]) if geometry is None else geometry.sensor_nodes[s]
         gains = np.where(there, setting.gain(s, rows), -np.inf)
         for k in np.argsort(-gains)[:NEAREST].tolist():
-            if there[k] and k != place:
-                found.append((float(gains[k]), s, k, rows[[k]]))
+            if not there[k] or k == place:
+                continue
+            change = relocated([s], sensor_nodes=k)
+            if geometry is None:
+                change = partial(at_rows, sensors=[s], rows=rows[[k]])
+            found.append((float(gains[k]), s, place, k, change))
     price = one_of(places * len(setting.measured))
-    products = (selection @ selection.T).toarray()
-    own = np.diag(products)
-    is_same = np.abs(own[:, None] + own - 2 * products) <= ACCUMULATED * own
-    for _, s, k, row in sorted(found, key=lambda each: -each[0])[:TRIED]:
+    for _, s, place, k, change in sorted(found, key=lambda each: -each[0])[:TRIED]:
         others = [setting.sensors[t] for t in np.flatnonzero(is_same[s]).tolist() if t != s]
-        name, node = setting.sensors[s], int(selection[[s]].indices[0])
+        name = setting.sensors[s]
         numbers = {
             "sensor": name,
-            "given": _place(geometry, node if geometry is None else geometry.sensor_nodes[s]),
+            "given": _place(geometry, place),
             "place": _place(geometry, k),
             "too": f", where the model has {enumerated(others)} too" if others else "",
         }
         less = OFTEN_SHARED if others else 0.0
-        yield Variant((name,), placed({s: row}), numbers, price - less)
+        yield Variant((name,), change, numbers, price - less)
 
 
 def _place(geometry: Geometry | None, k: int) -> str:
@@ -153,7 +168,6 @@ def _turned(
     sizes = given[some, np.abs(given[some]).argmax(axis=1)]
     axes, signs = (np.array(x) for x in zip(*along.values(), strict=True))
     new = np.eye(3)[axes] * (signs * sizes)[:, None]
-    rows = geometry.weights(geometry.sensor_nodes[some], new)
     sensors = tuple(setting.sensors[s] for s in some)
     before, after = names or (axis_name(given[some[0]]), axis_name(new[0]))
     numbers = {
@@ -163,7 +177,7 @@ def _turned(
         "s": "s" * (len(some) == 1),
         "turn": " in turn" if names else "",
     }
-    return Variant(sensors, placed({s: rows[[i]] for i, s in enumerate(some)}), numbers, price)
+    return Variant(sensors, relocated(some, sensor_directions=new), numbers, price)
 
 
 @mistake(
@@ -177,16 +191,17 @@ def counted_from_one(setting: Setting) -> Iterator[Variant]:
     geometry, selection = in_space(setting), setting.state.selection
     if selection is None:
         return
+    every = list(range(selection.shape[0]))
     if geometry is not None:
         if (geometry.sensor_nodes == 0).any() or not geometry.sensor_directions.any(axis=1).all():
             return
-        shifted = geometry.weights(geometry.sensor_nodes - 1, geometry.sensor_directions)
+        change = relocated(every, sensor_nodes=geometry.sensor_nodes - 1)
     else:
         entries = selection.tocoo()
         if not entries.col.size or entries.col.min() == 0:
             return
         parts = entries.data, (entries.row, entries.col - 1)
         shifted = scipy.sparse.csr_array(parts, shape=selection.shape)
+        change = partial(at_rows, sensors=every, rows=shifted)
     what = "degrees of freedom" if geometry is None else "nodes"
-    rows = {s: shifted[[s]] for s in range(selection.shape[0])}
-    yield Variant((what,), placed(rows), {"what": what})
+    yield Variant((what,), change, {"what": what})

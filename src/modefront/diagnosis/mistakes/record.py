@@ -17,7 +17,6 @@ import scipy.sparse
 from modefront._typing import Floats
 from modefront.diagnosis.evidence import OF_MODEL, Point, State
 from modefront.diagnosis.student import loss
-from modefront.models.geometry import Geometry
 
 RARE, USUAL, OFTEN = 0.005, 0.02, 0.05
 """Probabilities with which a study has a mistake."""
@@ -38,7 +37,6 @@ class Setting:
     points : the state at the nominal and at fitted parameters
     frequencies, shapes : of the model at each point: (model modes,) in Hz, and (N, model modes)
     sets, modes, sensors, parameters : names
-    geometry : of the model; None where it is not known
     """
 
     state: State
@@ -49,7 +47,6 @@ class Setting:
     modes: tuple[int, ...]
     sensors: tuple[str, ...]
     parameters: tuple[str, ...]
-    geometry: Geometry | None
 
     @property
     def measured(self) -> list[int]:
