@@ -157,7 +157,7 @@ def test_a_study_takes_modes_from_a_universal_file(tmp_path: Path) -> None:
     shape = load(plain / "study.toml").problem.data.shape[0] * [1, -1, 1]
     result = loaded.problem.data.shape[0]
     np.testing.assert_allclose(result / result[:, :1], shape / shape[:, :1], rtol=1e-4)
-    assert any("reversing floor2" in text for text in check(loaded).warnings)
+    assert any("floor2 is reversed" in text for text in check(loaded).warnings)
 
 
 @pytest.mark.parametrize(

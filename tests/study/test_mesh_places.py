@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from modefront.diagnosis.places import unused_groups
+from modefront.diagnosis.notes import unused_groups
 from modefront.errors import InputError
 from modefront.fem.mesh import read_mesh
 from modefront.models.matrices import MatrixModel

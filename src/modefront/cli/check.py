@@ -12,9 +12,9 @@ from rich.table import Table
 from modefront.cli.layout import Screen
 from modefront.cli.tables import safe, table
 from modefront.diagnosis.comparison import Comparison
+from modefront.diagnosis.measured import comac
 from modefront.diagnosis.sensitivity import Sensitivities
-from modefront.diagnosis.sensors import comac
-from modefront.diagnosis.words import enumerated
+from modefront.findings.knowledge import enumeration
 from modefront.results.remarks import MOST, digest
 from modefront.study.check import Findings, spoils
 from modefront.study.definition import Study
@@ -186,13 +186,13 @@ def _advice(sensitivities: Sensitivities) -> list[str]:
         if text.startswith("group with "):
             first = text.removeprefix("group with ")
             out.append(
-                f"group {enumerated(names)} with {first}: the data hardly tell them apart, and one "
-                "parameter can scale them all"
+                f"group {enumeration(names)} with {first}: the data hardly tell them apart, and "
+                "one parameter can scale them all"
             )
         elif text == "fix: not determined":
             out.append(
-                f"fix {enumerated(names)} at the nominal value{'s' * (len(names) > 1)}, or measure "
-                "more: the data determine the other parameters without "
+                f"fix {enumeration(names)} at the nominal value{'s' * (len(names) > 1)}, or "
+                "measure more: the data determine the other parameters without "
                 f"{'them' if len(names) > 1 else 'it'}"
             )
     return out

@@ -1,5 +1,13 @@
-"""Mistakes of models and data that a comparison at the nominal parameters shows.
+r"""Mistakes of models and data, found as the hypotheses that explain the measured modes best.
 
-``benchmarks/check.py`` measures the limits from which on something is a mistake: docs/check.md has
-the rates of mistakes that are found, and of findings on correct studies.
+A mistake is a record (`modefront.diagnosis.mistakes`): how it changes the data or the model, its
+price, its sentence and what mends it. One search (`modefront.diagnosis.search`) tries all of them,
+alone and together, and one cost decides (`modefront.diagnosis.evidence`):
+
+.. math:: C = -\ln p(\text{data} \mid \hat\theta, \text{changes}) - \ln p(\hat\theta)
+   - \ln p(\text{changes}),
+
+natural logarithms of probabilities, at the parameters of a short fit within the bounds. A mistake
+is named where C is less than without it, and than with any other one in its place, by a clear
+margin. ``benchmarks/check.py`` measures how reliable that is.
 """

@@ -9,8 +9,7 @@ import numpy as np
 
 from modefront._typing import Floats
 from modefront.data.modal import MEASURED, ModalData
-from modefront.diagnosis.fit import Updating
-from modefront.diagnosis.measured import Measured, log_frequencies, mac_values, measured
+from modefront.diagnosis.measured import Measured, measured
 from modefront.errors import ModelError
 from modefront.models.base import Model, full_of
 from modefront.models.local import matrices_at
@@ -37,7 +36,6 @@ class Comparison:
     candidates : number of the lowest model modes among which the study pairs
     pairs : model modes of the measured ones by the rule of the study, and their MAC
     matrices : the model with its matrices; None where it has none
-    Phi : (N, model modes) shapes at all degrees of freedom; None where the model has no matrices
     """
 
     problem: UpdatingProblem
@@ -46,7 +44,6 @@ class Comparison:
     candidates: int
     pairs: Pairs
     matrices: MatrixModel | None
-    Phi: Floats | None
 
     @property
     def data(self) -> ModalData:
@@ -58,31 +55,6 @@ class Comparison:
         """The measured modes as arrays."""
         return measured(self.data)
 
-    @cached_property
-    def log_frequency(self) -> Floats:
-        """Logarithms of the model's frequencies, (model modes,)."""
-        return log_frequencies(self.frequency)
-
-    @cached_property
-    def mac(self) -> Floats:
-        """MAC of measured and model modes, (modes, model modes); NaN without a shape."""
-        return mac_values(self.view.psi, self.view.seen, self.phi)
-
-    @property
-    def has_all_modes(self) -> bool:
-        """Whether the model has no more modes than are looked at."""
-        return self.frequency.size < self.candidates + MORE
-
-    def updating(self, shift: float, model: Model | None = None) -> Updating:
-        """Return the model, or one with other sensors in its place, to be fitted."""
-        problem = self.problem
-        return Updating(
-            model or problem.model,
-            self.candidates,
-            *(problem.lower, problem.upper, problem.start),
-            shift,
-        )
-
 
 def compare(problem: UpdatingProblem) -> Comparison:
     """Return the comparison of the nominal model with the measured modes.
@@ -90,14 +62,12 @@ def compare(problem: UpdatingProblem) -> Comparison:
     Raises ModelError where the model has no modes at its nominal parameters.
     """
     count = modes_needed(problem.pairing, problem.data, problem.model.size)
-    theta = problem.start
     full = full_of(problem.model)
-    matrices = matrices_at(full, theta)
-    modes = min(problem.model.size, count + MORE)
-    frequency, phi, Phi = _modes(full, matrices, theta, count, modes)
-    known = slice(0, count)
-    pairs = match(problem.pairing, problem.data, frequency[known], phi[:, known])
-    return Comparison(problem, frequency, phi, count, pairs, matrices, Phi)
+    matrices = matrices_at(full, problem.start)
+    frequency, phi = _modes(matrices or full, problem.start, count)
+    low = slice(0, count)
+    pairs = match(problem.pairing, problem.data, frequency[low], phi[:, low])
+    return Comparison(problem, frequency, phi, count, pairs, matrices)
 
 
 def with_data(comparison: Comparison, data: ModalData) -> Comparison:
@@ -130,20 +100,13 @@ def of_few_sets(comparison: Comparison) -> Comparison:
     return with_data(comparison, replace(data, sets=sets, **few))
 
 
-def _modes(
-    model: Model, matrices: MatrixModel | None, theta: Floats, least: int, most: int
-) -> tuple[Floats, Floats, Floats | None]:
+def _modes(model: Model, theta: Floats, least: int) -> tuple[Floats, Floats]:
     """Return frequencies and shapes of as many modes as there are, ``least`` at least."""
-    for count in dict.fromkeys((most, least)):
+    for count in dict.fromkeys((min(model.size, least + MORE), least)):
         try:
-            if isinstance(model, MatrixModel) and matrices is not None:
-                modes = model.full_modes(theta, count)
-                f = np.sqrt(np.maximum(modes.lam, 0.0)) / (2 * np.pi)
-                return f, model.selection @ modes.Phi, modes.Phi
             solution = model.modes(theta, count, derivatives=False)
+            return solution.frequency, solution.phi
         except ModelError:
             if count == least:
                 raise
-            continue
-        return solution.frequency, solution.phi, None
     raise ModelError("no modes")

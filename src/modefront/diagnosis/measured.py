@@ -1,48 +1,147 @@
-r"""Measured modes as arrays that the diagnosis compares with a model, or with one another.
+r"""Measured modes as arrays, what several data sets have in common, and pairs with model modes.
 
-Mode r of the data and mode q of the model are as far apart as
+Mode r of the data and mode q of a model are as far apart as
 
-.. math:: c_{rq} = 1 - \mathrm{MAC}_{rq} + \kappa \min(|\ln f_q - \ln \hat f_r + s|, d)
+.. math:: c_{rq} = 1 - \mathrm{MAC}_{rq} + \kappa \min(|\ln f_q - \ln \hat f_r|, d).
 
-where s is the logarithm of a factor on all measured frequencies. Shapes alone cannot tell a mode
-with a reversed sensor from another mode, nor frequencies alone which of two close modes is which.
+Shapes alone cannot tell a mode with a reversed sensor from another mode, nor frequencies alone
+which of two close modes is which.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 
 import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.data.modal import ModalData
+from modefront.diagnosis.student import NOTHING, loss, scaled
 from modefront.rounding import TINY
 
 RIGID = 1e-6
 """Frequency over the greatest one below which a mode is one of a rigid body: rounding leaves the
 root of 1e-13."""
 
-KAPPA = 0.4
-"""Cost of a factor e between frequencies, in units of a MAC value."""
+KAPPA, FARTHEST = 0.4, 2.5
+"""Cost of a factor e between frequencies, in units of a MAC value, up to the logarithm d."""
 
-FARTHEST = 2.5
-"""Logarithm of the ratio of frequencies beyond which the cost grows no more."""
+NU, FREQUENCY, SHAPE = 20.0, 0.005, 0.03
+"""Degrees of freedom nu of noise, and its scales in frequencies and shapes where not known."""
+
+OF_MODEL = 0.08
+"""Scale that is expected of what no parameter describes, in shapes of mean square 1."""
+
+DAMPING = float(np.log(0.01))
+"""Logarithm of the damping ratio that is expected, with a scale of 1."""
+
+ROUNDS = 8
+"""Rounds of the iteration for the shape that data sets have in common."""
 
 
 @dataclass(frozen=True, eq=False)
 class Measured:
-    """Shapes of length 1 and logarithms of frequencies; what was not measured is 0 and masked.
+    """Measured modes; NaN is what was not measured.
 
     Attributes
     ----------
-    psi : (sets, modes, sensors) shapes
-    seen : (sets, modes, sensors) whether the component was measured
-    log_frequency : (modes,) mean logarithm of the frequencies in Hz; NaN where none
+    frequency, damping : (sets, modes) frequencies in Hz and damping ratios
+    shape : (sets, modes, sensors) components
+    std : (sets, modes) relative standard deviations of frequencies; NaN where not known
+    left_out : number of values that are left out
     """
 
-    psi: Floats
-    seen: Bools
-    log_frequency: Floats
+    frequency: Floats
+    damping: Floats
+    shape: Floats
+    std: Floats
+    left_out: int = 0
+
+    @cached_property
+    def seen(self) -> Bools:
+        """Whether each component was measured, (sets, modes, sensors)."""
+        return np.isfinite(self.shape)
+
+    @cached_property
+    def psi(self) -> Floats:
+        """The shapes with a mean square of 1, and 0 where nothing was measured."""
+        psi = np.where(self.seen, self.shape, 0.0)
+        square = (psi**2).sum(axis=2, keepdims=True)
+        size = np.sqrt(square / np.maximum(self.seen.sum(axis=2, keepdims=True), 1))
+        return np.divide(psi, size, out=np.zeros(psi.shape), where=size > 0)
+
+    @cached_property
+    def mean(self) -> Floats:
+        """Shapes that the data sets have in common, (modes, sensors), of mean square 1, or 0.
+
+        The best product of a factor a set and a shape, by alternating least squares.
+        """
+        psi = self.psi
+        first = self.seen.sum(axis=2).argmax(axis=0)
+        c = psi[first, np.arange(psi.shape[1])]
+        if psi.shape[0] == 1:
+            return c
+        for _ in range(ROUNDS):
+            a = self.factors(c)
+            square = (a**2 * self.seen).sum(axis=0)
+            c = np.divide((a * psi).sum(axis=0), square, out=np.zeros(c.shape), where=square > 0)
+            size = np.sqrt((c**2).sum(axis=1) / np.maximum(self.known.sum(axis=1), 1))[:, None]
+            c = np.divide(c, size, out=np.zeros(c.shape), where=size > 0)
+        return c
+
+    def factors(self, c: Floats) -> Floats:
+        """Return by which factors shapes c (modes, sensors) become those measured.
+
+        They are least squares at the measured components, (sets, modes, 1).
+        """
+        square = (self.seen * c**2).sum(axis=2, keepdims=True)
+        along = (self.psi * c).sum(axis=2, keepdims=True)
+        return np.divide(along, square, out=np.zeros(along.shape), where=square > 0)
+
+    @cached_property
+    def motion(self) -> Floats:
+        """Scale of the differences from a model at each sensor, (sensors,), 1 at a typical one.
+
+        Noise is the same everywhere, and what no parameter describes is a share of the motion.
+        """
+        square = (self.mean**2).sum(axis=0) / np.maximum(self.known.sum(axis=0), 1)
+        least = (SHAPE / OF_MODEL) ** 2
+        return np.sqrt((least + square) / (least + 1))
+
+    @cached_property
+    def known(self) -> Bools:
+        """Which components any data set has, (modes, sensors)."""
+        return np.asarray(self.seen.any(axis=0))
+
+    @cached_property
+    def logs(self) -> Floats:
+        """Medians of the logarithms of frequencies, (modes,); NaN where none."""
+        return median(np.log(self.frequency))
+
+    @cached_property
+    def noise(self) -> float:
+        """Cost of the differences between data sets, and of damping ratios.
+
+        Of n values that are compared with their mean, n - 1 are free: each has the weight
+        (n - 1) / n, and its difference is greater by the root of the inverse.
+        """
+        zeta = median(np.where(self.damping > 0, self.damping, np.nan))
+        damping = np.log(zeta[np.isfinite(zeta)]) - DAMPING
+        total = float(loss(damping, NU).sum()) + NOTHING * self.left_out
+        std = np.where(np.isfinite(self.std), self.std, FREQUENCY)
+        frequencies = (np.log(self.frequency) - self.logs) / std
+        shapes = self.psi - self.factors(self.mean) * self.mean
+        for r, known, expected, unit in (
+            (shapes, self.seen, SHAPE, np.ones(shapes.shape)),
+            (frequencies, np.isfinite(frequencies), 1.0, std),
+        ):
+            free = 1 - 1 / np.maximum(known.sum(axis=0), 1)
+            several = known & (free > 0)
+            weight = np.broadcast_to(free, r.shape)[several]
+            total += scaled(r[several] / np.sqrt(weight), expected, NU, weight)[0]
+            total += float(np.log(unit[several]) @ weight)
+        return total
 
     @property
     def has_shape(self) -> Bools:
@@ -52,56 +151,69 @@ class Measured:
 
 def measured(data: ModalData) -> Measured:
     """Return the modes of ``data`` as arrays."""
-    seen = np.isfinite(data.shape)
-    psi = np.where(seen, data.shape, 0.0)
-    size = np.linalg.norm(psi, axis=2, keepdims=True)
-    psi = np.divide(psi, size, out=np.zeros(psi.shape), where=size > 0)
-    return Measured(psi, seen, _mean_log(data.frequency))
+    with np.errstate(divide="ignore", invalid="ignore"):
+        std = data.frequency_std / data.frequency
+    return Measured(data.frequency, data.damping, data.shape, np.where(std > 0, std, np.nan))
 
 
-def _mean_log(frequency: Floats) -> Floats:
-    known = np.isfinite(frequency)
-    logs = np.log(np.where(known, frequency, 1.0)).sum(axis=0)
-    count = known.sum(axis=0)
-    return np.divide(logs, count, out=np.full(logs.shape, np.nan), where=count > 0)
+def median(values: Floats) -> Floats:
+    """Return the median of each column over what is finite; NaN where nothing is."""
+    ascending = np.sort(values, axis=0)
+    count = np.isfinite(values).sum(axis=0)[None]
+    low, high = np.maximum(count - 1, 0) // 2, np.minimum(count // 2, len(values) - 1)
+    below, above = (np.take_along_axis(ascending, k, axis=0)[0] for k in (low, high))
+    return np.asarray((below + above) / 2)
 
 
-def mac_values(psi: Floats, seen: Bools, phi: Floats) -> Floats:
-    """Return the MAC of measured and model modes, (modes, model modes); NaN without a shape.
+def mac_values(psi: Floats, known: Bools, phi: Floats) -> Floats:
+    """Return the MAC of shapes (modes, sensors) and those of a model, (modes, model modes).
 
-    ``psi`` and ``seen`` are (sets, modes, sensors), ``phi`` (sensors, model modes); the mean over
-    the data sets that have the shape at two sensors at least.
+    ``phi`` is (sensors, model modes). It is NaN with fewer than two known components.
     """
     cross = (psi @ phi) ** 2
-    norm = (psi**2).sum(axis=2)[:, :, None] * (seen @ phi**2)
+    norm = (psi**2).sum(axis=1)[:, None] * (known @ phi**2)
     values = np.divide(cross, norm, out=np.zeros(norm.shape), where=norm > 0)
-    usable = seen.sum(axis=2) > 1
-    count = usable.sum(axis=0)[:, None]
-    total = np.where(usable[:, :, None], values, 0.0).sum(axis=0)
-    return np.divide(total, count, out=np.full(total.shape, np.nan), where=count > 0)
+    values[known.sum(axis=1) < 2] = np.nan
+    return values
 
 
-def pair_costs(mac: Floats, log_frequency: Floats, of_model: Floats, shift: float) -> Floats:
-    """Return c, shape (modes, model modes); see the module.
-
-    ``of_model`` (model modes,) are logarithms of frequencies, ``shift`` is s.
-    """
-    distance = np.abs(of_model - (log_frequency[:, None] - shift))
+def pair_costs(mac: Floats, logs: Floats, of_model: Floats) -> Floats:
+    """Return c, shape (modes, model modes), from logarithms of frequencies; see the module."""
+    distance = np.abs(of_model - logs[:, None])
     distance = np.where(np.isnan(distance), 0.0, np.minimum(distance, FARTHEST))
     return np.where(np.isnan(mac), 0.0, 1 - mac) + KAPPA * distance
 
 
-def assigned(cost: Floats) -> tuple[Ints, float]:
-    """Return the model mode of each measured mode, each taken once at most, and the whole cost."""
+def assigned(cost: Floats) -> Ints:
+    """Return the model mode of each measured mode, each taken once at most."""
     index = np.argmin(cost, axis=1)
     if np.unique(index).size < index.size <= cost.shape[1]:
         from scipy.optimize import linear_sum_assignment
 
         index = np.asarray(linear_sum_assignment(cost)[1])
-    return index, float(cost[np.arange(index.size), index].sum())
+    return index
 
 
 def log_frequencies(frequency: Floats) -> Floats:
     """Return logarithms of a model's frequencies; those of rigid-body modes are far below all."""
     least = RIGID * float(frequency.max(initial=0.0))
     return np.log(np.maximum(frequency, max(least, TINY)))
+
+
+def comac(view: Measured, phi: Floats) -> Floats:
+    r"""Return the COMAC of each sensor over paired modes, (sensors,); NaN where not measured.
+
+    .. math:: \frac{(\sum_r |\psi_{rs} \varphi_{rs}|)^2}{\sum_r \psi_{rs}^2 \sum_r \varphi_{rs}^2}
+
+    (Lieven & Ewins, 6th International Modal Analysis Conference, 1988). ``phi`` (sensors, modes)
+    are the model modes that belong to the measured ones.
+    """
+    phi = np.where(view.seen, phi.T[None], 0.0)
+    phi, psi = (
+        np.divide(x, size, out=np.zeros(x.shape), where=size > 0)
+        for x in (phi, view.psi)
+        for size in [np.linalg.norm(x, axis=2, keepdims=True)]
+    )
+    cross = np.abs(psi * phi).sum(axis=(0, 1)) ** 2
+    norm = (psi**2).sum(axis=(0, 1)) * (phi**2).sum(axis=(0, 1))
+    return np.divide(cross, norm, out=np.full(norm.shape, np.nan), where=norm > 0)

@@ -1,152 +1,79 @@
-"""Pairs of modes far apart in frequency, and measured modes that the model does not have."""
+"""What the rule of a study pairs otherwise than it should, where nothing is wrong with the data."""
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 import numpy as np
 
 from modefront.diagnosis.comparison import Comparison
-from modefront.diagnosis.measured import Measured
+from modefront.diagnosis.measured import log_frequencies, mac_values
 
 FAR = float(np.log(2.0))
 """Logarithm of the ratio of the frequencies of a pair from which on they are far apart."""
 
-BEYOND = 1.5
-"""Ratio of a measured frequency to the highest of the model from which on it is outside."""
+BEYOND = float(np.log(1.5))
+"""Logarithm of a measured frequency over the model's highest from which on it is outside."""
 
 POOR, GOOD = 0.5, 0.8
 """MAC below which a pair is poor, and from which on a mode is found."""
 
 
 @dataclass(frozen=True)
-class DistantPair:
-    """A measured mode is paired with a model mode of another frequency.
+class PairRemark:
+    """A measured mode that the nominal model pairs badly, or does not have.
 
     Attributes
     ----------
-    mode, model_mode : the pair, from 1
-    frequency, model_frequency : in Hz
-    mac : of the pair; NaN without a shape
-    nearest, nearest_frequency : model mode of the nearest frequency, from 1, and that in Hz
+    kind : "distant-pair", "beyond-candidates" or "outside-model"
+    subject : the measured mode
+    text : what is wrong and what mends it
     """
 
-    mode: int
-    model_mode: int
-    frequency: float
-    model_frequency: float
-    mac: float
-    nearest: int
-    nearest_frequency: float
+    kind: str
+    subject: tuple[str, ...]
+    text: str
+
+    def __str__(self) -> str:
+        """Return the text."""
+        return self.text
 
 
-@dataclass(frozen=True)
-class OutsideModel:
-    """A measured mode lies above all modes that the model has.
-
-    Attributes
-    ----------
-    mode : measured mode
-    frequency : in Hz
-    highest : highest frequency of the model in Hz
-    modes : number of modes of the model that were computed
-    all_modes : whether these are all that it has
-    """
-
-    mode: int
-    frequency: float
-    highest: float
-    modes: int
-    all_modes: bool
-
-
-@dataclass(frozen=True)
-class BeyondCandidates:
-    """A measured mode resembles a model mode that is not among the candidates for pairing.
-
-    Attributes
-    ----------
-    mode, model_mode : the modes, from 1
-    model_frequency : in Hz
-    mac : of both
-    best : the best MAC among the candidates
-    spare : option with which it is one of them
-    """
-
-    mode: int
-    model_mode: int
-    model_frequency: float
-    mac: float
-    best: float
-    spare: int
-
-
-@dataclass(frozen=True)
-class UnseenMode:
-    """A measured mode resembles none of the model.
-
-    Attributes
-    ----------
-    mode : measured mode
-    best : its best MAC
-    """
-
-    mode: int
-    best: float
-
-
-PairFinding = DistantPair | OutsideModel | BeyondCandidates | UnseenMode
-
-
-def without_outside(comparison: Comparison, view: Measured) -> Measured:
-    """Return the measured modes without those above all modes of the model, if they are few.
-
-    Where most modes are above, it is their unit that is wrong.
-    """
-    highest = float(comparison.log_frequency.max()) + np.log(BEYOND)
-    above = np.nan_to_num(view.log_frequency, nan=-np.inf) > highest
-    if not above.any() or 2 * above.sum() >= above.size:
-        return view
-    psi, seen = view.psi.copy(), view.seen.copy()
-    psi[:, above], seen[:, above] = 0.0, False
-    return replace(
-        view, psi=psi, seen=seen, log_frequency=np.where(above, np.nan, view.log_frequency)
-    )
-
-
-def pair_findings(comparison: Comparison, view: Measured, shift: float) -> list[PairFinding]:
-    """Return the findings on the pairs of the nominal model.
-
-    ``shift`` is the logarithm of a factor on all frequencies that is known already.
-    """
-    out: list[PairFinding] = []
-    of_model, f = comparison.log_frequency, comparison.frequency
-    highest = float(of_model.max())
-    lowest = comparison.candidates
+def pair_remarks(comparison: Comparison) -> Iterator[PairRemark]:
+    """Yield the remarks on the pairs of the nominal model with data without mistakes."""
+    view, f, low = comparison.view, comparison.frequency, comparison.candidates
+    logs = log_frequencies(f)
+    mac = mac_values(view.mean, view.known, comparison.phi)
     for r, mode in enumerate(comparison.data.modes):
-        log = float(view.log_frequency[r]) - shift
-        q, mac = int(comparison.pairs.index[r]), float(comparison.pairs.mac[r])
-        measured = float(np.exp(view.log_frequency[r]))
-        if log > highest + np.log(BEYOND):
-            out.append(
-                OutsideModel(mode, measured, float(f.max()), f.size, comparison.has_all_modes)
+        subject, log, measured = (str(mode),), view.logs[r], float(np.exp(view.logs[r]))
+        q, later = int(comparison.pairs.index[r]), int(np.argmax(mac[r]))
+        if log > logs.max() + BEYOND:
+            whole = f.size == comparison.problem.model.size
+            end = f"{f.size} modes end" if whole else f"{f.size} lowest modes end"
+            yield PairRemark(
+                "outside-model",
+                subject,
+                f"measured mode {mode} at {measured:.4g} Hz is outside what the model has: its "
+                f"{end} at {f.max():.4g} Hz; refine the model, or leave the mode out of all groups",
             )
-            continue
-        values = comparison.mac[r]
-        best = float(values[:lowest].max())
-        later = int(np.argmax(values))
-        if best < POOR and later >= lowest and values[later] > GOOD:
-            spare = later + 1 - len(comparison.data.modes)
-            out.append(
-                BeyondCandidates(
-                    mode, later + 1, float(f[later]), float(values[later]), best, spare
-                )
+        elif later >= low and mac[r, later] > GOOD and mac[r, :low].max() < POOR:
+            yield PairRemark(
+                "beyond-candidates",
+                subject,
+                f"measured mode {mode} resembles model mode {later + 1} at {f[later]:.4g} Hz (MAC "
+                f"{mac[r, later]:.2f}), which is not looked at; the best of those that are has MAC "
+                f"{mac[r, :low].max():.2f}; set spare = {later + 1 - len(comparison.data.modes)} "
+                "in [pairing]",
             )
-        elif best < POOR:
-            out.append(UnseenMode(mode, best))
-        elif abs(log - of_model[q]) > FAR:
-            near = int(np.argmin(np.abs(log - of_model)))
-            out.append(
-                DistantPair(mode, q + 1, measured, float(f[q]), mac, near + 1, float(f[near]))
+        elif abs(log - logs[q]) > FAR:
+            value = comparison.pairs.mac[r]
+            alike = "" if np.isnan(value) else f" (MAC {value:.2f})"
+            near = int(np.argmin(np.abs(log - logs)))
+            yield PairRemark(
+                "distant-pair",
+                subject,
+                f"measured mode {mode} at {measured:.4g} Hz is paired with model mode {q + 1} at "
+                f"{f[q]:.4g} Hz{alike}; set window = 1.5 in [pairing]; the nearest is model mode "
+                f"{near + 1} at {f[near]:.4g} Hz",
             )
-    return out

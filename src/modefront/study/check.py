@@ -9,13 +9,10 @@ import numpy as np
 
 from modefront.brief import as_html
 from modefront.diagnosis.comparison import COMPARED, Comparison, compare
-from modefront.diagnosis.diagnose import diagnose
-from modefront.diagnosis.pairs import BeyondCandidates, DistantPair, UnseenMode
-from modefront.diagnosis.places import UnusedGroup
+from modefront.diagnosis.notes import DataDirection, UnusedGroup
+from modefront.diagnosis.pairs import PairRemark
+from modefront.diagnosis.search import Found, diagnose
 from modefront.diagnosis.sensitivity import Sensitivities, sensitivities
-from modefront.diagnosis.units import DampingInPercent
-from modefront.diagnosis.words import Mistake
-from modefront.diagnosis.words import in_words as mistake_in_words
 from modefront.errors import Fault, InputError, ModelError
 from modefront.findings.knowledge import (
     SHOWN,
@@ -51,8 +48,11 @@ KEPT = 500
 """Models that a search keeps with their second derivatives, some."""
 
 
-HARMLESS = (DampingInPercent, UnusedGroup, DistantPair, BeyondCandidates, UnseenMode)
+HARMLESS = ("damping", "unused-group", "distant-pair", "beyond-candidates", "foreign-mode")
 """Mistakes that leave the residuals as they are, or that need not be mistakes."""
+
+Mistake = Found | PairRemark | DataDirection | UnusedGroup
+"""What looks wrong: a record with a kind and a subject, and a sentence as its text."""
 
 
 @dataclass(frozen=True)
@@ -116,7 +116,7 @@ def check(study: Study) -> Findings:
     beside = compare(problem)
     mistakes = (*diagnose(beside), *(study.origin.notes if study.origin else ()))
     warnings = [
-        *map(mistake_in_words, mistakes),
+        *map(str, mistakes),
         *_undetermined(problem, nominal, scale, parameters_only=spoils(mistakes)),
         *_coincident(problem, nominal),
         *_at_bounds(problem),
@@ -139,7 +139,7 @@ def check(study: Study) -> Findings:
 
 def spoils(mistakes: Sequence[Mistake]) -> bool:
     """Return whether mistakes change the residuals, and with them what the data determine."""
-    return any(not isinstance(each, HARMLESS) for each in mistakes)
+    return any(each.kind not in HARMLESS for each in mistakes)
 
 
 def _coincident(problem: UpdatingProblem, nominal: Evaluation) -> list[str]:

@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Annotated
 
 from modefront.brief import as_html
-from modefront.diagnosis.places import DataDirection, UnusedGroup
+from modefront.diagnosis.notes import DataDirection, UnusedGroup
 from modefront.errors import Fault, InputError, refuse
 from modefront.front.given import Weighted, label_faults
 from modefront.front.options import Pareto

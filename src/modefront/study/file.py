@@ -10,7 +10,7 @@ from pathlib import Path
 
 import numpy as np
 
-from modefront.diagnosis.places import DataDirection, UnusedGroup
+from modefront.diagnosis.notes import DataDirection, UnusedGroup
 from modefront.errors import InputError, ModelError
 from modefront.front.options import Pareto
 from modefront.front.search import Search

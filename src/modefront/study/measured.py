@@ -13,7 +13,7 @@ from modefront._typing import Floats
 from modefront.data.csv import read_csv
 from modefront.data.modal import ModalData
 from modefront.data.uff55 import NodalModes, is_universal, read_uff55
-from modefront.diagnosis.places import DataDirection, axis_name
+from modefront.diagnosis.notes import DataDirection, axis_name
 from modefront.errors import InputError, reason, suggestion
 from modefront.families import Family
 from modefront.fem.check import unit_vector

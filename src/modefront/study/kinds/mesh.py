@@ -7,7 +7,7 @@ from typing import Any, get_args
 
 from modefront import fem
 from modefront.data.csv import is_reserved
-from modefront.diagnosis.places import unused_groups
+from modefront.diagnosis.notes import unused_groups
 from modefront.errors import suggestion
 from modefront.fem.mesh import Kind, Mesh, read_mesh
 from modefront.fem.structure import Group, Quantity

@@ -1,0 +1,125 @@
+"""Units: a factor on all frequencies, another quantity in their place, damping in percent."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.diagnosis.measured import RIGID, log_frequencies
+from modefront.diagnosis.mistakes.record import (
+    OFTEN,
+    RARE,
+    Setting,
+    Variant,
+    changed,
+    mistake,
+    one_of,
+)
+
+RAD, G = 2 * np.pi, float(np.sqrt(9.81))
+
+CONSISTENT = "give lengths, forces and masses in consistent units: m, N, kg or mm, N, t"
+
+UNITS: Sequence[tuple[float, str, str]] = (
+    (RAD, "they look like rad/s, 2π times Hz", "divide the column 'frequency' by 6.2832 (2π)"),
+    (
+        1 / RAD,
+        "the model looks as if its matrices gave Hz for rad/s, or the data are divided by 2π twice",
+        "see that eigenvalues of K and M are (rad/s)², and multiply the data by 6.2832 (2π) where "
+        "they are not in Hz",
+    ),
+    (60.0, "they look like revolutions or cycles per minute", "divide 'frequency' by 60"),
+    (
+        G,
+        "the model looks as if weight were given for mass, a factor of g = 9.81 on M",
+        "divide masses and densities by 9.81",
+    ),
+    (
+        1 / G,
+        "the model looks as if stiffness were g = 9.81 times too great, or mass 9.81 too small",
+        CONSISTENT,
+    ),
+    (10**1.5, "masses look like kg with stiffness in kN, or t with N", CONSISTENT),
+    (10**-1.5, "masses look like t with stiffness in N, or kg with kN", CONSISTENT),
+    (1e3, "E looks like MPa, or lengths like mm, where all else is in SI units", CONSISTENT),
+    (1e-3, "lengths look like m where all else is in N, mm and t, or E like Pa", CONSISTENT),
+    (10**4.5, "E looks like GPa where all else is in SI units", CONSISTENT),
+    (10**-4.5, "E looks like Pa where it should be GPa", CONSISTENT),
+    (1e6, "lengths look like mm with thicknesses and sections in m", CONSISTENT),
+    (1e-6, "densities look like t/mm³ where all else is in SI units", CONSISTENT),
+)
+"""Measured frequencies over the model's, what makes them so, and what mends it."""
+
+
+@mistake(
+    "frequency-factor",
+    OFTEN,
+    "all measured frequencies are about {factor:.3g} times the model's: {looks}",
+    "{mend}",
+)
+def frequency_factor(setting: Setting) -> Iterator[Variant]:
+    """Yield known factors on all frequencies, and those that pairs show."""
+    price = one_of(len(UNITS))
+    for factor, looks, mend in UNITS:
+        yield _factor(factor, looks, mend, price)
+    for factor in sorted(_ratios(setting)):
+        looks = f"stiffness over mass is off by {factor**2:.3g}"
+        mend = "check units, sections and masses, or the nominal values of the parameters"
+        yield _factor(factor, looks, mend, 3 * price)
+
+
+def _factor(factor: float, looks: str, mend: str, price: float) -> Variant:
+    numbers = {"factor": factor, "looks": looks, "mend": mend}
+    return Variant(("frequencies",), changed("frequency", lambda f: f / factor), numbers, price)
+
+
+def _ratios(setting: Setting) -> set[float]:
+    """Return factors between measured and model frequencies: of pairs, and of modes in order."""
+    logs, out = setting.state.data.logs, set()
+    known = np.flatnonzero(np.isfinite(logs))
+    for point, f in zip(setting.points, setting.frequencies, strict=True):
+        elastic = np.log(f[f > RIGID * f.max()])
+        if known.size and elastic.size:
+            ascending = np.sort(logs[known])
+            of_pairs = np.median(logs[known] - log_frequencies(f)[point.index[known]])
+            in_order = np.median(ascending[: elastic.size] - elastic[: known.size])
+            out |= {of_pairs, in_order, *(ascending[0] - elastic[:3])}
+    return {float(np.exp(round(float(value), 4))) for value in out}
+
+
+@mistake(
+    "other-quantity",
+    RARE,
+    "the column 'frequency' looks like {quantity}: mode {mode} has {given:.4g}, which is "
+    "{better:.4g} Hz",
+    "give frequencies in Hz",
+)
+def other_quantity(setting: Setting) -> Iterator[Variant]:
+    """Yield quantities that are no frequencies."""
+    known = np.flatnonzero(np.isfinite(setting.state.data.logs))
+    quantities: Sequence[tuple[str, Callable[[Floats], Floats]]] = (
+        ("periods in s", lambda f: 1 / f),
+        ("eigenvalues in (rad/s)²", lambda f: np.sqrt(f) / RAD),
+    )
+    for quantity, new in quantities if known.size else ():
+        given = np.exp(setting.state.data.logs[known[:1]])
+        numbers: dict[str, Any] = {"quantity": quantity, "mode": setting.modes[known[0]]}
+        numbers |= {"given": float(given[0]), "better": float(new(given)[0])}
+        yield Variant(("frequencies",), changed("frequency", new), numbers)
+
+
+@mistake(
+    "damping",
+    OFTEN,
+    "damping of {least:.3g} to {greatest:.3g} looks like percent",
+    "give the ratio to critical damping: divide the column 'damping' by 100",
+)
+def damping_in_percent(setting: Setting) -> Iterator[Variant]:
+    """Yield damping over 100."""
+    known = setting.state.data.damping[np.isfinite(setting.state.data.damping)]
+    if known.size:
+        numbers = {"least": float(known.min()), "greatest": float(known.max())}
+        yield Variant(("damping",), changed("damping", lambda zeta: zeta / 100), numbers)
