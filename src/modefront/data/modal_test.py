@@ -1,7 +1,8 @@
 """The test file: the files of a modal test with their references, and the options.
 
 TOML with the tables ``[test]``, ``[identify]``, ``[impact]``, ``[sensors]`` and a table ``[[set]]``
-for every data set. A universal file or a CSV file alone is a test of one set.
+for every data set, which is a setup of an ambient test. A universal file or a CSV file alone is a
+test of one set.
 """
 
 from __future__ import annotations
@@ -15,11 +16,16 @@ from modefront.data.blows import Averaged, Contents, averaged_blows
 from modefront.data.channels import Assembled, Channel, assemble
 from modefront.data.frf_csv import read_test_csv
 from modefront.data.impact import ESTIMATORS, Windows
+from modefront.data.records import ORDERS as RECORDED
+from modefront.data.records import RecordedFiles, Records, read_records
 from modefront.data.responses import ORDERS, joined
 from modefront.data.uff import read_uff
 from modefront.errors import Fault, InputError, suggestion
 from modefront.options import is_name, repeated
 from modefront.toml import Table, read_toml
+
+KINDS = ("hammer", "ambient")
+"""Kinds of tests."""
 
 UFF_ENDINGS = (".uff", ".unv", ".uf", ".bunv", ".ufb")
 MOST_MODES = 200
@@ -43,13 +49,15 @@ class ModalTest:
     name : of the test
     band : in Hz, or None for all lines
     modes : their number, or None where it is to be found
-    sets : the data sets
+    sets : the data sets with functions
+    setups : the records of an ambient test, which has no functions
     """
 
     name: str
     band: tuple[float, float] | None
     modes: int | None
     sets: tuple[DataSet, ...]
+    setups: tuple[Records, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -109,10 +117,11 @@ def is_universal(path: Path) -> bool:
 
 
 def _from_toml(path: Path) -> ModalTest:
-    faults: list[Fault] = []
     root, _ = read_toml(path, "a test file")
     faults = root.faults
-    name, settings = _test_table(root)
+    name, ambient, settings = _test_table(root)
+    if ambient:
+        return _ambient(root, name or path.stem, settings)
     settings = replace(settings, windows=_impact_table(root))
     band, modes = _identify_table(root)
     sets = _set_tables(root, path.parent)
@@ -135,12 +144,48 @@ def _from_toml(path: Path) -> ModalTest:
     return ModalTest(name or path.stem, band, modes, tuple(data_sets))
 
 
-def _test_table(root: Table) -> tuple[str, _Settings]:
-    title, quantity = "", ""
+def _ambient(root: Table, name: str, settings: _Settings) -> ModalTest:
+    """Return an ambient test, of which every set is a setup."""
+    band, modes = _identify_table(root)
+    folder, setups = Path(root.file).parent, []
+    for number, table in enumerate(root.tables("set", required=True), start=1):
+        files = table.take("files", "a list of files", _are_names, ...) or []
+        setup = RecordedFiles(
+            table.text("name", default=str(number)) or str(number),
+            tuple(folder / file for file in files),
+            table.number("rate", "samples per s, above zero", lambda x: x > 0, None),
+            tuple(table.take("sensors", "a list of names", _are_names, [])),
+            table.names("columns"),
+            settings.sensors,
+        )
+        for sensor in repeated(setup.sensors):
+            table.fault("sensors", "each sensor once", f"{sensor!r} twice")
+        table.close()
+        setups.append(setup)
+    for label in repeated(setup.name for setup in setups):
+        root.fault("[[set]]", "a name for each data set", f"{label!r} twice")
+    root.close()
+    if root.faults:
+        raise InputError(root.faults)
+    records = [read_records(setup, settings.quantity or "acceleration") for setup in setups]
+    joined_to = set(records[0].sensors)
+    for each in records[1:]:
+        if joined_to.isdisjoint(each.sensors):
+            expected = f"a sensor that another set has: {', '.join(sorted(joined_to)[:8])}"
+            found = ", ".join(each.sensors[:8])
+            raise InputError(Fault(root.file, f"[[set]] {each.name!r}", expected, found))
+        joined_to.update(each.sensors)
+    return ModalTest(name, band, modes, (), tuple(records))
+
+
+def _test_table(root: Table) -> tuple[str, bool, _Settings]:
+    """Return the name, whether the test is ambient, and the settings."""
+    title, quantity, ambient = "", "", False
     table = root.table("test", "a table [test]")
     if table:
         title = table.text("name", default=None) or ""
-        quantity = table.choice("quantity", tuple(ORDERS), default=None) or ""
+        ambient = table.choice("kind", KINDS, KINDS[0]) == "ambient"
+        quantity = table.choice("quantity", tuple(RECORDED if ambient else ORDERS), None) or ""
         table.close()
     sensors: dict[str, str] = {}
     table = root.table("sensors", default=None)
@@ -150,7 +195,7 @@ def _test_table(root: Table) -> tuple[str, _Settings]:
             if channel:
                 sensors[channel.upper().replace("+", "")] = name
         table.close()
-    return title, _Settings(quantity, sensors)
+    return title, ambient, _Settings(quantity, sensors)
 
 
 def _identify_table(root: Table) -> tuple[tuple[float, float] | None, int | None]:
@@ -193,12 +238,8 @@ def _set_tables(root: Table, folder: Path) -> list[_Set]:
     out = []
     for number, table in enumerate(root.tables("set", required=True), start=1):
         name = table.text("name", default=str(number)) or str(number)
-
-        def texts(value: object) -> bool:
-            return isinstance(value, list) and bool(value) and all(map(is_name, value))
-
-        files = table.take("files", "a list of files", texts, ...) or []
-        references = table.take("reference", "one reference a file", texts, None)
+        files = table.take("files", "a list of files", _are_names, ...) or []
+        references = table.take("reference", "one reference a file", _are_names, None)
         if references is None:
             references = [""] * len(files)
             for file in files:
@@ -213,6 +254,10 @@ def _set_tables(root: Table, folder: Path) -> list[_Set]:
     for name in repeated(each.name for each in out):
         root.fault("[[set]]", "a name for each data set", f"{name!r} twice")
     return out
+
+
+def _are_names(value: object) -> bool:
+    return isinstance(value, list) and bool(value) and all(map(is_name, value))
 
 
 def _window(data_set: Table) -> float:

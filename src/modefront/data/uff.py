@@ -97,13 +97,7 @@ def read_uff(path: Path) -> Contents:
     Where it has none, the records of blows: of the force and of the responses in time. Raises
     InputError where the file holds neither, is cut off or cannot be decoded.
     """
-    file, content = str(path), read_text_bytes(path, WHAT, MOST_DATA)
-    datasets = blocks(content, file)
-    functions = [block for block in datasets if block.number == 58]
-    if not functions:
-        numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in datasets))
-        raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
-    decoded = [(block, _function(content, block, file)) for block in functions]
+    file, decoded = str(path), read_functions(path)
     kinds = {values.kind for _, values in decoded}
     if FRF in kinds:
         return Contents(channels=tuple(_channels(decoded, file)))
@@ -120,8 +114,19 @@ def read_uff(path: Path) -> Contents:
     return Contents(blows=tuple(blows))
 
 
+def read_functions(path: Path) -> list[tuple[Block, Function]]:
+    """Return all datasets 58 of a universal file; raises InputError where it has none."""
+    file, content = str(path), read_text_bytes(path, WHAT, MOST_DATA)
+    datasets = blocks(content, file)
+    functions = [block for block in datasets if block.number == 58]
+    if not functions:
+        numbers = ", ".join(str(n) for n in dict.fromkeys(block.number for block in datasets))
+        raise InputError(Fault(file, "datasets", WHAT, f"datasets {numbers} only"))
+    return [(block, _function(content, block, file)) for block in functions]
+
+
 @dataclass(frozen=True, eq=False)
-class _Function:
+class Function:
     """A dataset 58: its type, what it is of, its degrees of freedom, abscissae and values."""
 
     kind: int
@@ -132,7 +137,7 @@ class _Function:
     data: Floats | Complexes
 
 
-def _channels(decoded: Sequence[tuple[Block, _Function]], file: str) -> list[Channel]:
+def _channels(decoded: Sequence[tuple[Block, Function]], file: str) -> list[Channel]:
     channels, coherences = [], {}
     for block, values in decoded:
         if values.kind == FRF:
@@ -146,12 +151,12 @@ def _channels(decoded: Sequence[tuple[Block, _Function]], file: str) -> list[Cha
     ]
 
 
-def _blows(decoded: Sequence[tuple[Block, _Function]], file: str) -> list[Blow]:
+def _blows(decoded: Sequence[tuple[Block, Function]], file: str) -> list[Blow]:
     """Return the blows of records in time.
 
     A blow ends where one of its channels comes again, or another force.
     """
-    groups: list[dict[str, tuple[Block, _Function]]] = [{}]
+    groups: list[dict[str, tuple[Block, Function]]] = [{}]
     for block, values in decoded:
         if values.kind != TIME:
             continue
@@ -162,7 +167,7 @@ def _blows(decoded: Sequence[tuple[Block, _Function]], file: str) -> list[Blow]:
     return [_blow(group, file) for group in groups if "" in group and len(group) > 1]
 
 
-def _blow(group: Mapping[str, tuple[Block, _Function]], file: str) -> Blow:
+def _blow(group: Mapping[str, tuple[Block, Function]], file: str) -> Blow:
     block, force = group[""]
     records, quantities = {}, set()
     for name, (of_record, values) in group.items():
@@ -271,7 +276,7 @@ def reals(text: str) -> list[float]:
     return [fortran(word) for word in NEXT.sub(" ", text).split()]
 
 
-def _function(content: bytes, block: Block, file: str) -> _Function:
+def _function(content: bytes, block: Block, file: str) -> Function:
     """Return a dataset 58 that holds as many values as its header says."""
     *lines, body = content[block.start : block.end].split(b"\n", HEADER)
     head = [line.decode("utf-8", "replace") for line in lines]
@@ -282,7 +287,7 @@ def _function(content: bytes, block: Block, file: str) -> _Function:
         if even not in (0, 1):
             raise ValueError(f"abscissae of the kind {even}")
         x, data = _values(file, block, body, (form, count, even))
-        return _Function(
+        return Function(
             int(six[0]),
             int(head[8][:10]),
             _degree_of_freedom(six[5], six[6]),
@@ -327,7 +332,7 @@ def _values(
     return rows[0], of_y[0] + 1j * of_y[1] if is_complex else of_y[0]
 
 
-def _channel(values: _Function, block: Block, file: str) -> Channel:
+def _channel(values: Function, block: Block, file: str) -> Channel:
     (response, sign), (reference, other) = values.response, values.reference
     place = f"{block.place} of {reference} to {response}"
     H = sign * other * np.asarray(values.data, complex)

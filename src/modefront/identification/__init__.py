@@ -1,4 +1,4 @@
-"""From frequency response functions to modes, with their standard deviations.
+"""From measured vibrations to modes, with their standard deviations.
 
 =====================  ================================================================
 step                   module
@@ -12,5 +12,6 @@ modes that data need   `selection`
 standard deviations    `statistics`, `shapes`
 one data set           `methods`, a file a method; `record` is what they return
 several data sets      `sets`
+ambient records        `spectra`, `spectral_density`; several setups: `setups`
 =====================  ================================================================
 """

@@ -18,8 +18,7 @@ from modefront.data.modal import ModalData
 from modefront.data.modal_test import ModalTest, read_test
 from modefront.data.uff import write_uff55
 from modefront.errors import Fault, InputError, UnfinishedError
-from modefront.identification.methods.hammer import LEAST_LINES
-from modefront.identification.methods.hammer import identify as identify_set
+from modefront.identification.methods import ambient, hammer
 from modefront.identification.record import Identification, Rejected
 from modefront.identification.sets import CombinedModes, combine, modal_data_of
 from modefront.outputs import write_text
@@ -48,8 +47,8 @@ class IdentifiedTest:
 
     @property
     def names(self) -> list[str]:
-        """Names of the data sets."""
-        return [each.name for each in self.test.sets]
+        """Names of the data sets; an ambient test is one."""
+        return _names(self.test)
 
     @cached_property
     def data(self) -> ModalData:
@@ -80,6 +79,11 @@ class IdentifiedTest:
             ]
         )
         read = [text for part in self.test.sets for text in part.assembled.warnings]
+        read += [
+            f"set {setup.name!r}: {name} does not move and is left out"
+            for setup in self.test.setups
+            for name in setup.still
+        ]
         fitted = [
             f"set {name!r}: {text}"
             for name, identification in zip(self.names, self.identified, strict=True)
@@ -150,7 +154,8 @@ def identify(
     Parameters
     ----------
     test
-        File of the test: TOML, a universal file, or CSV with frequency response functions.
+        File of the test: TOML, a universal file, or CSV with frequency response functions. Only
+        TOML has ambient tests.
     band
         Least and greatest frequency in Hz; that of the test file, or all lines, unless given.
     keep, drop
@@ -172,12 +177,21 @@ def identify(
         if not low <= f <= high:
             expected = f"frequencies within the band, {low:g} to {high:g} Hz"
             raise InputError(Fault(str(path), "--seed", expected, f"{f:g}"))
-    identified = [identify_set(part.assembled.data, band, read.modes, seeds) for part in read.sets]
-    names = [part.name for part in read.sets]
+    if read.setups:
+        identified = [ambient.identify(read.setups, band, read.modes, seeds)]
+    else:
+        identified = [
+            hammer.identify(part.assembled.data, band, read.modes, seeds) for part in read.sets
+        ]
+    names = _names(read)
     if (keep or drop) and any(each.modes for each in identified):
         identified = _chosen(path, identified, combine(names, identified).index, keep, drop)
     found = any(each.modes for each in identified)
     return IdentifiedTest(read, tuple(identified), combine(names, identified) if found else None)
+
+
+def _names(test: ModalTest) -> list[str]:
+    return [test.name] if test.setups else [part.name for part in test.sets]
 
 
 def _chosen(
@@ -220,12 +234,19 @@ def writable(path: Path | str) -> Path:
 
 
 def _check_band(path: Path, test: ModalTest, band: tuple[float, float] | None) -> None:
+    for setup in test.setups:
+        low, high = band or ambient.default_band(test.setups)
+        high = min(high, setup.rate / 2)
+        if (high - low) * setup.duration < ambient.LEAST_LINES:
+            expected = f"a band of {ambient.LEAST_LINES} lines of set {setup.name!r} at least"
+            reach = f"{low:g} to {high:g} Hz of {setup.duration:g} s at {setup.rate:g} per s"
+            raise InputError(Fault(str(path), "band", expected, reach))
     for data_set in test.sets:
         f = data_set.assembled.data.frequency
         low, high = band or (0.0, np.inf)
         count = int(np.count_nonzero((f >= low) & (f <= high) & (f > 0)))
-        if count < LEAST_LINES:
-            expected = f"at least {LEAST_LINES} lines of set {data_set.name!r} within it"
+        if count < hammer.LEAST_LINES:
+            expected = f"at least {hammer.LEAST_LINES} lines of set {data_set.name!r} within it"
             reach = f"{count}: the files reach from {f[0]:g} to {f[-1]:g} Hz"
             raise InputError(Fault(str(path), "band", expected, reach))
         inside = data_set.assembled.data.within(low, high)

@@ -70,7 +70,7 @@ class CombinedModes:
 def combine(sets: Sequence[str], identifications: Sequence[Identification]) -> CombinedModes:
     """Return the modes of several data sets under common numbers, by frequency."""
     sensors = tuple(dict.fromkeys(name for each in identifications for name in each.responses))
-    groups = _groups(identifications, sensors)
+    groups = mode_groups(identifications, sensors)
     K, R = len(identifications), len(groups)
     index = tuple(tuple(group.get(k, -1) for group in groups) for k in range(K))
     f, z, f_std, z_std = (np.full((K, R), np.nan) for _ in range(4))
@@ -124,7 +124,7 @@ def _at(values: Floats, identification: Identification, sensors: Sequence[str]) 
     return np.array([where.get(name, np.nan) for name in sensors])
 
 
-def _groups(
+def mode_groups(
     identifications: Sequence[Identification], sensors: Sequence[str]
 ) -> list[dict[int, int]]:
     """Return, for every mode of the structure, which mode of each set it is."""

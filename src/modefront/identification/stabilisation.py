@@ -36,7 +36,15 @@ from scipy.cluster.hierarchy import fcluster, linkage
 from scipy.spatial.distance import squareform
 
 from modefront._typing import Bools, Complexes, Floats, Ints
+from modefront.data.responses import ORDERS, FrequencyResponses
+from modefront.identification import lscf
 from modefront.identification.lscf import Poles
+
+MOST_POLES = 160
+"""Poles at the highest order: some four for each of forty modes."""
+
+MOST_ORDERS = 25
+"""Orders of a diagram; more add no information to clusters of poles."""
 
 CUT = 0.02, 0.08
 """Limits of the distance within which poles belong to one cluster."""
@@ -105,6 +113,26 @@ class Cluster:
     size: int
 
 
+def diagram_of(
+    data: FrequencyResponses, variance: Floats
+) -> tuple[StabilisationDiagram, list[Cluster]]:
+    """Return the diagram of functions by least squares (`lscf`), and its clusters by pole.
+
+    ``variance`` weights the lines; any of its axes may be 1.
+    """
+    weight = np.mean(1 / variance, axis=(0, 1))
+    omega = 2 * np.pi * data.frequency
+    rate = 2 * np.pi * lscf.ARC / (omega[-1] - omega[0])
+    most = min(max(MOST_POLES // len(data.H), 6), len(omega) // 4)
+    orders = sorted(set(np.linspace(2, most, min(MOST_ORDERS, most - 1)).astype(int).tolist()))
+    z = lscf.generalised_frequency(omega, omega[0], rate)
+    sums = lscf.moments(data.H, weight / weight.max(), z, max(orders))
+    windowed = lscf.poles(sums, orders, omega[0], rate)
+    estimates = [lscf.without_decay(poles, data.decay) for poles in windowed]
+    s: Complexes = np.asarray(1j * omega + data.decay, complex)
+    return stabilisation_diagram(estimates, data.H, s, ORDERS[data.quantity])
+
+
 def stabilisation_diagram(
     estimates: Sequence[Poles], H: Complexes, s: Complexes, quantity_order: int
 ) -> tuple[StabilisationDiagram, list[Cluster]]:
@@ -115,7 +143,7 @@ def stabilisation_diagram(
     """
     kept = [_usable(poles) for poles in estimates]
     lines = _lines_of_shapes(s, np.concatenate([poles.value for poles in kept]))
-    shapes = [_shapes(poles, H[..., lines], s[lines], quantity_order) for poles in kept]
+    shapes = [shapes_of(poles, H[..., lines], s[lines], quantity_order) for poles in kept]
     distance = np.concatenate(
         [np.full(len(kept[0].value), np.inf)]
         + [
@@ -163,7 +191,7 @@ def _lines_of_shapes(s: Complexes, pole: Complexes) -> Bools:
     return lines
 
 
-def _shapes(poles: Poles, H: Complexes, s: Complexes, q: int) -> Complexes:
+def shapes_of(poles: Poles, H: Complexes, s: Complexes, q: int) -> Complexes:
     """Return shapes of the poles of one order, (poles, responses), by linear least squares."""
     n, n_in = poles.participation.shape
     size = abs(s[-1])
@@ -234,3 +262,23 @@ def _clusters(diagram: StabilisationDiagram) -> list[Cluster]:
             )
         )
     return sorted(out, key=lambda cluster: cluster.pole.imag)
+
+
+def support(diagram: StabilisationDiagram, pole: Complexes, strength: Floats) -> Floats:
+    """Return the share of the orders, from the first one with a mode's pole, that have it.
+
+    ``pole`` and ``strength`` are those of all modes. At each order a pole of the diagram belongs to
+    one mode, the stronger ones first, so that two modes need two poles.
+    """
+    present = np.zeros((len(pole), len(diagram.orders)), bool)
+    reach = np.maximum(0.005 * np.abs(pole), -0.5 * pole.real)
+    for k, order in enumerate(diagram.orders):
+        left = diagram.pole[diagram.order == order]
+        for r in strength.argsort()[::-1]:
+            distance = np.abs(left - pole[r])
+            if distance.min(initial=np.inf) < reach[r]:
+                present[r, k] = True
+                left = np.delete(left, distance.argmin())
+    since = np.maximum.accumulate(present, axis=1).sum(axis=1)
+    out: Floats = present.sum(axis=1) / np.maximum(since, 1)
+    return out

@@ -16,9 +16,9 @@ from typing import Literal
 
 import numpy as np
 
-from modefront._typing import Bools, Complexes, Floats
-from modefront.data.responses import ORDERS, FrequencyResponses
-from modefront.identification import lscf, modal_model, selection
+from modefront._typing import Bools, Floats
+from modefront.data.responses import FrequencyResponses
+from modefront.identification import modal_model, selection
 from modefront.identification.modal_model import Fit, Problem
 from modefront.identification.noise import fitted_variance, variance_from_differences
 from modefront.identification.record import (
@@ -31,9 +31,9 @@ from modefront.identification.record import (
 from modefront.identification.shapes import auto_mac
 from modefront.identification.stabilisation import (
     MOST_DAMPING,
-    Cluster,
     StabilisationDiagram,
-    stabilisation_diagram,
+    diagram_of,
+    support,
 )
 from modefront.identification.statistics import mode_estimates, residuals
 
@@ -41,12 +41,6 @@ Weighting = Literal["given", "scaled", "residuals"]
 
 LEAST_LINES = 20
 """Lines of a band, at least: a mode with its residual terms has twelve numbers a function."""
-
-MOST_POLES = 160
-"""Poles at the highest order: some four for each of forty modes."""
-
-MOST_ORDERS = 25
-"""Orders of a diagram; more add no information to clusters of poles."""
 
 CHOICE_LINES = 4096
 """Lines from which the modes are chosen where there are more lines, those of sharp peaks apart."""
@@ -93,7 +87,7 @@ def identify(
     kind, variance = weighting(data), _known_variance(data)
     first = variance_from_differences(data) if variance is None else variance
     small, shared = _principal(data, first)
-    diagram, clusters = _diagram(small, shared)
+    diagram, clusters = diagram_of(small, shared)
     if not data.measured[:, data.measured.any(axis=(0, 2))].all():
         small, shared = data, first
     kept = _lines_of_choice(small.frequency, diagram)
@@ -183,22 +177,6 @@ def _lines_of_choice(frequency: Floats, diagram: StabilisationDiagram) -> Bools:
     return kept
 
 
-def _diagram(
-    data: FrequencyResponses, variance: Floats
-) -> tuple[StabilisationDiagram, list[Cluster]]:
-    weight = np.mean(1 / variance, axis=(0, 1))
-    omega = 2 * np.pi * data.frequency
-    rate = 2 * np.pi * lscf.ARC / (omega[-1] - omega[0])
-    most = min(max(MOST_POLES // len(data.H), 6), len(omega) // 4)
-    orders = sorted(set(np.linspace(2, most, min(MOST_ORDERS, most - 1)).astype(int).tolist()))
-    z = lscf.generalised_frequency(omega, omega[0], rate)
-    sums = lscf.moments(data.H, weight / weight.max(), z, max(orders))
-    windowed = lscf.poles(sums, orders, omega[0], rate)
-    estimates = [lscf.without_decay(poles, data.decay) for poles in windowed]
-    s: Complexes = np.asarray(1j * omega + data.decay, complex)
-    return stabilisation_diagram(estimates, data.H, s, ORDERS[data.quantity])
-
-
 def _choice(task: Problem, fit: Fit, kind: Weighting, modes: int | None) -> tuple[Problem, Fit]:
     """Return the problem, with its residual terms and variance, and the modes that data need."""
     for _ in range(2):
@@ -278,26 +256,6 @@ def _result(solution: _Solution) -> Identification:
         fit.evaluations,
         fit.converged,
     )
-
-
-def support(diagram: StabilisationDiagram, pole: Complexes, strength: Floats) -> Floats:
-    """Return the share of the orders, from the first one with a mode's pole, that have it.
-
-    ``pole`` and ``strength`` are those of all modes. At each order a pole of the diagram belongs to
-    one mode, the stronger ones first, so that two modes need two poles.
-    """
-    present = np.zeros((len(pole), len(diagram.orders)), bool)
-    reach = np.maximum(0.005 * np.abs(pole), -0.5 * pole.real)
-    for k, order in enumerate(diagram.orders):
-        left = diagram.pole[diagram.order == order]
-        for r in strength.argsort()[::-1]:
-            distance = np.abs(left - pole[r])
-            if distance.min(initial=np.inf) < reach[r]:
-                present[r, k] = True
-                left = np.delete(left, distance.argmin())
-    since = np.maximum.accumulate(present, axis=1).sum(axis=1)
-    out: Floats = present.sum(axis=1) / np.maximum(since, 1)
-    return out
 
 
 def _reason(mode: ModeEstimate, frequency: Floats) -> str:

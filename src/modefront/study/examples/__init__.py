@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from importlib import resources
+from importlib import import_module, resources
 from pathlib import Path
 
 from modefront.errors import Fault, InputError, reason, suggestion
 from modefront.outputs import write_bytes
 
-HAMMER_TEST = "hammer-test"
-"""The example of which tests are simulated, and their modes identified, where it is written."""
+SIMULATED = {"hammer-test": "hammer_test", "ambient-test": "ambient_test"}
+"""Modules of examples of which tests are simulated, and modes identified, where written."""
 
 
 def names() -> list[str]:
@@ -32,11 +32,8 @@ def write_example(name: str, directory: Path) -> list[Path]:
         key=lambda item: item.name,
     )
     targets = [directory / source.name for source in sources]
-    simulated = []
-    if name == HAMMER_TEST:
-        from modefront.study.examples import hammer_test
-
-        simulated = [directory / file for file in hammer_test.files()]
+    module = import_module(f"{__package__}.{SIMULATED[name]}") if name in SIMULATED else None
+    simulated = [directory / file for file in module.files()] if module else []
     try:
         directory.mkdir(parents=True, exist_ok=True)
         existing = [path for path in (*targets, *simulated) if path.exists() or path.is_symlink()]
@@ -47,8 +44,8 @@ def write_example(name: str, directory: Path) -> list[Path]:
             )
         for source, path in zip(sources, targets, strict=True):
             write_bytes(path, source.read_bytes())
-        if simulated:
-            hammer_test.write(directory)
+        if module:
+            module.write(directory)
     except OSError as error:
         expected = "a folder that can be written to"
         raise InputError(Fault(str(directory), "folder", expected, reason(error))) from None

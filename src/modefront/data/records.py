@@ -1,0 +1,200 @@
+"""Records in time of an ambient test: what sensors measure while nobody measures the forces.
+
+Files are CSV with a column ``time`` in s and one for every sensor, universal files with functions
+of type 1 in dataset 58, NumPy's ``.npy``, or MATLAB's ``.mat`` (up to version 7); of the last two,
+a two-dimensional array whose longer side is time, with rate and names from the test file.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+
+from modefront._typing import Floats
+from modefront.data.blows import EVEN, TIME
+from modefront.data.channels import EXPECTED
+from modefront.data.csv import renamed
+from modefront.data.frf_csv import read_numbers
+from modefront.data.uff import TIME as OF_TIME
+from modefront.data.uff import read_functions
+from modefront.errors import Fault, InputError, reason
+from modefront.inputs import MOST_DATA, file_size
+from modefront.rounding import LARGEST
+
+ORDERS = {"displacement": 0, "velocity": 1, "acceleration": 2}
+"""Number of differentiations of the displacement in each quantity."""
+
+UNEVEN = 0.3
+"""Distance of a sample from its even place, over a step, that digits of times may make."""
+
+ARRAYS = (".npy", ".mat")
+"""Endings of files that hold arrays alone."""
+
+WHAT = "a file with records in time"
+
+
+@dataclass(frozen=True)
+class Records:
+    """Records of one setup, measured at once.
+
+    Attributes
+    ----------
+    name : of the setup
+    sensors : names
+    rate : samples per second
+    values : (sensors, samples)
+    quantity : ``"displacement"``, ``"velocity"`` or ``"acceleration"``
+    still : names of channels that do not move, which are left out
+    """
+
+    name: str
+    sensors: tuple[str, ...]
+    rate: float
+    values: Floats
+    quantity: str = "acceleration"
+    still: tuple[str, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Raise ValueError where the arrays do not fit."""
+        if self.values.ndim != 2 or len(self.values) != len(self.sensors):
+            expected = f"records of {len(self.sensors)} sensors, (sensors, samples)"
+            raise ValueError(f"expected {expected}, found {self.values.shape}")
+        if self.quantity not in ORDERS:
+            raise ValueError(f"expected one of {', '.join(ORDERS)}, found {self.quantity!r}")
+        if not np.isfinite(self.values).all():
+            raise ValueError("expected finite numbers")
+
+    @property
+    def duration(self) -> float:
+        """Length in s."""
+        return self.values.shape[1] / self.rate
+
+
+@dataclass(frozen=True)
+class RecordedFiles:
+    """The files of one setup, measured at once, and what they do not say themselves.
+
+    Attributes
+    ----------
+    name : of the setup
+    files : paths
+    rate : samples per second, for arrays
+    sensors : names of the channels of arrays
+    columns : names of columns in CSV files and what they are here
+    channels : names by node and direction in universal files, such as 1Z or 1-Z
+    """
+
+    name: str
+    files: tuple[Path, ...]
+    rate: float | None
+    sensors: tuple[str, ...]
+    columns: Mapping[str, str]
+    channels: Mapping[str, str]
+
+
+def read_records(setup: RecordedFiles, quantity: str) -> Records:
+    """Return the records of a setup; raises InputError with what is wrong."""
+    names: list[str] = []
+    rows: list[Floats] = []
+    rates: list[float] = []
+    for path in setup.files:
+        found, values, rate = _of_file(path, setup)
+        rates.append(rate)
+        if abs(rate / rates[0] - 1) > EVEN or (rows and values.shape[1] != len(rows[0])):
+            expected = f"{len(rows[0])} samples at {rates[0]:g} per s, as in {setup.files[0]}"
+            size = f"{values.shape[1]} at {rate:g} per s"
+            raise InputError(Fault(str(path), "records", expected, size))
+        for name, row in zip(found, values, strict=True):
+            if name in names:
+                raise InputError(
+                    Fault(str(path), f"sensor {name!r}", "each sensor once", "another")
+                )
+            if not (np.abs(row) <= LARGEST).all():
+                raise InputError(Fault(str(path), f"sensor {name!r}", EXPECTED, "others"))
+            names.append(name)
+            rows.append(row)
+    moving = [bool(np.ptp(row) > 0) for row in rows]
+    if not any(moving):
+        raise InputError(Fault(str(setup.files[0]), "records", "a sensor that moves", "none"))
+    return Records(
+        setup.name,
+        tuple(name for name, moves in zip(names, moving, strict=True) if moves),
+        rates[0],
+        np.array([row for row, moves in zip(rows, moving, strict=True) if moves]),
+        quantity,
+        tuple(name for name, moves in zip(names, moving, strict=True) if not moves),
+    )
+
+
+def _of_file(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, float]:
+    """Return names, records (sensors, samples) and samples per second of one file."""
+    ending = path.suffix.lower()
+    if ending in ARRAYS:
+        return _of_array(path, setup)
+    if ending == ".csv":
+        own, values = read_numbers(path, WHAT)
+        header, _ = renamed(own, setup.columns, ())
+        if header.count(TIME) != 1 or len(header) < 2:
+            expected = "a column 'time' in s, and one for every sensor"
+            raise InputError(Fault(str(path), "line 1", expected, ", ".join(header[:6])))
+        column = header.index(TIME)
+        names = [name for name in header if name != TIME]
+        rows = np.nan_to_num(np.delete(values, column, axis=1).T, nan=0.0)  # empty columns
+        return names, rows, _rate(path, values[:, column])
+    functions = [x for _, x in read_functions(path) if x.kind == OF_TIME]
+    if not functions:
+        expected = "records in time (functions of type 1) in dataset 58"
+        raise InputError(Fault(str(path), "dataset 58", expected, "none"))
+    lengths = {len(x.data) for x in functions}
+    if len(lengths) > 1:
+        found = ", ".join(map(str, sorted(lengths)))
+        raise InputError(Fault(str(path), "dataset 58", "records of one length", found))
+    signs = [(x.response[0], x.response[1] * np.asarray(x.data, float)) for x in functions]
+    names = []
+    for k, (name, row) in enumerate(signs):
+        label = next((key for key in setup.channels if key.replace("-", "") == name), name)
+        names.append(setup.channels.get(label, name))
+        if "-" in label:
+            signs[k] = name, -row
+    return names, np.array([row for _, row in signs]), _rate(path, functions[0].x)
+
+
+def _of_array(path: Path, setup: RecordedFiles) -> tuple[Sequence[str], Floats, float]:
+    """Return the records of a file that holds an array alone."""
+    file = str(path)
+    file_size(path, WHAT, MOST_DATA)
+    if setup.rate is None or not setup.sensors:
+        expected = "'rate' and 'sensors' in its [[set]], which the file does not say"
+        raise InputError(Fault(file, "records", expected, "nothing"))
+    try:
+        if path.suffix.lower() == ".npy":
+            arrays = [np.load(path, allow_pickle=False)]
+        else:
+            from scipy.io import loadmat
+
+            arrays = [x for x in loadmat(path).values() if isinstance(x, np.ndarray)]
+    except (OSError, ValueError, NotImplementedError, TypeError) as error:
+        raise InputError(Fault(file, "file", "an array of numbers", reason(error))) from None
+    count = len(setup.sensors)
+    tables = [x for x in arrays if x.ndim == 2 and x.dtype.kind in "fiu" and count in x.shape]
+    if len(tables) != 1:
+        expected = f"one array of samples by {count} sensors"
+        shapes = ", ".join(" x ".join(map(str, x.shape)) for x in arrays) or "none"
+        raise InputError(Fault(file, "file", expected, shapes))
+    table = np.asarray(tables[0], float)
+    return setup.sensors, table if len(table) == count else table.T, setup.rate
+
+
+def _rate(path: Path, time: Floats) -> float:
+    """Return the samples per second of a time axis that is even but for its digits."""
+    count, length = len(time) - 1, float(time[-1] - time[0])
+    if count < 2 or length <= 0:
+        raise InputError(Fault(str(path), "time", "ascending times", "others"))
+    off = np.abs(time - time[0] - np.arange(count + 1) * (length / count)).max()
+    if off > UNEVEN * length / count:
+        found = f"times off by up to {off:.3g} s, steps of {length / count:.3g} s"
+        raise InputError(Fault(str(path), "time", "a time axis of even steps", found))
+    return count / length

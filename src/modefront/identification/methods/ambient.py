@@ -1,0 +1,554 @@
+r"""Ambient tests: from the records of all setups to modes, by the likelihood of their transforms.
+
+1. Half spectra of each setup (`spectra`) give poles at many orders, and clusters of them to start
+   from (`stabilisation`).
+2. Modes that overlap share a band; the likelihood of the transforms in it (`spectral_density`) is
+   maximised, with the modes beside the band.
+3. A mode is accepted where the likelihood gains more by it than noise makes somewhere in the band;
+   in the other setups it needs what noise makes at a pole that is known.
+4. A mode with the amplitude of a machine is none. With :math:`a(t)` the modal response to lines
+   about it, :math:`\kappa = \overline{|a|^4} / \overline{|a|^2}^2` is 2 for a normal response and
+   1 for a harmonic; in a record of length T it scatters by :math:`2 / \sqrt{2\zeta\omega T}`, as
+   :math:`|a|^2` is correlated over :math:`1/2\zeta\omega`.
+5. Setups are combined: frequencies and damping ratios by their precision and what they scatter
+   between setups (`sets`), shapes by the sensors that setups share (`setups`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+from scipy.stats import chi2, norm
+
+from modefront._typing import Bools, Complexes, Floats
+from modefront.data.records import Records
+from modefront.data.responses import FrequencyResponses
+from modefront.identification import selection, spectra, spectral_density
+from modefront.identification.lscf import Poles
+from modefront.identification.record import (
+    Evidence,
+    FittedFunctions,
+    Identification,
+    ModeEstimate,
+    Rejected,
+    Residuals,
+)
+from modefront.identification.selection import ALONE, FALSE, LEAST_ORDERS
+from modefront.identification.sets import between, mode_groups
+from modefront.identification.setups import merged_shape
+from modefront.identification.shapes import real_shape
+from modefront.identification.spectra import Transforms
+from modefront.identification.spectral_density import Band, Density, Fit
+from modefront.identification.stabilisation import (
+    StabilisationDiagram,
+    diagram_of,
+    shapes_of,
+    support,
+)
+
+REACH = 8.0
+"""Half bandwidths on either side of a mode that its band has: they hold nearly all that is known
+of it (Au, Mech. Syst. Signal Process. 48 (2014) 15-33, doi:10.1016/j.ymssp.2013.07.004)."""
+
+OVERLAP = 4.0
+"""Distance over the sum of half bandwidths within which modes are fitted at once."""
+
+LEAST_LINES = 40
+"""Lines of a band, at least."""
+
+BLOCK = 0.1
+"""Width of a block of lines over the half bandwidth of the sharpest mode in the band."""
+
+MOST_TOGETHER = 5
+"""Modes that are fitted at once, at most."""
+
+DAMPING = 0.002, 0.05
+"""Limits of damping ratios to start from."""
+
+TRIAL_STEPS = 12
+"""Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
+
+HARMONIC = 1e-3
+"""Share of the modes that would be taken for harmonics by chance."""
+
+CYCLES = 10
+"""Periods of the lowest frequency in a record, at least, by default."""
+
+HIGHEST = 0.8
+"""Highest frequency over the greatest that records hold, by default: beyond it are filters."""
+
+LINES_SHOWN = 400
+"""Blocks of lines of the densities that are shown."""
+
+
+@dataclass(frozen=True)
+class Local:
+    """A mode in one setup.
+
+    Attributes
+    ----------
+    omega, zeta : rad/s, damping ratio
+    phi : (sensors,) of unit norm
+    gain : 2 Delta J of the fit with the mode
+    covariance : of ln omega, ln zeta and phi
+    share : its greatest share in the density of a sensor, at its frequency
+    kurtosis : kappa, and its standard deviation for a mode
+    held : whether it stays whatever its gain
+    """
+
+    omega: float
+    zeta: float
+    phi: Floats
+    gain: float = np.inf
+    covariance: Floats | None = None
+    share: float = np.nan
+    kurtosis: tuple[float, float] = (2.0, 1.0)
+    held: bool = False
+
+    @property
+    def half(self) -> float:
+        """Half bandwidth in rad/s."""
+        return self.zeta * self.omega
+
+
+@dataclass(frozen=True)
+class _Setup:
+    """A setup with its transforms, diagram and modes."""
+
+    records: Records
+    lines: Transforms
+    diagram: StabilisationDiagram
+    modes: tuple[Local, ...]
+
+    @property
+    def spacing(self) -> float:
+        """Distance of lines in rad/s."""
+        return 2 * np.pi / self.records.duration
+
+
+def identify(
+    setups: Sequence[Records],
+    band: tuple[float, float] | None = None,
+    modes: int | None = None,
+    seeds: Sequence[float] = (),
+) -> Identification:
+    """Return the modes of the structure within a band in Hz, from the records of all setups.
+
+    ``modes`` is their number where it is known; ``seeds`` are frequencies in Hz at which a mode is
+    kept whatever its evidence. Sensors of the same name in several setups are the references.
+    Raises ValueError where the band has too few lines.
+    """
+    low, high = band or default_band(setups)
+    for records in setups:
+        count = int((min(high, records.rate / 2) - low) * records.duration)
+        if count < LEAST_LINES:
+            raise ValueError(f"expected {LEAST_LINES} lines in the band, found {max(count, 0)}")
+    identified = [_of_setup(records, low, high, seeds) for records in setups]
+    local = [_as_identification(each, (low, high)) for each in identified]
+    sensors = tuple(dict.fromkeys(name for records in setups for name in records.sensors))
+    groups = mode_groups(local, sensors)
+    return _combined(_completed(identified, groups), (low, high), sensors, modes)
+
+
+def default_band(setups: Sequence[Records]) -> tuple[float, float]:
+    """Return the frequencies in Hz that all records hold."""
+    low = max(CYCLES / records.duration for records in setups)
+    return low, min(HIGHEST * records.rate / 2 for records in setups)
+
+
+def needed(lines: int, sensors: int) -> float:
+    """Return the gain 2 Delta J that noise makes by one mode in `FALSE` bands of so many lines.
+
+    A mode has as many parameters as sensors, and two for its pole; the poles that lines tell apart
+    are as many as lines.
+    """
+    return float(chi2.isf(FALSE / lines, sensors + 2))
+
+
+def _of_setup(records: Records, low: float, high: float, seeds: Sequence[float]) -> _Setup:
+    lines = spectra.transforms(records, low, high)
+    diagram, modes = _starts(records, low, high)
+    setup = _Setup(records, lines, diagram, ())
+    for f in seeds:
+        half = DAMPING[0] * 2 * np.pi * f
+        if not any(abs(mode.omega - 2 * np.pi * f) < max(mode.half, half) for mode in modes):
+            modes.append(_seeded(lines, 2 * np.pi * f))
+    seeded = {
+        min(range(len(modes)), key=lambda k: abs(modes[k].omega - 2 * np.pi * f)) for f in seeds
+    }
+    modes = [replace(mode, held=k in seeded) for k, mode in enumerate(modes)]
+    least = needed(len(lines.omega), len(records.sensors))
+    for _ in range(2):
+        modes = _fitted(setup, modes, least)
+    return replace(setup, modes=tuple(modes))
+
+
+def _starts(records: Records, low: float, high: float) -> tuple[StabilisationDiagram, list[Local]]:
+    """Return the diagram of half spectra and its clusters within the band as modes."""
+    data, variance = spectra.half_spectra(records, low, high)
+    diagram, clusters = diagram_of(data, variance)
+    clusters = [
+        each
+        for each in clusters
+        if low <= abs(each.pole) / (2 * np.pi) <= high and each.size >= LEAST_ORDERS
+    ]
+    if not clusters:
+        return diagram, []
+    lam = np.array([each.pole for each in clusters])
+    poles = Poles(0, lam, np.array([each.participation for each in clusters]))
+    s: Complexes = np.asarray(2j * np.pi * data.frequency + data.decay)
+    psi = shapes_of(poles, data.H, s, 0) * records.values.std(axis=1)
+    zeta = np.clip(-lam.real / np.abs(lam), *DAMPING)
+    rows = zip(np.abs(lam).tolist(), zeta.tolist(), psi, strict=True)
+    return diagram, [Local(omega, z, real_shape(shape).shape) for omega, z, shape in rows]
+
+
+def _seeded(lines: Transforms, omega: float, phi: Floats | None = None) -> Local:
+    """Return a mode at a frequency, with the shape of what the records hold there.
+
+    ``phi`` has what is known of the shape, NaN elsewhere.
+    """
+    half = max(DAMPING[0] * omega, 2 * (lines.omega[1] - lines.omega[0]))
+    near = np.abs(lines.omega - omega) <= max(half, np.abs(lines.omega - omega).min())
+    power = (lines.F[:, near] @ lines.F[:, near].conj().T).real
+    if phi is None or not np.isfinite(phi).any():
+        shape = np.linalg.eigh(power)[1][:, -1]
+    else:
+        shape = power @ np.nan_to_num(phi)
+    return Local(omega, half / omega, shape / np.linalg.norm(shape))
+
+
+def _fitted(setup: _Setup, modes: Sequence[Local], least: float) -> list[Local]:
+    """Return the modes that data need, each fitted with those that it overlaps."""
+    found = []
+    for group in _overlapping(modes):
+        chosen = [modes[k] for k in group]
+        band = _band_of(setup.lines, chosen)
+        beside = [modes[k] for k in _beside(band, modes, group)]
+        found += _of_group(setup, band, chosen, beside, least)
+    return found
+
+
+def _overlapping(modes: Sequence[Local]) -> list[list[int]]:
+    """Return the numbers of modes that overlap, a list each, by frequency."""
+    out: list[list[int]] = []
+    for k in np.argsort([mode.omega for mode in modes]).tolist():
+        mode = modes[k]
+        near = out and len(out[-1]) < MOST_TOGETHER
+        if near and any(
+            mode.omega - modes[j].omega < OVERLAP * (mode.half + modes[j].half) for j in out[-1]
+        ):
+            out[-1].append(k)
+        else:
+            out.append([k])
+    return out
+
+
+def _band_of(lines: Transforms, modes: Sequence[Local]) -> Band:
+    least = LEAST_LINES / 2 * (lines.omega[1] - lines.omega[0])
+    low = min(mode.omega - max(REACH * mode.half, least) for mode in modes)
+    high = max(mode.omega + max(REACH * mode.half, least) for mode in modes)
+    return lines.part(low, high, BLOCK * min(mode.half for mode in modes))
+
+
+def _beside(band: Band, modes: Sequence[Local], group: Sequence[int]) -> list[int]:
+    """Return the numbers of other modes in a band, and of the next one on either side."""
+    rest = sorted(set(range(len(modes))) - set(group), key=lambda k: modes[k].omega)
+    low, high = band.omega[0], band.omega[-1]
+    below = [k for k in rest if modes[k].omega < low]
+    above = [k for k in rest if modes[k].omega > high]
+    return [*below[-1:], *(k for k in rest if low <= modes[k].omega <= high), *above[:1]]
+
+
+def _of_group(
+    setup: _Setup, band: Band, modes: Sequence[Local], beside: Sequence[Local], least: float
+) -> list[Local]:
+    """Return the modes of a band without those that gain less, the weakest first."""
+    fit = spectral_density.maximise(band, _first(band, [*modes, *beside], len(modes)), TRIAL_STEPS)
+    held, patient = np.array([mode.held for mode in modes]), True
+    while fit.model.free:
+        gain = _gains(band, fit)
+        worth = np.where(held, np.inf, np.where(_astray(band, fit.model, gain), 0.0, gain))
+        if worth.min() >= least:
+            if fit.converged or not patient:
+                break
+            fit, patient = spectral_density.maximise(band, fit.model), False
+            continue
+        pole = fit.model.omega * (1j - fit.model.zeta)
+        gone: list[int] = []
+        for r in worth.argsort()[: int(np.sum(worth < least))].tolist():
+            if (selection.alike(pole[r], pole[gone]) < ALONE).all():
+                gone.append(r)
+        model = fit.model
+        for r in sorted(gone, reverse=True):
+            model = model.without(r)
+        held = np.delete(held, gone)
+        fit = spectral_density.maximise(band, model, TRIAL_STEPS)
+    else:
+        return []
+    model, out = fit.model, []
+    visible = _shares(band, model)
+    for r in range(model.free):
+        mode = Local(
+            float(model.omega[r]),
+            float(model.zeta[r]),
+            model.phi[:, r],
+            float(gain[r]),
+            fit.covariance(r),
+            float(visible[r]),
+            held=bool(held[r]),
+        )
+        out.append(replace(mode, kurtosis=_kurtosis(setup, model, r)))
+    return out
+
+
+def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
+    """Return a model to start from, with the forces that the shapes make of the power."""
+    phi = np.array([mode.phi for mode in modes]).T
+    model = Density(
+        np.array([mode.omega for mode in modes]),
+        np.array([mode.zeta for mode in modes]),
+        phi,
+        np.eye(len(modes), dtype=complex),
+        np.diag(band.floor),
+        free,
+    )
+    h2 = np.abs(model.response(band.omega, band.order)) ** 2
+    inverse = np.linalg.pinv(phi, rcond=0.1)
+    filtered = np.einsum("ri,kij,rj->rk", inverse, band.power, inverse, optimize=True).real
+    level = np.sum(filtered * h2, axis=1) / np.sum(h2**2, axis=1)
+    return replace(model, root=np.diag(np.sqrt(level)).astype(complex))
+
+
+def _gains(band: Band, fit: Fit) -> Floats:
+    """Return 2 Delta J of each mode in the band: of the fit without it, all else may follow."""
+    without = [
+        spectral_density.maximise(band, fit.model.without(r), TRIAL_STEPS).cost
+        for r in range(fit.model.free)
+    ]
+    return 2 * (np.array(without) - fit.cost)
+
+
+def _astray(band: Band, model: Density, gain: Floats) -> Bools:
+    """Return which modes left the band, are as flat as it, or double a stronger one."""
+    omega, zeta = model.omega[: model.free], model.zeta[: model.free]
+    low, high = band.omega[0], band.omega[-1]
+    doubles = selection.doubles(
+        omega * (1j - zeta), model.phi[:, : model.free].T.astype(complex), gain
+    )
+    out: Bools = (omega < low) | (omega > high) | (4 * zeta * omega > high - low) | doubles
+    return out
+
+
+def _shares(band: Band, model: Density) -> Floats:
+    """Return the greatest share of each mode in the density of a sensor, at its frequency."""
+    h = model.response(model.omega, band.order)[:, : model.free]
+    own = model.phi[:, : model.free] ** 2 * model.force.diagonal().real[: model.free]
+    all_modes = np.einsum(
+        "jr,rk,rs,sk,js->jk", model.phi, h, model.force, h.conj(), model.phi, optimize=True
+    ).real
+    out: Floats = (own / (all_modes + np.diag(model.background)[:, None])).max(axis=0)
+    return out
+
+
+def _kurtosis(setup: _Setup, model: Density, mode: int) -> tuple[float, float]:
+    """Return kappa of the modal response, and its standard deviation for a normal one."""
+    half = model.zeta[mode] * model.omega[mode]
+    near = np.abs(setup.lines.omega - model.omega[mode]) <= max(REACH * half, 4 * setup.spacing)
+    response = spectral_density.modal_responses(
+        setup.lines.omega[near], setup.lines.F[:, near], setup.lines.order, model
+    )[mode]
+    a = np.abs(np.fft.ifft(response, 4 * len(response))) ** 2
+    return float(np.mean(a**2) / np.mean(a) ** 2), 2 / float(
+        np.sqrt(half * 4 * np.pi / setup.spacing)
+    )
+
+
+def _as_identification(setup: _Setup, band: tuple[float, float]) -> Identification:
+    """Return the modes of one setup as those of a test."""
+    modes = [
+        _estimate(mode.omega, mode.zeta, _stds(mode), mode.phi, np.zeros(0)) for mode in setup.modes
+    ]
+    functions = _functions([setup], setup.records.sensors)
+    return Identification(
+        setup.records.sensors, band, tuple(modes), (), setup.diagram, functions, 0, converged=True
+    )
+
+
+def _stds(mode: Local) -> tuple[float, float]:
+    """Return the standard deviations of ln omega and ln zeta."""
+    assert mode.covariance is not None
+    return float(np.sqrt(mode.covariance[0, 0])), float(np.sqrt(mode.covariance[1, 1]))
+
+
+def _estimate(
+    omega: float, zeta: float, stds: tuple[float, float], phi: Floats, phi_std: Floats
+) -> ModeEstimate:
+    """Return a mode in physical units from logarithmic deviations of its pole."""
+    shape = real_shape(np.nan_to_num(phi).astype(complex))
+    return ModeEstimate(
+        complex(-zeta * omega, omega * np.sqrt(1 - zeta**2)),
+        omega / (2 * np.pi),
+        zeta,
+        stds[0] * omega / (2 * np.pi),
+        stds[1] * zeta,
+        shape,
+        phi_std,
+        np.zeros(0, complex),
+    )
+
+
+def _completed(
+    setups: Sequence[_Setup], groups: Sequence[dict[int, int]]
+) -> list[tuple[_Setup, list[Local | None]]]:
+    """Return the setups with a mode, or None, for every mode of the structure.
+
+    Where a setup does not have a mode that others have, it is tried there: with the pole known, it
+    needs less.
+    """
+    out = []
+    for k, setup in enumerate(setups):
+        rows: list[Local | None] = [
+            setup.modes[group[k]] if k in group else None for group in groups
+        ]
+        lacking = [r for r, row in enumerate(rows) if row is None]
+        if lacking:
+            tried = [_tried(setup, setups, groups[r]) for r in lacking]
+            known = [row for row in rows if row is not None]
+            least = float(chi2.isf(FALSE, len(setup.records.sensors)))
+            found = _fitted(setup, [*known, *tried], least)
+            for r, start in zip(lacking, tried, strict=True):
+                near = [
+                    m for m in found if abs(m.omega - start.omega) < 2 * max(m.half, start.half)
+                ]
+                near = [
+                    m for m in near if all(abs(m.omega - o.omega) > 1e-3 * m.half for o in known)
+                ]
+                if near:
+                    rows[r] = min(near, key=lambda m: abs(m.omega - start.omega))
+        out.append((setup, rows))
+    return out
+
+
+def _tried(setup: _Setup, setups: Sequence[_Setup], group: dict[int, int]) -> Local:
+    """Return the mode of other setups as a start in this one."""
+    known = [(setups[k], setups[k].modes[number]) for k, number in group.items()]
+    omega = float(np.mean([mode.omega for _, mode in known]))
+    first, mode = known[0]
+    phi = np.full(len(setup.records.sensors), np.nan)
+    for i, name in enumerate(setup.records.sensors):
+        if name in first.records.sensors:
+            phi[i] = mode.phi[first.records.sensors.index(name)]
+    return replace(_seeded(setup.lines, omega, phi), zeta=mode.zeta)
+
+
+def _combined(
+    setups: Sequence[tuple[_Setup, list[Local | None]]],
+    band: tuple[float, float],
+    sensors: tuple[str, ...],
+    count: int | None,
+) -> Identification:
+    """Return the modes of the structure, and what is none."""
+    total = len(setups[0][1])
+    modes, rejected = [], []
+    for r in range(total):
+        having = [(setup, rows[r]) for setup, rows in setups if rows[r] is not None]
+        mode = _of_structure([(s, m) for s, m in having if m is not None], sensors, len(setups))
+        why = _harmonic([(s, m) for s, m in having if m is not None])
+        if why:
+            rejected.append(Rejected(mode.frequency, mode.damping, why))
+        else:
+            modes.append(mode)
+    if count is not None and len(modes) > count:
+        order = sorted(modes, key=lambda mode: -mode.evidence.gain)
+        rejected += [
+            Rejected(mode.frequency, mode.damping, "weaker than the modes asked for")
+            for mode in order[count:]
+        ]
+        modes = order[:count]
+    first = max((setup for setup, _ in setups), key=lambda setup: len(setup.records.sensors))
+    return Identification(
+        sensors,
+        band,
+        tuple(sorted(modes, key=lambda mode: mode.frequency)),
+        tuple(sorted(rejected, key=lambda pole: pole.frequency)),
+        first.diagram,
+        _functions([setup for setup, _ in setups], sensors),
+        0,
+        converged=True,
+    )
+
+
+def _of_structure(
+    having: Sequence[tuple[_Setup, Local]], sensors: Sequence[str], setups: int
+) -> ModeEstimate:
+    """Return one mode from the setups that have it."""
+    logs = np.array([[np.log(mode.omega), np.log(mode.zeta)] for _, mode in having])
+    stds = np.array([_stds(mode) for _, mode in having])
+    means, deviations = np.zeros(2), np.zeros(2)
+    for c in range(2):
+        variance = stds[:, c] ** 2 + between(logs[:, c], stds[:, c]) ** 2
+        means[c] = np.average(logs[:, c], weights=1 / variance)
+        deviations[c] = 1 / np.sqrt(np.sum(1 / variance))
+    places = [np.array([sensors.index(x) for x in setup.records.sensors]) for setup, _ in having]
+    covariances = [mode.covariance[2:, 2:] for _, mode in having if mode.covariance is not None]
+    phi, C = merged_shape(places, [mode.phi for _, mode in having], covariances, len(sensors))
+    omega, zeta = np.exp(means)
+    mode = _estimate(
+        float(omega), float(zeta), (deviations[0], deviations[1]), phi, np.sqrt(np.diag(C))
+    )
+    return replace(mode, evidence=_evidence(having, mode, setups))
+
+
+def _evidence(having: Sequence[tuple[_Setup, Local]], mode: ModeEstimate, setups: int) -> Evidence:
+    gain = max(
+        local.gain / needed(len(setup.lines.omega), len(local.phi)) for setup, local in having
+    )
+    share = max(
+        float(support(setup.diagram, np.array([mode.pole]), np.ones(1))[0]) for setup, _ in having
+    )
+    flags = []
+    if gain < 1:
+        flags.append("kept by hand: noise alone may explain as much")
+    if len(having) < setups:
+        flags.append(f"found in {len(having)} of {setups} setups: sensors of the others are empty")
+    if mode.damping_std > mode.damping / 2:
+        flags.append("damping hardly determined: the record is short")
+    return Evidence(gain, share, max(local.share for _, local in having), tuple(flags))
+
+
+def _harmonic(having: Sequence[tuple[_Setup, Local]]) -> str:
+    """Return why a mode is the harmonic of a machine; empty where it is none."""
+    if any(mode.held for _, mode in having):
+        return ""
+    if all(mode.half < setup.spacing / 2 for setup, mode in having):
+        return "a harmonic: as narrow as the lines of the record"
+    z = np.array([(mode.kurtosis[0] - 2) / mode.kurtosis[1] for _, mode in having])
+    if z.sum() / np.sqrt(len(z)) < norm.ppf(HARMONIC):
+        mean = np.mean([mode.kurtosis[0] for _, mode in having])
+        return (
+            f"a harmonic: its amplitude is steady (kurtosis {mean:.2f}; 2 for a mode, 1 for a sine)"
+        )
+    return ""
+
+
+def _functions(setups: Sequence[_Setup], sensors: tuple[str, ...]) -> FittedFunctions:
+    """Return the spectral densities of all sensors, each from the first setup that has it."""
+    lines = setups[0].lines
+    edges = np.linspace(lines.omega[0], lines.omega[-1], min(LINES_SHOWN, len(lines.omega)) + 1)
+    density = np.full((1, len(sensors), len(edges) - 1), np.nan, complex)
+    for setup in reversed(setups):
+        where = np.clip(np.searchsorted(edges, setup.lines.omega, "right") - 1, 0, len(edges) - 2)
+        count = np.maximum(np.bincount(where, minlength=len(edges) - 1), 1)
+        for name, F in zip(setup.records.sensors, setup.lines.F, strict=True):
+            power = np.bincount(where, np.abs(F) ** 2, len(edges) - 1)
+            density[0, sensors.index(name)] = power / count
+    f = (edges[1:] + edges[:-1]) / (4 * np.pi)
+    data = FrequencyResponses(f, density, "receptance", ("spectral density",), sensors)
+    nothing = np.full(density.shape[:2], np.nan)
+    residuals = Residuals(1.0, np.ones(1, complex), np.zeros(1), nothing)
+    return FittedFunctions(
+        data, np.full(density.shape, np.nan, complex), nothing[..., None], residuals, 0
+    )

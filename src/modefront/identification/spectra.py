@@ -1,0 +1,127 @@
+r"""Spectra of ambient records: transforms for the likelihood, half spectra for poles to start from.
+
+The transforms are scaled so that their mean square is the two-sided spectral density,
+
+.. math:: F(\omega_k) = \frac{1}{\sqrt{N f_s}}\sum_{t=0}^{N-1} y_t\,e^{-\mathrm{i}\omega_k t/f_s} .
+
+For positive lags, correlations of the responses to white noise are free decays,
+
+.. math:: R_{ij}(\tau) = \sum_r \varphi_{ir} g_{jr} e^{\lambda_r \tau} + \text{conjugate},\qquad
+          H_{ji}(\omega) = \sum_{\tau > 0} R_{ij}(\tau)\,e^{-\beta\tau}
+          e^{-\mathrm{i}\omega\tau},
+
+so that their half spectra H have the form of frequency response functions, with the reference
+vector g in place of participation factors (Cauberghe, *Applied frequency-domain system
+identification in the field of experimental and operational modal analysis*, 2004). White noise of
+sensors is at lag 0 alone, which is left out. The exponential window adds :math:`\beta` to all decay
+rates, and is taken off again. References are the principal components of the records.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+import scipy.fft
+import scipy.signal
+
+from modefront._typing import Complexes, Floats
+from modefront.data.records import ORDERS, Records
+from modefront.data.responses import FrequencyResponses
+from modefront.identification.noise import square
+from modefront.identification.spectral_density import Band
+
+REFERENCES = 4
+"""Principal components that half spectra are taken with."""
+
+LAGS = 0.1
+"""Longest lag over the length of the record: longer ones are mostly errors of estimation."""
+
+MOST_LINES = 4096
+"""Lines of half spectra, at most."""
+
+LEFT = 0.05
+"""Exponential window at the longest lag."""
+
+FLOOR = 0.1
+"""Quantile of the power over a band that its background has a priori."""
+
+SMOOTH = 0.02
+"""Share of the lines over which the size of half spectra is averaged for their weights."""
+
+
+@dataclass(frozen=True)
+class Transforms:
+    """Transforms of the records of one setup at the lines of a band.
+
+    Attributes
+    ----------
+    omega : (lines,) rad/s
+    F : (sensors, lines), scaled so that the mean of F F^* is a two-sided spectral density
+    order : differentiations of the displacement in the records
+    """
+
+    omega: Floats
+    F: Complexes
+    order: int
+
+    def part(self, low: float, high: float, width: float) -> Band:
+        """Return a band, low and high in rad/s, of blocks that are at most so wide, in rad/s.
+
+        Over a block, the density is taken for constant: it has to be narrow beside modes.
+        """
+        kept = (self.omega >= low) & (self.omega <= high)
+        omega, F = self.omega[kept], self.F[:, kept]
+        size = max(int(width / (self.omega[1] - self.omega[0])), 1)
+        first = np.arange(0, len(omega), size)
+        count = np.diff(np.append(first, len(omega))).astype(float)
+        products = F.T[:, :, None] * F.T[:, None].conj() if size == 1 else None
+        if products is None:
+            parts = [F[:, k : k + size] for k in first]
+            products = np.array([part @ part.conj().T for part in parts]) / count[:, None, None]
+        middle = np.add.reduceat(omega, first) / count
+        own = np.einsum("kjj->kj", products).real
+        floor = np.maximum(np.quantile(own, FLOOR, axis=0), 1e-9 * own.mean())
+        return Band(middle, count, products, self.order, floor)
+
+
+def transforms(records: Records, low: float, high: float) -> Transforms:
+    """Return the transforms at the lines of a band in Hz."""
+    y = scipy.signal.detrend(records.values, axis=1)
+    samples = y.shape[1]
+    f = scipy.fft.rfftfreq(samples, 1 / records.rate)
+    kept = (f >= low) & (f <= high) & (f > 0)
+    F = scipy.fft.rfft(y, axis=1)[:, kept] / np.sqrt(samples * records.rate)
+    return Transforms(2 * np.pi * f[kept], F, ORDERS[records.quantity])
+
+
+def half_spectra(records: Records, low: float, high: float) -> tuple[FrequencyResponses, Floats]:
+    """Return half spectra within a band in Hz, and their variance up to a factor, (1, 1, lines)."""
+    y = scipy.signal.detrend(records.values, axis=1)
+    y = y / np.maximum(y.std(axis=1, keepdims=True), np.finfo(float).tiny)
+    samples = y.shape[1]
+    lags = int(min(LAGS * samples, MOST_LINES * records.rate / (high - low)))
+    size = scipy.fft.next_fast_len(samples + lags, real=True)
+    Y = scipy.fft.rfft(y, size, axis=1)
+    f = scipy.fft.rfftfreq(size, 1 / records.rate)
+    inside = (f >= low) & (f <= high)
+    cross = (Y[:, inside] @ Y[:, inside].conj().T).real
+    U = np.linalg.eigh(cross)[1][:, ::-1][:, :REFERENCES]
+    decay = -np.log(LEFT) * records.rate / lags
+    window = np.exp(-decay * np.arange(lags) / records.rate)
+    window[0] = 0.0
+    parts = []
+    for reference in U.T @ Y:
+        R = scipy.fft.irfft(Y * reference.conj(), size, axis=1)[:, :lags] / samples
+        parts.append(scipy.fft.rfft(R * window, axis=1))
+    lines = scipy.fft.rfftfreq(lags, 1 / records.rate)
+    kept = (lines >= low) & (lines <= high)
+    H: Complexes = np.array(parts)[..., kept]
+    names = tuple(f"principal {j + 1}" for j in range(len(H)))
+    data = FrequencyResponses(
+        lines[kept], H, "receptance", names, records.sensors, decay=float(decay)
+    )
+    power = square(H).mean(axis=(0, 1))
+    width = max(int(SMOOTH * len(power)), 1)
+    smooth = np.convolve(np.pad(power, width, mode="edge"), np.ones(2 * width + 1), "valid")
+    return data, np.asarray(smooth / (2 * width + 1))[None, None]

@@ -1,0 +1,419 @@
+r"""The likelihood of the Fourier transforms of ambient records, in a band with a few modes.
+
+The transforms :math:`F_k` of the records of all sensors at the lines :math:`\omega_k` are circular
+complex normal and independent, with the spectral density matrix
+
+.. math:: E_k = \Phi N_k \Phi^T + B,\qquad N_k = h_k S h_k^*,\qquad
+          h_{rk} = \frac{2\zeta_r x^q}{1 - x^2 + 2\mathrm{i}\zeta_r x},\quad x = \omega_k/\omega_r:
+
+S is the spectral density of the modal forces, and B that of noise and of all that is flat over the
+band, modes far away among it; h is 1 in size at resonance. Of the modes that the model has, the
+first ones are in the band; the others lie beside it, and only their forces are parameters. With
+:math:`P = \Phi^T B^{-1}\Phi`, all of it needs matrices of the size of the modes only,
+
+.. math:: Y = (I + N P)^{-1},\quad D = Y N,\quad E^{-1} = B^{-1} - \hat\Phi D \hat\Phi^T,\quad
+          \hat\Phi = B^{-1}\Phi,\quad E^{-1}\Phi = \hat\Phi Y,\quad
+          \ln\det E = \ln\det B + \ln\det(I + N P) .
+
+The cost :math:`J = \sum_k \ln\det E_k + F_k^* E_k^{-1} F_k` has the gradient
+:math:`\sum_k \operatorname{tr} E^{-1}\partial E\,(I - E^{-1}FF^*)`, and the expected second
+derivatives :math:`\sum_k \operatorname{tr} E^{-1}\partial_a E\,E^{-1}\partial_b E`, of which steps
+(scoring) and covariances are made. B follows by expectation and maximisation: given the data, the
+modal responses have the mean :math:`D\hat\Phi^T F` and the covariance D, and B becomes the mean of
+:math:`(F - \Phi w)(F - \Phi w)^*`; errors of B reach the other parameters to second order only.
+
+==============  ========================================================================
+symbol          meaning
+==============  ========================================================================
+Phi             (sensors, modes) real shapes of unit norm
+S = L L^*       (modes, modes) spectral density of the modal forces, L lower triangular
+B               (sensors, sensors) real; a priori diagonal, with the weight of `PRIOR` lines
+C               :math:`\Phi^T E^{-1}\Phi = P Y`
+Q               :math:`N C N = N - D`
+q               differentiations of the displacement in the records
+==============  ========================================================================
+
+Sources: Au, Fast Bayesian FFT method for ambient modal identification with separated modes, J. Eng.
+Mech. 137 (2011) 214-226, doi:10.1061/(ASCE)EM.1943-7889.0000213; Au, Fast Bayesian ambient modal
+identification in the frequency domain, part I: posterior most probable value, Mech. Syst. Signal
+Process. 26 (2012) 60-75, doi:10.1016/j.ymssp.2011.06.017 (close modes); Li & Au, An
+expectation-maximization algorithm for Bayesian operational modal analysis with multiple (possibly
+close) modes, Mech. Syst. Signal Process. 132 (2019) 490-511, doi:10.1016/j.ymssp.2019.06.036.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+import scipy.linalg as la
+
+from modefront._typing import Complexes, Floats
+
+PRIOR = 5.0
+"""Lines that the prior of the background weighs, beyond the number of sensors."""
+
+TOLERANCE = 1e-2
+"""Change of the cost below which a maximum is reached: a half is one standard deviation."""
+
+MOST_PRODUCTS = 20
+"""Products with the second derivatives by the background, in one step."""
+
+MOST_STEPS = 60
+"""Steps to a maximum, at most."""
+
+LONGEST = 1.0
+"""Change of ln zeta, and of ln omega in half bandwidths, in one step, at most."""
+
+LEAST_DAMPING, GREATEST_DAMPING = 1e-7, 0.5
+"""Limits of damping ratios in a search."""
+
+TINY = 1e-100
+
+
+@dataclass(frozen=True)
+class Band:
+    """Periodograms of the records of one setup, means over blocks of neighbouring lines.
+
+    Attributes
+    ----------
+    omega : (blocks,) rad/s, of the middle
+    count : (blocks,) number of lines
+    power : (blocks, sensors, sensors) mean of F F^*, a two-sided spectral density
+    order : differentiations of the displacement in the records
+    floor : (sensors,) variances of the background a priori
+    """
+
+    omega: Floats
+    count: Floats
+    power: Complexes
+    order: int
+    floor: Floats
+
+
+@dataclass(frozen=True)
+class Density:
+    """A model of the spectral density in a band.
+
+    Attributes
+    ----------
+    omega, zeta : (modes,) natural frequencies in rad/s and damping ratios
+    phi : (sensors, modes) shapes of unit norm
+    root : (modes, modes) L
+    background : (sensors, sensors) B
+    free : number of the modes that are in the band, the first ones
+    """
+
+    omega: Floats
+    zeta: Floats
+    phi: Floats
+    root: Complexes
+    background: Floats
+    free: int
+
+    @property
+    def force(self) -> Complexes:
+        """S, (modes, modes)."""
+        out: Complexes = self.root @ self.root.conj().T
+        return out
+
+    def response(self, omega: Floats, order: int) -> Complexes:
+        """Return h at circular frequencies, (modes, lines)."""
+        x = omega / self.omega[:, None]
+        zeta = self.zeta[:, None]
+        inner: Complexes = 1 - x**2 + 2j * zeta * x
+        return 2 * zeta * x**order / inner
+
+    def without(self, mode: int) -> Density:
+        """Return the model without one of its modes."""
+        kept = np.delete(np.arange(len(self.omega)), mode)
+        return replace(
+            self,
+            omega=self.omega[kept],
+            zeta=self.zeta[kept],
+            phi=self.phi[:, kept],
+            root=root_of(self.force[np.ix_(kept, kept)]),
+            free=self.free - (mode < self.free),
+        )
+
+
+def root_of(S: Complexes) -> Complexes:
+    """Return L of a Hermitian matrix that may be singular."""
+    if not len(S):
+        return S
+    scale: Floats = np.sqrt(np.maximum(S.diagonal().real, TINY))
+    unit = S / np.outer(scale, scale) + 1e-9 * np.eye(len(S))
+    out: Complexes = scale[:, None] * la.cholesky(unit, lower=True)
+    return out
+
+
+@dataclass(frozen=True)
+class Fit:
+    """A model beside the data: the cost and its derivatives by the parameters.
+
+    The parameters are the shapes (mode by mode), ln omega and ln zeta of the free modes, and the
+    real and imaginary part of L (row by row, the lower triangle).
+    """
+
+    model: Density
+    cost: float
+    gradient: Floats
+    information: Floats
+    converged: bool = False
+
+    @property
+    def scaled(self) -> tuple[Floats, Floats]:
+        """The information over its diagonal, and the scale; norms of shapes are held."""
+        n, A = len(self.model.phi), self.information.copy()
+        for r in range(self.model.free):
+            rows = slice(r * n, (r + 1) * n)
+            phi = self.model.phi[:, r]
+            A[rows, rows] += np.outer(phi, phi) * max(np.trace(A[rows, rows]), 1.0)
+        diagonal = A.diagonal()
+        scale = 1 / np.sqrt(np.where(diagonal > TINY, diagonal, 1.0))
+        return A * np.outer(scale, scale), scale
+
+    def covariance(self, mode: int) -> Floats:
+        """Return the covariance of ln omega, ln zeta and the shape of a free mode."""
+        n, m = len(self.model.phi), self.model.free
+        rows = [m * n + mode, m * n + m + mode, *range(mode * n, (mode + 1) * n)]
+        A, scale = self.scaled
+        value, vector = la.eigh(A)
+        half = (scale[:, None] * vector)[rows] / np.sqrt(np.maximum(value, 1e-13))
+        out: Floats = half @ half.T
+        return out
+
+
+@dataclass(frozen=True)
+class _Matrices:
+    """The matrices of the module's text in all blocks, (blocks, modes, modes), and the cost.
+
+    ``seen`` is hat^T F F^* of the data, (blocks, modes, sensors).
+    """
+
+    h: Complexes
+    hat: Floats
+    N: Complexes
+    Y: Complexes
+    D: Complexes
+    C: Complexes
+    seen: Complexes
+    cost: float
+
+
+def _matrices(band: Band, model: Density) -> _Matrices:
+    n, B = len(model.phi), model.background
+    h = model.response(band.omega, band.order).T
+    inverse = la.inv(B)
+    hat = inverse @ model.phi
+    P = model.phi.T @ hat
+    N = h[:, :, None] * model.force * h[:, None, :].conj()
+    A = np.eye(len(P)) + N @ P
+    Y = np.linalg.inv(A)
+    D = Y @ N
+    seen = hat.T @ band.power
+    explained = np.einsum("krs,ksr->k", D, seen @ hat).real
+    own = band.power.reshape(-1, n * n).real @ inverse.ravel()
+    logarithm = float(np.linalg.slogdet(B)[1])
+    value = np.linalg.slogdet(A)[1] + logarithm + own - explained
+    prior = (PRIOR + n) * (logarithm + float(inverse.diagonal() @ band.floor))
+    return _Matrices(h, hat, N, Y, D, P @ Y, seen, float(band.count @ value) + prior)
+
+
+def evaluate(band: Band, model: Density) -> Fit:
+    """Return the cost of a model with its gradient and the expected second derivatives."""
+    x, c, m = _matrices(band, model), band.count, model.free
+    d, J = _changes(band, model), _root_changes(model.root)
+    weighted = c[:, None, None] * x.D
+    A = x.seen @ x.hat
+    W = c[:, None, None] * (x.C - x.Y.conj().swapaxes(1, 2) @ A @ x.Y)
+    total, again = weighted.sum(axis=0), (weighted @ A @ x.D).sum(axis=0)
+    measured = la.solve(model.background, np.tensordot(weighted, x.seen, ((0, 2), (0, 1))).T).T
+    shapes = 2 * ((total + again) @ x.hat.T - measured).real
+    NW = np.einsum("krs,ksr->kr", x.N, W)[:, :m]
+    poles = 2 * np.sum(d * np.hstack([NW, NW]), axis=0).real
+    forces = np.einsum("aij,kji,ki,kj->a", J, W, x.h, x.h.conj(), optimize=True).real
+    gradient = np.concatenate([shapes[:m].ravel(), poles, forces])
+    return Fit(model, x.cost, gradient, _information(model, x, c, d, J))
+
+
+def modal_responses(omega: Floats, F: Complexes, order: int, model: Density) -> Complexes:
+    """Return the expected modal responses at all lines, (modes, lines), given transforms F."""
+    h = model.response(omega, order).T
+    hat = la.solve(model.background, model.phi, assume_a="pos")
+    N = h[:, :, None] * model.force * h[:, None, :].conj()
+    D = np.linalg.solve(np.eye(len(h.T)) + N @ (model.phi.T @ hat), N)
+    out: Complexes = np.einsum("krs,sk->rk", D, hat.T @ F)
+    return out
+
+
+def _changes(band: Band, model: Density) -> Complexes:
+    """Return the changes of ln h by ln omega and by ln zeta of free modes, (blocks, 2 free)."""
+    zeta, x = model.zeta[: model.free], band.omega[:, None] / model.omega[: model.free]
+    inner = 1 - x**2 + 2j * zeta * x
+    return np.hstack([-band.order - (2 * x**2 - 2j * zeta * x) / inner, (1 - x**2) / inner])
+
+
+def _entries(M: int) -> list[tuple[int, int, complex]]:
+    """Return row, column and unit of the parameters of L."""
+    lower = [(i, j) for i in range(M) for j in range(i + 1)]
+    return [(i, j, unit) for i, j in lower for unit in ((1, 1j) if j < i else (1,))]
+
+
+def _root_changes(L: Complexes) -> Complexes:
+    """Return the derivatives of S by the parameters of L, (parameters, modes, modes)."""
+    out = np.zeros((len(L) ** 2, *L.shape), complex)
+    for a, (i, j, unit) in enumerate(_entries(len(L))):
+        out[a, i] = unit * L[:, j].conj()
+    return out + out.conj().swapaxes(1, 2)
+
+
+def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Complexes) -> Floats:
+    """Return the expected second derivatives, tr E^-1 dE E^-1 dE over the lines.
+
+    With a = Phi N, shapes change E by e_j a_r^* and its adjoint, poles by d phi_r a_r^* and its
+    adjoint, forces by Phi h J h^* Phi^T. Letters below: shapes, poles, forces.
+    """
+    n, M, m = len(model.phi), len(model.omega), model.free
+    mode = np.tile(np.arange(m), 2)
+    hat, h, D, C, Q, NC = x.hat, x.h, x.D, x.C, x.N - x.D, x.N @ x.C
+    adjoint = x.Y.conj().swapaxes(1, 2)
+
+    def gram(a: Complexes, b: Complexes) -> Complexes:
+        left = (a * c[:, None, None]).reshape(len(c), -1)
+        out: Complexes = left.T @ b.reshape(len(c), -1)
+        return out.reshape(*a.shape[1:], *b.shape[1:])
+
+    # (a_r^* E^-1)_l (a_s^* E^-1)_j + Q_rs (E^-1)_lj
+    SS = np.einsum("rtsu,lt,ju->rjsl", gram(D[:, :m], D[:, :m]), hat, hat, optimize=True)
+    SS -= np.einsum("rstu,lt,ju->rjsl", gram(Q[:, :m, :m], D), hat, hat, optimize=True)
+    total = np.tensordot(c, Q, 1)[:m, :m]
+    SS += np.einsum("rs,jl->rjsl", total, la.inv(model.background))
+    SP = np.einsum("k,krp,kp,kpt->rtp", c, NC[:, :m][..., mode], d, D[:, mode], optimize=True)
+    SP += np.einsum(
+        "k,krp,kp,kpt->rtp", c, Q[:, :m][..., mode], d.conj(), adjoint[:, mode], optimize=True
+    )
+    hY, NCh = h.conj()[:, :, None] * adjoint, NC * h[:, None]
+    SF = np.einsum("rijt,aij->rta", gram(NCh[:, :m], hY), J, optimize=True)
+    SP, SF = (np.einsum("rta,jt->rja", y, hat) for y in (SP, SF))
+    T = NC[:, mode][:, :, mode] * d[:, None, :]
+    CP = C[:, mode][:, :, mode] * d[:, None, :] * d.conj()[:, :, None]
+    PP = np.einsum("k,kab,kba->ab", c, T, T, optimize=True)
+    PP += np.einsum("k,kab,kba->ab", c, Q[:, mode][:, :, mode], CP, optimize=True)
+    hC = h.conj()[:, :, None] * C[:, :, mode] * d[:, None, :]
+    PF = np.einsum("k,kpi,kjp,aij->pa", c, NCh[:, mode], hC, J, optimize=True)
+    Ch = h.conj()[:, :, None] * C * h[:, None]
+    FF = np.einsum("ijkl,ajk,bli->ab", gram(Ch, Ch), J, J, optimize=True)
+    SS, SP, SF = (y.reshape(m * n, size) for y, size in ((SS, m * n), (SP, 2 * m), (SF, M**2)))
+    out: Floats = np.block(
+        [[2 * SS, 2 * SP, 2 * SF], [2 * SP.T, 2 * PP, 2 * PF], [2 * SF.T, 2 * PF.T, FF]]
+    ).real
+    return out
+
+
+def _expected(band: Band, model: Density, x: _Matrices) -> Floats:
+    """Return the background that is most likely if the modal responses are as the model says."""
+    c, weight = band.count, PRIOR + len(model.phi)
+    weighted = c[:, None, None] * x.D
+    again = (weighted @ (x.seen @ x.hat) @ x.D).sum(axis=0) + weighted.sum(axis=0)
+    both = model.phi @ np.tensordot(weighted, x.seen, ((0, 2), (0, 1)))
+    R = np.tensordot(c, band.power, 1) - both - both.conj().T + model.phi @ again @ model.phi.T
+    B = R.real + weight * np.diag(band.floor)
+    out: Floats = (B + B.T) / (2 * (c.sum() + weight))
+    return out
+
+
+def _background(band: Band, model: Density, x: _Matrices) -> Floats:
+    r"""Return the background after a step of scoring of its own.
+
+    With B = R R^T and changes R Z R^T, the second derivatives are :math:`\sum_k (I - V D V^T) Z
+    (I - V D V^T)`, V = R^-1 Phi, and the gradient is the step of expectation and maximisation
+    times the number of lines. They are solved by conjugate gradients.
+    """
+    c, n = band.count, len(model.phi)
+    weight = c.sum() + PRIOR + n
+    after = _expected(band, model, x)
+    R = la.cholesky(model.background, lower=True)
+    V = la.solve_triangular(R, model.phi, lower=True)
+    inner = la.solve_triangular(R, after - model.background, lower=True)
+    right = weight * la.solve_triangular(R, inner.T, lower=True)
+    single = V @ np.tensordot(c, x.D.real, 1) @ V.T
+    flat = x.D.reshape(len(c), -1)
+    M = V.shape[1]
+    double = ((c[:, None] * flat).T @ flat).real.reshape(M, M, M, M)
+
+    def product(Z: Floats) -> Floats:
+        middle = np.einsum("rtus,tu->rs", double, V.T @ Z @ V)
+        out: Floats = weight * Z - single @ Z - Z @ single + V @ middle @ V.T
+        return out
+
+    Z, r = np.zeros((n, n)), right
+    p, size = r, float(np.vdot(r, r))
+    least = 1e-4 * size
+    for _ in range(MOST_PRODUCTS):
+        if size <= least:
+            break
+        Ap = product(p)
+        alpha = size / float(np.vdot(p, Ap))
+        Z, r = Z + alpha * p, r - alpha * Ap
+        size, before = float(np.vdot(r, r)), size
+        p = r + size / before * p
+    Z = (Z + Z.T) / 2
+    if la.eigvalsh(Z)[0] < -0.9:
+        return after
+    out: Floats = R @ (np.eye(n) + Z) @ R.T
+    return out
+
+
+def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
+    """Return the model of the greatest likelihood near a given one, by scoring.
+
+    Scoring is Newton's method with the expected second derivatives; where a step would increase the
+    cost, it is damped as Levenberg and Marquardt do. The background follows every step.
+    """
+    fit, damping = evaluate(band, _normalised(model)), 1e-3
+    for _ in range(most):
+        trial = _moved(fit.model, _step(fit, damping))
+        x = _matrices(band, trial)
+        if not x.cost < fit.cost + TOLERANCE:
+            damping = max(8 * damping, 1e-3)
+            if damping > 1e8:
+                break
+            continue
+        before = fit.cost
+        fit = evaluate(band, replace(trial, background=_background(band, trial, x)))
+        if not fit.cost < x.cost + TOLERANCE:
+            fit = evaluate(band, replace(trial, background=_expected(band, trial, x)))
+        damping = damping / 8
+        if abs(before - fit.cost) < TOLERANCE and damping < 1e-2:
+            return replace(fit, converged=True)
+    return fit
+
+
+def _step(fit: Fit, damping: float) -> Floats:
+    A, scale = fit.scaled
+    A = A + (damping + 1e-10) * np.eye(len(A))
+    out: Floats = -scale * la.solve(A, scale * fit.gradient, assume_a="pos")
+    return out
+
+
+def _moved(model: Density, step: Floats) -> Density:
+    """Return the model after a step, which is limited in frequency and damping."""
+    n, m = len(model.phi), model.free
+    shapes, omega, zeta, root = np.split(step, np.cumsum([m * n, m, m]))
+    phi, L = model.phi.copy(), model.root.copy()
+    phi[:, :m] += shapes.reshape(m, n).T
+    for change, (i, j, unit) in zip(root, _entries(len(L)), strict=True):
+        L[i, j] += unit * change
+    new_omega, new_zeta = model.omega.copy(), model.zeta.copy()
+    reach = LONGEST * np.maximum(model.zeta[:m], 1e-4)
+    new_omega[:m] *= np.exp(np.clip(omega, -reach, reach))
+    new_zeta[:m] *= np.exp(np.clip(zeta, -LONGEST, LONGEST))
+    new_zeta = np.clip(new_zeta, LEAST_DAMPING, GREATEST_DAMPING)
+    return _normalised(replace(model, omega=new_omega, zeta=new_zeta, phi=phi, root=L))
+
+
+def _normalised(model: Density) -> Density:
+    """Return the same model with shapes of unit norm."""
+    norm = np.linalg.norm(model.phi, axis=0)
+    return replace(model, phi=model.phi / norm, root=model.root * norm[:, None])

@@ -1,0 +1,181 @@
+"""Ambient tests: the likelihood and its derivatives, shapes of setups, modes and harmonics."""
+
+from dataclasses import replace
+
+import numpy as np
+import pytest
+import scipy.signal as signal
+
+from modefront._typing import Complexes, Floats
+from modefront.data.records import Records
+from modefront.identification import spectral_density
+from modefront.identification.methods.ambient import identify
+from modefront.identification.setups import merged_shape
+from modefront.identification.spectral_density import Band, Density
+
+SENSORS, LINES = 4, 30
+
+
+def _model(rng: np.random.Generator) -> Density:
+    phi = rng.standard_normal((SENSORS, 3))
+    root = np.tril(_circular(rng, 3, 3)) + 2 * np.eye(3)
+    half = rng.standard_normal((SENSORS, SENSORS))
+    background = half @ half.T / 50 + 0.02 * np.eye(SENSORS)
+    poles = np.array([10.0, 10.3, 12.0]), np.array([0.01, 0.02, 0.015])
+    return Density(*poles, phi / np.linalg.norm(phi, axis=0), root, background, 2)
+
+
+def _circular(rng: np.random.Generator, *shape: int) -> Complexes:
+    out: Complexes = rng.standard_normal(shape) + 1j * rng.standard_normal(shape)
+    return out
+
+
+def _band(rng: np.random.Generator) -> Band:
+    F = _circular(rng, LINES, 2, SENSORS)
+    power = np.einsum("kbi,kbj->kij", F, F.conj()) / 2
+    return Band(np.linspace(9, 11, LINES), np.full(LINES, 2.0), power, 2, np.full(SENSORS, 0.1))
+
+
+def _density(band: Band, model: Density) -> Complexes:
+    """Return E at all lines as its definition has it."""
+    h = model.response(band.omega, band.order)
+    a = np.einsum("jr,rk->kjr", model.phi, h)
+    out: Complexes = a @ model.force @ a.conj().swapaxes(1, 2) + model.background
+    return out
+
+
+def _moved(model: Density, parameter: int, step: float) -> Density:
+    change = np.zeros(2 * SENSORS + 4 + 9)
+    change[parameter] = step
+    shapes, omega, zeta, root = np.split(change, [2 * SENSORS, 2 * SENSORS + 2, 2 * SENSORS + 4])
+    phi, L = model.phi.copy(), model.root.copy()
+    phi[:, :2] += shapes.reshape(2, SENSORS).T
+    lower = [(0, 0, 1), (1, 0, 1), (1, 0, 1j), (1, 1, 1), (2, 0, 1), (2, 0, 1j)]
+    lower += [(2, 1, 1), (2, 1, 1j), (2, 2, 1)]
+    for value, (i, j, unit) in zip(root, lower, strict=True):
+        L[i, j] += unit * value
+    new_omega = model.omega * np.exp(np.append(omega, 0))
+    new_zeta = model.zeta * np.exp(np.append(zeta, 0))
+    return replace(model, omega=new_omega, zeta=new_zeta, phi=phi, root=L)
+
+
+def test_cost_and_derivatives_are_those_of_the_whole_density() -> None:
+    rng = np.random.default_rng(0)
+    model, band = _model(rng), _band(rng)
+    fit = spectral_density.evaluate(band, model)
+
+    def cost(model: Density) -> float:
+        E, B = _density(band, model), model.background
+        single = np.linalg.slogdet(E)[1] + np.einsum("kii->k", np.linalg.solve(E, band.power)).real
+        prior = np.linalg.slogdet(B)[1] + np.linalg.inv(B).diagonal() @ band.floor
+        return float(band.count @ single + (spectral_density.PRIOR + SENSORS) * prior)
+
+    count, step = len(fit.gradient), 1e-6
+    pairs = [(_moved(model, k, step), _moved(model, k, -step)) for k in range(count)]
+    assert fit.cost == pytest.approx(cost(model), rel=1e-12)
+    slopes = [(cost(a) - cost(b)) / (2 * step) for a, b in pairs]
+    np.testing.assert_allclose(fit.gradient, slopes, atol=1e-7 * np.abs(slopes).max())
+    inverse = np.linalg.inv(_density(band, model))
+    dE = [inverse @ (_density(band, a) - _density(band, b)) / (2 * step) for a, b in pairs]
+    expected = [[np.einsum("k,kij,kji", band.count, a, b).real for b in dE] for a in dE]
+    np.testing.assert_allclose(fit.information, expected, atol=1e-7 * np.abs(expected).max())
+
+
+def test_every_fit_ends_at_a_minimum_of_shapes_poles_forces_and_background() -> None:
+    rng = np.random.default_rng(1)
+    model = replace(_model(rng), omega=np.array([9.6, 10.4, 12.0]))
+    band = _band(rng)
+    E = _density(band, model)
+    F = np.einsum("kij,kbj->kbi", np.linalg.cholesky(E), _circular(rng, LINES, 40, SENSORS))
+    power = np.einsum("kbi,kbj->kij", F, F.conj()) / 80
+    band = replace(band, power=power, count=np.full(LINES, 40.0))
+    fit = spectral_density.maximise(band, model)
+    assert fit.converged
+    A, scale = fit.scaled
+    left = scale * fit.gradient
+    assert left @ np.linalg.solve(A, left) < 0.1
+    for change in (0.99, 1.01):
+        other = replace(fit.model, background=change * fit.model.background)
+        assert spectral_density.evaluate(band, other).cost > fit.cost - 0.01
+
+
+def test_shapes_of_setups_meet_at_shared_sensors() -> None:
+    rng = np.random.default_rng(2)
+    phi = rng.standard_normal(7)
+    phi /= np.linalg.norm(phi)
+    places = [np.array([0, 1, 2, 3]), np.array([4, 0, 1]), np.array([1, 5])]
+    std, errors = 0.01, []
+    for _ in range(300):
+        shapes, covariances = [], []
+        for i in places:
+            u = phi[i] / np.linalg.norm(phi[i])
+            u = u + std * rng.standard_normal(len(i))
+            u *= rng.choice([-1, 1]) / np.linalg.norm(u)
+            shapes.append(u)
+            covariances.append(std**2 * (np.eye(len(i)) - np.outer(u, u)))
+        merged, C = merged_shape(places, shapes, covariances, 7)
+        assert np.isnan(merged[6])
+        true = phi[:6] / np.linalg.norm(phi[:6])
+        sign = np.sign(merged[:6] @ true)
+        errors.append((sign * merged[:6] - true) / np.sqrt(np.diag(C)[:6]))
+    assert np.std(errors, axis=0) == pytest.approx(np.ones(6), abs=0.2)
+
+
+F0, ZETA, RATE = np.array([2.0, 2.05, 5.0]), np.array([0.01, 0.008, 0.012]), 16.0
+
+
+def _records(
+    rng: np.random.Generator, minutes: float, machine: float = 0.0
+) -> tuple[Floats, Floats]:
+    """Return shapes (modes, 5) and records of five sensors, forces linear between samples."""
+    phi = np.linalg.qr(rng.standard_normal((5, 5)))[0][:3]
+    count, fine = int(60 * minutes * RATE), 4
+    force = rng.standard_normal((5, (count + 500) * fine))
+    force[0] += machine * np.sin(2 * np.pi * 3.4 * np.arange(force.shape[1]) / (fine * RATE))
+    q = []
+    for f, zeta, p in zip(F0, ZETA, phi @ force, strict=True):
+        omega = 2 * np.pi * f
+        system = [1.0, 0.0, 0.0], [1.0, 2 * zeta * omega, omega**2]
+        b, a, _ = signal.cont2discrete(system, 1 / (fine * RATE), "foh")
+        q.append(signal.lfilter(b[0], a, p))
+    y = signal.decimate(phi.T @ np.array(q), fine, ftype="fir")[:, 500:]
+    return phi, y + 0.02 * y.std() * rng.standard_normal(y.shape)
+
+
+def test_close_modes_are_found_and_a_machine_is_none() -> None:
+    phi, y = _records(np.random.default_rng(3), 15, machine=1.0)
+    result = identify([Records("all", tuple("abcde"), RATE, y)], (1, 7))
+    assert [mode.frequency for mode in result.modes] == pytest.approx(F0, rel=0.005)
+    for mode, shape, f, zeta in zip(result.modes, phi, F0, ZETA, strict=True):
+        assert (mode.shape.shape @ shape) ** 2 > 0.98
+        assert abs(mode.frequency - f) < 4 * mode.frequency_std
+        assert abs(mode.damping - zeta) < 4 * mode.damping_std
+    assert [pole.frequency for pole in result.rejected] == pytest.approx([3.4], abs=0.002)
+    assert "harmonic" in result.rejected[0].reason
+
+
+def test_setups_make_one_set_of_shapes_at_all_sensors() -> None:
+    rng = np.random.default_rng(4)
+    _, first = _records(rng, 10)
+    rng = np.random.default_rng(4)
+    phi, second = _records(rng, 12)
+    setups = [
+        Records("1", ("a", "b", "c"), RATE, first[:3]),
+        Records("2", ("c", "d", "a", "e"), RATE, -second[[2, 3, 0, 4]]),
+    ]
+    result = identify(setups, (1, 7))
+    assert result.responses == tuple("abcde")
+    for mode, shape in zip(result.modes, phi, strict=True):
+        assert (mode.shape.shape @ shape) ** 2 > 0.97
+        assert (mode.shape_std > 0).all()
+
+
+def test_noise_alone_has_no_modes() -> None:
+    rng = np.random.default_rng(5)
+    records = Records("noise", ("a", "b", "c"), 10.0, rng.standard_normal((3, 4000)))
+    assert identify([records]).modes == ()
+
+
+def test_a_record_that_is_too_short_is_an_error() -> None:
+    with pytest.raises(ValueError, match="expected 40 lines in the band, found 18"):
+        identify([Records("short", ("a",), 10.0, np.ones((1, 90)))], (1, 3))
