@@ -3,6 +3,7 @@
 import numpy as np
 import pytest
 
+import modefront as mf
 from modefront._typing import Floats
 from modefront.optim.problem import Evaluation, ObjectiveDerivatives, Problem, Residual
 from modefront.predictions.ranges import extreme
@@ -97,3 +98,27 @@ def test_where_a_model_has_no_value_it_is_left_out() -> None:
     least, greatest = along(Ratios(), q, np.array([[1.0, 1.0, 1.0], [1.9, 1.9, 1.9]]))
     assert least == pytest.approx(0.5, rel=1e-6)
     assert greatest == pytest.approx(1.5, rel=1e-2)
+
+
+def test_results_have_the_range_over_stiffness_and_mass_scaled_together() -> None:
+    """The receptance falls as 1 / t when all stiffnesses and masses are scaled by t."""
+    names = ("k", "m")
+    model = mf.chain(
+        names,
+        [20.0, 20.0],
+        [8e4, 8e4],
+        stiffness_parameters=["k", "k"],
+        mass_parameters=["m", "m"],
+    )
+    data = mf.modal_data(np.array([6.4, 16.0]), np.array([[0.6, 1.0], [1.0, -0.7]]), model.sensors)
+    groups = [mf.Group("first", frequency=[1]), mf.Group("second", frequency=[2])]
+    parameters = [mf.Parameter(name, nominal=1.0, bounds=(0.5, 2.0)) for name in names]
+    problem = mf.updating_problem(model, data, groups, parameters=parameters)
+    peak = mf.PeakResponse("peak", response=[model.sensors[0]], force="floor2", damping=0.02)
+    results = mf.solve(problem, points=3, predictions=[peak], search=mf.Search(doubt=0.5))
+    optimal = results["pareto"].values
+    theta, value = results["theta"].values[optimal], results["frf_peak"].values[optimal, 0]
+    least, greatest, spread = results["frf_peak_range"].values[:, 0]
+    assert least == pytest.approx((value / (2.0 / theta.max(axis=1))).min(), rel=1e-4)
+    assert greatest == pytest.approx((value / (0.5 / theta.min(axis=1))).max(), rel=1e-4)
+    assert spread > 3

@@ -186,7 +186,10 @@ def extreme(
             continue
         size = abs(value) if value else 1.0
         start = np.clip(theta + shift, problem.lower, problem.upper)
-        found = Equivalent(problem, here, slack, step).extreme(q, size, sign, start)
+        each = Equivalent(problem, here, slack, step)
+        found = each.extreme(q, size, sign, start)
+        if found is None and shift.any():
+            found = each.extreme(q, size, sign, theta)
         shift = np.zeros(theta.size) if found is None else found.theta - theta
         ends = [value] if found is None else [value, float(found.J[-1]) * size]
         best = sign * float(np.nanmin([sign * best, *(sign * x for x in ends)]))

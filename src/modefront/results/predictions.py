@@ -10,10 +10,11 @@ import xarray as xr
 
 from modefront._typing import Bools, Floats
 from modefront.front.point import preferred
+from modefront.optim.lexicographic import RANK
 from modefront.predictions import Prediction, PredictionKind
 from modefront.predictions.registry import ATTRIBUTE, as_text
 from modefront.predictions.runner import PredictionRunner
-from modefront.results.analysis import Values
+from modefront.results.analysis import ALL, Values
 from modefront.results.schema import described
 
 RANGE = ("minimum", "maximum", "spread")
@@ -70,9 +71,12 @@ def with_predictions(data: xr.Dataset, runner: PredictionRunner) -> xr.Dataset:
 
 
 def _leaves_open(data: xr.Dataset) -> bool:
-    """Return whether data at the reference leave a parameter or a combination of them open."""
+    """Return whether all data leave a parameter or a combination of them open at the reference."""
+    together = ALL if data.sizes["group"] > 1 else data["group"].values[0]
+    of = data["combination_of"].values == together
+    here = of & (data["combination_at"].values == preferred(data.attrs))
     idle = np.diag(data["collinearity"].values) == 0
-    return bool(idle.any() or np.isinf(data["collinearity_index"].values))
+    return bool(idle.any() or (data["combination_share"].values[here] <= RANK).any())
 
 
 def _of_points(
