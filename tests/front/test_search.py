@@ -460,11 +460,13 @@ def test_an_edge_that_hardly_any_start_leads_to_is_doubtful() -> None:
 
     problem = box(rugged, [-1.0] * 4, [1.0] * 4)
     search = Search(evaluations=1500)
-    rough, smooth = pareto_front(problem, ONES, Pareto(points=2), seed=1, search=search).edges
+    front = pareto_front(problem, ONES, Pareto(points=4), seed=1, search=search)
+    rough, smooth = front.edges
     assert rough.doubtful
     assert rough.found > rough.starts / 2
     assert not smooth.doubtful
     assert smooth.found == 1
+    assert all(x.converged for x in front_points(front)), "the other half is for the points"
 
 
 @given(st.integers(0, 2**31))

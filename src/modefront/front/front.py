@@ -23,8 +23,7 @@ class Edge:
     best, minima : the edge, and all minima with it
     starts : number of random models from which the least objective was sought
     found : number of different minima to which they led
-    doubtful : whether the budget was spent before two of them led to the edge, or before unseen
-        minima were unlikely
+    doubtful : whether fewer than two of them led to the edge, and unseen minima are likely
     """
 
     best: Solution

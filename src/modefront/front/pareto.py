@@ -23,7 +23,7 @@ from modefront.front.proposers.base import Proposer, Rate, at, evaluated
 from modefront.front.proposers.evolution import Evolution
 from modefront.front.proposers.polish import Polish
 from modefront.front.proposers.rivals import Rivals
-from modefront.front.proposers.starts import Starts
+from modefront.front.proposers.starts import SURE, Starts
 from modefront.front.search import Loop, Search
 from modefront.front.simplex import (
     Payoff,
@@ -374,8 +374,8 @@ class _Run:
             for x in sorted(known.ends, key=lambda x: float(x.J[k])):
                 if self.state.is_new(x, minima):
                     minima.append(x)
-            doubt = known.doubt(place, self.state.tolerance)
-            doubtful = self.known is None and doubt >= self.loop.search.doubt
+            rare = self.known is None and known.hits(place, self.state.tolerance) < SURE
+            doubtful = rare and known.unseen >= self.loop.search.doubt
             out.append(Edge(place.incumbent, minima, known.rate.tries, len(known.ends), doubtful))
         return out
 

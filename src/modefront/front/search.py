@@ -1,10 +1,10 @@
 """The search: proposers are asked, the best offers are solved, and all are told what was found.
 
 An offer is worth making as long as the chance that some subproblem gains more than the tolerance,
-or the part of the box that may hold something better, is above the doubt that is allowed. Of these,
-the ones with the greatest chance per evaluation are solved, some at a time. The search ends when no
-offer is worth making, or at its budget. Nothing depends on who solves the offers, and in which
-order they are done.
+or for the first half of the budget, the part of the box that may hold something better, is above
+the doubt that is allowed. Of these, the ones with the greatest chance per evaluation are solved,
+some at a time. The search ends when no offer is worth making, or at its budget. Nothing depends on
+who solves the offers, and in which order they are done.
 """
 
 from __future__ import annotations
@@ -29,6 +29,10 @@ SHARE = number("a share above 0 and below 1", lambda x: 0 < x < 1)
 
 USUAL = 10
 """Evaluations that a search is expected to take before any is known."""
+
+CONFIRMING = 0.5
+"""Share of the budget up to which offers are made for the sake of what is unseen alone; the rest is
+for the points between the edges."""
 
 SEARCHING = 0.9
 """Share of the budget that is searched with; the rest is for what follows from the front: optimal
@@ -111,10 +115,12 @@ class Loop:
     def _offers(self) -> list[tuple[Proposer, Offer]]:
         """Return the offers worth making, the greatest chance per evaluation first."""
         offers = []
+        confirming = self.state.evaluations < CONFIRMING * self.search.evaluations
         for place, proposer in enumerate(self.proposers):
             cost = self._cost(proposer.name)
             for offer in proposer.offers(self.state, BATCH):
-                if max(offer.chance, offer.unseen) >= self.search.doubt:
+                doubt = offer.unseen if confirming else 0.0
+                if max(offer.chance, doubt) >= self.search.doubt:
                     offers.append((offer.chance / cost, -place, proposer, offer))
         offers.sort(key=lambda each: each[:2], reverse=True)
         return [(proposer, offer) for _, _, proposer, offer in offers]
