@@ -378,7 +378,7 @@ def bricks() -> None:
 
 
 def thickness() -> None:
-    """Print how far frequencies at other thicknesses than the nominal one are from a new model's."""
+    """Print how far frequencies at other thicknesses are from those of a new model."""
     for angle, size in product((0.0, 45.0), (6.0, 4.0, 1.0)):
         X, cells = fem.grids.plate(1.0, 1.0, 12, 12)
         held = (fem.Support(at_edges(X, "all")),)
