@@ -280,8 +280,9 @@ def test_slender_cantilever_of_distorted_bricks(
     # patch test bends as a trapezoid.
     X, cells = fem.grids.box((6.0, 0.2, 0.1), (6, 1, 1))
     section = np.round(X[:, 0])
-    lean = {"regular": 0.0, "parallelograms": 1.0, "trapezoids": (-1.0) ** section}[shape]
-    X[:, 0] += lean * (X[:, 1] - 0.1) * ((section > 0) & (section < 6))
+    base = {"regular": 0.0, "parallelograms": 1.0, "trapezoids": -1.0}[shape]
+    inner = (section > 0) & (section < 6)
+    X[inner, 0] += base ** section[inner] * (X[inner, 1] - 0.1)
     if quadratic:
         X, cells = fem.grids.quadratic_bricks(X, cells)
     root = fem.Support(np.flatnonzero(X[:, 0] < 1e-9), ("x", "y", "z"))
