@@ -23,7 +23,7 @@ from scipy.sparse.linalg import LinearOperator, eigsh, splu, spsolve
 
 from modefront import fem
 from modefront._typing import Bools, Floats, Ints
-from modefront.fem.elements.common import solid_mass, solid_stiffness
+from modefront.fem.elements.common import elasticity, solid_mass, solid_stiffness
 from modefront.fem.elements.shapes import Cell, gradients
 
 TARGET = 2.0
@@ -204,7 +204,7 @@ def solid_of_high_order(
     for nodes, own in zip(cells, dofs, strict=True):
         g, det = gradients(X[nodes][None], dN)
         weight, place = np.abs(det) * w.prod(1), (np.repeat(own, len(own)), np.tile(own, len(own)))
-        k = solid_stiffness(g, weight, STEEL.E, STEEL.nu)[0]
+        k = solid_stiffness(g, weight, elasticity(STEEL, np.eye(3)))[0]
         m = STEEL.rho * solid_mass(N, weight)[0]
         K += sparse.csc_array((k.ravel(), place), shape=K.shape)
         M += sparse.csc_array((m.ravel(), place), shape=K.shape)
