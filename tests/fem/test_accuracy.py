@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -11,6 +12,8 @@ from structures import STEEL, boundary, frequencies, move_inner, rate, rotation,
 
 from modefront import fem
 from modefront._typing import Floats
+
+Surface = Callable[[Floats, Floats], Floats]
 
 # Roots of cos(x) cosh(x) = -1.
 CANTILEVER = np.array([1.875104068711961, 4.694091132974175])
@@ -139,6 +142,158 @@ def test_shell_bends_in_its_plane_exactly(length: int, triangles: bool) -> None:
     q = u[node, direction]
     energy = q @ (model.stiffness.at(np.zeros(0)) @ q) / 2
     assert energy == pytest.approx(STEEL.E * t * b**3 / 12 * L / 2, rel=1e-9)
+
+
+def skew(angle: float) -> Surface:
+    a = np.radians(angle)
+    return lambda x, y: np.stack([x + np.sin(a) * y, np.cos(a) * y, 0 * x], 1)
+
+
+def sphere(x: Floats, y: Floats) -> Floats:
+    return np.stack([x - 0.5, y - 0.5, np.sqrt(1 - (x - 0.5) ** 2 - (y - 0.5) ** 2)], 1)
+
+
+def saddle(x: Floats, y: Floats) -> Floats:
+    return np.stack([x - 0.5, y - 0.5, (x - 0.5) ** 2 - (y - 0.5) ** 2], 1)
+
+
+def twisted(x: Floats, y: Floats) -> Floats:
+    arm, angle = 1.1 * (y - 0.5), np.pi / 2 * x
+    return np.stack([12 * x, arm * np.cos(angle), arm * np.sin(angle)], 1)
+
+
+def _shell_frequencies(
+    surface: Surface, h: float, n: int, held: tuple[int, ...], triangles: bool
+) -> Floats:
+    """First five frequencies of a shell over the unit square, clamped at 1 or at all edges."""
+    X, cells = fem.grids.plate(1.0, 1.0, n, n)
+    edges = boundary(X, held) if len(held) == 2 else np.flatnonzero(X[:, 0] == 0)
+    # Along the shorter diagonals of skew plates, as mesh generators divide.
+    cells = fem.grids.triangles(np.roll(cells, 1, axis=1)) if triangles else cells
+    group = (fem.Shells("s", cells, STEEL, h),)
+    structure = fem.Structure(surface(X[:, 0], X[:, 1]), group, (fem.Support(edges),))
+    return frequencies(fem.assemble(structure), 5)
+
+
+@pytest.mark.parametrize("triangles", [False, True])
+@pytest.mark.parametrize(
+    ("surface", "h", "held", "reference"),
+    [
+        (skew(0), 0.2, (0, 1), [8426.3, 14755.1, 14755.1, 19384.2, 19384.2]),
+        (skew(45), 0.001, (0, 1), [102.82, 166.85, 232.63, 246.41, 309.58]),
+        (skew(60), 0.001, (0, 1), [190.46, 278.26, 362.86, 456.52, 477.18]),
+        (sphere, 0.001, (0,), [21.594, 27.149, 57.291, 80.328, 128.82]),
+        (saddle, 0.001, (0,), [14.775, 15.341, 52.441, 56.349, 150.74]),
+    ],
+    ids=["thick", "skew by 45", "skew by 60", "sphere", "saddle"],
+)
+def test_shells_of_16_elements_a_side(
+    surface: Surface, h: float, held: tuple[int, ...], reference: list[float], triangles: bool
+) -> None:
+    # The references are solids of high order: `solid_of_high_order` in benchmarks/elements.py.
+    found = _shell_frequencies(surface, h, 16, held, triangles)
+    assert np.abs(found / reference - 1).max() < 0.02
+
+
+def test_narrow_elements_twist_as_thick_shells_do() -> None:
+    # Shear near the edges takes 15 % of the stiffness; elements are 11 times as long as wide.
+    found = _shell_frequencies(twisted, 0.32, 16, (0,), False)
+    assert np.abs(found / [11.984, 30.765, 96.416, 151.94, 216.46] - 1).max() < 0.02
+
+
+@pytest.mark.parametrize("triangles", [False, True])
+def test_curved_shells_converge_with_order_2(triangles: bool) -> None:
+    # An eighth of a cylinder with diaphragms: no corner or edge is singular.
+    w = []
+    for n in (8, 16, 32):
+        X, cells = fem.grids.plate(np.pi / 2, 1.0, n, n)
+        low, high = np.isclose(X, 0), np.isclose(X, [np.pi / 2, 1.0, 1.0])
+        supports = (
+            fem.Support(np.flatnonzero(low[:, 1]), ("x", "z", "ry")),
+            fem.Support(np.flatnonzero(high[:, 1]), ("y", "rx", "rz")),
+            fem.Support(np.flatnonzero(low[:, 0]), ("x", "ry", "rz")),
+            fem.Support(np.flatnonzero(high[:, 0]), ("z", "rx", "ry")),
+        )
+        points = np.stack([np.sin(X[:, 0]), X[:, 1], np.cos(X[:, 0])], 1)
+        cells = fem.grids.triangles(cells) if triangles else cells
+        group = (fem.Shells("s", cells, STEEL, 0.1),)
+        w.append(frequencies(fem.assemble(fem.Structure(points, group, supports)), 3))
+    first, second = np.abs(np.diff(w, axis=0))
+    assert np.all(first / second > 2**1.5)
+
+
+def test_hook_of_raasch() -> None:
+    # N. F. Knight 1997: 5.02 inches in solids; arcs of 60° and 150°, across which it is loaded.
+    n, first = 16, np.radians(60)
+    X, cells = fem.grids.plate(1.0, 1.0, n, n)
+    s = X[:, 0] * (14 * first + 46 * np.radians(150))
+    a, b = np.minimum(s / 14, first), np.maximum(s - 14 * first, 0) / 46
+    u = 14 * np.sin(a) + 46 * (np.sin(first) - np.sin(first - b))
+    v = 14 * (1 - np.cos(a)) + 46 * (np.cos(first - b) - np.cos(first))
+    group = (fem.Shells("hook", cells, fem.Material(3300.0, 0.35, 1.0), 2.0),)
+    root = fem.Support(np.flatnonzero(X[:, 0] == 0))
+    model = fem.assemble(fem.Structure(np.stack([u, v, 20 * X[:, 1]], 1), group, (root,)))
+    load = np.zeros((len(X), 6))
+    load[X[:, 0] == 1, 2] = np.where(np.isin(X[X[:, 0] == 1, 1], (0, 1)), 0.5, 1) / n
+    forces = model.dofs.T.T @ load.ravel()
+    tip = forces @ spsolve(model.stiffness.at(np.zeros(0)).tocsc(), forces)
+    assert tip == pytest.approx(5.02, rel=0.02)
+
+
+@pytest.mark.parametrize("triangles", [False, True])
+def test_pulled_and_pressed_hemisphere(triangles: bool) -> None:
+    # R. H. MacNeal, R. L. Harder: with a hole of 18°, bending without stretch; 0.093 refined.
+    n = 16
+    X, cells = fem.grids.plate(1.0, 1.0, n, n)
+    cells = fem.grids.triangles(cells) if triangles else cells
+    a, b = np.pi / 2 * X[:, 0], np.radians(72) * X[:, 1]
+    points = 10 * np.stack([np.cos(a) * np.cos(b), np.sin(a) * np.cos(b), np.sin(b)], 1)
+    supports = (
+        fem.Support(np.flatnonzero(X[:, 0] == 0), ("y", "rx", "rz")),
+        fem.Support(np.flatnonzero(X[:, 0] == 1), ("x", "ry", "rz")),
+        fem.Support(0, ("z",)),
+    )
+    group = (fem.Shells("s", cells, fem.Material(6.825e7, 0.3, 1.0), 0.04),)
+    model = fem.assemble(fem.Structure(points, group, supports))
+    load = np.zeros((len(X), 6))
+    load[0, 0], load[n * (n + 1), 1] = 1.0, -1.0
+    forces = model.dofs.T.T @ load.ravel()
+    u = model.dofs.T @ spsolve(model.stiffness.at(np.zeros(0)).tocsc(), forces)
+    assert u[0] == pytest.approx(0.093, rel=0.01)
+
+
+@pytest.mark.parametrize(
+    ("shape", "quadratic", "expected"),
+    [
+        ("regular", False, (0.978, 0.973)),
+        ("trapezoids", False, (0.047, 0.030)),
+        ("regular", True, (0.970, 0.961)),
+        ("parallelograms", True, (0.967, 0.941)),
+        ("trapezoids", True, (0.886, 0.920)),
+    ],
+)
+def test_slender_cantilever_of_distorted_bricks(
+    shape: str, quadratic: bool, expected: tuple[float, float]
+) -> None:
+    # R. H. MacNeal, R. L. Harder: 6 x 0.2 x 0.1 of six bricks that lean by 45°, over the exact
+    # deflections. Those of 20 nodes are in the collection; no brick of 8 nodes that passes the
+    # patch test bends as a trapezoid.
+    X, cells = fem.grids.box((6.0, 0.2, 0.1), (6, 1, 1))
+    section = np.round(X[:, 0])
+    base = {"regular": 0.0, "parallelograms": 1.0, "trapezoids": -1.0}[shape]
+    inner = (section > 0) & (section < 6)
+    X[inner, 0] += base ** section[inner] * (X[inner, 1] - 0.1)
+    if quadratic:
+        X, cells = fem.grids.quadratic_bricks(X, cells)
+    root = fem.Support(np.flatnonzero(X[:, 0] < 1e-9), ("x", "y", "z"))
+    group = (fem.Solids("s", cells, fem.Material(1e7, 0.3, 1.0)),)
+    model = fem.assemble(fem.Structure(X, group, (root,)))
+    K, tip = model.stiffness.at(np.zeros(0)).tocsc(), X[:, 0] > 6 - 1e-9
+    for direction, exact, share in ((1, 0.1081, expected[0]), (2, 0.4321, expected[1])):
+        load = np.zeros((len(X), 6))
+        load[tip, direction] = 1 / tip.sum()
+        forces = model.dofs.T.T @ load.ravel()
+        assert forces @ spsolve(K, forces) / exact == pytest.approx(share, abs=1.5e-3)
 
 
 def test_twisted_beam_of_warped_shells() -> None:

@@ -34,6 +34,13 @@ def test_coarse_curved_shells(triangles: bool) -> None:
     assert "expect" in text
 
 
+def test_triangles_along_the_longer_diagonals() -> None:
+    leaning = np.column_stack([PLATE[:, 0] + PLATE[:, 1], PLATE[:, 1], PLATE[:, 2]])
+    assert shells(leaning, fem.grids.triangles(np.roll(QUADS, 1, axis=1)), 0.001) == ()
+    (text,) = shells(leaning, fem.grids.triangles(QUADS), 0.001)
+    assert "half of the triangles of group 'plate' have angles of 135° and more" in text
+
+
 def test_thickness_that_is_a_parameter() -> None:
     assert shells(PLATE, QUADS, 0.1) == ()
     assert shells(PLATE, QUADS, 0.01, "t") == ()

@@ -373,6 +373,10 @@ def test_a_given_force_is_that_of_a_load() -> None:
 def test_loads_that_buckle_the_structure_are_refused() -> None:
     with pytest.raises(fem.FemError, match="below the critical ones"):
         fem.assemble(column(fem.Load("P", [8], (-1.1 * EULER, 0, 0))))
+    loaded = column(fem.Load("P", [8], (-1.0, 0, 0)))
+    given = replace(loaded, groups=(span(force=-1.1 * EULER)[2],), loads=(), parameters=())
+    with pytest.raises(fem.FemError, match="below the critical ones"):
+        fem.assemble(given)
 
 
 def test_a_load_is_carried_by_links_and_couplings() -> None:

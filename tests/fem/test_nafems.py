@@ -20,7 +20,7 @@ def test_the_closed_form_of_the_sphere_is_the_published_one() -> None:
 
 
 def test_finer_meshes_are_nearer() -> None:
-    # FV15 is left out: fine meshes of all elements are up to 1.5 % below some of its targets. The
+    # FV15 is left out: fine meshes of all elements are up to 1.6 % below some of its targets. The
     # target of the sixth mode of FV22 is that of a mesh, those of the others closed forms.
     for name in ("FV22", "FV32"):
         coarse, fine = (np.abs(differences(CASES[n])[1][:5]) for n in (name, f"{name}, finer"))

@@ -126,6 +126,7 @@ def assemble(structure: Structure, *, floating: bool = False) -> StructureMatric
             for load, u in zip(structure.loads, at, strict=True):
                 made = internal.stiffness(u[block.dofs()], strain(load, block.name))
                 K.add(load.name, slot, (Part(0, made),), ("prestress",))
+    if not floating and (forces or any(block.prestress is not None for block in blocks)):
         check_stability(pattern, K.total(), dofs)
     M = _Terms(pattern, structure.parameters)
     for block, slot in each:

@@ -34,7 +34,7 @@ CELL_TYPES: Mapping[Kind, tuple[str, ...]] = {
     "solid": ("hexahedron", "tetra10", "wedge15", "hexahedron20"),
 }
 
-DIVISIONS = {
+DIVISIONS: Mapping[str, list[list[tuple[int, ...]]]] = {
     "triangle6": [[(0, 3, 5), (3, 1, 4), (5, 4, 2), (3, 4, 5)]],
     "quad8": [[(4, 5, 6, 7)], [(0, 4, 7), (4, 1, 5), (5, 2, 6), (7, 6, 3)]],
     "quad9": [[(0, 4, 8, 7), (4, 1, 5, 8), (8, 5, 2, 6), (7, 8, 6, 3)]],
@@ -110,18 +110,7 @@ class Mesh:
                     f"mesh: group {group!r} has cells of the type {block.type}; a {kind} can be"
                     f" made of: {', '.join(CELL_TYPES[kind])}"
                 )
-        return tuple(
-            cells
-            for b in blocks
-            for cells in (
-                [
-                    np.concatenate([b.cells[:, part] for part in parts])
-                    for parts in DIVISIONS[b.type]
-                ]
-                if b.type in DIVISIONS
-                else [b.cells]
-            )
-        )
+        return tuple(cells for block in blocks for cells in _divided(block))
 
     def nodes_of(self, name: str) -> Ints:
         """Nodes of a set, or of the cells of a group, ascending.
@@ -141,6 +130,15 @@ class Mesh:
                 f" {', '.join(names) or 'none'}"
             )
         return np.unique(np.concatenate(blocks))
+
+
+def _divided(block: CellBlock) -> list[Ints]:
+    """Return the cells, those of shells of more than 4 nodes divided, an array for each type."""
+    if block.type not in DIVISIONS:
+        return [block.cells]
+    return [
+        np.concatenate([block.cells[:, part] for part in parts]) for parts in DIVISIONS[block.type]
+    ]
 
 
 def read_mesh(path: str | Path) -> Mesh:

@@ -19,7 +19,8 @@ triangles, in which shear cannot change along a side. Elements with a side in co
 there, which the patch test needs.
 gamma_k = gamma_0 phi / (1 + phi) then vanishes in thin shells, where triangles are those of
 discrete Kirchhoff constraints, and nothing can lock. Between the sides, gamma has constant
-components along those of a triangle, linear ones in a quadrilateral. phi is that of the nominal
+components along those of a triangle, linear ones in a quadrilateral, and the diagonals of that take
+the share phi / (1 + phi) of the bow which bilinear v has there. phi is that of the nominal
 thickness: at others, K(t) = t K_shear + t^3 K_bending is the same element with this share of c.
 Sources: J. L. Batoz, K. J. Bathe, L. W. Ho, doi:10.1002/nme.1620151205; I. Katili,
 doi:10.1002/nme.1620361107; E. N. Dvorkin, K. J. Bathe, doi:10.1108/eb023562.

@@ -194,7 +194,7 @@ def _matrices(
 
 
 def hourglass(each: Elements, area: Floats) -> Floats:
-    """Return what is not linear in d and v, half the bow of a diagonal (elements, 3, 1 + n).
+    """Return what is not linear in d and v: the bow of a diagonal (elements, 3, 1 + n).
 
     That is zero for linear fields, and the coefficient of xi eta in a parallelogram.
     """
