@@ -17,7 +17,7 @@ import numpy as np
 
 from modefront._typing import Bools, Floats, Ints
 from modefront.data.modal import ModalData
-from modefront.diagnosis.student import NOTHING, loss, scaled
+from modefront.diagnosis.student import loss, scaled
 from modefront.rounding import TINY
 
 RIGID = 1e-6
@@ -27,7 +27,7 @@ root of 1e-13."""
 KAPPA, FARTHEST = 0.4, 2.5
 """Cost of a factor e between frequencies, in units of a MAC value, up to the logarithm d."""
 
-NU, FREQUENCY, SHAPE = 20.0, 0.005, 0.03
+NU, FREQUENCY, SHAPE = 100.0, 0.005, 0.03
 """Degrees of freedom nu of noise, and its scales in frequencies and shapes where not known."""
 
 OF_MODEL = 0.08
@@ -49,14 +49,14 @@ class Measured:
     frequency, damping : (sets, modes) frequencies in Hz and damping ratios
     shape : (sets, modes, sensors) components
     std : (sets, modes) relative standard deviations of frequencies; NaN where not known
-    left_out : number of values that are left out
+    left_out : cost of the values that are left out
     """
 
     frequency: Floats
     damping: Floats
     shape: Floats
     std: Floats
-    left_out: int = 0
+    left_out: float = 0.0
 
     @cached_property
     def seen(self) -> Bools:
@@ -128,7 +128,7 @@ class Measured:
         """
         zeta = median(np.where(self.damping > 0, self.damping, np.nan))
         damping = np.log(zeta[np.isfinite(zeta)]) - DAMPING
-        total = float(loss(damping, NU).sum()) + NOTHING * self.left_out
+        total = float(loss(damping, NU).sum()) + self.left_out
         std = np.where(np.isfinite(self.std), self.std, FREQUENCY)
         frequencies = (np.log(self.frequency) - self.logs) / std
         shapes = self.psi - self.factors(self.mean) * self.mean

@@ -19,7 +19,7 @@ from modefront.diagnosis.pairs import PairRemark, pair_remarks
 CLEAR = float(np.log(100.0))
 """Difference of costs from which on one explanation is clearly better: odds of 100 to 1."""
 
-BEAM, FITTED, VARIANTS, MOST = 3, 10, 2, 8
+BEAM, FITTED, VARIANTS, MOST = 6, 10, 2, 8
 """Explanations that are extended at a time, claims by which each is, variants of a claim that are
 fitted, and most mistakes."""
 

@@ -20,6 +20,10 @@ from modefront.diagnosis.mistakes.record import (
     mistake,
     one_of,
 )
+from modefront.diagnosis.student import NOTHING
+
+WRONG = {"frequency": 0.2, "shape": 1.0}
+"""Scale of values that are wrong: of logarithms of frequencies, and of shapes."""
 
 PARTS = ("frequency", "damping", "shape", "std")
 
@@ -132,7 +136,8 @@ def _odd(setting: Setting, part: str, away: Floats) -> Iterator[Variant]:
 
             def change(state: State, k: int = k, r: int = r) -> State:
                 values = getattr(state.data, part).copy()
-                left_out = state.data.left_out + int(np.isfinite(values[k, r]).sum())
+                count = float(np.isfinite(values[k, r]).sum())
+                left_out = state.data.left_out + count * (NOTHING + np.log(WRONG[part]))
                 values[k, r] = np.nan
                 data = replace(state.data, left_out=left_out, **{part: values})
                 return replace(state, data=data)

@@ -54,6 +54,10 @@ UNITS: Sequence[tuple[float, str, str]] = (
 """Measured frequencies over the model's, what makes them so, and what mends it."""
 
 
+REACH = 0.25
+"""Logarithm of a factor beside a known one that parameters make up for, as in a poor model."""
+
+
 @mistake(
     "frequency-factor",
     OFTEN,
@@ -61,11 +65,14 @@ UNITS: Sequence[tuple[float, str, str]] = (
     "{mend}",
 )
 def frequency_factor(setting: Setting) -> Iterator[Variant]:
-    """Yield known factors on all frequencies, and those that pairs show."""
+    """Yield known factors on all frequencies, and others that pairs show."""
     price = one_of(len(UNITS))
     for factor, looks, mend in UNITS:
         yield _factor(factor, looks, mend, price)
+    known = np.log([factor for factor, _, _ in UNITS])
     for factor in sorted(_ratios(setting)):
+        if np.abs(known - np.log(factor)).min() < REACH:
+            continue
         looks = f"stiffness over mass is off by {factor**2:.3g}"
         mend = "check units, sections and masses, or the nominal values of the parameters"
         yield _factor(factor, looks, mend, 3 * price)
