@@ -10,8 +10,8 @@ import xarray as xr
 from modefront.cli.layout import Screen, number
 from modefront.cli.overview import print_models
 from modefront.cli.predictions import print_predictions
+from modefront.front.point import preferred
 from modefront.results.remarks import remarks
-from modefront.results.selection import preferred
 
 Columns = Sequence[tuple[str, str, str]]
 """Titles with a place for a name, the variable (rows, names), and the format of its values."""
@@ -79,7 +79,7 @@ def print_uncertainty(screen: Screen, data: xr.Dataset) -> None:
         titles += [*(f"f{r} Hz" for r in modes), *(f"MAC {r}" for r in modes)]
         values = [data[f"posterior_{name}std"].values for name in ("", "frequency_", "mac_")]
         cells = [number(x, ".3g", "") for x in np.concatenate(values)]
-        title = f"posterior around {preferred(data)}: standard deviations, linearised"
+        title = f"posterior around {preferred(data.attrs)}: standard deviations"
         screen.table(title, ["of", "std"], list(zip(titles, cells, strict=True)))
     elif "theta_std" not in data:
         screen.say("The results hold no uncertainty: the data have no errors that are known.")

@@ -14,8 +14,7 @@ import xarray as xr
 
 from modefront._typing import Floats, Ints
 from modefront.cli.layout import BLANK, Line, Screen, number, plural
-from modefront.front.point import Kind
-from modefront.results.selection import preferred
+from modefront.front.point import Kind, preferred
 
 FEWEST = 3
 """Parameters and modes that a table keeps, however long it is."""
@@ -36,7 +35,7 @@ def first_models(data: xr.Dataset) -> list[int]:
 
 def reference(data: xr.Dataset) -> int:
     """Return the position of the model that the data prefer."""
-    return [str(x) for x in data["label"].values].index(preferred(data))
+    return [str(x) for x in data["label"].values].index(preferred(data.attrs))
 
 
 def print_models(screen: Screen, data: xr.Dataset) -> None:
@@ -145,5 +144,5 @@ def deviations(data: xr.Dataset) -> tuple[Floats, str]:
     if "theta_std" in data:
         return data["theta_std"].values[reference(data)], "standard deviation by errors of the data"
     if "posterior_std" in data:
-        return data["posterior_std"].values, "standard deviation of the posterior, linearised"
+        return data["posterior_std"].values, "standard deviation of the posterior"
     return np.full(data.sizes["parameter"], np.nan), ""

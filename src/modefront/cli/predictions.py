@@ -10,9 +10,8 @@ import xarray as xr
 
 from modefront.cli.layout import Line, Screen, number, plural
 from modefront.cli.overview import reference
-from modefront.front.point import INTERNAL
+from modefront.front.point import INTERNAL, preferred
 from modefront.predictions.registry import RecordedPrediction, predictions_in
-from modefront.results.selection import preferred
 
 DRAWN = ("mean", "5 %", "95 %")
 """Statistics of models drawn from the posterior that are shown."""
@@ -69,7 +68,7 @@ def print_predictions(screen: Screen, data: xr.Dataset) -> None:
     if "range" not in data.sizes:
         screen.say("The study asks for no predictions.")
         return
-    best, linear = preferred(data), "posterior_frequency_std" in data
+    best, linear = preferred(data.attrs), "posterior_frequency_std" in data
     kinds = data["kind"].values
     models = [i for i, kind in enumerate(kinds) if kind not in {"front", *INTERNAL}]
     columns = ["", "minimum", "maximum", "spread", *["posterior"] * linear]
@@ -114,7 +113,7 @@ def predictions_in_short(screen: Screen, data: xr.Dataset, most: int, full: str)
                 value = number(data[main].values[best, x.place], ".3g")
                 ends = f"{number(least, '.3g')} to {number(greatest, '.3g')}"
                 rows.append([f"{each.name}, {x.name}", f"{value} {x.deviation(data)}", ends])
-    columns = ["", preferred(data), "Pareto-optimal models"]
+    columns = ["", preferred(data.attrs), "Pareto-optimal models"]
     out = screen.grid("predictions", columns, rows[:most])
     rest = len(rows) - most
     return out + (screen.sentence(f"and {rest} more: {full}") if rest > 0 else [])

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from enum import Enum
+from typing import Any
 
 from modefront.optim.sqp import Solution
 from modefront.work.codec import record
@@ -87,3 +88,8 @@ def of_kind(points: Iterable[Point], *kinds: Kind) -> list[Point]:
 def reference(points: Sequence[Point]) -> Point:
     """Return the model that the data prefer: most probable, else of optimal, else equal weights."""
     return next(point for kind in REFERENCES for point in points if point.kind is kind)
+
+
+def preferred(attributes: Mapping[Any, Any]) -> str:
+    """Return the label of the reference of results, of the most probable model without one."""
+    return str(attributes["reference"]) or label(Kind.MOST_PROBABLE)

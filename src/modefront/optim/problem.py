@@ -21,12 +21,18 @@ from typing import Protocol
 
 import numpy as np
 
-from modefront._typing import Floats
+from modefront._typing import Floats, Ints
 from modefront.work.codec import record
 
 AT_BOUND = 1e-9
 """Distance over the range of a parameter below which it is at its bound: a hundredth of the
 tolerance of a step (`modefront.optim.sqp.Options`)."""
+
+
+def at_bounds(theta: Floats, lower: Floats, upper: Floats) -> Ints:
+    """Return -1 and 1 where parameters (..., p) are at their lower and upper bounds, else 0."""
+    margin = AT_BOUND * (upper - lower)
+    return np.where(theta <= lower + margin, -1, np.where(theta >= upper - margin, 1, 0))
 
 
 @record

@@ -18,11 +18,12 @@ import xarray as xr
 
 from modefront._typing import Floats
 from modefront._version import __version__
+from modefront.front.point import preferred
 from modefront.predictions import ResultVariable
 from modefront.predictions.registry import RecordedPrediction, predictions_in
 from modefront.reports.words import texts, topics
 from modefront.results.compare import short_names
-from modefront.results.selection import front_points, preferred
+from modefront.results.selection import front_points
 
 INFINITE = 10**400
 """An integer that JavaScript reads as Infinity, for which JSON has no word."""
@@ -112,7 +113,7 @@ def _front(name: str, data: xr.Dataset, arrays: _Arrays) -> dict[str, Any]:
         "inputs": str(data.attrs.get("inputs", "")),
         "version": str(data.attrs["version"]),
         "method": str(data.attrs["method"]),
-        "reference": labels.index(preferred(data)),
+        "reference": labels.index(preferred(data.attrs)),
         "nominal": kinds.index("nominal") if "nominal" in kinds else None,
         "groups": _texts(data, "group"),
         "parameters": _texts(data, "parameter"),
@@ -174,7 +175,7 @@ def _optional(data: xr.Dataset, name: str) -> Any:
 
 def _noise(data: xr.Dataset) -> Floats:
     """Return the error that is expected of each group at the reference; NaN where unknown."""
-    chosen = data["label"].values == preferred(data)
+    chosen = data["label"].values == preferred(data.attrs)
     if "misfit" not in data or not chosen.any():
         return np.full(data.sizes["group"], np.nan)
     misfit = data["misfit"].values

@@ -8,7 +8,7 @@ from dataclasses import replace
 import numpy as np
 import xarray as xr
 
-from modefront._typing import Bools, Floats, Ints
+from modefront._typing import Bools, Floats
 from modefront.analysis.certified import certificate_values
 from modefront.analysis.front import FrontAnalysis
 from modefront.front.dominance import nondominated, undominated
@@ -16,7 +16,7 @@ from modefront.front.front import Front
 from modefront.front.gaps import branch_numbers
 from modefront.front.methods import METHODS
 from modefront.front.point import WEIGHTED, Kind, label
-from modefront.optim.problem import AT_BOUND
+from modefront.optim.problem import at_bounds
 from modefront.optim.sqp import Solution
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.analysis import Values, analysis_values, determinations
@@ -72,20 +72,13 @@ def _points(problem: UpdatingProblem, front: Front, analysis: FrontAnalysis) -> 
         "converged": [x.converged for x in solutions],
         "status": [x.status.name.lower() for x in solutions],
         "evaluations": [x.evaluations for x in solutions],
-        "at_bound": _at_bound(problem, theta),
+        "at_bound": at_bounds(theta, problem.lower, problem.upper),
         **{
             name: _stack([x.evaluation.quantities.get(name, unknown) for x in solutions], modes)
             for name in names
         },
         **certificate_values(problem, solutions),
     }
-
-
-def _at_bound(problem: UpdatingProblem, theta: Floats) -> Ints:
-    """Return -1 where parameters (points, p) are at the lower bound, 1 at the upper one, else 0."""
-    margin = AT_BOUND * (problem.upper - problem.lower)
-    side = np.where(theta >= problem.upper - margin, 1, 0)
-    return np.where(theta <= problem.lower + margin, -1, side)
 
 
 def _data(problem: UpdatingProblem, front: Front) -> Values:

@@ -24,10 +24,10 @@ from scipy.spatial.distance import cdist, pdist, squareform
 
 from modefront._typing import Floats
 from modefront.errors import Fault, InputError
-from modefront.front.point import Kind
+from modefront.front.point import Kind, preferred
 from modefront.predictions.registry import kinds_in
 from modefront.results.files import read_dataset
-from modefront.results.selection import front_points, preferred
+from modefront.results.selection import front_points
 
 if TYPE_CHECKING:
     import pandas as pd
@@ -237,7 +237,7 @@ def _best(data: xr.Dataset) -> xr.Dataset:
 
 def _reference(data: xr.Dataset) -> xr.Dataset:
     """Return the model that the data prefer; the first one of results that do not name it."""
-    labels, name = data["label"].values.tolist(), preferred(data)
+    labels, name = data["label"].values.tolist(), preferred(data.attrs)
     return data.isel(point=labels.index(name) if name in labels else 0)
 
 
@@ -271,7 +271,7 @@ def _summary(name: str, data: xr.Dataset, first: float) -> Summary:
         tuple(np.ptp(models["error"].values, axis=0).tolist()),
         float(from_origin.min()),
         float(np.linalg.norm(weighted[0])) if len(weighted) else float("nan"),
-        preferred(data),
+        preferred(data.attrs),
         float(np.linalg.norm(reference["error"].values)),
         spreads[0],
         tuple(chain.from_iterable(spreads[1:])),

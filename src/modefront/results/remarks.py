@@ -10,10 +10,10 @@ import xarray as xr
 from modefront._typing import Bools, Floats
 from modefront.findings.catalogue import Severity
 from modefront.findings.record import Finding, found, from_text, in_order
-from modefront.front.point import Kind
-from modefront.optim.problem import AT_BOUND
+from modefront.front.point import Kind, preferred
+from modefront.optim.problem import at_bounds
 from modefront.predictions.registry import kinds_in
-from modefront.results.selection import front_points, not_converged, preferred, uncertified
+from modefront.results.selection import front_points, not_converged, uncertified
 from modefront.rounding import ACCUMULATED
 
 CHANGED = "changed"
@@ -171,7 +171,7 @@ def _misfit(data: xr.Dataset) -> Iterator[Finding]:
 
     Pareto-optimal are edges and weighted models too: the best models are never left out.
     """
-    chosen, best = data["pareto"].values, preferred(data)
+    chosen, best = data["pareto"].values, preferred(data.attrs)
     if not chosen.any():
         return
     nominal, beside = data["kind"].values == Kind.NOMINAL.value, ""
@@ -283,9 +283,7 @@ def _pairs(data: xr.Dataset, most: int | None) -> list[Finding]:
 
 def _at_bounds(data: xr.Dataset, most: int | None) -> Iterator[Finding]:
     """Yield which parameters are at a bound and where, of more than ``most`` only how many."""
-    theta, bounds = data["theta"].values, data["bounds"].values
-    margin = AT_BOUND * np.diff(bounds, axis=1)
-    at_bound = (np.abs(theta[:, :, None] - bounds) <= margin).any(axis=2)
+    at_bound = at_bounds(data["theta"].values, *data["bounds"].values.T) != 0
     names = [str(x) for x in data["parameter"].values]
     held = np.flatnonzero(at_bound.any(axis=0)).tolist()
     if most is not None and len(held) > most:

@@ -17,14 +17,14 @@ import xarray as xr
 from modefront._typing import Floats
 from modefront.brief import as_html, brief
 from modefront.errors import ModelError
-from modefront.front.point import Kind
+from modefront.front.point import Kind, preferred
 from modefront.models.local import matrices_at
 from modefront.models.matrices import MatrixModel
 from modefront.plots import Plots
 from modefront.residuals.problem import UpdatingProblem
 from modefront.results.files import read_dataset
 from modefront.results.remarks import CHANGED, headlines
-from modefront.results.selection import front_points, preferred
+from modefront.results.selection import front_points
 from modefront.results.shapes import PairedShapes, paired_shapes
 from modefront.results.vtu import write_vtu
 
@@ -187,7 +187,7 @@ class Results:
     @property
     def reference(self) -> ReportedModel:
         """The model that the data prefer: most probable, else of optimal, else equal weights."""
-        return self.model(preferred(self.dataset))
+        return self.model(preferred(self.dataset.attrs))
 
     @property
     def verdict(self) -> list[str]:

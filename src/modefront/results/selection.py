@@ -6,12 +6,7 @@ import numpy as np
 import xarray as xr
 
 from modefront._typing import Ints
-from modefront.front.point import Kind, label
-
-
-def preferred(data: xr.Dataset) -> str:
-    """Return the label of the reference; of the most probable model where none is to be used."""
-    return str(data.attrs["reference"]) or label(Kind.MOST_PROBABLE)
+from modefront.front.point import Kind
 
 
 def front_points(data: xr.Dataset) -> Ints:

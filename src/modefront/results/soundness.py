@@ -10,10 +10,9 @@ from collections.abc import Iterator, Mapping
 import numpy as np
 import xarray as xr
 
-from modefront.front.point import REFERENCES, Kind
+from modefront.front.point import REFERENCES, Kind, preferred
 from modefront.predictions.registry import ATTRIBUTE, kinds_from, kinds_in
 from modefront.results.schema import ATTRIBUTES, DIMENSIONS, variables_in, variables_of
-from modefront.results.selection import preferred
 from modefront.text import NAME, clean
 from modefront.variables import Values
 
@@ -211,7 +210,7 @@ def _of_file(data: xr.Dataset) -> Iterator[Wrong]:
             yield f"attribute '{name}'", "a whole number of 0 or more", str(value)
     if "certified" in data and "eigenvalue_tolerance" not in data.attrs:
         yield "attribute 'eigenvalue_tolerance'", "it, as there is 'certified'", "nothing"
-    if preferred(data) not in data["label"].values:
+    if preferred(data.attrs) not in data["label"].values:
         found = clean(repr(str(data.attrs["reference"])), NAME)
         yield "attribute 'reference'", "the label of a point", found
 
