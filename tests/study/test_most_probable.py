@@ -101,7 +101,7 @@ def test_the_verdict_is_first_everywhere(
     assert mf.read_results(folder / "results").verdict == said
     assert command("show", folder / "results") == 0
     lines = capsys.readouterr().out.splitlines()
-    assert lines[2].startswith("Use most-probable")
+    assert lines[1].startswith("Use most-probable")
     first = lines[2 : lines.index("", 2)]
     assert len(first) <= 12
     assert all(len(line) <= 80 for line in first)

@@ -144,5 +144,5 @@ def deviations(data: xr.Dataset) -> tuple[Floats, str]:
     if "theta_std" in data:
         return data["theta_std"].values[reference(data)], "standard deviation by errors of the data"
     if "posterior_std" in data:
-        return data["posterior_std"].values, "standard deviation of the posterior, linearised"
+        return data["posterior_std"].values, "standard deviation of the posterior"
     return np.full(data.sizes["parameter"], np.nan), ""

@@ -87,7 +87,8 @@ def print_predictions(screen: Screen, data: xr.Dataset) -> None:
     if _drawn(data):
         drawn = plural(data.sizes["draw"], "model")
         screen.say(
-            f"drawn: over {drawn} of the posterior; the mean of P is the robust failure probability"
+            f"drawn: over {drawn} drawn from the posterior; the mean of P is the robust "
+            "failure probability"
         )
     for each in predictions_in(data):
         screen.table(each.heading, columns, [x.row(data, models) for x in _quantities(each)])
