@@ -43,8 +43,8 @@ MOST_LINES = 4096
 LEFT = 0.05
 """Exponential window at the longest lag."""
 
-FLOOR = 0.1
-"""Quantile of the power over a band that its background has a priori."""
+ROUNDING = 1e-9
+"""Least background over the greatest power of a band."""
 
 SMOOTH = 0.02
 """Share of the lines over which the size of half spectra is averaged for their weights."""
@@ -80,8 +80,8 @@ class Transforms:
             parts = [F[:, k : k + size] for k in first]
             products = np.array([part @ part.conj().T for part in parts]) / count[:, None, None]
         middle = np.add.reduceat(omega, first) / count
-        own = np.einsum("kjj->kj", products).real
-        floor = np.maximum(np.quantile(own, FLOOR, axis=0), 1e-9 * own.mean())
+        value = np.linalg.eigvalsh(np.tensordot(count, products, 1).real / count.sum())
+        floor = np.full(len(F), max(value[0], ROUNDING * value[-1]))
         return Band(middle, count, products, self.order, floor)
 
 

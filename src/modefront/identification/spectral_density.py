@@ -50,7 +50,7 @@ import scipy.linalg as la
 
 from modefront._typing import Complexes, Floats
 
-PRIOR = 5.0
+PRIOR = 1.0
 """Lines that the prior of the background weighs, beyond the number of sensors."""
 
 TOLERANCE = 1e-2
@@ -237,14 +237,19 @@ def evaluate(band: Band, model: Density) -> Fit:
     return Fit(model, x.cost, gradient, _information(model, x, c, d, J))
 
 
-def modal_responses(omega: Floats, F: Complexes, order: int, model: Density) -> Complexes:
-    """Return the expected modal responses at all lines, (modes, lines), given transforms F."""
+def modal_responses(
+    omega: Floats, F: Complexes, order: int, model: Density
+) -> tuple[Complexes, Floats]:
+    """Return the expected modal responses at all lines, (modes, lines), given transforms F.
+
+    Also returns their spectral densities by the model, which are those of Q.
+    """
     h = model.response(omega, order).T
     hat = la.solve(model.background, model.phi, assume_a="pos")
     N = h[:, :, None] * model.force * h[:, None, :].conj()
     D = np.linalg.solve(np.eye(len(h.T)) + N @ (model.phi.T @ hat), N)
-    out: Complexes = np.einsum("krs,sk->rk", D, hat.T @ F)
-    return out
+    Q = np.einsum("krr->rk", N - D).real
+    return np.einsum("krs,sk->rk", D, hat.T @ F), Q
 
 
 def _changes(band: Band, model: Density) -> Complexes:

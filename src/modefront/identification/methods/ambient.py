@@ -8,8 +8,8 @@ r"""Ambient tests: from the records of all setups to modes, by the likelihood of
    in the other setups it needs what noise makes at a pole that is known.
 4. A mode with the amplitude of a machine is none. With :math:`a(t)` the modal response to lines
    about it, :math:`\kappa = \overline{|a|^4} / \overline{|a|^2}^2` is 2 for a normal response and
-   1 for a harmonic; in a record of length T it scatters by :math:`2 / \sqrt{2\zeta\omega T}`, as
-   :math:`|a|^2` is correlated over :math:`1/2\zeta\omega`.
+   1 for a harmonic; over n samples whose response has the correlations :math:`\rho` at all lags,
+   its variance is :math:`4 \sum |\rho|^4 / n`.
 5. Setups are combined: frequencies and damping ratios by their precision and what they scatter
    between setups (`sets`), shapes by the sensors that setups share (`setups`).
 """
@@ -66,6 +66,9 @@ MOST_TOGETHER = 5
 
 DAMPING = 0.002, 0.05
 """Limits of damping ratios to start from."""
+
+QUIET = 0.1
+"""Quantile of the power of a sensor over a band that its background starts from."""
 
 TRIAL_STEPS = 12
 """Steps to the maximum without a mode, which need not be reached to see what the mode gains."""
@@ -307,12 +310,13 @@ def _of_group(
 def _first(band: Band, modes: Sequence[Local], free: int) -> Density:
     """Return a model to start from, with the forces that the shapes make of the power."""
     phi = np.array([mode.phi for mode in modes]).T
+    own = np.einsum("kjj->kj", band.power).real
     model = Density(
         np.array([mode.omega for mode in modes]),
         np.array([mode.zeta for mode in modes]),
         phi,
         np.eye(len(modes), dtype=complex),
-        np.diag(band.floor),
+        np.diag(np.maximum(np.quantile(own, QUIET, axis=0), band.floor)),
         free,
     )
     h2 = np.abs(model.response(band.omega, band.order)) ** 2
@@ -357,13 +361,14 @@ def _kurtosis(setup: _Setup, model: Density, mode: int) -> tuple[float, float]:
     """Return kappa of the modal response, and its standard deviation for a normal one."""
     half = model.zeta[mode] * model.omega[mode]
     near = np.abs(setup.lines.omega - model.omega[mode]) <= max(REACH * half, 4 * setup.spacing)
-    response = spectral_density.modal_responses(
+    response, power = spectral_density.modal_responses(
         setup.lines.omega[near], setup.lines.F[:, near], setup.lines.order, model
-    )[mode]
-    a = np.abs(np.fft.ifft(response, 4 * len(response))) ** 2
-    return float(np.mean(a**2) / np.mean(a) ** 2), 2 / float(
-        np.sqrt(half * 4 * np.pi / setup.spacing)
     )
+    size = 4 * int(near.sum())
+    a = np.abs(np.fft.ifft(response[mode], size)) ** 2
+    rho = np.abs(np.fft.ifft(power[mode], size))
+    std = 2 * np.sqrt(np.mean((rho / rho[0]) ** 4))
+    return float(np.mean(a**2) / np.mean(a) ** 2), float(std)
 
 
 def _as_identification(setup: _Setup, band: tuple[float, float]) -> Identification:
