@@ -67,7 +67,7 @@ def objectives(front: Front) -> Floats:
 def rugged() -> tuple[Front, int]:
     """Return the front of the rugged problem, and what it has cost."""
     problem = box(rastrigin, [-2.0] * 4, [2.0] * 4)
-    options = Pareto(points=12)
+    options = Pareto(points=40)
     with counted() as costs:
         front = pareto_front(problem, np.array([4.0, 4.0]), options, seed=1, search=FEW)
     return front, costs.eigenproblems
@@ -80,9 +80,11 @@ def test_a_rugged_front_is_not_behind_an_evolution_with_as_many_evaluations() ->
     truth = rastrigin_front()
     utopia, scale = truth.min(axis=0), np.ptp(truth, axis=0)
     J = (objectives(front) - utopia) / scale
-    other = evolve_front(problem, "nsga2", 40, spent, np.random.default_rng(0))
-    J_other = (np.array([first.J for first in other]) - utopia) / scale
-    assert hypervolume(J) >= hypervolume(J_other)
+    others = []
+    for seed in range(5):
+        other = evolve_front(problem, "nsga2", 40, spent, np.random.default_rng(seed))
+        others.append(hypervolume((np.array([x.J for x in other]) - utopia) / scale))
+    assert hypervolume(J) >= np.median(others)
     assert hypervolume(J) >= 0.97 * hypervolume((truth - utopia) / scale)
     called = [
         row

@@ -96,7 +96,9 @@ def test_the_results_say_so_too(frame: mf.UpdatingProblem) -> None:
     # What the data leave open the bounds decide: at least six parameters lie at one.
     labels = data["label"].values.tolist()
     assert np.abs(data["at_bound"].values[labels.index("optimal-weights")]).sum() >= 6
-    assert any(text.startswith("the posterior is given ") for text in data["finding"].values)
+    low, _, high = data["interval"].values.T
+    lower, upper = data["bounds"].values.T
+    assert ((lower <= low) & (low < high) & (high <= upper)).all(), "draws lie within the bounds"
     of = data["equal_of"].values
     dimensions = data["equal_dimension"].values[of == "frequencies"]
     assert dimensions.size >= 10

@@ -25,13 +25,19 @@ COMMANDS = [
     (["run", "{}/three.toml", "--refine", "0.1"], "--refine: expected two groups and method 'nbi'"),
     (["compare"], "Missing argument 'DIRECTORIES...'"),
     (["compare", "{}", "{}/absent"], "absent/results.nc: file: expected results of a finished run"),
-    (["init", "{}/new", "--example", "x"], "--example: expected one of ambient-test, calculix, hammer-"),
+    (
+        ["init", "{}/new", "--example", "x"],
+        "--example: expected one of ambient-test, calculix",
+    ),
     (["init", "{}/new", "--example", "three-story-c2"], "(did you mean 'three-story-c"),
     (
         ["init", "{}/new", "--example", "../examples"],
-        "--example: expected one of ambient-test, calculix, hammer-",
+        "--example: expected one of ambient-test, calculix",
     ),
-    (["init", "{}/new", "--example", ""], "--example: expected one of ambient-test, calculix, hammer-"),
+    (
+        ["init", "{}/new", "--example", ""],
+        "--example: expected one of ambient-test, calculix",
+    ),
     (["init", "{}/chain.toml"], "chain.toml: folder: expected a folder that can be written to"),
     (
         ["init", "{}"],

@@ -203,7 +203,7 @@ WRONG = [
     ("mass = 0.5", "mass = -0.5", "('tip') mass: expected a mass of 0 or more, or 3"),
     (SECTION, f'{SECTION}\nreleases = ["rz"]', "releases: expected a list for either end, of x, y"),
     (SECTION, f"{SECTION}\noffsets = [0, 0, 1]", "offsets: expected a vector of 3 numbers for ei"),
-    (SECTION, f'{SECTION}\nforce = "x"', "force: expected an axial force, found the text"),
+    (SECTION, f'{SECTION}\nforce = "x"', "force: expected an axial force, found 'x'"),
     ('elements = "beam"', 'elements = "truss"', "area: expected an area above 0, found nothing"),
     (SUPPORT, f"{SUPPORT}axes = [[1, 0, 0], [1, 0, 0]]\n", "axes: expected two vectors [[...], "),
     ("[[model.link]]", "[[model.coupling]]", "node: expected a node counted from 0, the name of"),
@@ -220,7 +220,7 @@ WRONG = [
     (
         "[[model.link]]",
         '[[model.load]]\nname = "P"\nstrains = { edge = "hot" }\n[[model.link]]',
-        "('P') strains edge: expected a strain, found the text 'hot'",
+        "('P') strains edge: expected a strain, found 'hot'",
     ),
     ("mass = 0.5", "mass = 0.5\ninertia = [1.0]", "inertia: expected 3 moments of inertia of 0 or"),
     ("mass = 0.5", "mass = 0.5\noffset = 1.0", "offset: expected a vector of 3 numbers, found 1.0"),

@@ -178,7 +178,7 @@ def visited(problem: Problem, thetas: Sequence[Floats]) -> float:
 def tasks_on(problem: Known, seed: int) -> list[Task[Outcome]]:
     rng = np.random.default_rng(seed)
     thetas = rng.uniform(-1, 2, size=(6, 5, 2))
-    return [Task(("visit", k), recorded, (visited, problem, x)) for k, x in enumerate(thetas)]
+    return [Task(("visit", k), recorded, (visited, None, problem, x)) for k, x in enumerate(thetas)]
 
 
 def archived(outcomes: Sequence[Outcome]) -> Archive:
@@ -206,7 +206,7 @@ def test_the_archive_is_that_of_one_evaluation_after_another(seed: int) -> None:
     tasks = tasks_on(problem, seed)
     straight = Recorder(Archive(2, 2))
     known = Wrapped(problem, straight.evaluation)
-    sums = [visited(known, task.arguments[2]) for task in tasks]
+    sums = [visited(known, task.arguments[3]) for task in tasks]
     for work in (IMMEDIATE, Run(), Backwards(), Within(Run(), turn=("again", 1))):
         outcomes = work.run(tasks)
         assert [x.result for x in outcomes] == sums

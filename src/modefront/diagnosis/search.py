@@ -275,7 +275,11 @@ class Search:
         """Return the mistakes of the best explanation without which no other one comes near it."""
         out = {}
         for step in best.steps:
-            rivals = [each for each in self.known.values() if step.claim not in each.claims]
+            rivals = [
+                each
+                for each in self.known.values()
+                if step.claim not in each.claims and not _exceeds(each, best)
+            ]
             near = [each for each in rivals if each.cost - best.cost < CLEAR]
             rest = best.claims - {step.claim}
             swaps = [
@@ -293,6 +297,15 @@ class Search:
             without = self.known.get(rest, self.known[frozenset()])
             out[step] = _found(step, gain - best.cost, others, self._evidence(without, best))
         return out
+
+
+def _exceeds(other: Explanation, best: Explanation) -> bool:
+    """Return whether another explanation has more mistakes than the best one and fits no better.
+
+    All sensors but one reversed are the same as that one: a mode shape has no sign.
+    """
+    more = len(other.steps) > len(best.steps)
+    return more and other.point.cost > best.point.cost - 1
 
 
 def _found(step: Step, gain: float, others: tuple[Found, ...] = (), evidence: str = "") -> Found:
