@@ -91,7 +91,7 @@ def test_every_fit_ends_at_a_minimum_of_shapes_poles_forces_and_background() -> 
     band = replace(band, power=power, count=np.full(LINES, 40.0))
     fit = spectral_density.maximise(band, model)
     assert fit.converged
-    A, scale = fit.scaled
+    A, scale = fit.scaled()
     left = scale * fit.gradient
     assert left @ np.linalg.solve(A, left) < 0.1
     for change in (0.99, 1.01):

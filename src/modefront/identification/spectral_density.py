@@ -159,23 +159,26 @@ class Fit:
     """A model beside the data: the cost and its derivatives by the parameters.
 
     The parameters are the shapes (mode by mode), ln omega and ln zeta of the free modes, and the
-    real and imaginary part of L (row by row, the lower triangle).
+    real and imaginary part of L (row by row, the lower triangle). ``bending`` is what the second
+    derivatives of S by L add to those of the cost.
     """
 
     model: Density
     cost: float
     gradient: Floats
     information: Floats
+    bending: Floats
     converged: bool = False
 
-    @property
-    def scaled(self) -> tuple[Floats, Floats]:
-        """The information over its diagonal, and the scale; norms of shapes are held."""
+    def scaled(self, bending: Floats | float = 0.0) -> tuple[Floats, Floats]:
+        """Return the information over its diagonal, and the scale; norms of shapes are held."""
         n, A = len(self.model.phi), self.information.copy()
         for r in range(self.model.free):
             rows = slice(r * n, (r + 1) * n)
             phi = self.model.phi[:, r]
             A[rows, rows] += np.outer(phi, phi) * max(np.trace(A[rows, rows]), 1.0)
+        first = len(A) - len(self.bending)
+        A[first:, first:] += bending
         diagonal = A.diagonal()
         scale = 1 / np.sqrt(np.where(diagonal > TINY, diagonal, 1.0))
         return A * np.outer(scale, scale), scale
@@ -184,7 +187,7 @@ class Fit:
         """Return the covariance of ln omega, ln zeta and the shape of a free mode."""
         n, m = len(self.model.phi), self.model.free
         rows = [m * n + mode, m * n + m + mode, *range(mode * n, (mode + 1) * n)]
-        A, scale = self.scaled
+        A, scale = self.scaled()
         value, vector = la.eigh(A)
         half = (scale[:, None] * vector)[rows] / np.sqrt(np.maximum(value, 1e-13))
         out: Floats = half @ half.T
@@ -248,7 +251,7 @@ def evaluate(band: Band, model: Density) -> Fit:
     whole = (W.swapaxes(1, 2) * x.h[:, :, None] * x.h.conj()[:, None]).sum(axis=0)
     forces = (J.reshape(len(J), whole.size) @ whole.ravel()).real
     gradient = np.concatenate([shapes[:m].ravel(), poles, forces])
-    return Fit(model, x.cost, gradient, _information(model, x, c, d, J))
+    return Fit(model, x.cost, gradient, _information(model, x, c, d, J), _bending(whole.T))
 
 
 def modal_responses(
@@ -289,6 +292,20 @@ def _root_changes(L: Complexes) -> Complexes:
     out = np.zeros((len(rows), *L.shape), complex)
     out[np.arange(len(rows)), rows] = units[:, None] * L[:, columns].conj().T
     return out + out.conj().swapaxes(1, 2)
+
+
+def _bending(G: Complexes) -> Floats:
+    """Return tr G dL dL^* as second derivatives by the parameters of L.
+
+    G is the gradient by S, without its negative part: S on the boundary of what is possible, as
+    where two shapes are alike, has a singular L, by which expected derivatives alone vanish.
+    """
+    rows, columns, units = _entries(len(G))
+    value, vector = np.linalg.eigh(G)
+    G = vector * np.maximum(value, 0.0) @ vector.conj().T
+    same = columns[:, None] == columns
+    out: Floats = 2 * same * (units.conj()[:, None] * G[np.ix_(rows, rows)] * units).real
+    return out
 
 
 def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Complexes) -> Floats:
@@ -420,7 +437,7 @@ def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
 
 
 def _step(fit: Fit, damping: float) -> Floats:
-    A, scale = fit.scaled
+    A, scale = fit.scaled(fit.bending)
     A = A + (damping + 1e-10) * np.eye(len(A))
     out: Floats = -scale * la.solve(A, scale * fit.gradient, assume_a="pos")
     return out
