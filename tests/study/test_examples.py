@@ -40,6 +40,6 @@ def test_every_file_in_the_way_is_named_links_to_nothing_too(tmp_path: Path) -> 
 
 
 def test_an_unknown_example_is_answered_with_the_known_ones(tmp_path: Path) -> None:
-    with pytest.raises(InputError, match=r"expected one of calculix, hammer-test, .*did you mean"):
+    with pytest.raises(InputError, match=r"expected one of ambient-test, calculix, .*did you mean"):
         write_example("three-story", tmp_path / "new")
     assert not (tmp_path / "new").exists()

@@ -228,7 +228,7 @@ def _matrices(band: Band, model: Density) -> _Matrices:
     P = model.phi.T @ hat
     N = h[:, :, None] * model.force * h[:, None, :].conj()
     A = np.eye(len(P)) + N @ P
-    Y = np.linalg.inv(A)
+    Y: Complexes = np.asarray(np.linalg.inv(A), complex)
     D = Y @ N
     seen = (band.power.reshape(-1, n) @ hat).reshape(len(h), *hat.shape)
     own, weighted = hat.T @ seen, band.count[:, None, None] * D
@@ -339,9 +339,9 @@ def _information(model: Density, x: _Matrices, c: Floats, d: Complexes, J: Compl
     SP = (SP @ hat.T).transpose(1, 2, 0)
     SF = gram(NCh[:, :m], left * adjoint).transpose(0, 3, 1, 2)
     SF = hat @ (SF.reshape(m, M, M**2) @ flat)
-    pair = np.ix_(mode, mode)
-    T, CP = NC[:, *pair] * d[:, None], C[:, *pair] * d[:, None] * d.conj()[:, :, None]
-    PP = np.tensordot(c, T * T.swapaxes(1, 2) + Q[:, *pair] * CP.swapaxes(1, 2), 1)
+    NCp, Qp, Cp = (y[:, mode][:, :, mode] for y in (NC, Q, C))
+    T, CP = NCp * d[:, None], Cp * d[:, None] * d.conj()[:, :, None]
+    PP = np.sum(c[:, None, None] * (T * T.swapaxes(1, 2) + Qp * CP.swapaxes(1, 2)), axis=0)
     PF = each(NCh[:, mode].swapaxes(1, 2), (left * C[:, :, mode] * d[:, None]).swapaxes(1, 2))
     PF = PF.reshape(2 * m, M**2) @ flat
     Ch = left * C * h
@@ -385,11 +385,11 @@ def _background(band: Band, model: Density, x: _Matrices) -> Floats:
     single = V @ x.weighted.real.sum(axis=0) @ V.T
     flat = x.D.reshape(len(c), -1)
     M = V.shape[1]
-    double = ((c[:, None] * flat).T @ flat).real.reshape(M, M, M, M)
-    double = double.transpose(0, 3, 1, 2).reshape(M * M, M * M)
+    double = ((c[:, None] * flat).T @ flat).real.reshape(M, M, M, M).transpose(0, 3, 1, 2)
+    squared = double.reshape(M * M, M * M)
 
     def product(Z: Floats) -> Floats:
-        middle = (double @ (V.T @ Z @ V).ravel()).reshape(M, M)
+        middle = (squared @ (V.T @ Z @ V).ravel()).reshape(M, M)
         out: Floats = weight * Z - single @ Z - Z @ single + V @ middle @ V.T
         return out
 
