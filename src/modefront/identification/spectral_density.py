@@ -438,9 +438,11 @@ def maximise(band: Band, model: Density, most: int = MOST_STEPS) -> Fit:
 
 def _step(fit: Fit, damping: float) -> Floats:
     A, scale = fit.scaled(fit.bending)
-    A = A + (damping + 1e-10) * np.eye(len(A))
-    out: Floats = -scale * la.solve(A, scale * fit.gradient, assume_a="pos")
-    return out
+    value, vector = la.eigh(A)
+    out: Floats = vector @ (
+        vector.T @ (scale * fit.gradient) / (np.maximum(value, 1e-10) + damping)
+    )
+    return -scale * out
 
 
 def _moved(model: Density, step: Floats) -> Density:
