@@ -99,6 +99,19 @@ def test_every_fit_ends_at_a_minimum_of_shapes_poles_forces_and_background() -> 
         assert spectral_density.evaluate(band, other).cost > fit.cost - 0.01
 
 
+def test_bending_is_the_second_change_of_the_cost_where_forces_vanish() -> None:
+    rng = np.random.default_rng(6)
+    model, band = _model(rng), _band(rng)
+    model = replace(model, root=0 * model.root)
+    band = replace(band, power=band.power / 1e4)
+    fit, step = spectral_density.evaluate(band, model), 1e-4
+    first = 2 * SENSORS + 4
+    for k, expected in enumerate(fit.bending.diagonal()):
+        pair = [_moved(model, first + k, s).root for s in (step, -step)]
+        costs = [spectral_density.evaluate(band, replace(model, root=L)).cost for L in pair]
+        assert (sum(costs) - 2 * fit.cost) / step**2 == pytest.approx(expected, rel=1e-3)
+
+
 def test_shapes_of_setups_meet_at_shared_sensors() -> None:
     rng = np.random.default_rng(2)
     phi = rng.standard_normal(7)
